@@ -1,0 +1,32 @@
+# Flags that every target of the project is compiled with. Warnings are errors.
+add_library(relevo_options INTERFACE)
+target_compile_options(relevo_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+    -Woverloaded-virtual -Wcast-qual -Wimplicit-fallthrough -Werror)
+
+# relevo_layer(<name> SOURCES ... [DEPENDS <lower layers>...] [LINKS <libraries used inside>...]
+#              [PUBLIC_LINKS <libraries seen in headers>...])
+#
+# One static library for a layer of core/, alias relevo::<name>. Includes are written from core/:
+# #include "sun/position.h".
+function(relevo_layer name)
+    cmake_parse_arguments(LAYER "" "" "SOURCES;DEPENDS;LINKS;PUBLIC_LINKS" ${ARGN})
+    add_library(relevo_${name} STATIC ${LAYER_SOURCES})
+    add_library(relevo::${name} ALIAS relevo_${name})
+    target_include_directories(relevo_${name} PUBLIC ${CMAKE_SOURCE_DIR}/core)
+    target_link_libraries(relevo_${name} PRIVATE relevo_options ${LAYER_LINKS})
+    list(TRANSFORM LAYER_DEPENDS PREPEND relevo::)
+    target_link_libraries(relevo_${name} PUBLIC ${LAYER_DEPENDS} ${LAYER_PUBLIC_LINKS})
+endfunction()
+
+# relevo_test(<layer> SOURCES ... [DEPENDS <layers>...] [LINKS ...])
+#
+# One GoogleTest program for a layer, run once by ctest under the name of the layer.
+function(relevo_test name)
+    cmake_parse_arguments(TEST "" "" "SOURCES;DEPENDS;LINKS" ${ARGN})
+    add_executable(test_${name} ${TEST_SOURCES})
+    list(TRANSFORM TEST_DEPENDS PREPEND relevo::)
+    target_link_libraries(test_${name} PRIVATE relevo_options relevo_test_support ${TEST_DEPENDS}
+        ${TEST_LINKS} GTest::gmock GTest::gtest)
+    add_test(NAME ${name} COMMAND test_${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+endfunction()

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace relevo {
+
+/// What went wrong, as the exit status of the program says it (docs/cli.md).
+enum class ErrorCode {
+    Failed = 1,            ///< the operation could not be carried out
+    Usage = 2,             ///< the command line is wrong
+    BadInput = 3,          ///< a file or a value given by the user cannot be used
+    NoDevice = 4,          ///< no GL device that can draw
+    SomeFramesFailed = 5,  ///< a batch went on, but not every frame was made
+    CompareFailed = 6,     ///< two pictures differ by more than allowed
+};
+
+/// An operation cannot continue. Caught once, in main.
+///
+/// The message reads `who: subject: what, expected E but got G; remedy`, for example
+/// `dem::load: alps.tif: no coordinate reference system; pass --crs EPSG:n`.
+class Error : public std::runtime_error {
+  public:
+    Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+
+    ErrorCode code() const { return code_; }
+    int exit_status() const { return static_cast<int>(code_); }
+
+  private:
+    ErrorCode code_;
+};
+
+/// Throws `Error(ErrorCode::BadInput, message)`.
+[[noreturn]] void bad_input(const std::string& message);
+
+/// Throws `Error(ErrorCode::Usage, message)`.
+[[noreturn]] void bad_usage(const std::string& message);
+
+/// Throws `Error(ErrorCode::Failed, message)`.
+[[noreturn]] void failed(const std::string& message);
+
+}  // namespace relevo

@@ -1,0 +1,92 @@
+#include "base/log.h"
+
+#include <mutex>
+#include <utility>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace relevo::log {
+namespace {
+
+struct State {
+    std::mutex mutex;
+    Level level = Level::Info;
+    std::function<void(Level, std::string_view)> sink;
+    std::shared_ptr<spdlog::logger> logger;
+
+    State() {
+        logger = std::make_shared<spdlog::logger>(
+            "relevo", std::make_shared<spdlog::sinks::stderr_color_sink_st>());
+        logger->set_level(spdlog::level::trace);
+        // "relevo: warning: text"; a notice has no word before it.
+        logger->set_pattern("relevo: %v");
+    }
+};
+
+State& state() {
+    static State instance;
+    return instance;
+}
+
+void write(Level level, std::string_view message) {
+    State& s = state();
+    const std::lock_guard lock(s.mutex);
+    if (level < s.level) return;
+    if (s.sink) {
+        s.sink(level, message);
+        return;
+    }
+    switch (level) {
+        case Level::Debug:
+            s.logger->debug("{}", message);
+            break;
+        case Level::Info:
+            s.logger->info("{}", message);
+            break;
+        case Level::Warning:
+            s.logger->warn("warning: {}", message);
+            break;
+        default:
+            s.logger->error("error: {}", message);
+            break;
+    }
+}
+
+}  // namespace
+
+void set_level(Level level) {
+    State& s = state();
+    const std::lock_guard lock(s.mutex);
+    s.level = level;
+}
+
+Level level() {
+    State& s = state();
+    const std::lock_guard lock(s.mutex);
+    return s.level;
+}
+
+void debug(std::string_view message) {
+    write(Level::Debug, message);
+}
+
+void info(std::string_view message) {
+    write(Level::Info, message);
+}
+
+void warning(std::string_view message) {
+    write(Level::Warning, message);
+}
+
+void error(std::string_view message) {
+    write(Level::Error, message);
+}
+
+void set_sink(std::function<void(Level, std::string_view)> sink) {
+    State& s = state();
+    const std::lock_guard lock(s.mutex);
+    s.sink = std::move(sink);
+}
+
+}  // namespace relevo::log

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace relevo {
+
+/// The whole of a text file.
+/// @throws Error (BadInput) `who: path: cannot be read, reason`
+std::string read_text(const std::filesystem::path& path, std::string_view who);
+
+/// Pieces between the separators, empty ones kept: "a,,b" gives "a", "", "b"; "" gives none.
+std::vector<std::string> split(std::string_view text, char separator);
+
+/// Without blanks, tabs and line ends at both sides.
+std::string_view trimmed(std::string_view text);
+
+/// A decimal number that fills the whole text ("1e-3", "-33.9"), whatever the locale; nothing else.
+/// Infinities and NaN are not numbers here.
+std::optional<double> parse_number(std::string_view text);
+
+/// The candidate nearest to `word` by edit distance, if one is near enough to be worth suggesting.
+std::optional<std::string> nearest(std::string_view word,
+                                   const std::vector<std::string>& candidates);
+
+}  // namespace relevo

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Checks the ranks of docs/architecture.md: who may include whom, and which layer owns which library.
+
+Usage: check_layers.py ROOT. Prints every violation and exits with 1 if there is one.
+"""
+
+import pathlib
+import re
+import sys
+
+RANK = {"base": 0, "geo": 1, "image": 1, "gl": 1, "shader": 1, "dem": 2, "sun": 2, "light": 3, "effect": 3,
+        "scene": 4, "render": 5}
+
+# Library headers, and the only layers of core/ that may include them. What is not listed is free.
+OWNERS = {
+    "GDAL or PROJ": (re.compile(r"(gdal|ogr_|cpl_|proj\.h|vrtdataset)"), {"geo", "dem", "light"}),
+    "GeographicLib": (re.compile(r"GeographicLib/"), {"geo"}),
+    "ERFA": (re.compile(r"erfa"), {"sun"}),
+    "date": (re.compile(r"date/"), {"sun"}),
+    "GL": (re.compile(r"(epoxy/|EGL/|GL/)"), {"gl", "render"}),
+    "OpenImageIO": (re.compile(r"OpenImageIO/"), {"image"}),
+    "libpng": (re.compile(r"png\.h"), {"image"}),
+}
+
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def includes(path):
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        found = INCLUDE.match(line)
+        if found:
+            yield number, found.group(1), found.group(2)
+
+
+def check_core(root):
+    for path in sorted((root / "core").rglob("*")):
+        if path.suffix not in {".h", ".cpp"}:
+            continue
+        layer = path.relative_to(root / "core").parts[0]
+        where = path.relative_to(root)
+        if layer not in RANK:
+            yield f"{where}: {layer} is not a layer"
+            continue
+        text = path.read_text(encoding="utf-8")
+        if path.suffix == ".h" and "#pragma once" not in text:
+            yield f"{where}: no #pragma once"
+        for number, kind, name in includes(path):
+            if kind == '"':
+                other = name.split("/")[0]
+                if other not in RANK:
+                    yield f"{where}:{number}: {name} is not of core/"
+                elif other != layer and RANK[other] >= RANK[layer]:
+                    yield f"{where}:{number}: {layer} (rank {RANK[layer]}) includes {other} (rank {RANK[other]})"
+            else:
+                for library, (pattern, owners) in OWNERS.items():
+                    if pattern.match(name) and layer not in owners:
+                        yield f"{where}:{number}: {library} belongs to {', '.join(sorted(owners))}, not to {layer}"
+                if path.suffix == ".h" and "/" in name and not name.startswith(("glm/", "sys/")):
+                    yield f"{where}:{number}: a header of core shows {name}; only GLM may be seen"
+
+
+def check_plugins(root):
+    allowed = {"base", "geo", "sun", "shader", "effect"}
+    for path in sorted((root / "plugins").rglob("*")):
+        if path.suffix not in {".h", ".cpp"} or "tests" in path.parts:
+            continue
+        for number, kind, name in includes(path):
+            if kind == '"' and "/" in name and name.split("/")[0] not in allowed:
+                yield f"{path.relative_to(root)}:{number}: a plugin includes {name}"
+
+
+def check_names(root):
+    """Core and app name no plugin: adding or removing one edits nothing else."""
+    ids = [path.parent.name for path in (root / "plugins").glob("*/plugin.json")]
+    if not ids:
+        return
+    quoted = re.compile(r'"(' + "|".join(map(re.escape, ids)) + r')"')
+    for folder in ("core", "app"):
+        for path in sorted((root / folder).rglob("*")):
+            if path.suffix in {".h", ".cpp"}:
+                for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                    if quoted.search(line):
+                        yield f"{path.relative_to(root)}:{number}: names a plugin: {line.strip()}"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    violations = [*check_core(root), *check_plugins(root), *check_names(root)]
+    print("\n".join(violations) if violations else "layers: clean")
+    return 1 if violations else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
