@@ -24,6 +24,8 @@ FormatInfo info(Format format) {
             return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
         case Format::Srgb8A8:
             return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+        case Format::RG16Snorm:
+            return {GL_RG16_SNORM, GL_RG, GL_SHORT, 4};
         case Format::R16F:
             return {GL_R16F, GL_RED, GL_HALF_FLOAT, 2};
         case Format::RG16F:
@@ -36,6 +38,8 @@ FormatInfo info(Format format) {
             return {GL_RG32F, GL_RG, GL_FLOAT, 8};
         case Format::RGBA32F:
             return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
+        case Format::RGBA32UI:
+            return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16};
         case Format::Depth32F:
             return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4};
     }

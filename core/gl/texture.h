@@ -13,12 +13,14 @@ enum class Format {
     RG8,
     RGBA8,
     Srgb8A8,  ///< read as linear, alpha linear
+    RG16Snorm,
     R16F,
     RG16F,
     RGBA16F,
     R32F,
     RG32F,
     RGBA32F,
+    RGBA32UI,
     Depth32F,
 };
 
