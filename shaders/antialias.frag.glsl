@@ -6,8 +6,8 @@
 //!
 //! Edges are steps of depth, not of brightness: ground textures are filtered already and stay sharp.
 
-layout(binding = 0) uniform sampler2D colour;
-layout(binding = 1) uniform usampler2D place;
+uniform sampler2D colour;
+uniform usampler2D place;
 
 layout(location = 0) out vec4 colour_out;
 

@@ -9,9 +9,7 @@
 in vec2 page_texel;
 flat in float page_layer;
 in float height_m;
-#ifdef TERRAIN_NORMAL_VERTEX
 in vec3 vertex_normal;
-#endif
 
 layout(location = 0) out uvec4 place;
 

@@ -4,7 +4,7 @@
 
 //@ include lib/srgb.glsl
 
-layout(binding = 0) uniform sampler2D radiance;
+uniform sampler2D radiance;
 
 layout(location = 0) out vec4 colour_out;
 

@@ -5,8 +5,8 @@
 //@ include lib/ground.glsl
 //@ include lib/pages.glsl
 
-layout(binding = 0) uniform usampler2D place;
-layout(binding = 1) uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
+uniform usampler2D place;
+uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
 
 layout(location = 0) out vec4 radiance_out;
 

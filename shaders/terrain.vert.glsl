@@ -16,14 +16,12 @@ layout(location = 7) in vec4 up_0;       // w: texels there from vertex to verte
 layout(location = 8) in vec4 up_u;
 layout(location = 9) in vec4 up_v;
 
-layout(binding = 0) uniform sampler2DArray height_pages;  // r: height [m]; g: 1 on posts, 0 on holes
+uniform sampler2DArray height_pages;  // r: height [m]; g: 1 on posts, 0 on holes
 
 out vec2 page_texel;
 flat out float page_layer;
 out float height_m;
-#ifdef TERRAIN_NORMAL_VERTEX
 out vec3 vertex_normal;
-#endif
 
 /// Where a point of the patch lies, relative to the eye [m].
 /// @param at  0..1 over the patch

@@ -172,10 +172,12 @@ struct Context::Impl {
 
     ~Impl() { close(); }
 
-    static void GLAPIENTRY on_message(GLenum, GLenum type, GLuint, GLenum, GLsizei length,
+    static void GLAPIENTRY on_message(GLenum source, GLenum type, GLuint, GLenum, GLsizei length,
                                       const GLchar* text, const void* user) {
         auto& self = *static_cast<Impl*>(const_cast<void*>(user));
         const std::string_view message(text, static_cast<std::size_t>(std::max(0, length)));
+        // What the compiler refuses is told by Program::build.
+        if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
         if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR)
             self.errors.emplace_back(trimmed(message));
         else

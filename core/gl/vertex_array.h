@@ -12,10 +12,10 @@ class VertexArray {
   public:
     VertexArray();
 
-    /// Feeds inputs `first_location` ... from tightly packed floats, `components` each, `count` inputs
-    /// interleaved. @param per_instance  one step an instance instead of one a vertex
-    void attributes(int binding, const Buffer& buffer, int first_location, int count, int components,
-                    bool per_instance);
+    /// Feeds inputs `first_location` ... from tightly packed floats, `components` each, `count`
+    /// inputs interleaved. @param per_instance  one step an instance instead of one a vertex
+    void attributes(int binding, const Buffer& buffer, int first_location, int count,
+                    int components, bool per_instance);
     void indices(const Buffer& buffer);  ///< 16-bit
     void bind() const;
 

@@ -80,7 +80,8 @@ std::vector<std::int16_t> normal_page(const Array2d<float>& height_m, const Patc
         const float v = static_cast<float>(row - first.y) * step;
         for (int x = 0; x < kNormalPage_px; ++x) {
             const int column = std::clamp(first.x + x - kNormalBorder_px, 0, height_m.width() - 1);
-            const int left = std::max(column - 1, 0), right = std::min(column + 1, height_m.width() - 1);
+            const int left = std::max(column - 1, 0),
+                      right = std::min(column + 1, height_m.width() - 1);
             const float u = static_cast<float>(column - first.x) * step;
             float h = height_m.at(column, row);
             float west = height_m.at(left, row), east = height_m.at(right, row);
@@ -117,7 +118,8 @@ std::vector<std::int16_t> normal_page(const Array2d<float>& height_m, const Patc
             for (int x = 0; x < half; ++x)
                 for (int c = 0; c < 2; ++c) {
                     const auto at = [&](int i, int j) {
-                        return level[static_cast<std::size_t>(2 * ((2 * y + j) * size + 2 * x + i) + c)];
+                        return level[static_cast<std::size_t>(2 * ((2 * y + j) * size + 2 * x + i) +
+                                                              c)];
                     };
                     next[static_cast<std::size_t>(2 * (y * half + x) + c)] =
                         0.25f * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1));

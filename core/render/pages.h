@@ -7,20 +7,20 @@
 #include "base/array2d.h"
 #include "render/patch_net.h"
 
-/// The elevation cut into square pages as the device gets it. shaders/lib/pages.glsl is the mirror of
-/// the sizes.
+/// The elevation cut into square pages as the device gets it. shaders/lib/pages.glsl is the mirror
+/// of the sizes.
 namespace relevo::render {
 
-inline constexpr int kPatchQuads = 64;  ///< quads along a side of a patch
+inline constexpr int kPatchQuads = 64;                  ///< quads along a side of a patch
 inline constexpr int kHeightPage_px = kPatchQuads + 3;  ///< 65 posts and a border of one
-inline constexpr int kNormalPosts = 256;  ///< posts that a normal page covers along a side
+inline constexpr int kNormalPosts = 256;    ///< posts that a normal page covers along a side
 inline constexpr int kNormalBorder_px = 8;  ///< a border that lasts for four levels of mipmaps
 inline constexpr int kNormalPage_px = kNormalPosts + 2 * kNormalBorder_px;
 inline constexpr int kNormalPageLevels = 4;
 
 /// Height [m] and coverage (1 on posts, 0 on holes) of the posts of a patch, kHeightPage_px a side,
-/// the first one a border. Holes carry the mean of their neighbours that are none, so that the surface
-/// meets the cut half way without a jump.
+/// the first one a border. Holes carry the mean of their neighbours that are none, so that the
+/// surface meets the cut half way without a jump.
 /// @param first   column and row of the patch's first post
 /// @param stride  posts from vertex to vertex; posts beyond the DEM repeat its rim
 std::vector<float> height_page(const Array2d<float>& height_m, glm::ivec2 first, int stride);

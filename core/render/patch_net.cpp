@@ -80,8 +80,8 @@ PatchNet fit_patch_net(const PostPlace& place, const geo::LocalFrame& frame, glm
             vertical[i] += kFit[i][node] * verticals[node];
         }
     }
-    // The vertical keeps its linear part: its curvature over a piece moves a summit by micrometres. The
-    // plane is taken at the middle, where the quadratic terms leave the smallest error.
+    // The vertical keeps its linear part: its curvature over a piece moves a summit by micrometres.
+    // The plane is taken at the middle, where the quadratic terms leave the smallest error.
     const glm::dvec3 du = vertical[1] + vertical[3] + 0.5 * vertical[4];
     const glm::dvec3 dv = vertical[2] + vertical[5] + 0.5 * vertical[4];
     net.vertical = {verticals[4] - 0.5 * du - 0.5 * dv, du, dv};

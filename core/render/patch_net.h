@@ -10,18 +10,19 @@
 
 namespace relevo::render {
 
-/// Where the posts of a square piece of a raster lie on the round Earth: position of height 0 and local
-/// vertical as polynomials over the piece, so that the vertex program needs no projection. With u along
-/// the columns and v along the rows, both 0..1 over the piece, a post of height h lies at
+/// Where the posts of a square piece of a raster lie on the round Earth: position of height 0 and
+/// local vertical as polynomials over the piece, so that the vertex program needs no projection.
+/// With u along the columns and v along the rows, both 0..1 over the piece, a post of height h lies
+/// at
 ///
 ///     centre + p0 + u (pu + u puu + v puv) + v (pv + v pvv) + h (n0 + u nu + v nv)
 ///
-/// in the DEM's local frame [m]. The polynomials are the least-squares fit through 3 x 3 exact places.
-/// Accuracy: the terms of third order that are left out grow with the cube of the piece's side: 2 mm for a
-/// piece of 20 km, below a hundredth of the post spacing up to pieces of 64 posts 12 km apart
-/// (tests/render/test_patch_net.cpp).
+/// in the DEM's local frame [m]. The polynomials are the least-squares fit through 3 x 3 exact
+/// places. Accuracy: the terms of third order that are left out grow with the cube of the piece's
+/// side: 2 mm for a piece of 20 km, below a hundredth of the post spacing up to pieces of 64 posts
+/// 12 km apart (tests/render/test_patch_net.cpp).
 struct PatchNet {
-    glm::dvec3 centre_m;  ///< exact place of the piece's middle
+    glm::dvec3 centre_m;                   ///< exact place of the piece's middle
     std::array<glm::dvec3, 6> position_m;  ///< p0, pu, pv, puu, puv, pvv
     std::array<glm::dvec3, 3> vertical;    ///< n0, nu, nv
 

@@ -20,8 +20,8 @@ constexpr int kGridVertices = (kPatchQuads + 1) * (kPatchQuads + 1);
 constexpr int kGridIndices = kPatchQuads * kPatchQuads * 6;
 constexpr int kInstanceVectors = 9;  // inputs net_0 ... up_v of terrain.vert.glsl
 
-/// Rounding leaves the rims of two patches up to a step of the rasteriser apart, so each reaches this
-/// far [quads] over its neighbour.
+/// Rounding leaves the rims of two patches up to a step of the rasteriser apart, so each reaches
+/// this far [quads] over its neighbour.
 constexpr float kOverlap = 1.0f / 128.0f;
 
 std::vector<float> grid_vertices() {
@@ -76,10 +76,11 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
     const glm::ivec2 patch_counts{pieces(columns, span), pieces(rows, span)};
     const int patch_count = patch_counts.x * patch_counts.y;
     if (std::max(normal_count, patch_count) > max_array_layers)
-        bad_input(fmt::format(
-            "render: a DEM of {} x {} posts needs {} pages, expected at most {} on this device; use a "
-            "part of it or fewer posts",
-            columns, rows, std::max(normal_count, patch_count), max_array_layers));
+        bad_input(
+            fmt::format("render: a DEM of {} x {} posts needs {} pages, expected at most {} on "
+                        "this device; use a "
+                        "part of it or fewer posts",
+                        columns, rows, std::max(normal_count, patch_count), max_array_layers));
 
     const PostPlace place = [&](double column, double row) {
         return heightfield.grid.place(column, row);
@@ -103,7 +104,8 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
         int size = kNormalPage_px;
         for (int level = 0; level < kNormalPageLevels; ++level, size /= 2) {
             const auto count = static_cast<std::size_t>(2 * size * size);
-            normal_pages_.write(level, {0, 0, i}, {size, size, 1}, std::as_bytes(texels.first(count)));
+            normal_pages_.write(level, {0, 0, i}, {size, size, 1},
+                                std::as_bytes(texels.first(count)));
             texels = texels.subspan(count);
         }
     }
@@ -119,14 +121,14 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
             heights[static_cast<std::size_t>(i)] = height_page(height_m, first, stride_);
             Patch& patch = patches_[static_cast<std::size_t>(i)];
             patch.net = fit_patch_net(place, frame, glm::dvec2(first), span);
-            patch.quads = glm::min(glm::vec2(kPatchQuads),
-                                   glm::vec2(columns - 1 - first.x, rows - 1 - first.y) /
-                                       static_cast<float>(stride_));
+            patch.quads = glm::min(
+                glm::vec2(kPatchQuads),
+                glm::vec2(columns - 1 - first.x, rows - 1 - first.y) / static_cast<float>(stride_));
             patch.height_layer = static_cast<float>(i);
             const glm::ivec2 page = first / kNormalPosts;
             patch.normal_layer = static_cast<float>(page.y * normal_pages.x + page.x);
-            patch.first_texel =
-                glm::vec2(first - page * kNormalPosts) + static_cast<float>(kNormalBorder_px) + 0.5f;
+            patch.first_texel = glm::vec2(first - page * kNormalPosts) +
+                                static_cast<float>(kNormalBorder_px) + 0.5f;
             patch.texels_per_quad = static_cast<float>(stride_);
         }
     });
@@ -138,7 +140,8 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
     for (const float h : height_m)
         has_holes_ |= std::isnan(h);
 
-    instances_ = gl::Buffer(patches_.size() * kInstanceVectors * sizeof(glm::vec4), "terrain patches");
+    instances_ =
+        gl::Buffer(patches_.size() * kInstanceVectors * sizeof(glm::vec4), "terrain patches");
     vertex_array_.emplace();
     vertex_array_->attributes(0, grid_, 0, 1, 2, false);
     vertex_array_->attributes(1, instances_, 1, kInstanceVectors, 4, true);

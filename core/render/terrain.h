@@ -19,8 +19,8 @@ struct TerrainOptions {
     int vertex_budget = 600000;
 };
 
-/// A heightfield on the device: one 65 x 65 grid of vertices, drawn once for every patch and displaced
-/// there by the elevation pages.
+/// A heightfield on the device: one 65 x 65 grid of vertices, drawn once for every patch and
+/// displaced there by the elevation pages.
 class Terrain {
   public:
     /// @param frame  the DEM's local frame; every position below is in it
@@ -41,10 +41,10 @@ class Terrain {
   private:
     struct Patch {
         PatchNet net;
-        glm::vec2 quads;         ///< of the patch that lie on the DEM
+        glm::vec2 quads;  ///< of the patch that lie on the DEM
         float height_layer;
         float normal_layer;
-        glm::vec2 first_texel;   ///< in the normal page
+        glm::vec2 first_texel;  ///< in the normal page
         float texels_per_quad;
     };
 

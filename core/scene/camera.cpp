@@ -11,8 +11,8 @@
 namespace relevo::scene {
 namespace {
 
-/// The upright direction of a picture taken along `forward`. Straight up or down has none of its own:
-/// there the top of the picture is `fallback`.
+/// The upright direction of a picture taken along `forward`. Straight up or down has none of its
+/// own: there the top of the picture is `fallback`.
 glm::dvec3 upright(const glm::dvec3& forward, const glm::dvec3& up, const glm::dvec3& fallback) {
     const glm::dvec3 across = up - dot(up, forward) * forward;
     if (length(across) < 1e-9) return normalize(fallback - dot(fallback, forward) * forward);
@@ -38,9 +38,9 @@ Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, doub
     camera.up = upright(camera.forward, {0, 0, 1}, {-std::sin(azimuth), -std::cos(azimuth), 0});
     const glm::dvec3 right = cross(camera.forward, camera.up);
 
-    // Each point asks for a wedge: with the camera at target + d to_camera + a right + b up, the point
-    // is inside while |x - a| <= (d - z) tan. The middle of the extremes of x + z tan and x - z tan
-    // gives a, the larger of the two spreads gives d: the tightest view, no iteration.
+    // Each point asks for a wedge: with the camera at target + d to_camera + a right + b up, the
+    // point is inside while |x - a| <= (d - z) tan. The middle of the extremes of x + z tan and x -
+    // z tan gives a, the larger of the two spreads gives d: the tightest view, no iteration.
     const double margin = 1.04;
     const double tan_y = std::tan(fov_y_rad / 2) / margin;
     const double tan_x = tan_y * aspect;

@@ -6,8 +6,8 @@
 
 #include "geo/local_frame.h"
 
-/// Where the picture is taken from. Positions are in the DEM's local frame: x east, y north, z up at its
-/// centre, metres, the DEM's exaggeration included.
+/// Where the picture is taken from. Positions are in the DEM's local frame: x east, y north, z up
+/// at its centre, metres, the DEM's exaggeration included.
 namespace relevo::scene {
 
 /// A pinhole camera.
@@ -22,17 +22,17 @@ inline constexpr double kDefaultFov_deg = 40;
 
 /// A camera that circles a target.
 struct Orbit {
-    double azimuth_deg = 225;   ///< where the camera stands as seen from the target, from true north
+    double azimuth_deg = 225;  ///< where the camera stands as seen from the target, from true north
     double elevation_deg = 25;  ///< how high it stands, -90 to 90
     double zoom = 1;            ///< 1 shows the whole of the ground; 2 from half as far
 };
 
-/// Vertical field of view of a lens on 36 x 24 mm film, the long side of the film along the long side of
-/// the picture. @param focal_length_mm  above 0
+/// Vertical field of view of a lens on 36 x 24 mm film, the long side of the film along the long
+/// side of the picture. @param focal_length_mm  above 0
 double fov_y_of_focal_length(double focal_length_mm, double aspect);
 
-/// Stands so that all `points` are in the picture, as near as that allows, and then nearer or farther
-/// by `zoom`.
+/// Stands so that all `points` are in the picture, as near as that allows, and then nearer or
+/// farther by `zoom`.
 /// @param points   ground to show, in the local frame [m], at least one
 /// @param aspect   width / height of the picture
 Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,

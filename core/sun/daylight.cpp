@@ -47,9 +47,10 @@ double twilight_illuminance_lux(double elevation_deg) {
         double from_deg;
         std::array<double, 4> l;
     };
-    constexpr std::array<Piece, 4> kPieces{
-        Piece{-0.8, {2.88, 22.26, -207.64, 1034.30}}, Piece{-5, {2.88, 21.81, -258.11, -858.36}},
-        Piece{-12, {2.70, 12.17, -431.69, -1899.83}}, Piece{-18, {13.84, 262.72, 1447.42, 2797.93}}};
+    constexpr std::array<Piece, 4> kPieces{Piece{-0.8, {2.88, 22.26, -207.64, 1034.30}},
+                                           Piece{-5, {2.88, 21.81, -258.11, -858.36}},
+                                           Piece{-12, {2.70, 12.17, -431.69, -1899.83}},
+                                           Piece{-18, {13.84, 262.72, 1447.42, 2797.93}}};
     for (const Piece& piece : kPieces) {
         if (elevation_deg < piece.from_deg) continue;
         const double x = elevation_deg / 90;
@@ -90,14 +91,17 @@ glm::dvec3 sky_irradiance(double elevation_rad) {
     constexpr glm::dvec3 kDay{0.79, 0.99, 1.72};
     constexpr glm::dvec3 kDusk{0.62, 0.97, 2.42};
     const double dusk = std::clamp(degrees(elevation_rad) / -6.0, 0.0, 1.0);
-    return (kDay + dusk * (kDusk - kDay)) * (sky_illuminance_lux(elevation_rad) / kSolarIlluminance_lux);
+    return (kDay + dusk * (kDusk - kDay)) *
+           (sky_illuminance_lux(elevation_rad) / kSolarIlluminance_lux);
 }
 
 double natural_exposure(double elevation_rad) {
-    // Light on level ground, against that of a sun 45 degrees high. The eye and every camera give part
-    // of the difference back; four fifths keep noon at its place and leave civil twilight readable.
+    // Light on level ground, against that of a sun 45 degrees high. The eye and every camera give
+    // part of the difference back; four fifths keep noon at its place and leave civil twilight
+    // readable.
     const auto level_lux = [](double h_rad) {
-        const double direct = dot(direct_transmittance(h_rad, 0), glm::dvec3(0.2126, 0.7152, 0.0722));
+        const double direct =
+            dot(direct_transmittance(h_rad, 0), glm::dvec3(0.2126, 0.7152, 0.0722));
         return kSolarIlluminance_lux * direct * std::max(0.0, std::sin(h_rad)) +
                sky_illuminance_lux(h_rad);
     };
