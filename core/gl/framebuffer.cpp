@@ -13,7 +13,7 @@ void Framebuffer::destroy(unsigned name) {
     glDeleteFramebuffers(1, &name);
 }
 
-Framebuffer::Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth,
+Framebuffer::Framebuffer(std::span<const Texture* const> colours, const Texture* depth,
                          std::string_view label) {
     GLuint name = 0;
     glCreateFramebuffers(1, &name);
@@ -45,6 +45,10 @@ void Framebuffer::bind() const {
 
 void Framebuffer::clear_colour(int index, glm::vec4 value) const {
     glClearNamedFramebufferfv(handle_.name(), GL_COLOR, index, &value.x);
+}
+
+void Framebuffer::clear_colour_uint(int index, glm::uvec4 value) const {
+    glClearNamedFramebufferuiv(handle_.name(), GL_COLOR, index, &value.x);
 }
 
 void Framebuffer::clear_depth(float value) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <span>
 #include <string_view>
 
 #include <glm/vec4.hpp>
@@ -17,12 +18,16 @@ class Framebuffer {
     /// @param colours  in the order of the fragment program's outputs; may be empty
     /// @param depth    a Depth32F texture, or null
     /// @throws Error (Failed) if the device cannot draw to this combination
-    Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth,
+    Framebuffer(std::span<const Texture* const> colours, const Texture* depth,
                 std::string_view label);
+    Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth,
+                std::string_view label)
+        : Framebuffer(std::span(colours.begin(), colours.size()), depth, label) {}
 
     /// Draws go here from now on, to the whole of it.
     void bind() const;
     void clear_colour(int index, glm::vec4 value) const;
+    void clear_colour_uint(int index, glm::uvec4 value) const;
     void clear_depth(float value) const;
     /// Averages the samples of colour target 0 into `target`'s, pixel for pixel.
     void resolve_to(const Framebuffer& target) const;

@@ -130,6 +130,11 @@ void Texture::read(int level, std::span<std::byte> texels) const {
                       static_cast<GLsizei>(texels.size()), texels.data());
 }
 
+void Texture::read_floats(std::span<float> texels) const {
+    glGetTextureImage(name(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size_bytes()),
+                      texels.data());
+}
+
 void Texture::set_sampling(Filter filter, Wrap wrap, double anisotropy) {
     const GLint mode = wrap == Wrap::Repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE;
     glTextureParameteri(name(), GL_TEXTURE_WRAP_S, mode);

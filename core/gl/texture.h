@@ -49,6 +49,8 @@ class Texture {
     void write(int level, Extent offset, Extent extent, std::span<const std::byte> texels);
     /// One whole level; waits for the device.
     void read(int level, std::span<std::byte> texels) const;
+    /// Level 0 of a colour texture of floats or halves, as four floats a texel.
+    void read_floats(std::span<float> texels) const;
 
     void set_sampling(Filter filter, Wrap wrap, double anisotropy = 1);
     void make_mipmaps();

@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "effect/registry.h"
+#include "effect/selection.h"
 #include "gl/context.h"
 #include "image/image.h"
 #include "render/frame_block.h"
 #include "render/terrain.h"
+#include "shader/param_store.h"
 
 namespace relevo::render {
 
