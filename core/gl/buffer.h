@@ -17,6 +17,11 @@ class Buffer {
     /// A copy of `bytes`; write() may replace them.
     Buffer(std::span<const std::byte> bytes, std::string_view label);
 
+    template <typename T>
+    static Buffer of(std::span<const T> values, std::string_view label) {
+        return Buffer(std::as_bytes(values), label);
+    }
+
     /// Replaces the bytes from `offset` on.
     void write(std::span<const std::byte> bytes, std::size_t offset = 0);
     /// Reads bytes back; waits for the device.

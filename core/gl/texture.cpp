@@ -24,6 +24,8 @@ FormatInfo info(Format format) {
             return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
         case Format::Srgb8A8:
             return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+        case Format::R16:
+            return {GL_R16, GL_RED, GL_UNSIGNED_SHORT, 2};
         case Format::RG16Snorm:
             return {GL_RG16_SNORM, GL_RG, GL_SHORT, 4};
         case Format::R16F:

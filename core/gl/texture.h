@@ -13,6 +13,7 @@ enum class Format {
     RG8,
     RGBA8,
     Srgb8A8,  ///< read as linear, alpha linear
+    R16,
     RG16Snorm,
     R16F,
     RG16F,

@@ -1,7 +1,9 @@
 #include "render/pages.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include <glm/geometric.hpp>
 
@@ -63,9 +65,9 @@ std::vector<std::int16_t> normal_page(const Array2d<float>& height_m, const Patc
     // Everything from here on is relative to the page's middle: floats hold it to micrometres.
     using vec3 = glm::vec3;
     const float step = 1.0f / kNormalPosts;
-    const vec3 pu = vec3(net.position_m[1]), pv = vec3(net.position_m[2]);
-    const vec3 puu = vec3(net.position_m[3]), puv = vec3(net.position_m[4]),
-               pvv = vec3(net.position_m[5]);
+    std::array<vec3, 9> p;
+    for (std::size_t i = 0; i < 9; ++i)
+        p[i] = vec3(net.position_m[i]);
     const vec3 n0 = vec3(net.vertical[0]), nu = vec3(net.vertical[1]), nv = vec3(net.vertical[2]);
     const vec3 pole = vec3(axis);
     const vec3 east_middle = normalize(cross(pole, n0));
@@ -78,6 +80,12 @@ std::vector<std::int16_t> normal_page(const Array2d<float>& height_m, const Patc
         const int row = std::clamp(first.y + y - kNormalBorder_px, 0, height_m.height() - 1);
         const int above = std::max(row - 1, 0), below = std::min(row + 1, height_m.height() - 1);
         const float v = static_cast<float>(row - first.y) * step;
+        // Derivatives of the net along this row: of u at v, and of v as a parabola of u.
+        const vec3 row_u = p[1] + v * (p[4] + v * p[7]);
+        const vec3 row_uu = p[2] + v * (p[5] + v * p[8]);
+        const vec3 slope_v0 = p[3] + 2.0f * v * p[6];
+        const vec3 slope_v1 = p[4] + 2.0f * v * p[7];
+        const vec3 slope_v2 = p[5] + 2.0f * v * p[8];
         for (int x = 0; x < kNormalPage_px; ++x) {
             const int column = std::clamp(first.x + x - kNormalBorder_px, 0, height_m.width() - 1);
             const int left = std::max(column - 1, 0),
@@ -95,9 +103,10 @@ std::vector<std::int16_t> normal_page(const Array2d<float>& height_m, const Patc
             const float dh_row = slope_of(north, h, south);
 
             const vec3 up = n0 + u * nu + v * nv;
-            const vec3 along_column =
-                step * (pu + 2.0f * u * puu + v * puv + h * nu) + dh_column * up;
-            const vec3 along_row = step * (pv + u * puv + 2.0f * v * pvv + h * nv) + dh_row * up;
+            const vec3 base_u = row_u + 2.0f * u * row_uu;
+            const vec3 base_v = slope_v0 + u * (slope_v1 + u * slope_v2);
+            const vec3 along_column = step * (base_u + h * nu) + dh_column * up;
+            const vec3 along_row = step * (base_v + h * nv) + dh_row * up;
             vec3 normal = cross(along_column, along_row);
             normal *= (dot(normal, up) < 0 ? -1.0f : 1.0f) / length(normal);
             vec3 to_east = cross(pole, up);

@@ -6,61 +6,42 @@
 namespace relevo::render {
 namespace {
 
-using Row = std::array<double, 6>;
-
-Row monomials(double u, double v) {
-    return {1, u, v, u * u, u * v, v * v};
+/// Coefficients of 1, t, t^2 of the parabola through values at t = 0, 1/2 and 1.
+std::array<glm::dvec3, 3> parabola(const glm::dvec3& f0, const glm::dvec3& f1,
+                                   const glm::dvec3& f2) {
+    return {f0, -3.0 * f0 + 4.0 * f1 - f2, 2.0 * f0 - 4.0 * f1 + 2.0 * f2};
 }
 
-/// The 6 x 9 matrix that turns values at the 3 x 3 nodes into coefficients: (A^T A)^-1 A^T.
-std::array<std::array<double, 9>, 6> fit_matrix() {
-    std::array<Row, 9> a{};
-    for (std::size_t node = 0; node < 9; ++node)
-        a[node] = monomials(static_cast<double>(node % 3) / 2, static_cast<double>(node / 3) / 2);
-    // Gauss-Jordan on [A^T A | A^T]; the matrix is fixed and well conditioned.
-    std::array<std::array<double, 15>, 6> m{};
-    for (std::size_t i = 0; i < 6; ++i) {
-        for (std::size_t j = 0; j < 6; ++j)
-            for (std::size_t node = 0; node < 9; ++node)
-                m[i][j] += a[node][i] * a[node][j];
-        for (std::size_t node = 0; node < 9; ++node)
-            m[i][6 + node] = a[node][i];
+/// Coefficients of u^i v^j at 3 j + i, from values at node 3 row + column.
+std::array<glm::dvec3, 9> biquadratic(const std::array<glm::dvec3, 9>& nodes) {
+    std::array<glm::dvec3, 9> along_u, result;
+    for (std::size_t row = 0; row < 3; ++row) {
+        const auto c = parabola(nodes[3 * row], nodes[3 * row + 1], nodes[3 * row + 2]);
+        for (std::size_t i = 0; i < 3; ++i)
+            along_u[3 * row + i] = c[i];
     }
-    for (std::size_t i = 0; i < 6; ++i) {
-        std::size_t pivot = i;
-        for (std::size_t r = i + 1; r < 6; ++r)
-            if (std::abs(m[r][i]) > std::abs(m[pivot][i])) pivot = r;
-        std::swap(m[i], m[pivot]);
-        const double scale = 1 / m[i][i];
-        for (double& value : m[i])
-            value *= scale;
-        for (std::size_t r = 0; r < 6; ++r) {
-            if (r == i) continue;
-            const double factor = m[r][i];
-            for (std::size_t c = 0; c < 15; ++c)
-                m[r][c] -= factor * m[i][c];
-        }
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto c = parabola(along_u[i], along_u[3 + i], along_u[6 + i]);
+        for (std::size_t j = 0; j < 3; ++j)
+            result[3 * j + i] = c[j];
     }
-    std::array<std::array<double, 9>, 6> inverse{};
-    for (std::size_t i = 0; i < 6; ++i)
-        for (std::size_t node = 0; node < 9; ++node)
-            inverse[i][node] = m[i][6 + node];
-    return inverse;
+    return result;
 }
 
 }  // namespace
 
 glm::dvec3 PatchNet::place(double u, double v, double height_m) const {
-    const Row m = monomials(u, v);
     glm::dvec3 result = centre_m;
-    for (std::size_t i = 0; i < 6; ++i)
-        result += m[i] * position_m[i];
+    for (std::size_t j = 3; j-- > 0;) {
+        const glm::dvec3* const row = &position_m[3 * j];
+        const glm::dvec3 along_u = row[0] + u * (row[1] + u * row[2]);
+        result += (j == 0 ? 1 : j == 1 ? v : v * v) * along_u;
+    }
     return result + height_m * (vertical[0] + u * vertical[1] + v * vertical[2]);
 }
 
 PatchNet fit_patch_net(const PostPlace& place, const geo::LocalFrame& frame, glm::dvec2 first,
                        double side) {
-    static const auto kFit = fit_matrix();
     std::array<glm::dvec3, 9> positions;
     std::array<glm::dvec3, 9> verticals;
     for (std::size_t node = 0; node < 9; ++node) {
@@ -71,19 +52,15 @@ PatchNet fit_patch_net(const PostPlace& place, const geo::LocalFrame& frame, glm
     }
     PatchNet net;
     net.centre_m = positions[4];
-    net.position_m.fill(glm::dvec3(0));
-    std::array<glm::dvec3, 6> vertical{};
-    vertical.fill(glm::dvec3(0));
-    for (std::size_t i = 0; i < 6; ++i) {
-        for (std::size_t node = 0; node < 9; ++node) {
-            net.position_m[i] += kFit[i][node] * (positions[node] - net.centre_m);
-            vertical[i] += kFit[i][node] * verticals[node];
-        }
-    }
+    for (glm::dvec3& position : positions)
+        position -= net.centre_m;
+    net.position_m = biquadratic(positions);
+    const std::array<glm::dvec3, 9> vertical = biquadratic(verticals);
     // The vertical keeps its linear part: its curvature over a piece moves a summit by micrometres.
     // The plane is taken at the middle, where the quadratic terms leave the smallest error.
-    const glm::dvec3 du = vertical[1] + vertical[3] + 0.5 * vertical[4];
-    const glm::dvec3 dv = vertical[2] + vertical[5] + 0.5 * vertical[4];
+    const auto& c = vertical;
+    const glm::dvec3 du = c[1] + c[2] + 0.5 * c[4] + 0.5 * c[5] + 0.25 * c[7] + 0.25 * c[8];
+    const glm::dvec3 dv = c[3] + c[6] + 0.5 * c[4] + 0.5 * c[7] + 0.25 * c[5] + 0.25 * c[8];
     net.vertical = {verticals[4] - 0.5 * du - 0.5 * dv, du, dv};
     return net;
 }

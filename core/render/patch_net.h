@@ -15,15 +15,15 @@ namespace relevo::render {
 /// With u along the columns and v along the rows, both 0..1 over the piece, a post of height h lies
 /// at
 ///
-///     centre + p0 + u (pu + u puu + v puv) + v (pv + v pvv) + h (n0 + u nu + v nv)
+///     centre + sum over i, j of position[3 j + i] u^i v^j + h (n0 + u nu + v nv),  i, j = 0..2
 ///
-/// in the DEM's local frame [m]. The polynomials are the least-squares fit through 3 x 3 exact
-/// places. Accuracy: the terms of third order that are left out grow with the cube of the piece's
-/// side: 2 mm for a piece of 20 km, below a hundredth of the post spacing up to pieces of 64 posts
-/// 12 km apart (tests/render/test_patch_net.cpp).
+/// in the DEM's local frame [m]: the biquadratic through 3 x 3 exact places, so that neighbours
+/// agree along the side they share. Accuracy: below a hundredth of the post spacing for pieces up
+/// to 200 km; the error grows with the cube of the side (tests/render/test_patch_net.cpp prints
+/// it).
 struct PatchNet {
     glm::dvec3 centre_m;                   ///< exact place of the piece's middle
-    std::array<glm::dvec3, 6> position_m;  ///< p0, pu, pv, puu, puv, pvv
+    std::array<glm::dvec3, 9> position_m;  ///< coefficients, see above
     std::array<glm::dvec3, 3> vertical;    ///< n0, nu, nv
 
     glm::dvec3 place(double u, double v, double height_m) const;

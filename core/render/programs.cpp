@@ -30,7 +30,8 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
     programs.push_back({"terrain", shader::stitch(core, terrain, input)});
     programs.push_back({"sky", shader::stitch(core, fullscreen("sky.frag.glsl"), input)});
     programs.push_back({"post", shader::stitch(core, fullscreen("post.frag.glsl"), input)});
-    programs.push_back({"antialias", shader::stitch(core, fullscreen("antialias.frag.glsl"), input)});
+    programs.push_back(
+        {"antialias", shader::stitch(core, fullscreen("antialias.frag.glsl"), input)});
     return programs;
 }
 
@@ -52,8 +53,8 @@ void dump_programs(const std::vector<ProgramText>& programs, const std::filesyst
 
 LinkedProgram link_program(const ProgramText& text) {
     gl::Program::Failure failure;
-    auto program = gl::Program::build(text.stitched.vertex.text, text.stitched.fragment.text, text.name,
-                                      failure);
+    auto program = gl::Program::build(text.stitched.vertex.text, text.stitched.fragment.text,
+                                      text.name, failure);
     if (program) return {std::move(*program), text.stitched.textures};
     const bool vertex = failure.stage == gl::Program::Failure::Stage::Vertex;
     const shader::StageText& stage = vertex ? text.stitched.vertex : text.stitched.fragment;

@@ -32,7 +32,8 @@ struct LinkedProgram {
     std::vector<shader::TextureUnit> textures;
 };
 
-/// Compiles and links. @throws Error (Failed) with what the driver says, in the author's file and line
+/// Compiles and links. @throws Error (Failed) with what the driver says, in the author's file and
+/// line
 LinkedProgram link_program(const ProgramText& text);
 
 }  // namespace relevo::render

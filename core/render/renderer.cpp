@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/paths.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
-#include "render/effect_textures.h"
 #include "render/programs.h"
 
 namespace relevo::render {
@@ -32,7 +32,8 @@ struct Renderer::Impl {
     gl::Context& context;
     RendererOptions options;
     double anisotropy;
-    ProgramSet programs;
+    std::vector<ProgramText> texts;
+    LinkedProgram geometry, terrain, sky, post, antialias;
     EffectTextures effect_textures;
     gl::Buffer frame_block;
     gl::Buffer params_block;
@@ -42,17 +43,24 @@ struct Renderer::Impl {
     std::vector<gl::Texture> varyings;
     gl::Framebuffer geometry_target, radiance_target, post_target, picture_target;
 
-    Impl(gl::Context& c, const effect::Selection& effects, const shader::ParamStore& values,
-         const RendererOptions& o)
+    Impl(gl::Context& c, const EffectInputs& effects, const RendererOptions& o)
         : context(c),
           options(o),
           // A software renderer pays for every tap of an anisotropic filter (four times the frame).
           anisotropy(c.info().device.software ? 1 : std::min(kAnisotropy, c.info().max_anisotropy)),
-          programs(build_programs(effects, values, o.vertex_normals, c.info().max_texture_units)),
-          effect_textures(effects, anisotropy),
+          texts(stitch(effects.stitch, o, c.info().max_texture_units)),
+          geometry(link("geometry")),
+          terrain(link("terrain")),
+          sky(link("sky")),
+          post(link("post")),
+          antialias(link("antialias")),
+          effect_textures(effects.textures, anisotropy),
           frame_block(sizeof(FrameBlock), "frame block") {
-        const std::vector<std::byte> params = shader::pack(programs.params, values);
-        if (!params.empty()) params_block = gl::Buffer(params, "parameters");
+        if (effects.stitch.values) {
+            const std::vector<std::byte> params =
+                shader::pack(texts.front().stitched.params, *effects.stitch.values);
+            if (!params.empty()) params_block = gl::Buffer(params, "parameters");
+        }
 
         const gl::Extent size{options.width_px, options.height_px, 1};
         const auto target = [&](gl::Format format, const char* label) {
@@ -66,24 +74,40 @@ struct Renderer::Impl {
         radiance = target(gl::Format::RGBA16F, "radiance");
         tone_mapped = target(gl::Format::RGBA8, "tone mapped");
         picture = target(gl::Format::RGBA8, "picture");
-        std::vector<const gl::Texture*> geometry{&place};
-        for (int i = 0; i < programs.varying_targets; ++i) {
+        std::vector<const gl::Texture*> outputs{&place};
+        const int varying_targets = text("geometry").stitched.varying_targets;
+        varyings.reserve(static_cast<std::size_t>(varying_targets));
+        for (int i = 0; i < varying_targets; ++i) {
             varyings.push_back(target(gl::Format::RGBA32F, "varyings"));
             varyings.back().set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
         }
         for (const gl::Texture& texture : varyings)
-            geometry.push_back(&texture);
-        geometry_target = gl::Framebuffer(geometry, &depth, "geometry");
+            outputs.push_back(&texture);
+        geometry_target = gl::Framebuffer(outputs, &depth, "geometry");
         radiance_target = gl::Framebuffer({&radiance}, &depth, "radiance");
         post_target = gl::Framebuffer({&tone_mapped}, nullptr, "post");
         picture_target = gl::Framebuffer({&picture}, nullptr, "picture");
     }
 
+    static std::vector<ProgramText> stitch(shader::StitchInput input, const RendererOptions& o,
+                                           int max_texture_units) {
+        input.max_texture_units = max_texture_units;
+        const shader::FolderTexts core(share_dir() / "shaders");
+        return stitch_programs(core, input, {.vertex_normals = o.vertex_normals});
+    }
+
+    const ProgramText& text(const std::string& name) const {
+        return *std::find_if(texts.begin(), texts.end(),
+                             [&](const ProgramText& program) { return program.name == name; });
+    }
+
+    LinkedProgram link(const char* name) const { return link_program(text(name)); }
+
     /// Binds what a program reads, by the units that the stitcher gave out.
-    void bind(const LinkedProgram& program, const Terrain& terrain) {
+    void bind(const LinkedProgram& program, const Terrain& ground) {
         program.program.use();
         for (const shader::TextureUnit& unit : program.textures) {
-            const gl::Texture* texture = core_texture(unit.resource, terrain);
+            const gl::Texture* texture = core_texture(unit.resource, ground);
             if (!texture) texture = effect_textures.find(unit.resource);
             if (!texture)
                 failed(fmt::format("render: the texture {} of {} does not exist", unit.resource,
@@ -92,12 +116,12 @@ struct Renderer::Impl {
         }
     }
 
-    const gl::Texture* core_texture(const std::string& name, const Terrain& terrain) const {
+    const gl::Texture* core_texture(const std::string& name, const Terrain& ground) const {
         if (name == "place") return &place;
         if (name == "radiance") return &radiance;
         if (name == "colour") return &tone_mapped;
-        if (name == "height_pages") return &terrain.height_pages();
-        if (name == "normal_pages") return &terrain.normal_pages();
+        if (name == "height_pages") return &ground.height_pages();
+        if (name == "normal_pages") return &ground.normal_pages();
         for (std::size_t i = 0; i < varyings.size(); ++i)
             if (name == fmt::format("varyings_{}", i)) return &varyings[i];
         return nullptr;
@@ -108,7 +132,7 @@ struct Renderer::Impl {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
-    void draw(Terrain& terrain, const FrameBlock& block, const glm::dvec3& eye_m, PassTimes* times) {
+    void draw(Terrain& ground, const FrameBlock& block, const glm::dvec3& eye_m, PassTimes* times) {
         frame_block.write(std::as_bytes(std::span(&block, 1)));
         frame_block.bind_uniform(kFrameBinding);
         if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
@@ -118,7 +142,8 @@ struct Renderer::Impl {
             if (!times) return;
             context.finish();
             const auto now = std::chrono::steady_clock::now();
-            times->emplace_back(name, std::chrono::duration<double, std::milli>(now - began).count());
+            times->emplace_back(name,
+                                std::chrono::duration<double, std::milli>(now - began).count());
             began = now;
         };
 
@@ -128,9 +153,9 @@ struct Renderer::Impl {
         glEnable(GL_DEPTH_TEST);
         glDepthMask(GL_TRUE);
         glDepthFunc(GL_GREATER);
-        if (terrain.has_holes()) glEnable(GL_CLIP_DISTANCE0);
-        bind(programs.geometry, terrain);
-        terrain.draw(eye_m);
+        if (ground.has_holes()) glEnable(GL_CLIP_DISTANCE0);
+        bind(geometry, ground);
+        ground.draw(eye_m);
         glDisable(GL_CLIP_DISTANCE0);
         passed("geometry");
 
@@ -139,22 +164,22 @@ struct Renderer::Impl {
         radiance_target.bind();
         glDepthMask(GL_FALSE);
         glDepthFunc(GL_LESS);
-        bind(programs.terrain, terrain);
+        bind(terrain, ground);
         draw_fullscreen();
         passed("terrain");
         glDepthFunc(GL_EQUAL);
-        bind(programs.sky, terrain);
+        bind(sky, ground);
         draw_fullscreen();
         glDisable(GL_DEPTH_TEST);
         passed("sky");
 
         (options.antialias ? post_target : picture_target).bind();
-        bind(programs.post, terrain);
+        bind(post, ground);
         draw_fullscreen();
         passed("post");
         if (options.antialias) {
             picture_target.bind();
-            bind(programs.antialias, terrain);
+            bind(antialias, ground);
             draw_fullscreen();
             passed("antialias");
         }
@@ -162,11 +187,15 @@ struct Renderer::Impl {
     }
 };
 
-Renderer::Renderer(gl::Context& context, const effect::Selection& effects,
-                   const shader::ParamStore& values, const RendererOptions& options)
-    : impl_(std::make_unique<Impl>(context, effects, values, options)) {}
+Renderer::Renderer(gl::Context& context, const EffectInputs& effects,
+                   const RendererOptions& options)
+    : impl_(std::make_unique<Impl>(context, effects, options)) {}
 
 Renderer::~Renderer() = default;
+
+const std::vector<ProgramText>& Renderer::texts() const {
+    return impl_->texts;
+}
 
 void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                             PassTimes* times) {
@@ -185,8 +214,8 @@ image::Image8 Renderer::read_picture() const {
     image::Image8 picture(width, height, 3);
     for (int y = 0; y < height; ++y) {
         // GL's first row is the lowest.
-        const std::uint8_t* from =
-            texels.data() + static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width) * 4;
+        const std::uint8_t* from = texels.data() + static_cast<std::size_t>(height - 1 - y) *
+                                                       static_cast<std::size_t>(width) * 4;
         std::uint8_t* to = picture.row(y);
         for (int x = 0; x < width; ++x, from += 4, to += 3)
             std::copy_n(from, 3, to);
@@ -196,12 +225,13 @@ image::Image8 Renderer::read_picture() const {
 
 image::ImageF Renderer::read_radiance() const {
     const int width = impl_->options.width_px, height = impl_->options.height_px;
-    std::vector<float> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
+    std::vector<float> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                              4);
     impl_->radiance.read_floats(texels);
     image::ImageF picture(width, height, 3);
     for (int y = 0; y < height; ++y) {
-        const float* from =
-            texels.data() + static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width) * 4;
+        const float* from = texels.data() + static_cast<std::size_t>(height - 1 - y) *
+                                                static_cast<std::size_t>(width) * 4;
         float* to = picture.row(y);
         for (int x = 0; x < width; ++x, from += 4, to += 3)
             std::copy_n(from, 3, to);

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "effect/selection.h"
 #include "gl/context.h"
 #include "image/image.h"
+#include "render/effect_textures.h"
 #include "render/frame_block.h"
+#include "render/programs.h"
 #include "render/terrain.h"
 #include "shader/param_store.h"
 
@@ -23,6 +24,12 @@ struct RendererOptions {
     bool antialias = true;
 };
 
+/// The enabled effects, as drawing needs them.
+struct EffectInputs {
+    shader::StitchInput stitch;  ///< its units are the device's, whatever is set
+    std::vector<TextureRequest> textures;
+};
+
 /// Milliseconds of the stages of one frame, by their names: "geometry", "terrain", "sky", "post",
 /// "antialias".
 using PassTimes = std::vector<std::pair<std::string, double>>;
@@ -35,9 +42,11 @@ class Renderer {
   public:
     /// Stitches and compiles the programs, and loads the textures they read.
     /// @throws Error (BadInput) for a plugin's mistake, in its file and line; (Failed) for core's
-    Renderer(gl::Context& context, const effect::Selection& effects,
-             const RendererOptions& options);
+    Renderer(gl::Context& context, const EffectInputs& effects, const RendererOptions& options);
     ~Renderer();
+
+    /// The texts that were compiled.
+    const std::vector<ProgramText>& texts() const;
 
     /// Draws a frame into the renderer's own target.
     /// @param times  filled with what each pass took if not null, which makes the device wait for

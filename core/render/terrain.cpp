@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kGridVertices = (kPatchQuads + 1) * (kPatchQuads + 1);
 constexpr int kGridIndices = kPatchQuads * kPatchQuads * 6;
-constexpr int kInstanceVectors = 9;  // inputs net_0 ... up_v of terrain.vert.glsl
+constexpr int kInstanceVectors = 12;  // inputs net_0 ... up_v of terrain.vert.glsl
 
 /// Rounding leaves the rims of two patches up to a step of the rasteriser apart, so each reaches
 /// this far [quads] over its neighbour.
@@ -57,8 +57,8 @@ int pieces(int posts, int posts_per_piece) {
 
 Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
                  const TerrainOptions& options, int max_array_layers)
-    : grid_(std::as_bytes(std::span(grid_vertices())), "terrain grid"),
-      grid_indices_(std::as_bytes(std::span(grid_indices())), "terrain grid indices") {
+    : grid_(gl::Buffer::of<float>(grid_vertices(), "terrain grid")),
+      grid_indices_(gl::Buffer::of<std::uint16_t>(grid_indices(), "terrain grid indices")) {
     const Array2d<float>& height_m = heightfield.height_m;
     const int columns = height_m.width(), rows = height_m.height();
     const auto patches_at = [&](int stride) {
@@ -162,9 +162,9 @@ void Terrain::draw(const glm::dvec3& eye_m) {
         instances.push_back({with(net.centre_m - eye_m + p[0], patch.quads.x),
                              with(p[1], patch.quads.y), with(p[2], patch.height_layer),
                              with(p[3], patch.normal_layer), with(p[4], patch.first_texel.x),
-                             with(p[5], patch.first_texel.y),
-                             with(net.vertical[0], patch.texels_per_quad), with(net.vertical[1], 0),
-                             with(net.vertical[2], 0)});
+                             with(p[5], patch.first_texel.y), with(p[6], patch.texels_per_quad),
+                             with(p[7], 0), with(p[8], 0), with(net.vertical[0], 0),
+                             with(net.vertical[1], 0), with(net.vertical[2], 0)});
     }
     instances_.write(std::as_bytes(std::span(instances)));
     vertex_array_->bind();

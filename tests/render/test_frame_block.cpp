@@ -46,8 +46,9 @@ TEST(FrameBlock, UpIsTheNormalOfTheEllipsoidEverywhere) {
         }
     }
     fmt::print("[ accuracy ] local vertical on the GPU: worst {:.2g} rad\n", worst);
-    // Heights turn the normal of the level surface by flattening * height / radius.
-    EXPECT_LT(worst, 5e-6);
+    // The normal of a level surface turns by flattening * height / radius, and points 400 km away
+    // in the tangent plane lie 14 km high.
+    EXPECT_LT(worst, 1e-5);
 }
 
 TEST(FrameBlock, TheTargetIsInTheMiddleOfThePicture) {
