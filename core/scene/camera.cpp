@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include "base/error.h"
 #include "base/units.h"
@@ -56,16 +58,30 @@ Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, doub
         vertical.lowest = std::min(vertical.lowest, y - z * tan_y);
         nearest = std::max(nearest, z);
     }
-    const double distance = std::max((horizontal.highest - horizontal.lowest) / (2 * tan_x),
-                                     (vertical.highest - vertical.lowest) / (2 * tan_y));
-    const glm::dvec3 sideways = right * ((horizontal.highest + horizontal.lowest) / 2) +
-                                camera.up * ((vertical.highest + vertical.lowest) / 2);
-    // Zooming moves towards the nearest depth of the ground's middle.
-    double middle = 0;
+    double distance = std::max((horizontal.highest - horizontal.lowest) / (2 * tan_x),
+                               (vertical.highest - vertical.lowest) / (2 * tan_y));
+    distance = std::max(distance, nearest + 1);
+    // That is the nearest place from which all is seen, but where one direction has room to spare the
+    // ground need not lie in its middle: shift it there, as seen.
+    double a = (horizontal.highest + horizontal.lowest) / 2;
+    double b = (vertical.highest + vertical.lowest) / 2;
+    double middle = 0;  // depth of the ground's middle
     for (const glm::dvec3& point : points)
         middle += dot(point, to_camera) / static_cast<double>(points.size());
-    camera.eye_m = sideways + to_camera * (middle + (std::max(distance, nearest + 1) - middle) /
-                                                        std::max(orbit.zoom, 1e-6));
+    for (int turn = 0; turn < 30; ++turn) {
+        glm::dvec2 least(1e300), most(-1e300);
+        for (const glm::dvec3& point : points) {
+            const glm::dvec2 at = glm::dvec2(dot(point, right) - a, dot(point, camera.up) - b) /
+                                  (distance - dot(point, to_camera));
+            least = glm::min(least, at);
+            most = glm::max(most, at);
+        }
+        a += 0.5 * (least.x + most.x) * (distance - middle);
+        b += 0.5 * (least.y + most.y) * (distance - middle);
+    }
+    // Zooming moves towards the ground's middle.
+    camera.eye_m = right * a + camera.up * b +
+                   to_camera * (middle + (distance - middle) / std::max(orbit.zoom, 1e-6));
     return camera;
 }
 
