@@ -152,6 +152,25 @@ bool is_name(std::string_view text) {
     return !is_wkt && !is_json && !has_code && !is_proj;
 }
 
+/// The name of a CRS for people; where it has none, what it is: "Transverse Mercator on WGS 84".
+std::string readable_name(PJ_CONTEXT* context, const PJ* crs) {
+    const char* given = proj_get_name(crs);
+    const std::string name = given ? given : "";
+    if (!name.empty() && name != "unnamed" && name != "unknown") return name;
+    const Pj operation(proj_crs_get_coordoperation(context, crs));
+    const Pj base(proj_get_source_crs(context, crs));
+    const char* method = nullptr;
+    if (!operation || !base ||
+        !proj_coordoperation_get_method_info(context, operation.get(), &method, nullptr, nullptr) ||
+        !method) {
+        const Pj datum(proj_crs_get_datum_forced(context, crs));
+        const char* datum_name = datum ? proj_get_name(datum.get()) : nullptr;
+        return datum_name ? datum_name : "unnamed";
+    }
+
+    return fmt::format("{} on {}", method, readable_name(context, base.get()));
+}
+
 /// Whether PROJ takes the text for an operation unless told that it defines a CRS.
 bool wants_type_crs(std::string_view text) {
     if (text.find("pipeline") != std::string_view::npos ||
@@ -320,6 +339,8 @@ Crs Crs::parse(std::string_view given, std::string_view who) {
     const std::optional<Axis> axis = axis_of(c, base.get(), 0);
     if (!axis) unusable("its axes cannot be read");
     impl->axis = *axis;
+    if (impl->name == "unnamed" || impl->name == "unknown")
+        impl->name = readable_name(c, base.get());
     impl->geographic = is_ellipsoidal(c, base.get());
     constexpr std::array<const char*, 2> kOneLine = {"MULTILINE=NO", nullptr};
     const char* wkt = proj_as_wkt(c, crs.get(), PJ_WKT2_2019, kOneLine.data());

@@ -56,7 +56,8 @@ class Crs {
     Crs& operator=(Crs&&) noexcept;
     ~Crs();
 
-    const std::string& name() const;  ///< for example "MGI / Austria Lambert"
+    /// For example "MGI / Austria Lambert"; "Transverse Mercator on WGS 84" where it has no name.
+    const std::string& name() const;
     const std::string& code() const;  ///< "EPSG:31287"; empty where no authority is named
     const std::string& wkt() const;   ///< WKT 2 (ISO 19162:2019), on one line
     /// What `--crs` takes to mean the same: the code, else the WKT.

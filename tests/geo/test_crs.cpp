@@ -185,6 +185,7 @@ TEST(Crs, WithoutACodeTheTextIsWktThatMeansTheSame) {
     const Crs custom =
         crs("+proj=tmerc +lat_0=0 +lon_0=-64.2063 +k=0.9996 +x_0=500000 +datum=WGS84");
     EXPECT_EQ(custom.code(), "");
+    EXPECT_EQ(custom.name(), "Transverse Mercator on World Geodetic System 1984");
     EXPECT_EQ(custom.text(), custom.wkt());
     EXPECT_EQ(custom.wkt().find('\n'), std::string::npos);
     const Crs again = Crs::parse(custom.text(), "test");
