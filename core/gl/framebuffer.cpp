@@ -29,7 +29,9 @@ Framebuffer::Framebuffer(std::span<const Texture* const> colours, const Texture*
     glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(targets.size()), targets.data());
     if (targets.empty()) glNamedFramebufferReadBuffer(name, GL_NONE);
     if (depth) {
-        glNamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, depth->name(), 0);
+        glNamedFramebufferTexture(
+            name, depth->format() == Format::Stencil8 ? GL_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT,
+            depth->name(), 0);
         extent_ = depth->extent();
     }
     const GLenum status = glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER);
@@ -53,6 +55,10 @@ void Framebuffer::clear_colour_uint(int index, glm::uvec4 value) const {
 
 void Framebuffer::clear_depth(float value) const {
     glClearNamedFramebufferfv(handle_.name(), GL_DEPTH, 0, &value);
+}
+
+void Framebuffer::clear_stencil(int value) const {
+    glClearNamedFramebufferiv(handle_.name(), GL_STENCIL, 0, &value);
 }
 
 void Framebuffer::resolve_to(const Framebuffer& target) const {

@@ -16,7 +16,7 @@ class Framebuffer {
   public:
     Framebuffer() = default;
     /// @param colours  in the order of the fragment program's outputs; may be empty
-    /// @param depth    a Depth32F texture, or null
+    /// @param depth    a Depth32F or a Stencil8 texture, or null
     /// @throws Error (Failed) if the device cannot draw to this combination
     Framebuffer(std::span<const Texture* const> colours, const Texture* depth,
                 std::string_view label);
@@ -29,6 +29,7 @@ class Framebuffer {
     void clear_colour(int index, glm::vec4 value) const;
     void clear_colour_uint(int index, glm::uvec4 value) const;
     void clear_depth(float value) const;
+    void clear_stencil(int value) const;
     /// Averages the samples of colour target 0 into `target`'s, pixel for pixel.
     void resolve_to(const Framebuffer& target) const;
 

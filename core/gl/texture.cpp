@@ -44,6 +44,8 @@ FormatInfo info(Format format) {
             return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16};
         case Format::Depth32F:
             return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4};
+        case Format::Stencil8:
+            return {GL_STENCIL_INDEX8, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, 1};
     }
     return {};
 }
@@ -150,6 +152,12 @@ void Texture::set_sampling(Filter filter, Wrap wrap, double anisotropy) {
                                                    : GL_LINEAR_MIPMAP_LINEAR);
     if (anisotropy > 1)
         glTextureParameterf(name(), GL_TEXTURE_MAX_ANISOTROPY, static_cast<GLfloat>(anisotropy));
+}
+
+void Texture::copy_from(const Texture& other) {
+    assert(other.format_ == format_ && other.extent_.width == extent_.width);
+    glCopyImageSubData(other.name(), target(other.kind_), 0, 0, 0, 0, name(), target(kind_), 0, 0, 0, 0,
+                       extent_.width, extent_.height, extent_.depth);
 }
 
 void Texture::make_mipmaps() {

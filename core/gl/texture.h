@@ -23,6 +23,7 @@ enum class Format {
     RGBA32F,
     RGBA32UI,
     Depth32F,
+    Stencil8,
 };
 
 /// Bytes of one texel as the host hands it over: halves travel as halves.
@@ -54,6 +55,8 @@ class Texture {
     void read_floats(std::span<float> texels) const;
 
     void set_sampling(Filter filter, Wrap wrap, double anisotropy = 1);
+    /// Copies level 0 of a texture of the same format and size.
+    void copy_from(const Texture& other);
     void make_mipmaps();
     void bind(unsigned unit) const;
 

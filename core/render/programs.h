@@ -11,7 +11,7 @@ namespace relevo::render {
 
 /// One of the programs of a frame as text.
 struct ProgramText {
-    std::string name;  ///< "geometry", "terrain", "sky", "post", "antialias"
+    std::string name;  ///< "geometry", "terrain", "sky", "post", "edges", "antialias"
     shader::Stitched stitched;
 };
 

@@ -33,13 +33,13 @@ struct Renderer::Impl {
     RendererOptions options;
     double anisotropy;
     std::vector<ProgramText> texts;
-    LinkedProgram geometry, terrain, sky, post, antialias;
+    LinkedProgram geometry, terrain, sky, post, edges, antialias;
     EffectTextures effect_textures;
     gl::Buffer frame_block;
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
 
-    gl::Texture place, depth, radiance, tone_mapped, picture;
+    gl::Texture place, depth, radiance, tone_mapped, edge_marks, picture;
     std::vector<gl::Texture> varyings;
     gl::Framebuffer geometry_target, radiance_target, post_target, picture_target;
 
@@ -53,6 +53,7 @@ struct Renderer::Impl {
           terrain(link("terrain")),
           sky(link("sky")),
           post(link("post")),
+          edges(link("edges")),
           antialias(link("antialias")),
           effect_textures(effects.textures, anisotropy),
           frame_block(sizeof(FrameBlock), "frame block") {
@@ -73,6 +74,8 @@ struct Renderer::Impl {
         depth = target(gl::Format::Depth32F, "depth");
         radiance = target(gl::Format::RGBA16F, "radiance");
         tone_mapped = target(gl::Format::RGBA8, "tone mapped");
+        edge_marks = gl::Texture(gl::TextureKind::D2, gl::Format::Stencil8, size, 1, "edge marks");
+        depth.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
         picture = target(gl::Format::RGBA8, "picture");
         std::vector<const gl::Texture*> outputs{&place};
         const int varying_targets = text("geometry").stitched.varying_targets;
@@ -86,7 +89,7 @@ struct Renderer::Impl {
         geometry_target = gl::Framebuffer(outputs, &depth, "geometry");
         radiance_target = gl::Framebuffer({&radiance}, &depth, "radiance");
         post_target = gl::Framebuffer({&tone_mapped}, nullptr, "post");
-        picture_target = gl::Framebuffer({&picture}, nullptr, "picture");
+        picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
     }
 
     static std::vector<ProgramText> stitch(shader::StitchInput input, const RendererOptions& o,
@@ -120,6 +123,7 @@ struct Renderer::Impl {
         if (name == "place") return &place;
         if (name == "radiance") return &radiance;
         if (name == "colour") return &tone_mapped;
+        if (name == "depth") return &depth;
         if (name == "height_pages") return &ground.height_pages();
         if (name == "normal_pages") return &ground.normal_pages();
         for (std::size_t i = 0; i < varyings.size(); ++i)
@@ -178,9 +182,22 @@ struct Renderer::Impl {
         draw_fullscreen();
         passed("post");
         if (options.antialias) {
+            // Two draws: the first marks the few pixels of silhouettes, the second works on those.
+            picture.copy_from(tone_mapped);
             picture_target.bind();
+            picture_target.clear_stencil(0);
+            glEnable(GL_STENCIL_TEST);
+            glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+            glStencilFunc(GL_ALWAYS, 1, 0xff);
+            glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+            bind(edges, ground);
+            draw_fullscreen();
+            glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+            glStencilFunc(GL_EQUAL, 1, 0xff);
+            glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
             bind(antialias, ground);
             draw_fullscreen();
+            glDisable(GL_STENCIL_TEST);
             passed("antialias");
         }
         context.check_errors();

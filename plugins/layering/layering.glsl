@@ -129,11 +129,8 @@ void layering_on_albedo(inout Surface s) {
 
     vec2 at = s.ground_m.xy * texture_scale.xy;
     vec2 dx = s.ground_dx_m.xy * texture_scale.xy, dy = s.ground_dy_m.xy * texture_scale.xy;
-    vec3 albedo = most * layering_read(at, dx, dy, first).rgb;
-    // A loop of no or one turn: a software renderer skips it where no pixel of a block needs it, which
-    // it does not do for an `if`. Most ground is of one material.
-    for (int needed = int(next > 0.0); needed > 0; --needed)
-        albedo += next * layering_read(at, dx, dy, second).rgb;
+    vec3 albedo = most * layering_read(at, dx, dy, first).rgb +
+                  next * layering_read(at, dx, dy, second).rgb;
     albedo *= 1.0 + layering_variation * noise;
 
     s.diffuse = albedo * dot(layering_diffuse, weights);
