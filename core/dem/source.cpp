@@ -20,6 +20,7 @@
 #include "base/parallel_for.h"
 #include "base/units.h"
 #include "dem/gdal_support.h"
+#include "dem/whole_file.h"
 
 namespace relevo::dem {
 namespace {
@@ -347,6 +348,31 @@ Dataset open_dataset(const std::string& path) {
                              reason));
 }
 
+/// Refuses a file that is shorter than what it promises where the driver would fill up in silence.
+void refuse_if_short(const std::string& path, GDALDatasetH dataset, const Description& about) {
+    char** files = GDALGetFileList(dataset);
+    const std::filesystem::path file = files && *files ? *files : path;
+    CSLDestroy(files);
+    std::error_code unknown;
+    const std::uint64_t size = std::filesystem::file_size(file, unknown);
+    if (unknown) return;
+    std::uint64_t least = 0;
+    if (about.driver == "netCDF") least = classic_netcdf_size(file);
+    // Raw cells; a compressed file may be shorter. GDAL takes what is missing for zeros not yet
+    // written.
+    if (about.driver == "ENVI" && !GDALGetMetadataItem(dataset, "COMPRESSION", "IMAGE_STRUCTURE")) {
+        const GDALDataType type = GDALGetRasterDataType(GDALGetRasterBand(dataset, about.band));
+        least = static_cast<std::uint64_t>(GDALGetRasterXSize(dataset)) *
+                static_cast<std::uint64_t>(GDALGetRasterYSize(dataset)) *
+                static_cast<std::uint64_t>(GDALGetRasterCount(dataset)) *
+                static_cast<std::uint64_t>(GDALGetDataTypeSizeBytes(type));
+    }
+    if (size < least)
+        refuse(path, fmt::format("cut short, expected {} bytes but got {}; the file is damaged or "
+                                 "incomplete",
+                                 least, size));
+}
+
 int chosen_band(const std::string& path, GDALDatasetH dataset, int wanted, Description& about) {
     const int bands = GDALGetRasterCount(dataset);
     if (bands == 0) {
@@ -452,7 +478,8 @@ geo::Crs crs_of(const std::string& path, GDALDatasetH dataset, const std::string
 
 void settle_unit(const std::string& path, GDALRasterBandH band, const geo::Crs& crs,
                  const std::string& given, Description& about) {
-    const std::string word = GDALGetRasterUnitType(band);
+    std::string word = GDALGetRasterUnitType(band);
+    if (means_no_unit(word)) word.clear();
     if (!given.empty()) {
         about.unit = parse_unit(given, "--unit");
         about.unit_source = UnitSource::Option;
@@ -520,6 +547,8 @@ Source Source::open(const std::string& path, const LoadOptions& options) {
     about.data_type = GDALGetDataTypeName(type);
     if (GDALDataTypeIsComplex(type))
         refuse(path, fmt::format("complex numbers ({}), expected heights", about.data_type));
+
+    refuse_if_short(path, dataset.get(), about);
 
     const int columns = GDALGetRasterXSize(dataset.get());
     const int rows = GDALGetRasterYSize(dataset.get());

@@ -37,12 +37,26 @@ const std::array kUnits = {
     Known{"mm", 0.001, {"mm", "millimetre", "millimetres", "millimeter", "millimeters"}},
 };
 
-}  // namespace
-
-std::optional<Unit> known_unit(std::string_view word) {
+std::string letters_of(std::string_view word) {
     std::string letters;
     for (const unsigned char c : word)
         if (std::isalpha(c) || c >= 0x80) letters += static_cast<char>(std::tolower(c));
+    return letters;
+}
+
+}  // namespace
+
+bool means_no_unit(std::string_view word) {
+    constexpr std::array kNone = {"", "unknown", "unspecified", "undefined", "none", "na"};
+    // Digits alone are no letters either, but they are a word for something.
+    return trimmed(word).empty() ||
+           (!letters_of(word).empty() &&
+            std::find(kNone.begin(), kNone.end(), letters_of(word)) != kNone.end());
+}
+
+std::optional<Unit> known_unit(std::string_view word) {
+    const std::string letters = letters_of(word);
+
     for (const Known& known : kUnits)
         if (!letters.empty() &&
             std::find(known.words.begin(), known.words.end(), letters) != known.words.end())

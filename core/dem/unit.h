@@ -18,6 +18,9 @@ struct Unit {
 /// "US survey foot" and so on, capitals or not. Nothing where the word is none of a length.
 std::optional<Unit> known_unit(std::string_view word);
 
+/// Whether a file's word for a unit says that there is none: "", "unknown", "unspecified", "none".
+bool means_no_unit(std::string_view word);
+
 /// The unit of `metres` metres, named as `--unit` does where it is one of those.
 Unit unit_of(double metres, std::string_view otherwise_named);
 

@@ -1,6 +1,7 @@
 #include <fstream>
 
 #include <cpl_error.h>
+#include <fmt/format.h>
 
 #include "base/log.h"
 #include "dem/fixture.h"
@@ -89,6 +90,26 @@ TEST(LoadError, TruncatedGeoTiffSaysSo) {
     EXPECT_EQ(refusal(path),
               "cannot be opened as a raster, TIFFReadDirectory:Failed to read directory at offset "
               "8; the file is damaged or incomplete");
+}
+
+TEST(LoadError, TruncatedRawFilesAreNotFilledUp) {
+    for (const char* driver : {"netCDF", "ENVI"}) {
+        Raster raster;
+        raster.driver = driver;
+        raster.columns = 200;
+        raster.rows = 150;
+        const std::string path = write_raster(folder() / (std::string("raw.") + driver), raster);
+        EXPECT_NO_THROW(load(path)) << driver;
+        const auto size = std::filesystem::file_size(path);
+        for (const auto bytes : {size - 1, size - 500, size * 2 / 3, size / 2}) {
+            test::cut_short(path, bytes);
+            EXPECT_EQ(refusal(path),
+                      fmt::format("cut short, expected {} bytes but got {}; the file "
+                                  "is damaged or incomplete",
+                                  size, bytes))
+                << driver;
+        }
+    }
 }
 
 TEST(LoadError, MosaicWithAMissingTileNeverGivesPartOfItself) {

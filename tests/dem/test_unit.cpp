@@ -31,6 +31,13 @@ TEST(Unit, WordsOfFilesAndPeople) {
         EXPECT_FALSE(known_unit(word)) << word;
 }
 
+TEST(Unit, SomeWordsSayThatThereIsNone) {
+    for (const char* word : {"", " ", "unknown", "Unspecified", "none", "N/A"})
+        EXPECT_TRUE(means_no_unit(word)) << word;
+    for (const char* word : {"m", "furlong", "1"})
+        EXPECT_FALSE(means_no_unit(word)) << word;
+}
+
 TEST(Unit, TheTwoFeetAreToldApart) {
     EXPECT_EQ(unit_of(0.3048, "x").name, "ft");
     EXPECT_EQ(unit_of(0.304800609601219, "x").name, "us-ft");
