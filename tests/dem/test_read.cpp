@@ -79,15 +79,16 @@ TEST(Read, SeveralThreadsGiveWhatOneGives) {
 }
 
 TEST(Read, FewerPostsAreMeansByArea) {
-    const Source source = Source::open(write_raster(folder() / "means.tif", hills(300, 200)));
+    // 800 x 400 are more cells than are read at once.
+    const Source source = Source::open(write_raster(folder() / "means.tif", hills(800, 400)));
     const Array2d<float> all = source.read();
     const struct {
         Window window;
         int columns, rows;
     } cases[] = {
-        {{0, 0, 300, 200}, 150, 100},  // whole cells
-        {{0, 0, 300, 200}, 70, 33},    // parts of cells
-        {{11, 7, 200, 150}, 60, 149}, {{0, 0, 300, 200}, 1, 1}, {{0, 0, 300, 200}, 299, 200},
+        {{0, 0, 800, 400}, 400, 200},  // whole cells
+        {{0, 0, 800, 400}, 70, 33},    // parts of cells
+        {{11, 7, 200, 150}, 60, 149}, {{0, 0, 800, 400}, 1, 1}, {{0, 0, 800, 400}, 799, 400},
     };
     for (const auto& k : cases) {
         const Array2d<float> h = source.read(k.window, k.columns, k.rows);
