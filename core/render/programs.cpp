@@ -22,16 +22,14 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
         geometry.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
         terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
     }
-    const auto fullscreen = [](const char* main) {
-        return shader::ProgramRecipe{.vertex_main = "fullscreen.vert.glsl", .fragment_main = main};
-    };
     std::vector<ProgramText> programs;
     programs.push_back({"geometry", shader::stitch(core, geometry, input)});
     programs.push_back({"terrain", shader::stitch(core, terrain, input)});
-    programs.push_back({"sky", shader::stitch(core, fullscreen("sky.frag.glsl"), input)});
-    programs.push_back({"post", shader::stitch(core, fullscreen("post.frag.glsl"), input)});
-    programs.push_back(
-        {"antialias", shader::stitch(core, fullscreen("antialias.frag.glsl"), input)});
+    for (const char* name : {"sky", "post", "edges", "antialias"}) {
+        const shader::ProgramRecipe recipe{.vertex_main = "fullscreen.vert.glsl",
+                                           .fragment_main = fmt::format("{}.frag.glsl", name)};
+        programs.push_back({name, shader::stitch(core, recipe, input)});
+    }
     return programs;
 }
 

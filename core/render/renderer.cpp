@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <optional>
 
@@ -100,8 +101,11 @@ struct Renderer::Impl {
     }
 
     const ProgramText& text(const std::string& name) const {
-        return *std::find_if(texts.begin(), texts.end(),
-                             [&](const ProgramText& program) { return program.name == name; });
+        const auto found = std::find_if(texts.begin(), texts.end(), [&](const ProgramText& program) {
+            return program.name == name;
+        });
+        assert(found != texts.end());
+        return *found;
     }
 
     LinkedProgram link(const char* name) const { return link_program(text(name)); }
