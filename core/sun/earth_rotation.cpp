@@ -115,7 +115,14 @@ EarthRotation EarthRotation::load_finals2000a(const std::filesystem::path& path)
     return rotation;
 }
 
+EarthRotation EarthRotation::fixed(const EarthOrientation& orientation) {
+    EarthRotation rotation;
+    rotation.fixed_ = orientation;
+    return rotation;
+}
+
 EarthOrientation EarthRotation::at(Instant utc) const {
+    if (fixed_) return *fixed_;
     const double mjd = mjd_of(utc);
     EarthOrientation result;
     if (mjd < kFirstNode_mjd) {
@@ -147,6 +154,7 @@ EarthOrientation EarthRotation::at(Instant utc) const {
 }
 
 double EarthRotation::ut1_uncertainty_s(Instant utc) const {
+    if (fixed_) return 0;
     const double mjd = mjd_of(utc);
     if (mjd < kFirstNode_mjd) return 0;
     if (mjd < first_mjd_) return built_in().ut1_uncertainty_s(utc);

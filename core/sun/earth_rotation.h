@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "sun/time.h"
@@ -36,6 +37,9 @@ class EarthRotation {
     /// @throws Error (BadInput) for a file that is not one
     static EarthRotation load_finals2000a(const std::filesystem::path& path);
 
+    /// For experts and tests: the same at all times, whatever the instants then mean.
+    static EarthRotation fixed(const EarthOrientation& orientation);
+
     EarthOrientation at(Instant utc) const;
 
     /// How far UT1 may be from what `at` says, while UTC is what clocks show. Before 1962 none, by
@@ -51,6 +55,7 @@ class EarthRotation {
         double ut1_minus_tai_s, pole_x_rad, pole_y_rad;
     };
 
+    std::optional<EarthOrientation> fixed_;
     int first_mjd_ = 0;  // modified Julian date of the first node
     int step_d_ = 1;
     int last_measured_mjd_ = 0;

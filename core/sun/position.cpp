@@ -44,8 +44,19 @@ Geocentric geocentric(const Epoch& epoch, const SolarEphemeris& ephemeris) {
     // The Julian day begins at noon, so its fraction is the mean sun's hour angle.
     const double mean_rad =
         2 * kPi * (std::fmod(epoch.ut1_jd[0], 1.0) + std::fmod(epoch.ut1_jd[1], 1.0));
-    return {right_ascension_rad(sun, ephemeris), declination_rad(sun), glm::length(sun),
-            eraAnpm(hour_angle_rad - mean_rad) / (2 * kPi) * kDay_s};
+    Geocentric result;
+    result.right_ascension_rad = right_ascension_rad(sun, ephemeris);
+    result.declination_rad = declination_rad(sun);
+    result.distance_au = glm::length(sun);
+    const double ra = result.right_ascension_rad, dec = result.declination_rad;
+    // The mean obliquity will do: the sun is so near the ecliptic (1.2 arcsec) that its longitude
+    // does not depend on it.
+    const double obliquity = eraObl06(epoch.tt_jd[0], epoch.tt_jd[1]);
+    result.longitude_rad = eraAnp(std::atan2(
+        std::sin(ra) * std::cos(dec) * std::cos(obliquity) + std::sin(dec) * std::sin(obliquity),
+        std::cos(ra) * std::cos(dec)));
+    result.equation_of_time_s = eraAnpm(hour_angle_rad - mean_rad) / (2 * kPi) * kDay_s;
+    return result;
 }
 
 /// Of a unit vector; exact near the zenith, where the arc sine is not.

@@ -34,6 +34,7 @@ struct Geocentric {
     double right_ascension_rad = 0;  ///< apparent, true equator and equinox of date [0, 2 pi)
     double declination_rad = 0;      ///< likewise
     double distance_au = 0;          ///< when the light left
+    double longitude_rad = 0;        ///< apparent, ecliptic and equinox of date [0, 2 pi)
     /// Apparent solar time minus mean solar time: Greenwich hour angle of the apparent sun minus
     /// (UT1 - 12 h). Meeus' definition by the mean longitude differs from it by some 0.24 s.
     double equation_of_time_s = 0;

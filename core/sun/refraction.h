@@ -63,6 +63,8 @@ class Refraction {
     double apparent_rad(double true_rad) const;
     double true_rad(double apparent_rad) const;
 
+    bool bends() const { return model_ != Model::None; }
+
     /// For results: "integrated atmosphere, 899 hPa, 8.5 C, 1000 m".
     const std::string& description() const { return description_; }
 

@@ -192,12 +192,16 @@ Instant Zone::first_moment(Date date) const {
     return Instant::from_unix_us(periods_[period_at(midnight.utc.unix_us())].begin_us);
 }
 
-TimeSpan Zone::day(Date date) const {
+std::optional<TimeSpan> Zone::find_day(Date date) const {
     const TimeSpan span{first_moment(date), first_moment(add_days(date, 1))};
-    if (span.begin >= span.end)
-        bad_input(fmt::format("sun::Zone: {}: there was no such day in {}, its clocks skipped it",
-                              to_string(date), name_));
+    if (span.begin >= span.end) return std::nullopt;
     return span;
+}
+
+TimeSpan Zone::day(Date date) const {
+    if (const auto span = find_day(date)) return *span;
+    bad_input(fmt::format("sun::Zone: {}: there was no such day in {}, its clocks skipped it",
+                          to_string(date), name_));
 }
 
 std::string zone_database_version() {

@@ -71,6 +71,8 @@ class Zone {
     /// hours long where the clocks change.
     /// @throws Error (BadInput) if the zone skipped that day, as Pacific/Apia did 2011-12-30
     TimeSpan day(Date date) const;
+    /// Likewise; nothing for a day that was skipped.
+    std::optional<TimeSpan> find_day(Date date) const;
 
   private:
     explicit Zone(int utc_offset_s);

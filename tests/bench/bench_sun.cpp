@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "base/units.h"
+#include "sun/events.h"
 #include "sun/position.h"
 #include "sun/position_table.h"
 #include "sun/refraction.h"
@@ -74,6 +75,20 @@ void refraction_lookup(benchmark::State& state) {
     state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(refraction_lookup);
+
+void events_of_a_day(benchmark::State& state) {
+    const Zone zone = Zone::named("Europe/Zurich");
+    for (auto _ : state)
+        benchmark::DoNotOptimize(day_events({2026, 6, 21}, zone, kPlace));
+}
+BENCHMARK(events_of_a_day)->Unit(benchmark::kMillisecond);
+
+void events_of_a_year(benchmark::State& state) {
+    const Zone zone = Zone::named("Europe/Zurich");
+    for (auto _ : state)
+        benchmark::DoNotOptimize(day_events({2026, 1, 1}, {2026, 12, 31}, zone, kPlace));
+}
+BENCHMARK(events_of_a_year)->Unit(benchmark::kMillisecond);
 
 void zone_by_name(benchmark::State& state) {
     for (auto _ : state)

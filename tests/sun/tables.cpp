@@ -101,6 +101,11 @@ void Accuracy::add(double error, const Row& row) {
     EXPECT_LE(std::abs(error), limit_) << title_ << " [" << unit_ << "]: " << row.whole();
 }
 
+double rate_arcsec_s(Instant t, const geo::Geodetic& place) {
+    return (position(t + 1, place).elevation_rad - position(t - 1, place).elevation_rad) / 2 /
+           kArcsecond_rad;
+}
+
 double angle_between_deg(double a_deg, double b_deg) {
     return std::remainder(a_deg - b_deg, 360.0);
 }

@@ -75,6 +75,9 @@ class Accuracy {
 /// declination) in degrees [arcsec].
 double separation_arcsec(double a_lon_deg, double a_lat_deg, double b_lon_deg, double b_lat_deg);
 
+/// How fast the sun rises (or, negative, sets) then [arcsec/s].
+double rate_arcsec_s(Instant t, const geo::Geodetic& place);
+
 /// a - b as an angle within half a turn [deg].
 double angle_between_deg(double a_deg, double b_deg);
 

@@ -195,12 +195,15 @@ TEST_P(PositionTables, PublishedExamples) {
     EXPECT_NEAR(degrees(g.right_ascension_rad), spa.at("geocentric_RA"), 0.6 / 3600);
     EXPECT_NEAR(degrees(g.declination_rad), spa.at("geocentric_Dec"), 0.6 / 3600);
     EXPECT_NEAR(g.distance_au, spa.at("R_distance"), 3e-6);
+    EXPECT_NEAR(degrees(g.longitude_rad), spa.at("apparent_sun_longitude"), 0.6 / 3600);
     EXPECT_NEAR(degrees(p.hour_angle_rad), spa.at("topocentric_hour_angle"), 0.6 / 3600);
 
     // Meeus, Astronomical Algorithms, examples 25.b and 28.a: the time is TT.
     const Geocentric m = geocentric(Epoch::from_ut1(instant_of("1992-10-13T00:00:00"), 0));
     EXPECT_NEAR(degrees(m.right_ascension_rad), meeus.at("sun_apparent_RA"), 0.3 / 3600);
     EXPECT_NEAR(degrees(m.declination_rad), meeus.at("sun_apparent_Dec"), 0.3 / 3600);
+    // The same example: 199 degrees 54' 21.818".
+    EXPECT_NEAR(degrees(m.longitude_rad), 199 + 54 / 60.0 + 21.818 / 3600, 0.3 / 3600);
     // By the mean longitude; ours is by UT1, which differs by 0.24 s.
     EXPECT_NEAR(m.equation_of_time_s / 60, meeus.at("equation_of_time"), 0.3 / 60);
 }
