@@ -101,9 +101,9 @@ struct Renderer::Impl {
     }
 
     const ProgramText& text(const std::string& name) const {
-        const auto found = std::find_if(texts.begin(), texts.end(), [&](const ProgramText& program) {
-            return program.name == name;
-        });
+        const auto found =
+            std::find_if(texts.begin(), texts.end(),
+                         [&](const ProgramText& program) { return program.name == name; });
         assert(found != texts.end());
         return *found;
     }
