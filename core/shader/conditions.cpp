@@ -1,0 +1,236 @@
+#include "shader/conditions.h"
+
+#include <charconv>
+
+namespace relevo::shader {
+namespace {
+
+using Value = std::optional<long long>;
+
+Value truth(const Value& value) {
+    if (!value) return std::nullopt;
+    return *value != 0;
+}
+
+/// The expressions of #if (GLSL 4.50, 3.3), by precedence climbing. What cannot be told is empty.
+class Expression {
+  public:
+    Expression(std::string_view text, const Macros& macros) : macros_(macros) { expand(text, 0); }
+
+    Value run() {
+        const Value value = binary(1);
+        if (at_ != words_.size()) return std::nullopt;
+        return value;
+    }
+
+  private:
+    // Deeper than this the macros go round in a circle, and longer than this they grow without end.
+    static constexpr int kMaxDepth = 16;
+    static constexpr std::size_t kMaxWords = 10000;
+
+    void expand(std::string_view text, int depth) {
+        const std::vector<Token> tokens = tokenize(text, "").code;
+        for (std::size_t i = 0; i < tokens.size() && words_.size() < kMaxWords; ++i) {
+            const std::string word(text_of(text, tokens[i]));
+            if (tokens[i].kind != TokenKind::Word) {
+                words_.push_back(word);
+            } else if (word == "defined") {
+                const bool bracket = i + 1 < tokens.size() && text_of(text, tokens[i + 1]) == "(";
+                const std::size_t name = i + (bracket ? 2 : 1);
+                words_.push_back(name < tokens.size() ? defined(text_of(text, tokens[name])) : "?");
+                i = name + (bracket ? 1 : 0);
+            } else if (const auto macro = macros_.find(word);
+                       macro != macros_.end() && macro->second && depth < kMaxDepth) {
+                expand(*macro->second, depth + 1);
+            } else {
+                words_.push_back(word == "__VERSION__" ? "450" : "?");
+            }
+        }
+    }
+
+    std::string defined(std::string_view name) const {
+        if (const auto macro = macros_.find(name); macro != macros_.end())
+            return macro->second ? "1" : "?";
+        // Whether an extension's macro is there is for the driver to say.
+        return name.substr(0, 3) == "GL_" || name.substr(0, 2) == "__" ? "?" : "0";
+    }
+
+    bool take(std::string_view word) {
+        if (at_ == words_.size() || words_[at_] != word) return false;
+        ++at_;
+        return true;
+    }
+
+    static int precedence(std::string_view op) {
+        if (op == "||") return 1;
+        if (op == "&&") return 2;
+        if (op == "|") return 3;
+        if (op == "^") return 4;
+        if (op == "&") return 5;
+        if (op == "==" || op == "!=") return 6;
+        if (op == "<" || op == ">" || op == "<=" || op == ">=") return 7;
+        if (op == "<<" || op == ">>") return 8;
+        if (op == "+" || op == "-") return 9;
+        if (op == "*" || op == "/" || op == "%") return 10;
+        return 0;
+    }
+
+    static Value apply(std::string_view op, const Value& a, const Value& b) {
+        if (op == "||") {
+            if ((a && *a) || (b && *b)) return 1;
+            return a && b ? Value(0) : std::nullopt;
+        }
+        if (op == "&&") {
+            if ((a && !*a) || (b && !*b)) return 0;
+            return a && b ? Value(1) : std::nullopt;
+        }
+        if (!a || !b) return std::nullopt;
+        if (op == "|") return *a | *b;
+        if (op == "^") return *a ^ *b;
+        if (op == "&") return *a & *b;
+        if (op == "==") return *a == *b;
+        if (op == "!=") return *a != *b;
+        if (op == "<") return *a < *b;
+        if (op == ">") return *a > *b;
+        if (op == "<=") return *a <= *b;
+        if (op == ">=") return *a >= *b;
+        if (op == "+") return *a + *b;
+        if (op == "-") return *a - *b;
+        if (op == "*") return *a * *b;
+        if (op == "/" && *b != 0) return *a / *b;
+        if (op == "%" && *b != 0) return *a % *b;
+        if (op == "<<" && *b >= 0 && *b < 32) return *a * (1LL << *b);
+        if (op == ">>" && *b >= 0 && *b < 32) return *a >> *b;
+        return std::nullopt;
+    }
+
+    /// GLSL's integers have 32 bits; what leaves them is for the driver to judge.
+    static Value in_range(const Value& value) {
+        constexpr long long kMax = 0x7FFFFFFF;
+        return value && *value >= -kMax - 1 && *value <= kMax ? value : std::nullopt;
+    }
+
+    Value binary(int least) {
+        Value left = unary();
+        while (at_ < words_.size() && precedence(words_[at_]) >= least) {
+            const std::string op = words_[at_++];
+            left = in_range(apply(op, left, binary(precedence(op) + 1)));
+        }
+        return left;
+    }
+
+    Value unary() {
+        if (++nesting_ > kMaxWords / 10) return std::nullopt;  // spare the stack
+        if (take("!")) {
+            const Value value = truth(unary());
+            return value ? Value(*value == 0) : std::nullopt;
+        }
+        if (take("-")) {
+            const Value value = unary();
+            return value ? in_range(-*value) : std::nullopt;
+        }
+        if (take("+")) return unary();
+        if (take("(")) {
+            const Value value = binary(1);
+            return take(")") ? value : std::nullopt;
+        }
+        if (at_ == words_.size()) return std::nullopt;
+        const std::string& word = words_[at_++];
+        const bool hexadecimal = word.substr(0, 2) == "0x" || word.substr(0, 2) == "0X";
+        const char* const begin = word.data() + (hexadecimal ? 2 : 0);
+        const char* const end = word.data() + word.size();
+        int number = 0;
+        const auto [stop, error] = std::from_chars(begin, end, number, hexadecimal ? 16 : 10);
+        if (error != std::errc{} || stop != end) return std::nullopt;
+        return number;
+    }
+
+    const Macros& macros_;
+    std::vector<std::string> words_;
+    std::size_t at_ = 0;
+    std::size_t nesting_ = 0;
+};
+
+struct Group {
+    bool parent_active;
+    bool parent_certain;
+    bool decided = true;  // every condition so far could be told
+    bool taken = false;   // a branch is certainly the one
+    bool active = false;  // the current branch may be left in
+    std::vector<std::size_t> directives;
+};
+
+}  // namespace
+
+std::optional<long long> evaluate_expression(std::string_view expression, const Macros& macros) {
+    return Expression(expression, macros).run();
+}
+
+Conditions evaluate_conditions(const Source& source, Macros& macros) {
+    Conditions result;
+    result.active.resize(source.tokens.size());
+    result.undecided.resize(source.tokens.size());
+    std::vector<Group> groups;
+
+    for (std::size_t i = 0; i < source.tokens.size(); ++i) {
+        const bool active = groups.empty() || groups.back().active;
+        const bool certain =
+            groups.empty() || (groups.back().parent_certain && groups.back().decided);
+        result.active[i] = active;
+        if (source.tokens[i].kind != TokenKind::Directive) continue;
+        const std::vector<Token> words =
+            directive_tokens(source.text, source.tokens[i], source.file);
+        if (words.empty()) continue;
+        const std::string_view name = source.str(words[0]);
+        // Everything behind the directive's word `n`, as one text.
+        const auto rest = [&](std::size_t n) {
+            std::string text;
+            for (std::size_t k = n; k < words.size(); ++k)
+                text += std::string(source.str(words[k])) + ' ';
+            return text;
+        };
+        const auto condition = [&]() -> Value {
+            if (name == "ifdef") return evaluate_expression("defined " + rest(1), macros);
+            if (name == "ifndef") return evaluate_expression("!defined " + rest(1), macros);
+            return truth(evaluate_expression(rest(1), macros));
+        };
+
+        if (name == "define" && active && words.size() > 1) {
+            const bool function = words.size() > 2 && source.str(words[2]) == "(" &&
+                                  words[2].offset == words[1].offset + words[1].length;
+            macros[std::string(source.str(words[1]))] =
+                function || !certain ? std::nullopt : std::make_optional(rest(2));
+        } else if (name == "undef" && active && words.size() > 1) {
+            if (certain)
+                macros.erase(std::string(source.str(words[1])));
+            else
+                macros[std::string(source.str(words[1]))] = std::nullopt;
+        } else if (name.substr(0, 2) == "if") {
+            Group group{active, certain, true, false, false, {i}};
+            const Value value = active ? condition() : Value(0);
+            group.active = active && value.value_or(1) != 0;
+            group.taken = value.value_or(0) != 0;
+            group.decided = value.has_value();
+            groups.push_back(group);
+        } else if (name == "elif" || name == "else") {
+            Group& group = groups.back();
+            group.directives.push_back(i);
+            Value value = name == "else" ? Value(1) : Value(0);
+            if (name == "elif" && group.parent_active && !group.taken) value = condition();
+            group.active = group.parent_active && !group.taken && value.value_or(1) != 0;
+            group.decided = group.decided && value.has_value();
+            group.taken = group.taken || value.value_or(0) != 0;
+        } else if (name == "endif") {
+            const Group& group = groups.back();
+            if (group.parent_active && !group.decided) {
+                result.undecided[i] = true;
+                for (const std::size_t directive : group.directives)
+                    result.undecided[directive] = true;
+            }
+            groups.pop_back();
+        }
+    }
+    return result;
+}
+
+}  // namespace relevo::shader

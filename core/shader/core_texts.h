@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace relevo::shader {
+
+/// Core's own shader texts, by their path under `shaders/`: "terrain.frag.glsl", "lib/noise.glsl".
+class CoreTexts {
+  public:
+    virtual ~CoreTexts() = default;
+
+    /// The whole text, or nothing if there is no such file.
+    virtual std::optional<std::string> text(std::string_view name) const = 0;
+    /// The file as messages shall name it.
+    virtual std::string file(std::string_view name) const = 0;
+};
+
+/// The files of a folder, read afresh at every call.
+class FolderTexts : public CoreTexts {
+  public:
+    explicit FolderTexts(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    std::optional<std::string> text(std::string_view name) const override;
+    std::string file(std::string_view name) const override;
+
+  private:
+    std::filesystem::path folder_;
+};
+
+}  // namespace relevo::shader

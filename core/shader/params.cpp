@@ -1,0 +1,188 @@
+#include "shader/params.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "base/units.h"
+
+namespace relevo::shader {
+namespace {
+
+bool is_colour(const Param& param) {
+    return param.role == ParamRole::Colour || param.role == ParamRole::ColourSrgb;
+}
+
+/// sRGB to linear light, IEC 61966-2-1.
+double linear_of_srgb(double value) {
+    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+/// "#rrggbb", and "#rrggbbaa" for four components.
+std::optional<ParamValue> parse_hex_colour(const Param& param, std::string_view text) {
+    const auto count = static_cast<std::size_t>(component_count(param.type));
+    if (text.size() != 7 && text.size() != 9) return std::nullopt;
+    if (text.front() != '#' || text.size() > 1 + 2 * count) return std::nullopt;
+    ParamValue value{};
+    if (count == 4) value[3] = 1;
+    for (std::size_t i = 0; 2 * i + 1 < text.size(); ++i) {
+        int byte = 0;
+        for (const char c : text.substr(2 * i + 1, 2)) {
+            const std::size_t digit =
+                std::string_view("0123456789abcdef")
+                    .find(static_cast<char>(c >= 'A' && c <= 'F' ? c + 32 : c));
+            if (digit == std::string_view::npos) return std::nullopt;
+            byte = byte * 16 + static_cast<int>(digit);
+        }
+        const double share = byte / 255.0;
+        value[i] = param.role == ParamRole::Colour && i < 3 ? linear_of_srgb(share) : share;
+    }
+    return value;
+}
+
+std::optional<ParamValue> parse_bool(std::string_view text) {
+    if (text == "true" || text == "on" || text == "1") return ParamValue{1};
+    if (text == "false" || text == "off" || text == "0") return ParamValue{0};
+    return std::nullopt;
+}
+
+std::optional<ParamValue> parse_components(const Param& param, std::string_view text) {
+    const std::vector<std::string> pieces = split(text, ',');
+    if (pieces.size() != static_cast<std::size_t>(component_count(param.type))) return std::nullopt;
+    ParamValue value{};
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const std::optional<double> number = parse_number(trimmed(pieces[i]));
+        if (!number) return std::nullopt;
+        value[i] = *number;
+    }
+    return value;
+}
+
+std::optional<ParamValue> read_value(const Param& param, std::string_view text) {
+    if (param.type == ParamType::Bool) return parse_bool(text);
+    if (const auto word = std::find(param.words.begin(), param.words.end(), text);
+        word != param.words.end())
+        return ParamValue{static_cast<double>(word - param.words.begin())};
+    if (is_colour(param) && !text.empty() && text.front() == '#')
+        return parse_hex_colour(param, text);
+    return parse_components(param, text);
+}
+
+std::string float_literal(float value) {
+    std::string text = fmt::format("{}", value);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    return text;
+}
+
+}  // namespace
+
+std::string_view glsl_name(ParamType type) {
+    constexpr std::array<std::string_view, 6> kNames = {"float", "int",  "bool",
+                                                        "vec2",  "vec3", "vec4"};
+    return kNames[static_cast<std::size_t>(type)];
+}
+
+int component_count(ParamType type) {
+    switch (type) {
+        case ParamType::Vec2:
+            return 2;
+        case ParamType::Vec3:
+            return 3;
+        case ParamType::Vec4:
+            return 4;
+        default:
+            return 1;
+    }
+}
+
+std::string describe_values(const Param& param) {
+    if (!param.words.empty()) return fmt::format("one of {}", fmt::join(param.words, ", "));
+    if (param.type == ParamType::Bool) return "true or false";
+    std::string text;
+    if (param.role == ParamRole::Angle) {
+        text = "an angle";
+    } else if (param.role == ParamRole::Direction) {
+        text = "a direction, three numbers east,north,up that are not all zero";
+    } else if (is_colour(param)) {
+        text = fmt::format("a colour, #rrggbb or {} numbers",
+                           component_count(param.type) == 3 ? "three" : "four");
+    } else if (component_count(param.type) > 1) {
+        constexpr std::array<std::string_view, 3> kCounts = {"two", "three", "four"};
+        text = fmt::format("{} numbers with commas between",
+                           kCounts[static_cast<std::size_t>(component_count(param.type) - 2)]);
+    } else {
+        text = param.type == ParamType::Int ? "a whole number" : "a number";
+    }
+    if (param.range) text += fmt::format(" in [{}, {}]", param.range->min, param.range->max);
+    if (!param.unit.empty()) text += ' ' + param.unit;
+    return text;
+}
+
+bool is_valid(const Param& param, const ParamValue& value) {
+    const int count = component_count(param.type);
+    for (int i = 0; i < count; ++i) {
+        const double v = value[static_cast<std::size_t>(i)];
+        if (!(std::abs(v) <= static_cast<double>(std::numeric_limits<float>::max()))) return false;
+        if (param.range && !(v >= param.range->min && v <= param.range->max)) return false;
+    }
+    switch (param.type) {
+        case ParamType::Bool:
+            return value[0] == 0 || value[0] == 1;
+        case ParamType::Int:
+            if (value[0] != std::floor(value[0]) || value[0] < std::numeric_limits<int>::min() ||
+                value[0] > std::numeric_limits<int>::max())
+                return false;
+            return param.words.empty() ||
+                   (value[0] >= 0 && value[0] < static_cast<double>(param.words.size()));
+        default:
+            return param.role != ParamRole::Direction ||
+                   std::hypot(value[0], value[1], value[2]) > 0;
+    }
+}
+
+ParamValue parse_value(const Param& param, std::string_view text) {
+    const std::optional<ParamValue> value = read_value(param, trimmed(text));
+    if (!value || !is_valid(param, *value))
+        bad_input(fmt::format("shader::parse_value: {}: expected {} but got \"{}\"", param.address,
+                              describe_values(param), text));
+    return *value;
+}
+
+std::string format_value(const Param& param, const ParamValue& value) {
+    if (param.type == ParamType::Bool) return value[0] != 0 ? "true" : "false";
+    if (!param.words.empty()) return param.words[static_cast<std::size_t>(value[0])];
+    return fmt::format("{}",
+                       fmt::join(value.begin(), value.begin() + component_count(param.type), ","));
+}
+
+std::array<float, 4> shader_value(const Param& param, const ParamValue& value) {
+    ParamValue sent = value;
+    if (param.role == ParamRole::Angle) sent[0] = radians(sent[0]);
+    if (param.role == ParamRole::Direction) {
+        const double length = std::hypot(value[0], value[1], value[2]);
+        for (std::size_t i = 0; i < 3; ++i)
+            sent[i] = value[i] / length;
+    }
+    std::array<float, 4> result{};
+    std::transform(sent.begin(), sent.end(), result.begin(),
+                   [](double v) { return static_cast<float>(v); });
+    return result;
+}
+
+std::string glsl_value(const Param& param, const ParamValue& value) {
+    if (param.type == ParamType::Bool) return value[0] != 0 ? "true" : "false";
+    if (param.type == ParamType::Int) return fmt::format("{}", static_cast<long>(value[0]));
+    const std::array<float, 4> sent = shader_value(param, value);
+    if (param.type == ParamType::Float) return float_literal(sent[0]);
+    std::string text = std::string(glsl_name(param.type)) + '(';
+    for (int i = 0; i < component_count(param.type); ++i)
+        text += (i > 0 ? ", " : "") + float_literal(sent[static_cast<std::size_t>(i)]);
+    return text + ')';
+}
+
+}  // namespace relevo::shader

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shader/hooks.h"
+#include "shader/source.h"
+
+namespace relevo::shader {
+
+/// A hook function that a snippet defines.
+struct HookFunction {
+    const Hook* hook;
+    std::string name;  ///< "haze_on_atmosphere"
+    int line = 0;
+};
+
+/// A capability word that a snippet asks for with the macro `HAS_<word>`, which is 1 while an
+/// enabled effect provides it and 0 else.
+struct Wanted {
+    std::string word;
+    int line = 0;
+};
+
+/// One GLSL file of a plugin, read and checked. A plugin with several files has a snippet for each,
+/// one behind the other and all with the same id.
+struct Snippet {
+    std::string id;
+    std::string file;
+    std::vector<HookFunction> hooks;  ///< in the order of the file
+    std::vector<Wanted> wanted;       ///< each word once
+    Source source;                    ///< parameters, samplers, varyings, includes; and the text
+
+    const HookFunction* find(std::string_view hook_name) const;  ///< or null
+};
+
+/// Reads a plugin's GLSL. The rules are docs/plugin-guide.md's; in short:
+/// - every global (function, constant, struct, macro, variable) begins with `<id>_`;
+/// - `<id>_on_<hook>` with the hook's exact types is the registration;
+/// - `uniform` is a parameter (`= default; //@ annotation`) or a sampler, `out` a varying: one a
+///   line, never under #if;
+/// - `//@ include lib/NAME.glsl` asks for core's shared functions.
+/// @param id    `[a-z][a-z0-9]*`
+/// @param file  as messages shall name it
+/// @throws Error (BadInput) `shader::parse: file:line: what is wrong`
+Snippet parse_snippet(std::string_view id, std::string_view file, std::string_view text);
+
+}  // namespace relevo::shader

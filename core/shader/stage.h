@@ -1,0 +1,133 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shader/conditions.h"
+#include "shader/core_texts.h"
+#include "shader/snippet.h"
+#include "shader/stitch.h"
+#include "shader/uses.h"
+
+/// One side of a program while it is put together: its files, and what of them `main` reaches.
+namespace relevo::shader {
+
+enum class StageKind { Vertex, Fragment };
+
+/// What a file is for; in the order in which they stand in the text.
+enum class UnitRole { Types, Frame, Lib, Defaults, Snippet, Main };
+
+struct Unit {
+    UnitRole role;
+    const Source* source;
+    std::string title;  ///< "lib/noise.glsl"; of a snippet the bare name of the file
+    Conditions conditions;
+    std::vector<bool> kept;  ///< per item
+};
+
+/// Core's files, each taken apart once.
+class CoreLibrary {
+  public:
+    explicit CoreLibrary(const CoreTexts& texts) : texts_(texts) {}
+
+    /// Null if there is no such file.
+    const Source* find(SourceKind kind, const std::string& name);
+
+  private:
+    const CoreTexts& texts_;
+    std::map<std::string, std::unique_ptr<Source>> sources_;
+};
+
+class Stage {
+  public:
+    Stage(CoreLibrary& library, const ProgramRecipe& program, const StitchInput& input,
+          StageKind kind);
+
+    /// Finds what `main` reaches.
+    /// @param readers  the fragment sides, when this is the vertex side: plugins whose varyings
+    ///                 they do not read are not asked to fill them
+    void reach(std::vector<const Stage*> readers);
+
+    StageKind kind() const { return kind_; }
+    const std::vector<Unit>& units() const { return units_; }
+    const Unit& unit(UnitRole role) const;  ///< the only one of that role
+
+    /// Whether a global of that name is needed.
+    bool reaches(std::string_view name) const { return parents_.count(name) > 0; }
+    /// "main -> hook_lit -> haze_on_lit": who needs it.
+    std::string trail(const std::string& name) const;
+    const std::string& owner_of(const std::string& name) const;  ///< of a lifted declaration
+
+    struct OwnedSampler {
+        const Sampler* sampler;
+        std::string owner;
+    };
+    std::vector<OwnedSampler> samplers() const;    ///< the needed ones, in order of the files
+    std::vector<const Varying*> varyings() const;  ///< the needed ones, in order of the files
+    const Varying* find_varying(std::string_view name) const;  ///< any declared one, or null
+    std::vector<Define> has_macros() const;                    ///< the needed HAS_<word>
+    static bool is_foreign(const Sampler& sampler);  ///< reads a texture its plugin did not make
+
+    bool calls(const Hook& hook) const { return hooks_.count(hook.name) > 0; }
+    bool needs_prototype(const Hook& hook) const;
+    std::string head(const Hook& hook) const;                    ///< of the generated function
+    std::vector<std::string> answers(const Hook& hook) const;    ///< functions it calls, in order
+    std::vector<std::string> providers(const Hook& hook) const;  ///< ids of the plugins among them
+
+  private:
+    struct Place {
+        std::size_t unit;
+        std::size_t item;
+    };
+    struct Lifted {
+        const Varying* varying = nullptr;
+        const Sampler* sampler = nullptr;
+        std::string owner;
+        std::string file;
+        int line = 0;
+    };
+
+    void add_core(UnitRole role, SourceKind kind, const std::string& name);
+    void add_includes(const Source& source, std::vector<std::string>& pending);
+    void add_unit(UnitRole role, const Source* source, std::string title);
+    void index(Macros macros);
+    void lift(const std::string& name, Lifted lifted);
+
+    const Item& item(const Place& place) const;
+    const Unit& unit_of(const Place& place) const { return units_[place.unit]; }
+    const Place& definition(const std::string& function) const;  ///< not a prototype of it
+    [[noreturn]] void fail(const Place& place, std::string_view message) const;
+
+    void need(const std::string& name, const std::string& by);
+    void keep(const Place& place);
+    void keep_conditionals(const Place& place);
+    void read(const Place& place);
+    void call_hook(const Hook& hook, const Place& from, const std::string& by);
+    void check_name(const Place& place, const std::string& name, bool called) const;
+    void check_stage(const Place& place, const Uses& uses) const;
+    void check_recursion() const;
+    void check_displace() const;
+    void check_default(const std::string& function, const Hook& hook) const;
+
+    CoreLibrary& library_;
+    const StitchInput& input_;
+    StageKind kind_;
+    std::vector<const Stage*> readers_;
+    std::vector<Unit> units_;
+    std::set<std::string, std::less<>> libs_;                        // already in units_
+    std::map<std::string, std::set<std::string>> includes_;          // owner -> libs it asked for
+    std::map<std::string, std::vector<Place>, std::less<>> places_;  // of globals in the text
+    std::map<std::string, Lifted, std::less<>> lifted_;              // of globals lifted out
+    std::map<std::string, std::string, std::less<>> parents_;        // needed name -> by whom
+    std::set<std::string_view> hooks_;                               // called by core or snippets
+    std::set<std::string_view> early_hooks_;                         // before their definition
+    std::map<std::string, Uses, std::less<>> functions_;             // what kept ones mention
+    std::deque<Place> queue_;
+};
+
+}  // namespace relevo::shader

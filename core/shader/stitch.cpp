@@ -1,0 +1,389 @@
+#include "shader/stitch.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "shader/stage.h"
+#include "shader/stored_varyings.h"
+#include "shader/text_builder.h"
+
+namespace relevo::shader {
+namespace {
+
+std::string zero_of(const std::string& type) {
+    if (type == "float") return "0.0";
+    if (type == "int") return "0";
+    if (type == "uint") return "0u";
+    if (type[0] == 'i') return type + "(0)";
+    if (type[0] == 'u') return type + "(0u)";
+    return type + "(0.0)";
+}
+
+std::string define_text(const Define& define) {
+    return define.value.empty() ? fmt::format("#define {}", define.name)
+                                : fmt::format("#define {} {}", define.name, define.value);
+}
+
+class Stitcher {
+  public:
+    Stitcher(const CoreTexts& core, const ProgramRecipe& program, const StitchInput& input)
+        : program_(program),
+          input_(input),
+          library_(core),
+          vertex_(library_, program, input, StageKind::Vertex),
+          fragment_(library_, program, input, StageKind::Fragment) {
+        if (!program.shaded_by.empty()) {
+            shading_recipe_ = program;
+            shading_recipe_.fragment_main = program.shaded_by;
+            shading_.emplace(library_, shading_recipe_, input, StageKind::Fragment);
+        }
+    }
+
+    Stitched run() {
+        // Backwards: what the fragment side reads decides which vertex hooks are worth calling.
+        fragment_.reach({});
+        std::vector<const Stage*> readers{&fragment_};
+        if (shading_) {
+            shading_->reach({});
+            readers.push_back(&*shading_);
+        }
+        vertex_.reach(readers);
+        for (const Stage* reader : readers)
+            check_varyings(*reader);
+        if (shading_) stored_ = StoredVaryings(*shading_, program_name());
+        if (loads()) stored_ = StoredVaryings(fragment_, program_name());
+        result_.varying_targets = stored_.targets();
+
+        std::vector<Param> params;
+        for (const Snippet* snippet : input_.snippets)
+            params.insert(params.end(), snippet->source.params.begin(),
+                          snippet->source.params.end());
+        result_.params = block_layout(params);
+        give_out_units();
+
+        result_.vertex = write(vertex_);
+        result_.fragment = write(fragment_);
+        for (const Stage* stage : {&vertex_, &fragment_})
+            for (const Hook& hook : hooks())
+                note_use(*stage, hook);
+        return std::move(result_);
+    }
+
+  private:
+    std::string program_name() const {
+        return program_.vertex_main + " + " + program_.fragment_main;
+    }
+
+    /// Whether this is a shading program, which loads what a geometry program stored.
+    bool loads() const { return !program_.geometry_of.empty(); }
+
+    // ---- varyings
+
+    void check_varyings(const Stage& reader) const {
+        for (const Varying* read : reader.varyings()) {
+            // The shading program's come out of textures; the geometry program checks them.
+            if (loads() && reader.owner_of(read->name) != "core") continue;
+            const Varying* const written = vertex_.find_varying(read->name);
+            const std::string where =
+                fmt::format("shader::stitch: {}:{}: {}", read->file, read->line, read->name);
+            if (!written || !vertex_.reaches(read->name))
+                bad_input(
+                    fmt::format("{}: the fragment side reads it ({}), but nothing that {} "
+                                "calls writes it",
+                                where, reader.trail(read->name), program_.vertex_main));
+            if (qualified(*written) != qualified(*read))
+                failed(fmt::format("{}: expected {} as in {}:{} but got {}", where,
+                                   qualified(*written), written->file, written->line,
+                                   qualified(*read)));
+        }
+    }
+
+    /// "flat int"
+    static std::string qualified(const Varying& varying) {
+        return varying.interpolation.empty() ? varying.type
+                                             : varying.interpolation + ' ' + varying.type;
+    }
+
+    // ---- texture units
+
+    struct Texture {
+        TextureUnit unit;
+        std::vector<const Sampler*> samplers;  // the first names the unit
+    };
+
+    void collect_samplers(bool core_ones, bool shared, std::vector<Texture>& textures) const {
+        for (const Stage* stage : {&vertex_, &fragment_}) {
+            for (const auto& [sampler, owner] : stage->samplers()) {
+                const auto same = std::find_if(textures.begin(), textures.end(),
+                                               [&, s = sampler](const Texture& texture) {
+                                                   return texture.unit.resource == s->resource;
+                                               });
+                if (same != textures.end()) {
+                    add_reader(*same, sampler);
+                } else if ((owner == "core") == core_ones && is_shared(*sampler) == shared) {
+                    textures.push_back(
+                        {{0, sampler->name, sampler->type, sampler->resource, owner}, {sampler}});
+                }
+            }
+        }
+    }
+
+    // A texture that a plugin reads without having made it.
+    bool is_shared(const Sampler& sampler) const {
+        for (const Stage* stage : {&vertex_, &fragment_})
+            for (const auto& [other, owner] : stage->samplers())
+                if (other->resource == sampler.resource && stage->is_foreign(*other)) return true;
+        return false;
+    }
+
+    static void add_reader(Texture& texture, const Sampler* sampler) {
+        const Sampler& first = *texture.samplers.front();
+        if (sampler->type != first.type)
+            bad_input(
+                fmt::format("shader::stitch: {}:{}: {}: expected a {} for the texture {}, as "
+                            "in {}:{}, but got a {}",
+                            sampler->file, sampler->line, sampler->name, first.type, first.resource,
+                            first.file, first.line, sampler->type));
+        const bool known =
+            std::any_of(texture.samplers.begin(), texture.samplers.end(),
+                        [&](const Sampler* other) { return other->name == sampler->name; });
+        if (!known) texture.samplers.push_back(sampler);
+    }
+
+    void give_out_units() {
+        collect_samplers(true, false, textures_);
+        std::vector<Texture> shared;
+        collect_samplers(false, true, shared);
+        std::sort(shared.begin(), shared.end(), [](const Texture& a, const Texture& b) {
+            return a.unit.resource < b.unit.resource;
+        });
+        textures_.insert(textures_.end(), shared.begin(), shared.end());
+        for (const Snippet* snippet : input_.snippets) {
+            // Both stages' samplers of one plugin together, in the order of its file.
+            std::vector<Texture> own;
+            collect_samplers(false, false, own);
+            for (const Sampler& sampler : snippet->source.samplers)
+                for (const Texture& texture : own)
+                    if (texture.unit.name == sampler.name) textures_.push_back(texture);
+        }
+        for (std::size_t i = 0; i < textures_.size(); ++i) {
+            textures_[i].unit.unit = static_cast<int>(i);
+            result_.textures.push_back(textures_[i].unit);
+        }
+        if (loads()) {
+            for (int i = 0; i < result_.varying_targets; ++i) {
+                const std::string name = StoredVaryings::texture(i);
+                result_.textures.push_back(
+                    {static_cast<int>(result_.textures.size()), name, "sampler2D", name, "core"});
+            }
+        }
+        if (static_cast<int>(result_.textures.size()) <= input_.max_texture_units) return;
+        std::string list;
+        for (const TextureUnit& unit : result_.textures)
+            list += fmt::format("\n  unit {}: {} of {}", unit.unit, unit.resource, unit.owner);
+        failed(
+            fmt::format("shader::stitch: {}: expected at most {} textures, as many as this "
+                        "device has units, but got {}; switch a plugin off:{}",
+                        program_name(), input_.max_texture_units, result_.textures.size(), list));
+    }
+
+    // ---- text
+
+    StageText write(Stage& stage) {
+        TextBuilder out;
+        out.line("#version 450 core");
+        for (const Define& define : program_.defines)
+            out.line(define_text(define));
+        for (const Define& define : stage.has_macros())
+            out.line(define_text(define));
+        write_unit(out, stage.unit(UnitRole::Types));
+        write_unit(out, stage.unit(UnitRole::Frame));
+        write_params(out, stage);
+        write_samplers(out, stage);
+        write_varyings(out, stage);
+        // Before its readers: Mesa warns of a global that is read above the line that sets it.
+        if (stage.kind() == StageKind::Fragment && loads()) stored_.write_load(out);
+        write_prototypes(out, stage);
+        for (const Unit& unit : stage.units())
+            if (unit.role == UnitRole::Lib) write_unit(out, unit);
+        write_unit(out, stage.unit(UnitRole::Defaults));
+        write_snippets(out, stage);
+        out.heading("hooks");
+        for (const Hook& hook : hooks())
+            if (stage.calls(hook)) write_hook(out, stage, hook);
+        if (stage.kind() == StageKind::Fragment && shading_) stored_.write_store(out);
+        write_unit(out, stage.unit(UnitRole::Main));
+        return out.take();
+    }
+
+    static void write_unit(TextBuilder& out, const Unit& unit) {
+        out.heading(fmt::format("{}: {}", unit.source->owner, unit.title));
+        for (std::size_t i = 0; i < unit.source->items.size(); ++i)
+            if (unit.kept[i]) out.item(*unit.source, unit.source->items[i]);
+        out.heading("");
+    }
+
+    static LineOrigin origin(const Stage& stage, const std::string& name, const std::string& file,
+                             int line) {
+        return {stage.owner_of(name), file, line};
+    }
+
+    void write_params(TextBuilder& out, const Stage& stage) {
+        out.heading("parameters");
+        const bool block = std::any_of(
+            result_.params.members.begin(), result_.params.members.end(),
+            [&](const BlockMember& member) { return stage.reaches(member.param.name); });
+        if (block) {
+            result_.uses_params = true;
+            out.line("layout(std140, binding = 1) uniform Params {");
+            for (const auto& [param, offset] : result_.params.members)
+                out.line(fmt::format("    {} {};", glsl_name(param.type), param.name),
+                         origin(stage, param.name, param.file, param.line));
+            out.line("};");
+        }
+        for (const Snippet* snippet : input_.snippets) {
+            for (const Param& param : snippet->source.params) {
+                if (!param.is_static || !stage.reaches(param.name)) continue;
+                const bool known = input_.values && input_.values->find(param.address) &&
+                                   input_.values->find(param.address)->type == param.type;
+                const ParamValue value =
+                    known ? input_.values->value(param.address) : param.initial;
+                out.line(fmt::format("const {} {} = {};", glsl_name(param.type), param.name,
+                                     glsl_value(param, value)),
+                         origin(stage, param.name, param.file, param.line));
+            }
+        }
+        out.heading("");
+    }
+
+    void write_samplers(TextBuilder& out, const Stage& stage) {
+        out.heading("textures");
+        for (const auto& [unit, samplers] : textures_) {
+            const bool used =
+                std::any_of(samplers.begin(), samplers.end(),
+                            [&](const Sampler* sampler) { return stage.reaches(sampler->name); });
+            if (!used) continue;
+            out.line(
+                fmt::format("layout(binding = {}) uniform {} {};", unit.unit, unit.type, unit.name),
+                {unit.owner, samplers[0]->file, samplers[0]->line});
+            for (std::size_t i = 1; i < samplers.size(); ++i)
+                if (stage.reaches(samplers[i]->name))
+                    out.line(
+                        fmt::format("#define {} {}", samplers[i]->name, unit.name),
+                        origin(stage, samplers[i]->name, samplers[i]->file, samplers[i]->line));
+        }
+        if (stage.kind() == StageKind::Fragment && !program_.geometry_of.empty())
+            for (std::size_t i = textures_.size(); i < result_.textures.size(); ++i)
+                out.line(fmt::format("layout(binding = {}) uniform sampler2D {};",
+                                     result_.textures[i].unit, result_.textures[i].name));
+        out.heading("");
+    }
+
+    /// Whether a varying of the vertex side goes on to a fragment side.
+    bool is_handed_on(const Varying& varying) const {
+        return fragment_.reaches(varying.name) || stored_.holds(varying);
+    }
+
+    void write_varyings(TextBuilder& out, const Stage& stage) {
+        out.heading("varyings");
+        const bool fragment = stage.kind() == StageKind::Fragment;
+        const auto write_one = [&](const Varying& varying, const Stage& declared_in) {
+            const LineOrigin from = origin(declared_in, varying.name, varying.file, varying.line);
+            const bool plain =
+                fragment && loads() ? stored_.holds(varying) : !fragment && !is_handed_on(varying);
+            // Plain: loaded from a texture, or written for nobody, where an output would be
+            // interpolated all the same.
+            if (plain)
+                out.line(fmt::format("{} {};", varying.type, varying.name), from);
+            else
+                out.line(
+                    fmt::format("{}{} {} {};",
+                                varying.interpolation.empty() ? "" : varying.interpolation + ' ',
+                                fragment ? "in" : "out", varying.type, varying.name),
+                    from);
+        };
+        for (const Varying* varying : stage.varyings())
+            write_one(*varying, stage);
+        if (fragment && shading_)
+            for (const StoredVaryings::Stored& stored : stored_.all())
+                if (!stage.reaches(stored.varying->name)) write_one(*stored.varying, *shading_);
+        out.heading("");
+    }
+
+    void write_prototypes(TextBuilder& out, const Stage& stage) {
+        out.heading("prototypes");
+        for (const Hook& hook : hooks())
+            if (stage.needs_prototype(hook)) out.line(stage.head(hook) + ';');
+        out.heading("");
+    }
+
+    void write_snippets(TextBuilder& out, const Stage& stage) {
+        std::vector<std::string> macros;
+        const std::vector<Unit>& units = stage.units();
+        for (std::size_t i = 0; i < units.size(); ++i) {
+            if (units[i].role != UnitRole::Snippet) continue;
+            write_unit(out, units[i]);
+            const std::vector<Item>& items = units[i].source->items;
+            for (std::size_t k = 0; k < items.size(); ++k)
+                if (units[i].kept[k] && items[k].kind == Item::Kind::Macro &&
+                    std::find(macros.begin(), macros.end(), items[k].names[0]) == macros.end())
+                    macros.push_back(items[k].names[0]);
+            if (i + 1 < units.size() && units[i + 1].source->owner == units[i].source->owner)
+                continue;
+            for (const std::string& macro : macros)
+                out.line("#undef " + macro);
+            macros.clear();
+        }
+    }
+
+    void write_hook(TextBuilder& out, const Stage& stage, const Hook& hook) {
+        const Signature signature = parse_signature(hook.signature);
+        std::vector<std::string> names;
+        for (const Argument& argument : signature.arguments)
+            names.push_back(argument.name);
+        const std::string arguments = fmt::format("({});", fmt::join(names, ", "));
+        const std::string answer = signature.type == "void" ? "    " : "    return ";
+
+        out.line(stage.head(hook) + " {");
+        if (hook.name == "vertex")
+            for (const Varying* varying : stage.varyings())
+                if (stage.owner_of(varying->name) != "core" && is_handed_on(*varying))
+                    out.line(fmt::format("    {} = {};", varying->name, zero_of(varying->type)));
+        for (const std::string& function : stage.answers(hook))
+            out.line(answer + function + arguments);
+        out.line("}");
+    }
+
+    void note_use(const Stage& stage, const Hook& hook) {
+        if (!stage.calls(hook)) return;
+        const auto known =
+            std::find_if(result_.hooks.begin(), result_.hooks.end(),
+                         [&](const HookUse& use) { return use.hook->name == hook.name; });
+        if (known == result_.hooks.end())
+            result_.hooks.push_back({find_hook(hook.name), stage.providers(hook)});
+    }
+
+    const ProgramRecipe& program_;
+    const StitchInput& input_;
+    CoreLibrary library_;
+    Stage vertex_;
+    Stage fragment_;
+    ProgramRecipe shading_recipe_;
+    std::optional<Stage> shading_;
+    StoredVaryings stored_;
+    std::vector<Texture> textures_;
+    Stitched result_;
+};
+
+}  // namespace
+
+Stitched stitch(const CoreTexts& core, const ProgramRecipe& program, const StitchInput& input) {
+    return Stitcher(core, program, input).run();
+}
+
+}  // namespace relevo::shader

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "shader/core_texts.h"
+#include "shader/line_map.h"
+#include "shader/param_store.h"
+#include "shader/snippet.h"
+
+namespace relevo::shader {
+
+struct Define {
+    std::string name;
+    std::string value;
+};
+
+/// A program of core's: two mains and the switches that they are compiled with.
+struct ProgramRecipe {
+    std::string vertex_main;    ///< "terrain.vert.glsl"
+    std::string fragment_main;  ///< "depth.frag.glsl"
+    std::vector<Define> defines{};
+
+    /// Deferred shading splits a program in two. The geometry program stores what plugins hand from
+    /// the vertex to the fragment side; the shading program, drawn later over the whole picture,
+    /// loads it again for each pixel. Set on the geometry program: the fragment main of the shading
+    /// program. Its own fragment main then calls `store_varyings()`, which writes to the outputs at
+    /// location 1 and up.
+    std::string shaded_by{};
+    /// Set on the shading program: the vertex main of the geometry program. Its fragment main then
+    /// calls `load_varyings(pixel)` before any hook.
+    std::string geometry_of{};
+};
+
+struct StitchInput {
+    std::vector<const Snippet*> snippets;   ///< of the enabled plugins, in calling order
+    std::vector<std::string> capabilities;  ///< what they provide: HAS_<word> is 1 for these
+    const ParamStore* values = nullptr;     ///< of static parameters; null takes their defaults
+    int max_texture_units = 16;             ///< GL_MAX_TEXTURE_IMAGE_UNITS
+};
+
+/// The text of one stage, compiled as one string, and where its lines come from.
+struct StageText {
+    std::string text;
+    LineMap lines;
+};
+
+/// A texture unit of a program, bound by `layout(binding = unit)`.
+struct TextureUnit {
+    int unit = 0;
+    std::string name;      ///< of the sampler in the text
+    std::string type;      ///< "sampler2DArray"
+    std::string resource;  ///< "haze.noise"; the sampler's own name for core's
+    std::string owner;     ///< plugin id, or "core"
+};
+
+/// A hook that a program calls, and who answers.
+struct HookUse {
+    const Hook* hook;
+    std::vector<std::string> providers;  ///< plugin ids in calling order; empty: core alone
+};
+
+struct Stitched {
+    StageText vertex;
+    StageText fragment;
+    std::vector<TextureUnit> textures;
+    BlockLayout params;  ///< block `Params` at binding 1: the same for all programs of a selection
+    bool uses_params = false;  ///< whether this program has the block
+    std::vector<HookUse> hooks;
+    /// Of a geometry or a shading program: how many RGBA32F targets hold the stored varyings, named
+    /// `varyings_0` and so on among the textures of the shading program.
+    int varying_targets = 0;
+};
+
+/// Puts a program together (docs/architecture.md, sections 4 and 7). Reads from `core` the two
+/// mains, lib/types.glsl, lib/frame.glsl, defaults.glsl and what is included. Of all of them, and
+/// of the snippets, only what the two `main` functions reach is in the texts; equal input gives
+/// equal bytes, and no path of a file is in them.
+/// @throws Error (BadInput) for what a plugin's author can mend: `shader::stitch: file:line: ...`
+/// @throws Error (Failed) for core's own texts, and for more textures than units
+Stitched stitch(const CoreTexts& core, const ProgramRecipe& program, const StitchInput& input);
+
+}  // namespace relevo::shader

@@ -1,0 +1,120 @@
+#include "shader/uses.h"
+
+#include <algorithm>
+#include <array>
+
+namespace relevo::shader {
+namespace {
+
+// A word behind one of these is not a name that is being declared.
+constexpr std::array<std::string_view, 17> kNotTypes = {
+    "return",  "else", "do",      "case",   "in",   "out",     "inout",  "const",        "highp",
+    "mediump", "lowp", "precise", "struct", "flat", "uniform", "smooth", "noperspective"};
+
+class Reader {
+  public:
+    Reader(const Source& source, const Item& item, const std::vector<bool>& active)
+        : source_(source), item_(item), active_(active) {}
+
+    Uses run() {
+        scopes_.emplace_back();
+        for (std::size_t i = item_.first; i < item_.last; ++i) {
+            if (!active_[i]) continue;
+            const Token& token = source_.tokens[i];
+            if (token.kind == TokenKind::Directive) {
+                for (const Token& word : directive_tokens(source_.text, token, source_.file))
+                    if (word.kind == TokenKind::Word) uses_.names.emplace(source_.str(word));
+            } else if (token.kind == TokenKind::Word) {
+                word(i);
+            } else {
+                mark(source_.str(token));
+            }
+        }
+        return std::move(uses_);
+    }
+
+  private:
+    std::string_view str(std::size_t i) const { return source_.str(source_.tokens[i]); }
+
+    bool is_local(std::string_view name) const {
+        return std::any_of(scopes_.begin(), scopes_.end(),
+                           [&](const auto& scope) { return scope.count(name) > 0; });
+    }
+
+    // `vec3 name` and `float[3] name` declare; `return name` and `in name` do not.
+    bool declares(std::size_t i) const {
+        if (item_.kind != Item::Kind::Function || i == item_.first) return false;
+        if (source_.tokens[i - 1].kind == TokenKind::Word)
+            return std::find(kNotTypes.begin(), kNotTypes.end(), str(i - 1)) == kNotTypes.end();
+        return str(i - 1) == "]";
+    }
+
+    void word(std::size_t i) {
+        const std::string name(str(i));
+        if (i > item_.first && str(i - 1) == ".") return;
+        const bool called = i + 1 < item_.last && str(i + 1) == "(";
+        const bool head = item_.kind == Item::Kind::Function || item_.kind == Item::Kind::Prototype;
+        if (head && !head_read_ && called) {
+            head_read_ = true;  // the function's own name
+            return;
+        }
+        if (!called && declares(i)) {
+            pending_.push_back({name, round_});
+            return;
+        }
+        if (!called && is_local(name)) return;
+        uses_.names.insert(name);
+        if (called) uses_.calls.insert(name);
+    }
+
+    // A name holds from behind its own declarator on: in `vec3 n = normalize(n)` the second is the
+    // outer one.
+    void settle() {
+        for (auto name = pending_.begin(); name != pending_.end();) {
+            if (name->round < round_) {
+                ++name;
+                continue;
+            }
+            scopes_.back().insert(name->name);
+            name = pending_.erase(name);
+        }
+    }
+
+    void mark(std::string_view text) {
+        if (text == "(" || text == "[") {
+            ++round_;
+        } else if (text == ")" || text == "]") {
+            // Arguments of a function end with its ), declarators inside a for(...) with their ;
+            settle();
+            --round_;
+        } else if (text == "," || text == ";") {
+            settle();
+        } else if (text == "{") {
+            scopes_.emplace_back();
+        } else if (text == "}") {
+            if (scopes_.size() > 1) scopes_.pop_back();
+        }
+    }
+
+    struct Pending {
+        std::string name;
+        int round;  // depth of ( and [ where it stands
+    };
+
+    const Source& source_;
+    const Item& item_;
+    const std::vector<bool>& active_;
+    Uses uses_;
+    std::vector<std::set<std::string, std::less<>>> scopes_;
+    std::vector<Pending> pending_;
+    int round_ = 0;
+    bool head_read_ = false;
+};
+
+}  // namespace
+
+Uses uses_of(const Source& source, const Item& item, const std::vector<bool>& active) {
+    return Reader(source, item, active).run();
+}
+
+}  // namespace relevo::shader
