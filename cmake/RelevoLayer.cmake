@@ -1,7 +1,8 @@
 # Flags that every target of the project is compiled with. Warnings are errors.
 add_library(relevo_options INTERFACE)
 target_compile_options(relevo_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-    -Woverloaded-virtual -Wcast-qual -Wimplicit-fallthrough -Werror)
+    -Woverloaded-virtual -Wcast-qual -Wimplicit-fallthrough
+    -Wno-missing-field-initializers -Werror)  # designated initialisers leave members at their defaults
 
 # relevo_layer(<name> SOURCES ... [DEPENDS <lower layers>...] [LINKS <libraries used inside>...]
 #              [PUBLIC_LINKS <libraries seen in headers>...])

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+/// The verbs of the command line, a file each. A verb adds its options to `app` and returns
+/// nothing; CLI11 calls back once the line has been read.
+namespace relevo::cli {
+
+void add_capture(CLI::App& app);
+void add_info(CLI::App& app);
+void add_sun(CLI::App& app);
+void add_plugins(CLI::App& app);
+
+}  // namespace relevo::cli

@@ -1,0 +1,63 @@
+#include "dem/gdal_support.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include <cpl_error.h>
+#include <fmt/format.h>
+#include <gdal.h>
+
+#include "base/log.h"
+#include "base/text.h"
+
+namespace relevo::dem {
+namespace {
+
+void to_debug_log(CPLErr, int, const char* text) {
+    log::debug(fmt::format("GDAL: {}", text));
+}
+
+}  // namespace
+
+void prepare_gdal() {
+    static std::once_flag once;
+    std::call_once(once, [] {
+        CPLSetErrorHandler(to_debug_log);
+        GDALAllRegister();
+    });
+}
+
+GdalMessages::GdalMessages() {
+    prepare_gdal();
+    // GDAL keeps a stack of handlers for each thread.
+    CPLPushErrorHandlerEx([](CPLErr severity, CPLErrorNum number,
+                             const char* text) { collect(severity, number, text); },
+                          this);
+}
+
+GdalMessages::~GdalMessages() {
+    CPLPopErrorHandler();
+}
+
+void GdalMessages::collect(int severity, int number, const char* text) {
+    to_debug_log(static_cast<CPLErr>(severity), number, text);
+    if (severity >= CE_Failure)
+        static_cast<GdalMessages*>(CPLGetErrorHandlerUserData())->failures_.emplace_back(text);
+}
+
+std::string GdalMessages::failure(const std::string& path) const {
+    if (failures_.empty()) return {};
+    std::string text = failures_.back();
+    for (std::size_t at = text.find(path); !path.empty() && at != std::string::npos;
+         at = text.find(path, at))
+        text.erase(at, path.size());
+    // What is left of "a.tif, band 1: reason" and "a.tif: reason".
+    if (text.starts_with(", band ") || text.starts_with(":")) text.erase(0, text.find(':') + 1);
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    std::string_view line = trimmed(text);
+    while (line.ends_with('.'))
+        line.remove_suffix(1);
+    return std::string(line);
+}
+
+}  // namespace relevo::dem

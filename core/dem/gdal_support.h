@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace relevo::dem {
+
+/// Registers GDAL's drivers, once, and keeps GDAL from writing to standard error: what nobody
+/// collects goes to the debug log. Safe on several threads at once; everything here that uses GDAL
+/// calls it first. Takes 3 ms the first time; loading GDAL's own libraries, before main, takes 50.
+void prepare_gdal();
+
+/// Collects what GDAL says on this thread while it lives, instead of having it printed.
+class GdalMessages {
+  public:
+    GdalMessages();
+    ~GdalMessages();
+    GdalMessages(const GdalMessages&) = delete;
+    GdalMessages& operator=(const GdalMessages&) = delete;
+
+    /// The last failure, on one line, without the name of the file, which our own message has;
+    /// empty where there was none. It is the outermost one and says where in the file.
+    std::string failure(const std::string& path) const;
+    bool any_failure() const { return !failures_.empty(); }
+    void clear() { failures_.clear(); }
+
+  private:
+    static void collect(int severity, int number, const char* text);
+    std::vector<std::string> failures_;
+};
+
+}  // namespace relevo::dem

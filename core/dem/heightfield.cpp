@@ -1,0 +1,89 @@
+#include "dem/heightfield.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include <fmt/format.h>
+
+#include "base/parallel_for.h"
+
+namespace relevo::dem {
+namespace {
+
+// Challenger Deep is at -10 935 m, Everest at 8849 m; the margin is for errors of measurement.
+constexpr float kLowest_m = -11500;
+constexpr float kHighest_m = 9000;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+std::string Description::nodata_text() const {
+    if (!nodata) return {};
+    const bool is_float = data_type == "Float32";
+    return is_float ? fmt::format("{}", static_cast<float>(*nodata)) : fmt::format("{}", *nodata);
+}
+
+Statistics statistics(const Array2d<float>& height_m) {
+    Statistics total;
+    float total_min = kInfinity;
+    float total_max = -kInfinity;
+    std::mutex mutex;
+    const int grain = std::max(1, 100'000 / std::max(1, height_m.width()));
+    parallel_for(0, height_m.height(), grain, [&](int first, int last) {
+        float min = kInfinity;
+        float max = -kInfinity;
+        std::int64_t valid = 0;
+        std::int64_t outliers = 0;
+        for (int row = first; row < last; ++row) {
+            int row_valid = 0;
+            int row_outliers = 0;
+            for (const float h : height_m.row(row)) {
+                // Comparisons with NaN are false: a hole changes nothing.
+                min = h < min ? h : min;
+                max = h > max ? h : max;
+                row_valid += h == h;
+                row_outliers += (h < kLowest_m) | (h > kHighest_m);
+            }
+            valid += row_valid;
+            outliers += row_outliers;
+        }
+        const std::lock_guard lock(mutex);
+        total_min = std::min(total_min, min);
+        total_max = std::max(total_max, max);
+        total.valid += valid;
+        total.outliers += outliers;
+    });
+    total.holes = static_cast<std::int64_t>(height_m.size()) - total.valid;
+    if (total.valid > 0) {
+        total.min_m = total_min;
+        total.max_m = total_max;
+    }
+    return total;
+}
+
+double Heightfield::height_at(double column, double row) const {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    if (!(column >= 0 && row >= 0 && column <= height_m.width() - 1 &&
+          row <= height_m.height() - 1))
+        return kNaN;
+    const int c = std::min(static_cast<int>(column), height_m.width() - 2);
+    const int r = std::min(static_cast<int>(row), height_m.height() - 2);
+    const double u = column - c;
+    const double v = row - r;
+    const auto weighted = [&](int dc, int dr, double weight) {
+        // A hole with no part in the sum does not spoil it.
+        return weight == 0 ? 0.0 : weight * height_m.at(c + dc, r + dr);
+    };
+    return weighted(0, 0, (1 - u) * (1 - v)) + weighted(1, 0, u * (1 - v)) +
+           weighted(0, 1, (1 - u) * v) + weighted(1, 1, u * v);
+}
+
+geo::Geodetic Heightfield::place(int column, int row) const {
+    geo::Geodetic place = grid.place(column, row);
+    place.height_m = height_m.at(column, row);
+    return place;
+}
+
+}  // namespace relevo::dem

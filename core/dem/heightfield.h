@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/array2d.h"
+#include "dem/grid.h"
+#include "dem/unit.h"
+
+namespace relevo::dem {
+
+/// What the heights of a raster are like.
+struct Statistics {
+    float min_m = 0;         ///< the lowest valid height
+    float max_m = 0;         ///< the highest valid height
+    std::int64_t valid = 0;  ///< posts with a height; the rest are holes
+    std::int64_t holes = 0;  ///< posts without
+    std::int64_t outliers =
+        0;  ///< heights that no place of the Earth has: below -11500, above 9000
+
+    double nodata_share() const {
+        return static_cast<double>(holes) / static_cast<double>(valid + holes);
+    }
+    friend bool operator==(const Statistics&, const Statistics&) = default;
+};
+
+/// Lowest, highest, holes (NaN) and outliers of a field; the range is 0 to 0 where nothing is
+/// valid.
+Statistics statistics(const Array2d<float>& height_m);
+
+/// Where the unit of the heights was found.
+enum class UnitSource { Option, Band, VerticalCrs, Assumed };
+
+/// What was read and what was assumed.
+struct Description {
+    std::string path;       ///< as it was given
+    std::string driver;     ///< GDAL's short name: "GTiff", "SRTMHGT", "USGSDEM"
+    std::string data_type;  ///< GDAL's name of what a cell is stored as: "Int16", "Float32"
+    int band = 1;           ///< from 1
+    int bands = 1;          ///< that the file has
+
+    Unit unit;  ///< of the heights in the file, after scale and offset
+    UnitSource unit_source = UnitSource::Assumed;
+    double scale = 1;              ///< height = (stored * scale + offset) in `unit`
+    double offset = 0;             ///< in `unit`
+    std::optional<double> nodata;  ///< the stored value that marks a hole, declared or given
+
+    /// `nodata` in as many digits as the file's type has: "-3.4028235e+38"; empty where none.
+    std::string nodata_text() const;
+
+    std::string vertical_datum;  ///< what heights are above, as the file says; empty: it does not
+
+    /// Whole sentences, for people: every choice that the file did not make itself.
+    std::vector<std::string> assumptions;
+
+    Statistics statistics;  ///< of the heights that were loaded; all zero before
+};
+
+/// Heights at the posts of a grid.
+struct Heightfield {
+    Array2d<float> height_m;  ///< metres, NaN for holes; row 0 is the first row of the file
+    Grid grid;                ///< as many columns and rows
+    Description about;
+
+    /// The height between posts, bilinear [m]; NaN outside of the grid and where a hole takes part.
+    double height_at(double column, double row) const;
+
+    /// The place of a post with its height, NaN at a hole. Heights are placed as ellipsoidal ones,
+    /// whatever they are above.
+    geo::Geodetic place(int column, int row) const;
+};
+
+}  // namespace relevo::dem

@@ -1,0 +1,56 @@
+#include "dem/load.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace relevo::dem {
+
+Heightfield load(const std::string& path, const LoadOptions& options) {
+    const Source source = Source::open(path, options);
+    const Grid& full = source.grid();
+    const Window all{0, 0, full.columns(), full.rows()};
+    Description about = source.description();
+
+    int columns = all.columns;
+    int rows = all.rows;
+    const double posts = static_cast<double>(columns) * rows;
+    if (posts > static_cast<double>(options.max_posts)) {
+        const double factor = std::sqrt(posts / static_cast<double>(options.max_posts));
+        columns = std::clamp(static_cast<int>(columns / factor), 2, columns);
+        rows = std::clamp(static_cast<int>(rows / factor), 2, rows);
+        about.assumptions.push_back(fmt::format(
+            "reduced from {} x {} to {} x {} posts, means of {:.1f} x {:.1f}, to keep "
+            "within the memory allowed",
+            all.columns, all.rows, columns, rows, all.columns / static_cast<double>(columns),
+            all.rows / static_cast<double>(rows)));
+    }
+    Array2d<float> height_m = source.read(all, columns, rows);
+    about.statistics = statistics(height_m);
+    const Statistics& s = about.statistics;
+    if (s.valid == 0)
+        bad_input(fmt::format(
+            "dem::load: {}: not one valid height, all {} posts are holes{}", path, s.holes,
+            about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
+    if (s.outliers > 0)
+        about.assumptions.push_back(fmt::format(
+            "{} heights are below -11500 m or above 9000 m, which the Earth has not, "
+            "and are drawn as they are; --nodata V makes V a hole, --unit sets the unit",
+            s.outliers));
+    Grid grid = columns == all.columns && rows == all.rows ? full : full.part(all, columns, rows);
+    return {std::move(height_m), std::move(grid), std::move(about)};
+}
+
+Heightfield load(std::span<const std::string> paths, const LoadOptions& options) {
+    if (paths.size() != 1)
+        bad_input(
+            fmt::format("dem::load: {}: the DEM, expected one raster but got {}; join several "
+                        "with gdalbuildvrt",
+                        paths.empty() ? std::string("nothing") : paths.front(), paths.size()));
+    return load(paths.front(), options);
+}
+
+}  // namespace relevo::dem

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "dem/heightfield.h"
+#include "dem/source.h"
+
+namespace relevo::dem {
+
+/// Opens and reads one raster: Source::open(), Source::read(), statistics().
+/// @throws Error (BadInput) as they do, and where not one post has a height
+Heightfield load(const std::string& path, const LoadOptions& options = {});
+
+/// The same for the inputs of a command line.
+/// @throws Error (BadInput) also where they are not exactly one
+Heightfield load(std::span<const std::string> paths, const LoadOptions& options = {});
+
+}  // namespace relevo::dem

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "dem/heightfield.h"
+
+namespace relevo::dem {
+
+/// What a user may say about a raster; each replaces what the file says. (Every member has an
+/// initializer so that `{.band = 2}` is a whole one.)
+struct LoadOptions {
+    std::string crs = {};   ///< `--crs`: as geo::Crs::parse takes it; empty: the file's
+    int band = 0;           ///< `--band`, from 1; 0: the first
+    std::string unit = {};  ///< `--unit`; empty: the file's, else metres as an assumption
+    std::optional<double> nodata = {};  ///< `--nodata`: the stored value that marks a hole
+    /// The most posts that load() keeps; a larger raster is averaged down and the description says
+    /// by how much. The default is 1 GiB of heights.
+    std::int64_t max_posts = std::int64_t{1} << 28;
+};
+
+/// A raster that is open: what it is, and its heights on demand. Errors begin with `dem::load`.
+class Source {
+  public:
+    /// Opens any single raster that GDAL reads and settles what its numbers mean; reads no heights.
+    /// @param path  a file, a folder that is one raster (Esri grids), or another name that GDAL
+    ///              opens ("/vsizip/alps.zip/alps.tif", "NETCDF:a.nc:topo")
+    /// @throws Error (BadInput) `dem::load: PATH: what, expected E but got G; remedy`
+    static Source open(const std::string& path, const LoadOptions& options = {});
+
+    Source(Source&&) noexcept;
+    Source& operator=(Source&&) noexcept;
+    ~Source();
+
+    const Grid& grid() const;                ///< of all posts
+    const Description& description() const;  ///< all but the statistics
+
+    /// Heights in metres of a window, NaN for holes.
+    ///
+    /// With `columns` and `rows` those of the window, every post as stored. With fewer, means over
+    /// equal parts of the window, each stored post counting by the area of its cell inside; a part
+    /// of which less than half is valid is a hole. Means start from the file's coarsest overview
+    /// that is still fine enough, where it has any. Where the posts of the result are:
+    /// grid().part(window, columns, rows). Rows of compressed GeoTIFFs are read on several threads.
+    ///
+    /// @param window  inside of the grid; at least as many columns and rows as are asked for
+    /// @throws Error (BadInput) where the file is damaged or cut short: never a part of the heights
+    /// Safe on several threads at once.
+    Array2d<float> read(const Window& window, int columns, int rows) const;
+
+    /// All posts, as stored.
+    Array2d<float> read() const;
+
+  private:
+    struct Impl;
+    explicit Source(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relevo::dem

@@ -1,0 +1,125 @@
+#include "dem/summary.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/units.h"
+#include "geo/format.h"
+
+namespace relevo::dem {
+namespace {
+
+const char* name_of(UnitSource source) {
+    switch (source) {
+        case UnitSource::Option:
+            return "option";
+        case UnitSource::Band:
+            return "band";
+        case UnitSource::VerticalCrs:
+            return "vertical crs";
+        default:
+            return "assumed";
+    }
+}
+
+/// To so many decimals, so that JSON does not show the noise of the last bits.
+double rounded(double value, int decimals) {
+    const double scale = std::pow(10.0, decimals);
+    return std::round(value * scale) / scale;
+}
+
+std::string distance_text(double metres) {
+    if (metres >= 10'000) return fmt::format("{:.1f} km", metres / 1000);
+    if (metres >= 100) return fmt::format("{:.0f} m", metres);
+    return fmt::format("{:.2f} m", metres);
+}
+
+}  // namespace
+
+Summary summarize(const Heightfield& field) {
+    const Description& about = field.about;
+    Summary s;
+    s.path = about.path;
+    s.driver = about.driver;
+    s.data_type = about.data_type;
+    s.columns = field.grid.columns();
+    s.rows = field.grid.rows();
+    s.crs = field.grid.crs().text();
+    s.crs_name = field.grid.crs().name();
+    s.center = field.grid.center();
+    s.extent_m = field.grid.extent_m();
+    s.post_spacing_m = field.grid.post_spacing_m();
+    s.min_m = about.statistics.min_m;
+    s.max_m = about.statistics.max_m;
+    s.nodata_share = about.statistics.nodata_share();
+    s.nodata = about.nodata;
+    s.nodata_text = about.nodata_text();
+    s.outliers = about.statistics.outliers;
+    s.unit = about.unit.name;
+    s.unit_source = name_of(about.unit_source);
+    s.vertical_datum = about.vertical_datum;
+    s.band = about.band;
+    s.bands = about.bands;
+    s.assumptions = about.assumptions;
+    return s;
+}
+
+std::string to_json(const Summary& s) {
+    using Json = nlohmann::ordered_json;
+    Json json;
+    json["path"] = s.path;
+    json["driver"] = s.driver;
+    json["data_type"] = s.data_type;
+    json["size"] = {s.columns, s.rows};
+    json["crs"] = s.crs;
+    json["crs_name"] = s.crs_name;
+    json["center"] = {{"lat_deg", rounded(degrees(s.center.lat_rad), 9)},
+                      {"lon_deg", rounded(degrees(s.center.lon_rad), 9)}};
+    json["extent_m"] = {rounded(s.extent_m.x, 3), rounded(s.extent_m.y, 3)};
+    json["post_spacing_m"] = {rounded(s.post_spacing_m.x, 6), rounded(s.post_spacing_m.y, 6)};
+    json["elevation_m"] = {{"min", rounded(s.min_m, 3)}, {"max", rounded(s.max_m, 3)}};
+    json["nodata_share"] = s.nodata_share;
+    // JSON has no word for a nodata value that is NaN or infinite.
+    json["nodata"] = !s.nodata                  ? Json()
+                     : std::isfinite(*s.nodata) ? Json(*s.nodata)
+                                                : Json(s.nodata_text);
+    json["outliers"] = s.outliers;
+    json["unit"] = s.unit;
+    json["unit_source"] = s.unit_source;
+    json["vertical_datum"] = s.vertical_datum.empty() ? Json() : Json(s.vertical_datum);
+    json["band"] = s.band;
+    json["bands"] = s.bands;
+    json["assumptions"] = s.assumptions;
+    // A path need not be UTF-8.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string to_text(const Summary& s) {
+    std::string text;
+    const auto line = [&text](std::string_view name, const std::string& value) {
+        text += fmt::format("{:<10} {}\n", name, value);
+    };
+    line("file", s.path);
+    line("format", fmt::format("{}, {}{}", s.driver, s.data_type,
+                               s.bands > 1 ? fmt::format(", band {} of {}", s.band, s.bands) : ""));
+    line("posts", fmt::format("{} x {}", s.columns, s.rows));
+    line("crs", s.crs.size() < 40 && s.crs != s.crs_name ? fmt::format("{} ({})", s.crs, s.crs_name)
+                                                         : s.crs_name);
+    line("center", fmt::format("{} ({})", geo::degrees_text(s.center), geo::utm_text(s.center)));
+    line("extent", fmt::format("{} east, {} north", distance_text(s.extent_m.x),
+                               distance_text(s.extent_m.y)));
+    line("spacing", fmt::format("{} x {}", distance_text(s.post_spacing_m.x),
+                                distance_text(s.post_spacing_m.y)));
+    line("heights", fmt::format("{:.1f} to {:.1f} m", s.min_m, s.max_m));
+    line("holes", fmt::format("{:.4g} %{}", 100 * s.nodata_share,
+                              s.nodata ? fmt::format(" (nodata {})", s.nodata_text) : ""));
+    line("unit", fmt::format("{} ({})", s.unit, s.unit_source));
+    line("above", s.vertical_datum.empty() ? "unknown" : s.vertical_datum);
+    for (const std::string& assumption : s.assumptions)
+        line("assumed", assumption);
+    return text;
+}
+
+}  // namespace relevo::dem

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dem/heightfield.h"
+
+namespace relevo::dem {
+
+/// What `relevo info` says about a DEM.
+struct Summary {
+    std::string path;
+    std::string driver;     ///< GDAL's short name
+    std::string data_type;  ///< "Int16"
+    int columns = 0;
+    int rows = 0;
+    std::string crs;       ///< what `--crs` takes to mean the same: a code, else WKT
+    std::string crs_name;  ///< for people
+    geo::Geodetic center;
+    glm::dvec2 extent_m{};        ///< Grid::extent_m(): east, north
+    glm::dvec2 post_spacing_m{};  ///< Grid::post_spacing_m(): x, y
+    float min_m = 0;
+    float max_m = 0;
+    double nodata_share = 0;  ///< posts without a height, 0 to 1
+    std::optional<double> nodata;
+    std::string nodata_text;  ///< in as many digits as the file's type has
+    std::int64_t outliers = 0;
+    std::string unit;         ///< of the heights in the file: "m", "ft", "us-ft"
+    std::string unit_source;  ///< "option", "band", "vertical crs", "assumed"
+    std::string vertical_datum;
+    int band = 1;
+    int bands = 1;
+    std::vector<std::string> assumptions;
+};
+
+Summary summarize(const Heightfield& field);
+
+/// The object of `relevo info --json`, two blanks a level, no line end after it. Keys
+/// (docs/cli.md): path, driver, data_type, size [columns, rows], crs, crs_name, center {lat_deg,
+/// lon_deg}, extent_m [east, north], post_spacing_m [x, y], elevation_m {min, max}, nodata_share,
+/// nodata, outliers, unit, unit_source, vertical_datum, band, bands, assumptions [text]. Unknown
+/// ones are null.
+std::string to_json(const Summary& summary);
+
+/// The same in lines for people, a line end after each.
+std::string to_text(const Summary& summary);
+
+}  // namespace relevo::dem

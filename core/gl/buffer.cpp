@@ -1,0 +1,50 @@
+#include "gl/buffer.h"
+
+#include <cassert>
+
+#include <epoxy/gl.h>
+
+namespace relevo::gl {
+namespace {
+
+unsigned create(std::size_t size, const void* bytes, std::string_view label) {
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    glNamedBufferStorage(name, static_cast<GLsizeiptr>(size), bytes, GL_DYNAMIC_STORAGE_BIT);
+    glObjectLabel(GL_BUFFER, name, static_cast<GLsizei>(label.size()), label.data());
+    return name;
+}
+
+}  // namespace
+
+void Buffer::destroy(unsigned name) {
+    glDeleteBuffers(1, &name);
+}
+
+Buffer::Buffer(std::size_t size, std::string_view label)
+    : handle_(create(size, nullptr, label)), size_(size) {}
+
+Buffer::Buffer(std::span<const std::byte> bytes, std::string_view label)
+    : handle_(create(bytes.size(), bytes.data(), label)), size_(bytes.size()) {}
+
+void Buffer::write(std::span<const std::byte> bytes, std::size_t offset) {
+    assert(offset + bytes.size() <= size_);
+    glNamedBufferSubData(name(), static_cast<GLintptr>(offset),
+                         static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+}
+
+void Buffer::read(std::span<std::byte> bytes, std::size_t offset) const {
+    assert(offset + bytes.size() <= size_);
+    glGetNamedBufferSubData(name(), static_cast<GLintptr>(offset),
+                            static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+}
+
+void Buffer::bind_uniform(unsigned binding) const {
+    glBindBufferBase(GL_UNIFORM_BUFFER, binding, name());
+}
+
+void Buffer::bind_storage(unsigned binding) const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name());
+}
+
+}  // namespace relevo::gl

@@ -1,0 +1,271 @@
+#include "gl/context.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <cstring>
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/text.h"
+
+namespace relevo::gl {
+namespace {
+
+constexpr EGLint kMaxDevices = 32;
+
+struct Candidate {
+    Device device;
+    EGLDeviceEXT egl_device = nullptr;
+};
+
+bool client_extension(const char* name) {
+    return epoxy_has_egl_extension(EGL_NO_DISPLAY, name);
+}
+
+bool contains(const char* list, const char* word) {
+    return list && std::strstr(list, word) != nullptr;
+}
+
+std::vector<Candidate> candidates() {
+    std::vector<Candidate> found;
+    if (client_extension("EGL_EXT_platform_device") && client_extension("EGL_EXT_device_base")) {
+        EGLDeviceEXT devices[kMaxDevices];
+        EGLint count = 0;
+        if (eglQueryDevicesEXT(kMaxDevices, devices, &count) == EGL_TRUE) {
+            for (EGLint i = 0; i < count; ++i) {
+                const char* extensions = eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS);
+                Candidate candidate;
+                candidate.egl_device = devices[i];
+                candidate.device.platform = "device";
+                candidate.device.software = contains(extensions, "EGL_MESA_device_software");
+                const char* node = nullptr;
+                if (contains(extensions, "EGL_EXT_device_drm"))
+                    node = eglQueryDeviceStringEXT(devices[i], EGL_DRM_DEVICE_FILE_EXT);
+                candidate.device.description = candidate.device.software ? "software renderer"
+                                               : node                    ? node
+                                                                         : "GPU without a DRM node";
+                found.push_back(candidate);
+            }
+        }
+    }
+    std::stable_partition(found.begin(), found.end(),
+                          [](const Candidate& c) { return !c.device.software; });
+    if (client_extension("EGL_MESA_platform_surfaceless")) {
+        Candidate candidate;
+        candidate.device.platform = "surfaceless";
+        candidate.device.description = "whatever Mesa picks without a surface";
+        found.push_back(candidate);
+    }
+    for (std::size_t i = 0; i < found.size(); ++i)
+        found[i].device.index = static_cast<int>(i);
+    return found;
+}
+
+const char* egl_error() {
+    switch (eglGetError()) {
+        case EGL_NOT_INITIALIZED:
+            return "EGL_NOT_INITIALIZED";
+        case EGL_BAD_ACCESS:
+            return "EGL_BAD_ACCESS";
+        case EGL_BAD_ALLOC:
+            return "EGL_BAD_ALLOC";
+        case EGL_BAD_ATTRIBUTE:
+            return "EGL_BAD_ATTRIBUTE";
+        case EGL_BAD_CONFIG:
+            return "EGL_BAD_CONFIG";
+        case EGL_BAD_MATCH:
+            return "EGL_BAD_MATCH";
+        case EGL_BAD_PARAMETER:
+            return "EGL_BAD_PARAMETER";
+        default:
+            return "EGL gives no reason";
+    }
+}
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return result;
+}
+
+const char* gl_string(GLenum name) {
+    const GLubyte* text = glGetString(name);
+    return text ? reinterpret_cast<const char*>(text) : "";
+}
+
+}  // namespace
+
+std::vector<Device> list_devices() {
+    std::vector<Device> devices;
+    for (const Candidate& candidate : candidates())
+        devices.push_back(candidate.device);
+    return devices;
+}
+
+struct Context::Impl {
+    EGLDisplay display = EGL_NO_DISPLAY;
+    EGLContext context = EGL_NO_CONTEXT;
+    DeviceInfo info;
+    std::vector<std::string> errors;
+
+    /// Empty on success, else why this device will not do.
+    std::string open(const Candidate& candidate, bool debug) {
+        if (candidate.egl_device)
+            display =
+                eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, candidate.egl_device, nullptr);
+        else
+            display =
+                eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA,
+                                         reinterpret_cast<void*>(EGL_DEFAULT_DISPLAY), nullptr);
+        if (display == EGL_NO_DISPLAY) return fmt::format("no display, {}", egl_error());
+        if (!eglInitialize(display, nullptr, nullptr)) {
+            display = EGL_NO_DISPLAY;
+            return fmt::format("cannot be initialised, {}", egl_error());
+        }
+        if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context"))
+            return "has no EGL_KHR_surfaceless_context";
+        if (!eglBindAPI(EGL_OPENGL_API)) return "has no desktop OpenGL";
+        // A context needs no config where the driver allows that; others want any one.
+        EGLConfig config = EGL_NO_CONFIG_KHR;
+        if (!epoxy_has_egl_extension(display, "EGL_KHR_no_config_context")) {
+            const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
+                                     EGL_NONE};
+            EGLint count = 0;
+            if (!eglChooseConfig(display, wanted, &config, 1, &count) || count == 0)
+                return "has no config for OpenGL";
+        }
+        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                     4,
+                                     EGL_CONTEXT_MINOR_VERSION,
+                                     5,
+                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                     EGL_CONTEXT_OPENGL_DEBUG,
+                                     debug ? EGL_TRUE : EGL_FALSE,
+                                     EGL_NONE};
+        context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
+        if (context == EGL_NO_CONTEXT)
+            return fmt::format("has no OpenGL 4.5 core, {}", egl_error());
+        if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
+            return fmt::format("cannot be made current, {}", egl_error());
+        info.device = candidate.device;
+        info.renderer = gl_string(GL_RENDERER);
+        info.vendor = gl_string(GL_VENDOR);
+        info.version = gl_string(GL_VERSION);
+        return {};
+    }
+
+    void close() {
+        if (display == EGL_NO_DISPLAY) return;
+        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
+        eglTerminate(display);
+        display = EGL_NO_DISPLAY;
+        context = EGL_NO_CONTEXT;
+    }
+
+    ~Impl() { close(); }
+
+    static void GLAPIENTRY on_message(GLenum source, GLenum type, GLuint, GLenum, GLsizei length,
+                                      const GLchar* text, const void* user) {
+        auto& self = *static_cast<Impl*>(const_cast<void*>(user));
+        const std::string_view message(text, static_cast<std::size_t>(std::max(0, length)));
+        // What the compiler refuses is told by Program::build.
+        if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
+        if (type == GL_DEBUG_TYPE_ERROR || type == GL_DEBUG_TYPE_UNDEFINED_BEHAVIOR)
+            self.errors.emplace_back(trimmed(message));
+        else
+            log::debug(fmt::format("gl: {}", trimmed(message)));
+    }
+
+    void start(bool debug) {
+        GLint value = 0;
+        glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &value);
+        info.max_texture_units = value;
+        glGetIntegerv(GL_MAX_TEXTURE_SIZE, &value);
+        info.max_texture_size = value;
+        glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &value);
+        info.max_array_layers = value;
+        glGetInternalformativ(GL_RENDERBUFFER, GL_RGBA16F, GL_SAMPLES, 1, &value);
+        info.max_samples = value;
+        if (epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic") ||
+            epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
+            GLfloat most = 1;
+            glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY, &most);
+            info.max_anisotropy = most;
+        }
+        if (debug) {
+            glEnable(GL_DEBUG_OUTPUT);
+            glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+            glDebugMessageCallback(&Impl::on_message, this);
+            // Performance chatter and labels' push and pop say nothing of correctness.
+            glDebugMessageControl(GL_DONT_CARE, GL_DEBUG_TYPE_PUSH_GROUP, GL_DONT_CARE, 0, nullptr,
+                                  GL_FALSE);
+            glDebugMessageControl(GL_DONT_CARE, GL_DEBUG_TYPE_POP_GROUP, GL_DONT_CARE, 0, nullptr,
+                                  GL_FALSE);
+        }
+        glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    }
+};
+
+Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()) {
+    const std::vector<Candidate> all = candidates();
+    const std::string wanted = lower(options.device.empty() ? "auto" : options.device);
+    const std::optional<double> index = parse_number(wanted);
+    std::string tried;
+    for (const Candidate& candidate : all) {
+        const Device& device = candidate.device;
+        if (index && device.index != static_cast<int>(*index)) continue;
+        if (wanted == "software" && !device.software) continue;
+        std::string reason = impl_->open(candidate, options.debug);
+        const bool by_name = wanted != "auto" && wanted != "software" && !index;
+        if (reason.empty() && by_name &&
+            lower(impl_->info.renderer + " " + impl_->info.vendor).find(wanted) ==
+                std::string::npos)
+            reason = fmt::format("is {}", impl_->info.renderer);
+        if (reason.empty()) {
+            impl_->start(options.debug);
+            return;
+        }
+        impl_->close();
+        tried += fmt::format("\n  {}: {} ({}) {}", device.index, device.platform,
+                             device.description, reason);
+    }
+    if (all.empty())
+        throw Error(ErrorCode::NoDevice,
+                    "gl: no GL device: EGL offers none; install Mesa's software renderer "
+                    "(libegl1, libegl-mesa0, libgl1-mesa-dri)");
+    throw Error(ErrorCode::NoDevice,
+                fmt::format("gl: no GL device: none of the {} found is \"{}\" and can draw with "
+                            "OpenGL 4.5 core{}; see `relevo doctor`",
+                            all.size(), options.device, tried));
+}
+
+Context::Context(Context&&) noexcept = default;
+Context& Context::operator=(Context&&) noexcept = default;
+Context::~Context() = default;
+
+const DeviceInfo& Context::info() const {
+    return impl_->info;
+}
+
+void Context::check_errors() {
+    if (impl_->errors.empty()) return;
+    const std::string message = fmt::format("gl: {}", fmt::join(impl_->errors, "; "));
+    impl_->errors.clear();
+    failed(message);
+}
+
+void Context::finish() {
+    glFinish();
+}
+
+}  // namespace relevo::gl

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace relevo::gl {
+
+/// One way to get a GL context without a window.
+struct Device {
+    int index = 0;         ///< as `--device` takes it
+    std::string platform;  ///< "device" (an EGL device) or "surfaceless"
+    std::string
+        description;  ///< what EGL says of it: render node, "software", extensions that matter
+    bool software = false;  ///< EGL marks it as a software renderer
+};
+
+/// The devices in the order in which they are tried: hardware first, then software, then the
+/// surfaceless platform. Empty where EGL itself is missing.
+std::vector<Device> list_devices();
+
+/// What GL says of itself once a context is current.
+struct DeviceInfo {
+    Device device;
+    std::string renderer, vendor, version;
+    int max_texture_units = 0;  ///< of a fragment program
+    int max_texture_size = 0;   ///< [px]
+    int max_array_layers = 0;   ///< of an array texture
+    int max_samples = 0;        ///< of a half-float colour target
+    double max_anisotropy = 1;  ///< 1 where there is no anisotropic filter
+};
+
+struct ContextOptions {
+    /// "auto", the index of a device, "software", or a part of a renderer's name ("nvidia").
+    std::string device = "auto";
+    /// A debug context: GL errors are collected and thrown by check_errors().
+    bool debug = false;
+};
+
+/// An OpenGL 4.5 core context without a window, current on the thread that made it, through EGL:
+/// the device platform, then the surfaceless one. Clip space has depth 0..1 (reversed-Z is the
+/// caller's).
+///
+/// Every other object of this layer needs a Context that lives longer than it does.
+class Context {
+  public:
+    /// @throws Error (NoDevice) with each device that was tried and why it would not do
+    explicit Context(const ContextOptions& options = {});
+    Context(Context&&) noexcept;
+    Context& operator=(Context&&) noexcept;
+    ~Context();
+
+    const DeviceInfo& info() const;
+
+    /// Throws what the debug context has collected since the last call.
+    /// @throws Error (Failed) `gl: message`; never without ContextOptions::debug
+    void check_errors();
+
+    /// Waits until the device has done everything asked so far.
+    void finish();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relevo::gl

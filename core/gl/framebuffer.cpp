@@ -1,0 +1,70 @@
+#include "gl/framebuffer.h"
+
+#include <vector>
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace relevo::gl {
+
+void Framebuffer::destroy(unsigned name) {
+    glDeleteFramebuffers(1, &name);
+}
+
+Framebuffer::Framebuffer(std::span<const Texture* const> colours, const Texture* depth,
+                         std::string_view label) {
+    GLuint name = 0;
+    glCreateFramebuffers(1, &name);
+    handle_ = Handle<&Framebuffer::destroy>(name);
+    glObjectLabel(GL_FRAMEBUFFER, name, static_cast<GLsizei>(label.size()), label.data());
+    std::vector<GLenum> targets;
+    for (const Texture* colour : colours) {
+        const GLenum target = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(targets.size());
+        glNamedFramebufferTexture(name, target, colour->name(), 0);
+        targets.push_back(target);
+        extent_ = colour->extent();
+    }
+    glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(targets.size()), targets.data());
+    if (targets.empty()) glNamedFramebufferReadBuffer(name, GL_NONE);
+    if (depth) {
+        glNamedFramebufferTexture(
+            name, depth->format() == Format::Stencil8 ? GL_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT,
+            depth->name(), 0);
+        extent_ = depth->extent();
+    }
+    const GLenum status = glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        failed(fmt::format("gl::Framebuffer: {}: this device cannot draw to it, status 0x{:04x}",
+                           label, status));
+}
+
+void Framebuffer::bind() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, handle_.name());
+    glViewport(0, 0, extent_.width, extent_.height);
+}
+
+void Framebuffer::clear_colour(int index, glm::vec4 value) const {
+    glClearNamedFramebufferfv(handle_.name(), GL_COLOR, index, &value.x);
+}
+
+void Framebuffer::clear_colour_uint(int index, glm::uvec4 value) const {
+    glClearNamedFramebufferuiv(handle_.name(), GL_COLOR, index, &value.x);
+}
+
+void Framebuffer::clear_depth(float value) const {
+    glClearNamedFramebufferfv(handle_.name(), GL_DEPTH, 0, &value);
+}
+
+void Framebuffer::clear_stencil(int value) const {
+    glClearNamedFramebufferiv(handle_.name(), GL_STENCIL, 0, &value);
+}
+
+void Framebuffer::resolve_to(const Framebuffer& target) const {
+    glBlitNamedFramebuffer(handle_.name(), target.handle_.name(), 0, 0, extent_.width,
+                           extent_.height, 0, 0, extent_.width, extent_.height, GL_COLOR_BUFFER_BIT,
+                           GL_NEAREST);
+}
+
+}  // namespace relevo::gl

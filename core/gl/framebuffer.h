@@ -1,0 +1,44 @@
+#pragma once
+
+#include <initializer_list>
+#include <span>
+#include <string_view>
+
+#include <glm/vec4.hpp>
+
+#include "gl/handle.h"
+#include "gl/texture.h"
+
+namespace relevo::gl {
+
+/// A set of textures that draws go to. The textures must outlive it.
+class Framebuffer {
+  public:
+    Framebuffer() = default;
+    /// @param colours  in the order of the fragment program's outputs; may be empty
+    /// @param depth    a Depth32F or a Stencil8 texture, or null
+    /// @throws Error (Failed) if the device cannot draw to this combination
+    Framebuffer(std::span<const Texture* const> colours, const Texture* depth,
+                std::string_view label);
+    Framebuffer(std::initializer_list<const Texture*> colours, const Texture* depth,
+                std::string_view label)
+        : Framebuffer(std::span(colours.begin(), colours.size()), depth, label) {}
+
+    /// Draws go here from now on, to the whole of it.
+    void bind() const;
+    void clear_colour(int index, glm::vec4 value) const;
+    void clear_colour_uint(int index, glm::uvec4 value) const;
+    void clear_depth(float value) const;
+    void clear_stencil(int value) const;
+    /// Averages the samples of colour target 0 into `target`'s, pixel for pixel.
+    void resolve_to(const Framebuffer& target) const;
+
+    Extent extent() const { return extent_; }
+
+  private:
+    static void destroy(unsigned name);
+    Handle<&Framebuffer::destroy> handle_;
+    Extent extent_;
+};
+
+}  // namespace relevo::gl

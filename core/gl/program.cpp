@@ -1,0 +1,89 @@
+#include "gl/program.h"
+
+#include <epoxy/gl.h>
+
+namespace relevo::gl {
+namespace {
+
+void destroy_shader(unsigned name) {
+    glDeleteShader(name);
+}
+
+using Shader = Handle<&destroy_shader>;
+
+template <typename GetLength, typename GetLog>
+std::string info_log(GLuint name, GetLength get_length, GetLog get_log) {
+    GLint length = 0;
+    get_length(name, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(length > 0 ? length : 0), '\0');
+    if (length > 0) {
+        GLsizei written = 0;
+        get_log(name, length, &written, log.data());
+        log.resize(static_cast<std::size_t>(written));
+    }
+    return log;
+}
+
+/// An empty text on success, else the driver's log.
+std::optional<std::string> compile(const Shader& shader, std::string_view text) {
+    const char* lines = text.data();
+    const GLint length = static_cast<GLint>(text.size());
+    glShaderSource(shader.name(), 1, &lines, &length);
+    glCompileShader(shader.name());
+    GLint good = 0;
+    glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &good);
+    if (good) return std::nullopt;
+    return info_log(shader.name(), glGetShaderiv, glGetShaderInfoLog);
+}
+
+}  // namespace
+
+void Program::destroy(unsigned name) {
+    glDeleteProgram(name);
+}
+
+std::optional<Program> Program::build(std::string_view vertex, std::string_view fragment,
+                                      std::string_view label, Failure& failure) {
+    const Shader vertex_shader(glCreateShader(GL_VERTEX_SHADER));
+    if (auto log = compile(vertex_shader, vertex)) {
+        failure = {Failure::Stage::Vertex, *log};
+        return std::nullopt;
+    }
+    const Shader fragment_shader(glCreateShader(GL_FRAGMENT_SHADER));
+    if (auto log = compile(fragment_shader, fragment)) {
+        failure = {Failure::Stage::Fragment, *log};
+        return std::nullopt;
+    }
+    Program program;
+    program.handle_ = Handle<&Program::destroy>(glCreateProgram());
+    const GLuint name = program.name();
+    glObjectLabel(GL_PROGRAM, name, static_cast<GLsizei>(label.size()), label.data());
+    glAttachShader(name, vertex_shader.name());
+    glAttachShader(name, fragment_shader.name());
+    glLinkProgram(name);
+    glDetachShader(name, vertex_shader.name());
+    glDetachShader(name, fragment_shader.name());
+    GLint good = 0;
+    glGetProgramiv(name, GL_LINK_STATUS, &good);
+    if (!good) {
+        failure = {Failure::Stage::Link, info_log(name, glGetProgramiv, glGetProgramInfoLog)};
+        return std::nullopt;
+    }
+    return program;
+}
+
+void Program::use() const {
+    glUseProgram(name());
+}
+
+int Program::block_offset(std::string_view member) const {
+    const std::string text(member);
+    const GLuint index = glGetProgramResourceIndex(name(), GL_UNIFORM, text.c_str());
+    if (index == GL_INVALID_INDEX) return -1;
+    const GLenum property = GL_OFFSET;
+    GLint offset = -1;
+    glGetProgramResourceiv(name(), GL_UNIFORM, index, 1, &property, 1, nullptr, &offset);
+    return offset;
+}
+
+}  // namespace relevo::gl

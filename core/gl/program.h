@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "gl/handle.h"
+
+namespace relevo::gl {
+
+/// A linked vertex and fragment program.
+class Program {
+  public:
+    Program() = default;
+
+    /// What the driver said of a text it refused.
+    struct Failure {
+        enum class Stage { Vertex, Fragment, Link } stage;
+        std::string
+            log;  ///< as the driver wrote it; shader::driver_log turns it into the author's lines
+    };
+
+    /// Compiles and links. @returns nothing and fills `failure` where the driver refuses the text.
+    static std::optional<Program> build(std::string_view vertex, std::string_view fragment,
+                                        std::string_view label, Failure& failure);
+
+    void use() const;
+
+    /// Byte offset of a member in a uniform block, -1 if the program does not use it.
+    int block_offset(std::string_view member) const;
+
+    unsigned name() const { return handle_.name(); }
+
+  private:
+    static void destroy(unsigned name);
+    Handle<&Program::destroy> handle_;
+};
+
+}  // namespace relevo::gl

@@ -1,0 +1,171 @@
+#include "gl/texture.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include <epoxy/gl.h>
+
+namespace relevo::gl {
+namespace {
+
+struct FormatInfo {
+    GLenum internal, format, type;
+    int bytes;
+};
+
+FormatInfo info(Format format) {
+    switch (format) {
+        case Format::R8:
+            return {GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1};
+        case Format::RG8:
+            return {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, 2};
+        case Format::RGBA8:
+            return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+        case Format::Srgb8A8:
+            return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+        case Format::R16:
+            return {GL_R16, GL_RED, GL_UNSIGNED_SHORT, 2};
+        case Format::RG16Snorm:
+            return {GL_RG16_SNORM, GL_RG, GL_SHORT, 4};
+        case Format::R16F:
+            return {GL_R16F, GL_RED, GL_HALF_FLOAT, 2};
+        case Format::RG16F:
+            return {GL_RG16F, GL_RG, GL_HALF_FLOAT, 4};
+        case Format::RGBA16F:
+            return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8};
+        case Format::R32F:
+            return {GL_R32F, GL_RED, GL_FLOAT, 4};
+        case Format::RG32F:
+            return {GL_RG32F, GL_RG, GL_FLOAT, 8};
+        case Format::RGBA32F:
+            return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
+        case Format::RGBA32UI:
+            return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16};
+        case Format::Depth32F:
+            return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4};
+        case Format::Stencil8:
+            return {GL_STENCIL_INDEX8, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, 1};
+    }
+    return {};
+}
+
+GLenum target(TextureKind kind) {
+    switch (kind) {
+        case TextureKind::D2:
+            return GL_TEXTURE_2D;
+        case TextureKind::D2Array:
+            return GL_TEXTURE_2D_ARRAY;
+        case TextureKind::D3:
+            return GL_TEXTURE_3D;
+        case TextureKind::Cube:
+            return GL_TEXTURE_CUBE_MAP;
+        case TextureKind::D2Multisample:
+            return GL_TEXTURE_2D_MULTISAMPLE;
+    }
+    return GL_TEXTURE_2D;
+}
+
+unsigned create(TextureKind kind, std::string_view label) {
+    GLuint name = 0;
+    glCreateTextures(target(kind), 1, &name);
+    glObjectLabel(GL_TEXTURE, name, static_cast<GLsizei>(label.size()), label.data());
+    return name;
+}
+
+int full_chain(TextureKind kind, Extent extent) {
+    int longest = std::max(extent.width, extent.height);
+    if (kind == TextureKind::D3) longest = std::max(longest, extent.depth);
+    return std::bit_width(static_cast<unsigned>(longest));
+}
+
+}  // namespace
+
+int texel_bytes(Format format) {
+    return info(format).bytes;
+}
+
+void Texture::destroy(unsigned name) {
+    glDeleteTextures(1, &name);
+}
+
+Texture::Texture(TextureKind kind, Format format, Extent extent, int levels, std::string_view label)
+    : handle_(create(kind, label)),
+      kind_(kind),
+      format_(format),
+      extent_(extent),
+      levels_(levels > 0 ? levels : full_chain(kind, extent)) {
+    assert(kind != TextureKind::D2Multisample);
+    if (kind == TextureKind::D2Array || kind == TextureKind::D3)
+        glTextureStorage3D(name(), levels_, info(format).internal, extent.width, extent.height,
+                           extent.depth);
+    else
+        glTextureStorage2D(name(), levels_, info(format).internal, extent.width, extent.height);
+}
+
+Texture Texture::multisampled(Format format, Extent extent, int samples, std::string_view label) {
+    Texture texture;
+    texture.handle_ = Handle<&Texture::destroy>(create(TextureKind::D2Multisample, label));
+    texture.kind_ = TextureKind::D2Multisample;
+    texture.format_ = format;
+    texture.extent_ = extent;
+    texture.samples_ = samples;
+    glTextureStorage2DMultisample(texture.name(), samples, info(format).internal, extent.width,
+                                  extent.height, GL_TRUE);
+    return texture;
+}
+
+void Texture::write(int level, Extent offset, Extent extent, std::span<const std::byte> texels) {
+    const FormatInfo format = info(format_);
+    assert(texels.size() ==
+           static_cast<std::size_t>(format.bytes) * static_cast<std::size_t>(extent.width) *
+               static_cast<std::size_t>(extent.height) * static_cast<std::size_t>(extent.depth));
+    if (kind_ == TextureKind::D2)
+        glTextureSubImage2D(name(), level, offset.width, offset.height, extent.width, extent.height,
+                            format.format, format.type, texels.data());
+    else
+        glTextureSubImage3D(name(), level, offset.width, offset.height, offset.depth, extent.width,
+                            extent.height, extent.depth, format.format, format.type, texels.data());
+}
+
+void Texture::read(int level, std::span<std::byte> texels) const {
+    const FormatInfo format = info(format_);
+    glGetTextureImage(name(), level, format.format, format.type,
+                      static_cast<GLsizei>(texels.size()), texels.data());
+}
+
+void Texture::read_floats(std::span<float> texels) const {
+    glGetTextureImage(name(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size_bytes()),
+                      texels.data());
+}
+
+void Texture::set_sampling(Filter filter, Wrap wrap, double anisotropy) {
+    const GLint mode = wrap == Wrap::Repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE;
+    glTextureParameteri(name(), GL_TEXTURE_WRAP_S, mode);
+    glTextureParameteri(name(), GL_TEXTURE_WRAP_T, mode);
+    glTextureParameteri(name(), GL_TEXTURE_WRAP_R, mode);
+    glTextureParameteri(name(), GL_TEXTURE_MAG_FILTER,
+                        filter == Filter::Nearest ? GL_NEAREST : GL_LINEAR);
+    glTextureParameteri(name(), GL_TEXTURE_MIN_FILTER,
+                        filter == Filter::Nearest  ? GL_NEAREST
+                        : filter == Filter::Linear ? GL_LINEAR
+                                                   : GL_LINEAR_MIPMAP_LINEAR);
+    if (anisotropy > 1)
+        glTextureParameterf(name(), GL_TEXTURE_MAX_ANISOTROPY, static_cast<GLfloat>(anisotropy));
+}
+
+void Texture::copy_from(const Texture& other) {
+    assert(other.format_ == format_ && other.extent_.width == extent_.width);
+    glCopyImageSubData(other.name(), target(other.kind_), 0, 0, 0, 0, name(), target(kind_), 0, 0, 0, 0,
+                       extent_.width, extent_.height, extent_.depth);
+}
+
+void Texture::make_mipmaps() {
+    glGenerateTextureMipmap(name());
+}
+
+void Texture::bind(unsigned unit) const {
+    glBindTextureUnit(unit, name());
+}
+
+}  // namespace relevo::gl

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "gl/handle.h"
+
+namespace relevo::gl {
+
+enum class Format {
+    R8,
+    RG8,
+    RGBA8,
+    Srgb8A8,  ///< read as linear, alpha linear
+    R16,
+    RG16Snorm,
+    R16F,
+    RG16F,
+    RGBA16F,
+    R32F,
+    RG32F,
+    RGBA32F,
+    RGBA32UI,
+    Depth32F,
+    Stencil8,
+};
+
+/// Bytes of one texel as the host hands it over: halves travel as halves.
+int texel_bytes(Format format);
+
+enum class TextureKind { D2, D2Array, D3, Cube, D2Multisample };
+enum class Wrap { Clamp, Repeat };
+enum class Filter { Nearest, Linear, Mipmap };
+
+/// Width, height, and layers or depth [px].
+struct Extent {
+    int width = 1, height = 1, depth = 1;
+};
+
+/// An immutable-size texture.
+class Texture {
+  public:
+    Texture() = default;
+    /// @param levels  of the mip chain; 0 for the whole chain
+    Texture(TextureKind kind, Format format, Extent extent, int levels, std::string_view label);
+    /// A multisampled target of `samples` samples a pixel.
+    static Texture multisampled(Format format, Extent extent, int samples, std::string_view label);
+
+    /// Replaces a box of one level. Texels are tightly packed, rows in the order of t.
+    void write(int level, Extent offset, Extent extent, std::span<const std::byte> texels);
+    /// One whole level; waits for the device.
+    void read(int level, std::span<std::byte> texels) const;
+    /// Level 0 of a colour texture of floats or halves, as four floats a texel.
+    void read_floats(std::span<float> texels) const;
+
+    void set_sampling(Filter filter, Wrap wrap, double anisotropy = 1);
+    /// Copies level 0 of a texture of the same format and size.
+    void copy_from(const Texture& other);
+    void make_mipmaps();
+    void bind(unsigned unit) const;
+
+    TextureKind kind() const { return kind_; }
+    Format format() const { return format_; }
+    Extent extent() const { return extent_; }
+    int levels() const { return levels_; }
+    int samples() const { return samples_; }
+    unsigned name() const { return handle_.name(); }
+
+  private:
+    static void destroy(unsigned name);
+    Handle<&Texture::destroy> handle_;
+    TextureKind kind_ = TextureKind::D2;
+    Format format_ = Format::RGBA8;
+    Extent extent_;
+    int levels_ = 1;
+    int samples_ = 1;
+};
+
+}  // namespace relevo::gl

@@ -1,0 +1,430 @@
+#include "image/ktx.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/error.h"
+
+namespace relevo::image {
+namespace {
+
+// Numbers are copied out of and into the file as they lie in memory.
+static_assert(std::endian::native == std::endian::little, "KTX 2 is little-endian");
+
+constexpr std::array<unsigned char, 12> kIdentifier{0xAB, 'K',  'T',  'X',  ' ',  '2',
+                                                    '0',  0xBB, '\r', '\n', 0x1A, '\n'};
+constexpr int kGreatestSide = 32768;
+constexpr int kMostLayers = 2048;
+
+/// The file's first bytes, as the specification's section 3 lays them out.
+struct Header {
+    std::array<unsigned char, 12> identifier;
+    std::uint32_t vk_format, type_size, width, height, depth, layers, faces, levels;
+    std::uint32_t supercompression;
+    std::uint32_t dfd_offset, dfd_size, kvd_offset, kvd_size;
+    std::uint64_t sgd_offset, sgd_size;
+};
+static_assert(sizeof(Header) == 80);
+
+struct LevelIndex {
+    std::uint64_t offset, size, uncompressed_size;
+};
+static_assert(sizeof(LevelIndex) == 24);
+
+struct FormatInfo {
+    TextureFormat format;
+    std::uint32_t vk_format;
+    std::uint32_t channels;
+    std::uint32_t bytes_per_channel;
+    bool srgb;
+    const char* name;
+};
+
+constexpr std::array kFormats{
+    FormatInfo{TextureFormat::R8, 9, 1, 1, false, "VK_FORMAT_R8_UNORM"},
+    FormatInfo{TextureFormat::Rg8, 16, 2, 1, false, "VK_FORMAT_R8G8_UNORM"},
+    FormatInfo{TextureFormat::Rgba8, 37, 4, 1, false, "VK_FORMAT_R8G8B8A8_UNORM"},
+    FormatInfo{TextureFormat::SrgbA8, 43, 4, 1, true, "VK_FORMAT_R8G8B8A8_SRGB"},
+    FormatInfo{TextureFormat::R16, 70, 1, 2, false, "VK_FORMAT_R16_UNORM"},
+};
+
+const FormatInfo& info(TextureFormat format) {
+    const auto found = std::find_if(kFormats.begin(), kFormats.end(),
+                                    [&](const FormatInfo& f) { return f.format == format; });
+    assert(found != kFormats.end());
+    return *found;
+}
+
+std::size_t bytes_per_texel(const FormatInfo& f) {
+    return std::size_t{f.channels} * f.bytes_per_channel;
+}
+
+std::size_t level_bytes(const FormatInfo& f, int width, int height, int depth, int layers,
+                        int level) {
+    const auto side = [level](int s) { return static_cast<std::size_t>(std::max(1, s >> level)); };
+    return bytes_per_texel(f) * side(width) * side(height) * side(depth) *
+           static_cast<std::size_t>(layers);
+}
+
+std::size_t aligned(std::size_t offset, std::size_t alignment) {
+    return (offset + alignment - 1) / alignment * alignment;
+}
+
+/// The data format descriptor that belongs to a format, its total size first.
+/// Source: Khronos Data Format Specification 1.3, section 5 (basic descriptor block).
+std::vector<std::uint32_t> descriptor(const FormatInfo& f) {
+    constexpr std::uint32_t kRgbsda = 1, kBt709 = 1, kLinear = 1, kSrgb = 2, kLinearAlpha = 0x10;
+    constexpr std::array<std::uint32_t, 4> kChannelId{0, 1, 2, 15};  // red, green, blue, alpha
+    const std::uint32_t block_size = 24 + 16 * f.channels;
+    std::vector<std::uint32_t> words{
+        4 + block_size,                                            // total size
+        0,                                                         // Khronos, basic descriptor
+        2 | block_size << 16,                                      // version 1.3
+        kRgbsda | kBt709 << 8 | (f.srgb ? kSrgb : kLinear) << 16,  // and straight alpha
+        0,                                                         // one texel a block
+        f.channels * f.bytes_per_channel,                          // bytes of plane 0
+        0};
+    const std::uint32_t bits = 8 * f.bytes_per_channel;
+    for (std::uint32_t c = 0; c < f.channels; ++c) {
+        std::uint32_t id = kChannelId[c];
+        if (f.srgb && c == 3) id |= kLinearAlpha;
+        words.insert(words.end(), {c * bits | (bits - 1) << 16 | id << 24, 0, 0, (1u << bits) - 1});
+    }
+    return words;
+}
+
+/// Reads what it is asked for, or says that the file is bad.
+class Reader {
+  public:
+    Reader(const std::filesystem::path& path, std::span<const std::byte> bytes)
+        : path_(path), bytes_(bytes) {}
+
+    [[noreturn]] void bad(const std::string& what) const {
+        bad_input(fmt::format("image::read_ktx: {}: {}", path_.string(), what));
+    }
+
+    template <typename T>
+    T at(std::uint64_t offset) const {
+        assert(offset + sizeof(T) <= bytes_.size());
+        T value;
+        std::memcpy(&value, bytes_.data() + offset, sizeof(T));
+        return value;
+    }
+
+    /// A part of the file that it names by offset and size.
+    std::span<const std::byte> part(std::string_view name, std::uint64_t offset,
+                                    std::uint64_t size) const {
+        if (offset > bytes_.size() || size > bytes_.size() - offset)
+            bad(fmt::format("{} at {} to {} is outside the file of {} bytes", name, offset,
+                            offset + size, bytes_.size()));
+        return bytes_.subspan(offset, size);
+    }
+
+    Header header() const;
+    const FormatInfo& format(const Header& h) const;
+    void check_shape(const Header& h) const;
+    void check_descriptor(const Header& h, const FormatInfo& f) const;
+    std::map<std::string, std::string> metadata(const Header& h) const;
+    std::vector<std::size_t> level_offsets(const Header& h, const FormatInfo& f) const;
+
+  private:
+    const std::filesystem::path& path_;
+    std::span<const std::byte> bytes_;
+};
+
+Header Reader::header() const {
+    if (bytes_.size() < sizeof(Header))
+        bad(fmt::format("file too short, expected at least {} bytes but got {}", sizeof(Header),
+                        bytes_.size()));
+    const auto h = at<Header>(0);
+    if (std::memcmp(h.identifier.data(), "\xABKTX 11\xBB", 8) == 0)
+        bad("is KTX version 1, expected version 2; convert it with ktx2ktx2");
+    if (h.identifier != kIdentifier) bad("not a KTX 2 file");
+    return h;
+}
+
+const FormatInfo& Reader::format(const Header& h) const {
+    if (h.supercompression != 0)
+        bad(fmt::format("supercompression scheme {}, expected none (0)", h.supercompression));
+    for (const FormatInfo& f : kFormats)
+        if (f.vk_format == h.vk_format) {
+            if (h.type_size != f.bytes_per_channel)
+                bad(fmt::format("type size of {}, expected {} but got {}", f.name,
+                                f.bytes_per_channel, h.type_size));
+            return f;
+        }
+    std::string known;
+    for (const FormatInfo& f : kFormats)
+        known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", f.vk_format, f.name);
+    bad(fmt::format("texel format {}, expected one of {}", h.vk_format, known));
+}
+
+void Reader::check_shape(const Header& h) const {
+    // A 1-D texture has height 0 in the file; none is needed here.
+    if (h.width < 1 || h.height < 1 || h.width > kGreatestSide || h.height > kGreatestSide ||
+        h.depth > kGreatestSide)
+        bad(fmt::format("size {} x {} x {}, expected 1 to {} a side", h.width, h.height, h.depth,
+                        kGreatestSide));
+    if (h.layers > kMostLayers)
+        bad(fmt::format("{} layers, expected at most {}", h.layers, kMostLayers));
+    if (h.layers > 0 && h.depth > 0) bad("an array of volumes, expected one or the other");
+    if (h.faces != 1) bad(fmt::format("{} faces, expected 1", h.faces));
+    const int most = full_chain_levels(static_cast<int>(h.width), static_cast<int>(h.height),
+                                       std::max(1, static_cast<int>(h.depth)));
+    if (h.levels < 1 || h.levels > static_cast<std::uint32_t>(most))
+        bad(fmt::format("{} mip levels, expected 1 to {}", h.levels, most));
+    if (bytes_.size() < sizeof(Header) + h.levels * sizeof(LevelIndex))
+        bad(
+            fmt::format("file too short for the index of its {} levels, expected at least {} bytes "
+                        "but got {}",
+                        h.levels, sizeof(Header) + h.levels * sizeof(LevelIndex), bytes_.size()));
+}
+
+void Reader::check_descriptor(const Header& h, const FormatInfo& f) const {
+    const auto dfd = part("data format descriptor", h.dfd_offset, h.dfd_size);
+    const std::vector<std::uint32_t> expected = descriptor(f);
+    // Version, primaries and alpha premultiplication may differ: nothing here depends on them.
+    const auto equal = [&](std::size_t word, std::uint32_t mask) {
+        return (at<std::uint32_t>(h.dfd_offset + 4 * word) & mask) == (expected[word] & mask);
+    };
+    bool same = dfd.size() == 4 * expected.size() && equal(0, ~0u) && equal(1, ~0u) &&
+                equal(2, 0xFFFF0000u) && equal(3, 0x00FF00FFu) && equal(4, ~0u) && equal(5, ~0u);
+    for (std::size_t word = 7; same && word < expected.size(); ++word)
+        same = equal(word, ~0u);
+    if (!same) bad(fmt::format("its data format descriptor does not describe {}", f.name));
+}
+
+std::map<std::string, std::string> Reader::metadata(const Header& h) const {
+    std::map<std::string, std::string> pairs;
+    const auto kvd = part("key/value data", h.kvd_offset, h.kvd_size);
+    for (std::size_t offset = 0; offset < kvd.size();) {
+        if (kvd.size() - offset < 4) bad("key/value data ends inside a length");
+        const auto size = at<std::uint32_t>(h.kvd_offset + offset);
+        offset += 4;
+        if (size > kvd.size() - offset)
+            bad(fmt::format("key/value pair of {} bytes, expected at most {}", size,
+                            kvd.size() - offset));
+        const std::string_view pair(reinterpret_cast<const char*>(kvd.data() + offset), size);
+        const std::size_t nul = pair.find('\0');
+        if (nul == std::string_view::npos || nul == 0)
+            bad("key/value pair without a key that ends in NUL");
+        std::string_view value = pair.substr(nul + 1);
+        if (!value.empty() && value.back() == '\0') value.remove_suffix(1);
+        if (!pairs.emplace(pair.substr(0, nul), value).second)
+            bad(fmt::format("two values for the key {}", pair.substr(0, nul)));
+        offset = aligned(offset + size, 4);
+    }
+    return pairs;
+}
+
+std::vector<std::size_t> Reader::level_offsets(const Header& h, const FormatInfo& f) const {
+    std::vector<std::size_t> offsets;
+    for (std::uint32_t l = 0; l < h.levels; ++l) {
+        const auto index = at<LevelIndex>(sizeof(Header) + l * sizeof(LevelIndex));
+        const std::size_t expected =
+            level_bytes(f, static_cast<int>(h.width), static_cast<int>(h.height),
+                        std::max(1, static_cast<int>(h.depth)),
+                        std::max(1, static_cast<int>(h.layers)), static_cast<int>(l));
+        if (index.size != expected || index.uncompressed_size != expected)
+            bad(fmt::format("level {}, expected {} bytes but got {}", l, expected,
+                            index.size != expected ? index.size : index.uncompressed_size));
+        part(fmt::format("level {}", l), index.offset, index.size);
+        if (index.offset % std::max<std::size_t>(4, bytes_per_texel(f)) != 0)
+            bad(fmt::format("level {} at {}, expected a multiple of 4", l, index.offset));
+        if (index.offset < sizeof(Header) + h.levels * sizeof(LevelIndex))
+            bad(fmt::format("level {} at {} lies over the header", l, index.offset));
+        offsets.push_back(index.offset);
+    }
+    return offsets;
+}
+
+/// A file descriptor that is closed at the end of its scope.
+struct Descriptor {
+    int fd = -1;
+    ~Descriptor() {
+        if (fd >= 0) close(fd);
+    }
+};
+
+}  // namespace
+
+std::size_t bytes_per_texel(TextureFormat format) {
+    return bytes_per_texel(info(format));
+}
+
+int full_chain_levels(int width, int height, int depth) {
+    return static_cast<int>(
+        std::bit_width(static_cast<unsigned>(std::max({width, height, depth}))));
+}
+
+TextureData::TextureData(TextureFormat format, int width, int height, int depth, int layers,
+                         int levels)
+    : format_(format),
+      width_(width),
+      height_(height),
+      depth_(depth),
+      layers_(layers),
+      levels_(levels) {
+    assert(width >= 1 && height >= 1 && depth >= 1 && layers >= 1 && levels >= 1);
+    assert(width <= kGreatestSide && height <= kGreatestSide && depth <= kGreatestSide);
+    assert(layers <= kMostLayers && (layers == 1 || depth == 1));
+    assert(levels <= full_chain_levels(width, height, depth));
+    std::size_t size = 0;
+    for (int l = 0; l < levels; ++l) {
+        offsets_.push_back(size);
+        size += level_bytes(info(format), width, height, depth, layers, l);
+    }
+    owned_.resize(size);
+}
+
+int TextureData::level_width(int level) const {
+    return std::max(1, width_ >> level);
+}
+
+int TextureData::level_height(int level) const {
+    return std::max(1, height_ >> level);
+}
+
+int TextureData::level_depth(int level) const {
+    return std::max(1, depth_ >> level);
+}
+
+std::span<const std::byte> TextureData::level(int level) const {
+    assert(level >= 0 && level < levels_);
+    const std::byte* bytes = mapped_ ? mapped_.get() : owned_.data();
+    return {bytes + offsets_[static_cast<std::size_t>(level)],
+            level_bytes(info(format_), width_, height_, depth_, layers_, level)};
+}
+
+std::span<std::byte> TextureData::writable_level(int level) {
+    assert(!mapped_ && level >= 0 && level < levels_);
+    return {owned_.data() + offsets_[static_cast<std::size_t>(level)],
+            level_bytes(info(format_), width_, height_, depth_, layers_, level)};
+}
+
+void TextureData::Unmap::operator()(const std::byte* bytes) const {
+    munmap(const_cast<std::byte*>(bytes), size);
+}
+
+TextureData read_ktx(const std::filesystem::path& path) {
+    const auto cannot_be_read = [&](const char* reason) {
+        bad_input(fmt::format("image::read_ktx: {}: cannot be read, {}", path.string(), reason));
+    };
+    const Descriptor file{open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+    if (file.fd < 0) cannot_be_read(std::strerror(errno));
+    struct stat status {};
+    if (fstat(file.fd, &status) != 0) cannot_be_read(std::strerror(errno));
+    if (!S_ISREG(status.st_mode)) cannot_be_read("it is not a regular file");
+    const auto size = static_cast<std::size_t>(status.st_size);
+
+    TextureData texture;
+    std::span<const std::byte> bytes;
+    if (size > 0) {
+        void* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd, 0);
+        if (memory == MAP_FAILED) cannot_be_read(std::strerror(errno));
+        texture.mapped_ = {static_cast<const std::byte*>(memory), TextureData::Unmap{size}};
+        bytes = {texture.mapped_.get(), size};
+    }
+    const Reader reader(path, bytes);
+    const Header header = reader.header();
+    const FormatInfo& format = reader.format(header);
+    reader.check_shape(header);
+    reader.check_descriptor(header, format);
+    texture.metadata = reader.metadata(header);
+    texture.offsets_ = reader.level_offsets(header, format);
+    texture.format_ = format.format;
+    texture.width_ = static_cast<int>(header.width);
+    texture.height_ = static_cast<int>(header.height);
+    texture.depth_ = std::max(1, static_cast<int>(header.depth));
+    texture.layers_ = std::max(1, static_cast<int>(header.layers));
+    texture.levels_ = static_cast<int>(header.levels);
+    return texture;
+}
+
+void write_ktx(const std::filesystem::path& path, const TextureData& texture) {
+    const FormatInfo& format = info(texture.format());
+    const std::vector<std::uint32_t> dfd = descriptor(format);
+
+    std::map<std::string, std::string> pairs = texture.metadata;
+    pairs.emplace("KTXwriter", "relevo");
+    std::string kvd;  // std::map has the keys in the order the specification asks for
+    for (const auto& [key, value] : pairs) {
+        const auto size = static_cast<std::uint32_t>(key.size() + 1 + value.size() + 1);
+        kvd.append(reinterpret_cast<const char*>(&size), 4);
+        kvd.append(key).push_back('\0');
+        kvd.append(value).push_back('\0');
+        kvd.resize(aligned(kvd.size(), 4));
+    }
+
+    Header header{};
+    header.identifier = kIdentifier;
+    header.vk_format = format.vk_format;
+    header.type_size = format.bytes_per_channel;
+    header.width = static_cast<std::uint32_t>(texture.width());
+    header.height = static_cast<std::uint32_t>(texture.height());
+    header.depth = texture.depth() > 1 ? static_cast<std::uint32_t>(texture.depth()) : 0;
+    header.layers = texture.layers() > 1 ? static_cast<std::uint32_t>(texture.layers()) : 0;
+    header.faces = 1;
+    header.levels = static_cast<std::uint32_t>(texture.levels());
+    std::size_t offset = sizeof(Header) + header.levels * sizeof(LevelIndex);
+    header.dfd_offset = static_cast<std::uint32_t>(offset);
+    header.dfd_size = static_cast<std::uint32_t>(4 * dfd.size());
+    offset += header.dfd_size;
+    header.kvd_offset = static_cast<std::uint32_t>(offset);
+    header.kvd_size = static_cast<std::uint32_t>(kvd.size());
+    offset += header.kvd_size;
+
+    // The smallest level lies first, so that a reader over a network has something to show early.
+    const std::size_t alignment = std::max<std::size_t>(4, bytes_per_texel(format));
+    std::vector<LevelIndex> index(header.levels);
+    for (std::size_t l = header.levels; l-- > 0;) {
+        offset = aligned(offset, alignment);
+        const std::size_t size = texture.level(static_cast<int>(l)).size();
+        index[l] = {offset, size, size};
+        offset += size;
+    }
+
+    std::filesystem::path temporary = path;
+    temporary += fmt::format(".{}.part", getpid());
+    errno = 0;
+    std::ofstream file(temporary, std::ios::binary);
+    const auto write = [&](const void* bytes, std::size_t size) {
+        file.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+    };
+    write(&header, sizeof header);
+    write(index.data(), index.size() * sizeof(LevelIndex));
+    write(dfd.data(), header.dfd_size);
+    write(kvd.data(), kvd.size());
+    std::size_t written = header.kvd_offset + kvd.size();
+    for (std::size_t l = header.levels; l-- > 0;) {
+        constexpr std::array<char, 4> kZeros{};
+        write(kZeros.data(), index[l].offset - written);
+        const auto level = texture.level(static_cast<int>(l));
+        write(level.data(), level.size());
+        written = index[l].offset + level.size();
+    }
+    file.close();
+    std::error_code error;
+    if (file) std::filesystem::rename(temporary, path, error);
+    if (!file || error) {
+        const std::string reason = error ? error.message() : std::strerror(errno);
+        std::filesystem::remove(temporary, error);
+        failed(fmt::format("image::write_ktx: {}: cannot be written, {}", path.string(), reason));
+    }
+}
+
+}  // namespace relevo::image

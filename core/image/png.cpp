@@ -1,0 +1,125 @@
+#include "image/png.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include "base/error.h"
+
+namespace relevo::image {
+namespace {
+
+struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, Close>;
+
+// libpng is C: its error handler may not return, and an exception may cross its frames because
+// Debian builds it with unwind tables as everything else.
+[[noreturn]] void on_error(png_structp png, png_const_charp message) {
+    const auto& subject = *static_cast<const std::string*>(png_get_error_ptr(png));
+    failed(fmt::format("image: {}: {}", subject, message));
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+int colour_type(int channels) {
+    switch (channels) {
+        case 1:
+            return PNG_COLOR_TYPE_GRAY;
+        case 2:
+            return PNG_COLOR_TYPE_GRAY_ALPHA;
+        case 3:
+            return PNG_COLOR_TYPE_RGB;
+        default:
+            return PNG_COLOR_TYPE_RGB_ALPHA;
+    }
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& path, const Image8& image, const Metadata& metadata) {
+    std::string subject = path.string();
+    const File file(std::fopen(path.c_str(), "wb"));
+    if (!file)
+        failed(fmt::format("image: {}: cannot be written, {}", subject, std::strerror(errno)));
+    struct Writer {
+        png_structp png = nullptr;
+        png_infop info = nullptr;
+        ~Writer() { png_destroy_write_struct(&png, &info); }
+    } writer;
+    writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &subject, on_error, on_warning);
+    writer.info = png_create_info_struct(writer.png);
+    png_init_io(writer.png, file.get());
+    // Level 3 with one filter writes a 1280x1024 picture in a third of the time of libpng's own
+    // choice (level 6, the best of five filters for each row) for 4 % more bytes (bench_image).
+    png_set_compression_level(writer.png, 3);
+    png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+    png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(image.width),
+                 static_cast<png_uint_32>(image.height), 8, colour_type(image.channels),
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+    png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    std::vector<png_text> texts;
+    for (const auto& [keyword, text] : metadata) {
+        png_text entry{};
+        entry.compression = PNG_ITXT_COMPRESSION_NONE;
+        entry.key = const_cast<char*>(keyword.c_str());
+        entry.text = const_cast<char*>(text.c_str());
+        entry.itxt_length = text.size();
+        texts.push_back(entry);
+    }
+    if (!texts.empty())
+        png_set_text(writer.png, writer.info, texts.data(), static_cast<int>(texts.size()));
+    png_write_info(writer.png, writer.info);
+    for (int y = 0; y < image.height; ++y)
+        png_write_row(writer.png, image.row(y));
+    png_write_end(writer.png, writer.info);
+    if (std::fflush(file.get()) != 0)
+        failed(fmt::format("image: {}: cannot be written, {}", subject, std::strerror(errno)));
+}
+
+Image8 read_png(const std::filesystem::path& path, Metadata* metadata) {
+    std::string subject = path.string();
+    const File file(std::fopen(path.c_str(), "rb"));
+    if (!file)
+        bad_input(fmt::format("image: {}: cannot be read, {}", subject, std::strerror(errno)));
+    struct Reader {
+        png_structp png = nullptr;
+        png_infop info = nullptr;
+        ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+    } reader;
+    reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &subject, on_error, on_warning);
+    reader.info = png_create_info_struct(reader.png);
+    png_init_io(reader.png, file.get());
+    try {
+        png_read_info(reader.png, reader.info);
+        png_set_expand(reader.png);
+        png_set_scale_16(reader.png);
+        png_set_interlace_handling(reader.png);
+        png_read_update_info(reader.png, reader.info);
+        Image8 image(static_cast<int>(png_get_image_width(reader.png, reader.info)),
+                     static_cast<int>(png_get_image_height(reader.png, reader.info)),
+                     png_get_channels(reader.png, reader.info));
+        std::vector<png_bytep> rows;
+        for (int y = 0; y < image.height; ++y)
+            rows.push_back(image.row(y));
+        png_read_image(reader.png, rows.data());
+        png_read_end(reader.png, reader.info);
+        if (metadata) {
+            png_textp texts = nullptr;
+            int count = 0;
+            png_get_text(reader.png, reader.info, &texts, &count);
+            for (int i = 0; i < count; ++i)
+                (*metadata)[texts[i].key] = texts[i].text;
+        }
+        return image;
+    } catch (const Error& error) {
+        bad_input(error.what());
+    }
+}
+
+}  // namespace relevo::image

@@ -1,0 +1,136 @@
+#include "render/frame_block.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "base/units.h"
+#include "sun/daylight.h"
+
+namespace relevo::render {
+namespace {
+
+constexpr double kEquatorialRadius_m = 6378137.0;  // WGS 84
+constexpr double kFlattening = 1 / 298.257223563;  // WGS 84
+constexpr double kNear_m = 0.5;                    // reversed depth: nothing is lost by a small one
+
+/// From view depth 1 to clip space with the far end at infinity: depth = near / distance.
+glm::dmat4 projection(double tan_x, double tan_y) {
+    glm::dmat4 p(0.0);
+    p[0][0] = 1 / tan_x;
+    p[1][1] = 1 / tan_y;
+    p[2][3] = 1;
+    p[3][2] = kNear_m;
+    return p;
+}
+
+}  // namespace
+
+SunLightFit fit_sun_light(const SunLight& sun) {
+    const double centre = 0.5 * (sun.lowest_sine + sun.highest_sine);
+    const double half = std::max(0.5 * (sun.highest_sine - sun.lowest_sine), 1e-4);
+    // Interpolation through four Chebyshev nodes, by divided differences, then to powers of t.
+    std::array<double, 4> t{};
+    std::array<glm::dvec4, 4> f{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        t[i] = std::cos(kPi * (2 * static_cast<double>(i) + 1) / 8);
+        const double elevation = std::asin(std::clamp(centre + half * t[i], -1.0, 1.0));
+        const double lift = sun.refraction_rad ? sun.refraction_rad(elevation) : 0.0;
+        const glm::dvec3 light = sun::direct_transmittance(elevation + lift, sun.ground_height_m);
+        // normalize(direction + a up) is lifted by the refraction; at the zenith there is none.
+        const double cosine = std::cos(elevation + lift);
+        f[i] = glm::dvec4(light, cosine > 1e-6 ? std::sin(lift) / cosine : 0.0);
+    }
+    for (std::size_t order = 1; order < 4; ++order)
+        for (std::size_t i = 3; i >= order; --i)
+            f[i] = (f[i] - f[i - 1]) / (t[i] - t[i - order]);
+    std::array<glm::dvec4, 4> powers{f[3], glm::dvec4(0), glm::dvec4(0), glm::dvec4(0)};
+    for (std::size_t k = 3; k-- > 0;) {
+        for (std::size_t i = 3; i > 0; --i)
+            powers[i] = powers[i - 1] - t[k] * powers[i];
+        powers[0] = f[k] - t[k] * powers[0];
+    }
+    SunLightFit fit;
+    for (std::size_t i = 0; i < 4; ++i)
+        fit.powers[i] = glm::vec4(powers[i]);
+    fit.domain = {static_cast<float>(centre), static_cast<float>(1 / half)};
+    return fit;
+}
+
+FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int width_px,
+                            int height_px, double footprint_limit) {
+    const scene::Camera& camera = inputs.camera;
+    const glm::dvec3 right = cross(camera.forward, camera.up);
+    const double tan_y = std::tan(camera.fov_y_rad / 2);
+    const double tan_x = tan_y * width_px / height_px;
+
+    FrameBlock block{};
+    glm::dmat4 view(1.0);
+    for (int i = 0; i < 3; ++i) {
+        view[i][0] = right[i];
+        view[i][1] = camera.up[i];
+        view[i][2] = camera.forward[i];
+    }
+    block.view_projection = glm::mat4(projection(tan_x, tan_y) * view);
+    const glm::dvec3 dx = right * (2 * tan_x / width_px);
+    const glm::dvec3 dy = camera.up * (2 * tan_y / height_px);
+    block.pixel_ray = glm::vec4(camera.forward - 0.5 * width_px * dx - 0.5 * height_px * dy, 0);
+    block.pixel_ray_dx = glm::vec4(dx, 0);
+    block.pixel_ray_dy = glm::vec4(dy, 0);
+    block.viewport = {width_px, height_px, 1.0 / width_px, 1.0 / height_px};
+
+    const geo::Geodetic eye = ground.frame.to_geodetic(camera.eye_m);
+    block.eye_m = glm::vec4(camera.eye_m, eye.height_m);
+
+    // The normal of an ellipsoid at p is along D p, D = diag(1, 1, a^2/b^2) about the Earth's
+    // centre; turned into the local frame, D stays a matrix and the centre becomes a constant.
+    const geo::Geodetic& origin = ground.frame.origin();
+    const double e2 = kFlattening * (2 - kFlattening);
+    const geo::Axes pole = ground.frame.axes(kPi / 2, 0);
+    const glm::dvec3 axis = pole.up;
+    const double stretch = 1 / ((1 - kFlattening) * (1 - kFlattening)) - 1;
+    const auto along_normal = [&](const glm::dvec3& from_centre) {
+        return from_centre + stretch * dot(from_centre, axis) * axis;
+    };
+    const double curvature_m =
+        kEquatorialRadius_m / std::sqrt(1 - e2 * std::pow(std::sin(origin.lat_rad), 2));
+    // Where the Earth's centre lies: down the normal to the axis, then along the axis.
+    const glm::dvec3 origin_up(0, 0, 1);
+    const glm::dvec3 centre = -(curvature_m + origin.height_m) * origin_up +
+                              curvature_m * e2 * std::sin(origin.lat_rad) * axis;
+    block.up_at_eye = glm::vec4(along_normal(camera.eye_m - centre) / kEquatorialRadius_m, 0);
+    glm::dmat3 matrix;
+    for (int i = 0; i < 3; ++i) {
+        glm::dvec3 unit(0);
+        unit[i] = 1;
+        matrix[i] = along_normal(unit) / kEquatorialRadius_m;
+    }
+    block.up_matrix = glm::mat4(glm::mat3(matrix));
+    block.polar_axis = glm::vec4(axis, 0);
+
+    const double elevation = std::asin(std::clamp(inputs.sun.direction.z, -1.0, 1.0));
+    const double lift = inputs.sun.refraction_rad ? inputs.sun.refraction_rad(elevation) : 0.0;
+    const glm::dvec3 level{inputs.sun.direction.x, inputs.sun.direction.y, 0};
+    const glm::dvec3 heading = length(level) > 0 ? normalize(level) : glm::dvec3(0, 1, 0);
+    block.sun_direction = glm::vec4(inputs.sun.direction, elevation);
+    block.sun_apparent = glm::vec4(
+        std::cos(elevation + lift) * heading + glm::dvec3(0, 0, std::sin(elevation + lift)),
+        elevation + lift);
+    const SunLightFit fit = fit_sun_light(inputs.sun);
+    block.sun_light = fit.powers;
+    block.sun_light_domain = {fit.domain.x, fit.domain.y, 0, 0};
+    block.sky_irradiance = glm::vec4(sun::sky_irradiance(elevation), 0);
+    block.height_range = {ground.lowest_m, 1 / std::max(ground.highest_m - ground.lowest_m, 1e-3),
+                          inputs.exaggeration, 0};
+    block.ground_extent = glm::vec4(ground.south_west_m,
+                                    1.0 / glm::max(ground.north_east_m - ground.south_west_m, 1.0));
+    block.exposure =
+        static_cast<float>(sun::natural_exposure(elevation) * std::exp2(inputs.exposure_ev));
+    block.footprint_limit = static_cast<float>(footprint_limit);
+    block.normal_texels_per_m = static_cast<float>(1 / ground.normal_spacing_m);
+    return block;
+}
+
+}  // namespace relevo::render

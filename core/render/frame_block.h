@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <functional>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "geo/local_frame.h"
+#include "scene/camera.h"
+
+namespace relevo::render {
+
+/// The uniform block `frame` of shaders/lib/frame.glsl, member for member (std140).
+struct FrameBlock {
+    glm::mat4 view_projection;
+    glm::vec4 pixel_ray, pixel_ray_dx, pixel_ray_dy;
+    glm::vec4 viewport;
+    glm::vec4 eye_m;
+    glm::vec4 up_at_eye;
+    glm::mat4 up_matrix;
+    glm::vec4 polar_axis;
+    glm::vec4 sun_direction, sun_apparent;
+    std::array<glm::vec4, 4> sun_light;
+    glm::vec4 sun_light_domain;
+    glm::vec4 sky_irradiance;
+    glm::vec4 height_range;
+    glm::vec4 ground_extent;
+    float exposure;
+    float footprint_limit;
+    float normal_texels_per_m;
+    float padding;
+};
+static_assert(sizeof(FrameBlock) == 26 * 16);
+
+/// The sun over a DEM, as the shaders need it.
+struct SunLight {
+    glm::dvec3 direction{0, 0, 1};  ///< towards the sun, geometric, in the local frame, unit
+    /// By how much the air lifts the sun at a geometric elevation [rad]; none where refraction is
+    /// off.
+    std::function<double(double elevation_rad)> refraction_rad;
+    double ground_height_m = 0;  ///< of the ground that is lit, above sea level
+    /// Least and greatest sine of the sun's geometric elevation over the DEM.
+    double lowest_sine = 0, highest_sine = 1;
+};
+
+/// Light and refraction as cubic polynomials of the sine of the sun's local elevation, in powers of
+/// t = (sine - domain.x) * domain.y: rgb irradiance on a surface that faces the sun, and in `a` how
+/// far along the local vertical the direction moves. Accuracy: 0.1 arcsec of refraction above 5
+/// degrees and 1 % of the light for a DEM of 100 km (tests/render/test_frame_block.cpp).
+struct SunLightFit {
+    std::array<glm::vec4, 4> powers;
+    glm::vec2 domain;
+};
+SunLightFit fit_sun_light(const SunLight& sun);
+
+/// What a frame is drawn with.
+struct FrameInputs {
+    scene::Camera camera;
+    SunLight sun;
+    double exposure_ev = 0;   ///< stops brighter than the natural exposure of this sun
+    double exaggeration = 1;  ///< factor on heights
+};
+
+/// What does not change from frame to frame.
+struct Ground {
+    geo::LocalFrame frame;
+    double lowest_m = 0, highest_m = 1;  ///< of the DEM's posts
+    glm::dvec2 south_west_m{-1, -1};     ///< corner of the DEM's posts in the local frame
+    glm::dvec2 north_east_m{1, 1};       ///< likewise
+    double normal_spacing_m = 30;        ///< from texel to texel of the normal pages
+};
+
+/// @param footprint_limit  see frame.glsl
+FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int width_px,
+                            int height_px, double footprint_limit);
+
+}  // namespace relevo::render

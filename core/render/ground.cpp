@@ -1,0 +1,88 @@
+#include "render/ground.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace relevo::render {
+namespace {
+
+constexpr int kPiecesAcross = 48;  // of a DEM, when it is thinned out for the camera
+
+}  // namespace
+
+Ground make_ground(const dem::Heightfield& dem) {
+    Ground ground{.frame = geo::LocalFrame(dem.grid.center())};
+    ground.lowest_m = dem.about.statistics.min_m;
+    ground.highest_m = dem.about.statistics.max_m;
+    const glm::dvec2 spacing = dem.grid.post_spacing_m();
+    ground.normal_spacing_m = std::sqrt(spacing.x * spacing.y);
+    const double columns = dem.grid.columns() - 1, rows = dem.grid.rows() - 1;
+    ground.south_west_m = glm::dvec2(1e300);
+    ground.north_east_m = glm::dvec2(-1e300);
+    for (const double u : {0.0, 0.5, 1.0}) {
+        for (const double v : {0.0, 0.5, 1.0}) {
+            const glm::dvec2 at(ground.frame.to_local(dem.grid.place(u * columns, v * rows)));
+            ground.south_west_m = glm::min(ground.south_west_m, at);
+            ground.north_east_m = glm::max(ground.north_east_m, at);
+        }
+    }
+    return ground;
+}
+
+std::vector<glm::dvec3> points_to_show(const dem::Heightfield& dem, const Ground& ground,
+                                       double exaggeration) {
+    const Array2d<float>& height_m = dem.height_m;
+    std::vector<glm::dvec3> points;
+    const auto add = [&](int column, int row) {
+        geo::Geodetic place = dem.grid.place(column, row);
+        place.height_m = height_m.at(column, row) * exaggeration;
+        points.push_back(ground.frame.to_local(place));
+    };
+    const int step_x = std::max(1, height_m.width() / kPiecesAcross);
+    const int step_y = std::max(1, height_m.height() / kPiecesAcross);
+    for (int y0 = 0; y0 < height_m.height(); y0 += step_y) {
+        for (int x0 = 0; x0 < height_m.width(); x0 += step_x) {
+            glm::ivec2 lowest(-1), highest(-1);
+            for (int y = y0; y < std::min(y0 + step_y, height_m.height()); ++y) {
+                for (int x = x0; x < std::min(x0 + step_x, height_m.width()); ++x) {
+                    const float h = height_m.at(x, y);
+                    if (std::isnan(h)) continue;
+                    if (lowest.x < 0 || h < height_m.at(lowest.x, lowest.y)) lowest = {x, y};
+                    if (highest.x < 0 || h > height_m.at(highest.x, highest.y)) highest = {x, y};
+                }
+            }
+            if (lowest.x < 0) continue;
+            add(lowest.x, lowest.y);
+            add(highest.x, highest.y);
+        }
+    }
+    return points;
+}
+
+SunLight make_sun_light(const sun::Position& position, const sun::Refraction& refraction,
+                        const Ground& ground, const dem::Grid& grid) {
+    SunLight light;
+    light.direction = position.direction;
+    light.refraction_rad = [refraction](double elevation_rad) {
+        return refraction.apparent_rad(elevation_rad) - elevation_rad;
+    };
+    light.ground_height_m = 0.5 * (ground.lowest_m + ground.highest_m);
+    light.lowest_sine = 1;
+    light.highest_sine = -1;
+    constexpr int kSamples = 8;
+    for (int j = 0; j <= kSamples; ++j) {
+        for (int i = 0; i <= kSamples; ++i) {
+            const geo::Geodetic place = grid.place((grid.columns() - 1) * i / double{kSamples},
+                                                   (grid.rows() - 1) * j / double{kSamples});
+            const double sine = dot(light.direction, ground.frame.up(place.lat_rad, place.lon_rad));
+            light.lowest_sine = std::min(light.lowest_sine, sine);
+            light.highest_sine = std::max(light.highest_sine, sine);
+        }
+    }
+    return light;
+}
+
+}  // namespace relevo::render

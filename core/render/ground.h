@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "dem/heightfield.h"
+#include "geo/local_frame.h"
+#include "render/frame_block.h"
+#include "sun/position.h"
+#include "sun/refraction.h"
+
+namespace relevo::render {
+
+/// The ground of a DEM: its local frame about the DEM's centre at height 0, its range and its
+/// extent.
+Ground make_ground(const dem::Heightfield& dem);
+
+/// Points that a camera has to see to see the DEM: its valid posts, thinned out to some thousands
+/// with the highest and the lowest of each piece kept, in the local frame [m].
+std::vector<glm::dvec3> points_to_show(const dem::Heightfield& dem, const Ground& ground,
+                                       double exaggeration);
+
+/// The light of a sun over the DEM.
+/// @param refraction  the air's; also for other elevations than the present one
+SunLight make_sun_light(const sun::Position& position, const sun::Refraction& refraction,
+                        const Ground& ground, const dem::Grid& grid);
+
+}  // namespace relevo::render

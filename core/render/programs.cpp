@@ -1,0 +1,66 @@
+#include "render/programs.h"
+
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "shader/driver_log.h"
+
+namespace relevo::render {
+
+std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
+                                         const shader::StitchInput& input,
+                                         const ProgramOptions& options) {
+    shader::ProgramRecipe geometry{.vertex_main = "terrain.vert.glsl",
+                                   .fragment_main = "geometry.frag.glsl",
+                                   .shaded_by = "terrain.frag.glsl"};
+    shader::ProgramRecipe terrain{.vertex_main = "fullscreen.vert.glsl",
+                                  .fragment_main = "terrain.frag.glsl",
+                                  .geometry_of = "terrain.vert.glsl"};
+    if (options.vertex_normals) {
+        geometry.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
+        terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
+    }
+    std::vector<ProgramText> programs;
+    programs.push_back({"geometry", shader::stitch(core, geometry, input)});
+    programs.push_back({"terrain", shader::stitch(core, terrain, input)});
+    for (const char* name : {"sky", "post", "edges", "antialias"}) {
+        const shader::ProgramRecipe recipe{.vertex_main = "fullscreen.vert.glsl",
+                                           .fragment_main = fmt::format("{}.frag.glsl", name)};
+        programs.push_back({name, shader::stitch(core, recipe, input)});
+    }
+    return programs;
+}
+
+void dump_programs(const std::vector<ProgramText>& programs, const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    for (const ProgramText& program : programs) {
+        const auto dump = [&](const char* ending, const std::string& text) {
+            const std::filesystem::path path = folder / (program.name + ending);
+            std::ofstream file(path, std::ios::binary);
+            file << text;
+            if (!file.flush())
+                failed(fmt::format("--dump-shaders: {}: cannot be written", path.string()));
+        };
+        dump(".vert.glsl", program.stitched.vertex.text);
+        dump(".frag.glsl", program.stitched.fragment.text);
+    }
+}
+
+LinkedProgram link_program(const ProgramText& text) {
+    gl::Program::Failure failure;
+    auto program = gl::Program::build(text.stitched.vertex.text, text.stitched.fragment.text,
+                                      text.name, failure);
+    if (program) return {std::move(*program), text.stitched.textures};
+    const bool vertex = failure.stage == gl::Program::Failure::Stage::Vertex;
+    const shader::StageText& stage = vertex ? text.stitched.vertex : text.stitched.fragment;
+    const char* where = vertex                                                   ? "vertex side"
+                        : failure.stage == gl::Program::Failure::Stage::Fragment ? "fragment side"
+                                                                                 : "link";
+    failed(fmt::format("render: program {}: {}: the driver refuses it\n{}", text.name, where,
+                       shader::parse_driver_log(failure.log, stage.lines).text()));
+}
+
+}  // namespace relevo::render

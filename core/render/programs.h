@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gl/program.h"
+#include "shader/stitch.h"
+
+namespace relevo::render {
+
+/// One of the programs of a frame as text.
+struct ProgramText {
+    std::string name;  ///< "geometry", "terrain", "sky", "post", "edges", "antialias"
+    shader::Stitched stitched;
+};
+
+struct ProgramOptions {
+    bool vertex_normals = false;  ///< see RendererOptions
+};
+
+/// Stitches all programs of a frame. @throws Error as shader::stitch
+std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
+                                         const shader::StitchInput& input,
+                                         const ProgramOptions& options);
+
+/// Writes every text as `<name>.vert.glsl` and `<name>.frag.glsl`. @throws Error (Failed)
+void dump_programs(const std::vector<ProgramText>& programs, const std::filesystem::path& folder);
+
+struct LinkedProgram {
+    gl::Program program;
+    std::vector<shader::TextureUnit> textures;
+};
+
+/// Compiles and links. @throws Error (Failed) with what the driver says, in the author's file and
+/// line
+LinkedProgram link_program(const ProgramText& text);
+
+}  // namespace relevo::render

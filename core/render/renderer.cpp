@@ -1,0 +1,263 @@
+#include "render/renderer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <optional>
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/paths.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "gl/texture.h"
+#include "gl/vertex_array.h"
+#include "render/programs.h"
+
+namespace relevo::render {
+namespace {
+
+constexpr unsigned kFrameBinding = 0;
+constexpr unsigned kParamsBinding = 1;
+
+/// Longest to shortest side of a pixel's footprint. An anisotropic filter resolves it; without one
+/// a little aliasing at a slant looks better than blur.
+constexpr double kFootprintWithoutAnisotropy = 2.5;
+constexpr double kAnisotropy = 8;
+
+}  // namespace
+
+struct Renderer::Impl {
+    gl::Context& context;
+    RendererOptions options;
+    double anisotropy;
+    std::vector<ProgramText> texts;
+    LinkedProgram geometry, terrain, sky, post, edges, antialias;
+    EffectTextures effect_textures;
+    gl::Buffer frame_block;
+    gl::Buffer params_block;
+    gl::VertexArray no_inputs;
+
+    gl::Texture place, depth, radiance, tone_mapped, edge_marks, picture;
+    std::vector<gl::Texture> varyings;
+    gl::Framebuffer geometry_target, radiance_target, post_target, picture_target;
+
+    Impl(gl::Context& c, const EffectInputs& effects, const RendererOptions& o)
+        : context(c),
+          options(o),
+          // A software renderer pays for every tap of an anisotropic filter (four times the frame).
+          anisotropy(c.info().device.software ? 1 : std::min(kAnisotropy, c.info().max_anisotropy)),
+          texts(stitch(effects.stitch, o, c.info().max_texture_units)),
+          geometry(link("geometry")),
+          terrain(link("terrain")),
+          sky(link("sky")),
+          post(link("post")),
+          edges(link("edges")),
+          antialias(link("antialias")),
+          effect_textures(effects.textures, anisotropy),
+          frame_block(sizeof(FrameBlock), "frame block") {
+        if (effects.stitch.values) {
+            const std::vector<std::byte> params =
+                shader::pack(texts.front().stitched.params, *effects.stitch.values);
+            if (!params.empty()) params_block = gl::Buffer(params, "parameters");
+        }
+
+        const gl::Extent size{options.width_px, options.height_px, 1};
+        const auto target = [&](gl::Format format, const char* label) {
+            gl::Texture texture(gl::TextureKind::D2, format, size, 1, label);
+            texture.set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
+            return texture;
+        };
+        place = target(gl::Format::RGBA32UI, "place");
+        place.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+        depth = target(gl::Format::Depth32F, "depth");
+        radiance = target(gl::Format::RGBA16F, "radiance");
+        tone_mapped = target(gl::Format::RGBA8, "tone mapped");
+        edge_marks = gl::Texture(gl::TextureKind::D2, gl::Format::Stencil8, size, 1, "edge marks");
+        depth.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+        picture = target(gl::Format::RGBA8, "picture");
+        std::vector<const gl::Texture*> outputs{&place};
+        const int varying_targets = text("geometry").stitched.varying_targets;
+        varyings.reserve(static_cast<std::size_t>(varying_targets));
+        for (int i = 0; i < varying_targets; ++i) {
+            varyings.push_back(target(gl::Format::RGBA32F, "varyings"));
+            varyings.back().set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+        }
+        for (const gl::Texture& texture : varyings)
+            outputs.push_back(&texture);
+        geometry_target = gl::Framebuffer(outputs, &depth, "geometry");
+        radiance_target = gl::Framebuffer({&radiance}, &depth, "radiance");
+        post_target = gl::Framebuffer({&tone_mapped}, nullptr, "post");
+        picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
+    }
+
+    static std::vector<ProgramText> stitch(shader::StitchInput input, const RendererOptions& o,
+                                           int max_texture_units) {
+        input.max_texture_units = max_texture_units;
+        const shader::FolderTexts core(share_dir() / "shaders");
+        return stitch_programs(core, input, {.vertex_normals = o.vertex_normals});
+    }
+
+    const ProgramText& text(const std::string& name) const {
+        const auto found = std::find_if(texts.begin(), texts.end(), [&](const ProgramText& program) {
+            return program.name == name;
+        });
+        assert(found != texts.end());
+        return *found;
+    }
+
+    LinkedProgram link(const char* name) const { return link_program(text(name)); }
+
+    /// Binds what a program reads, by the units that the stitcher gave out.
+    void bind(const LinkedProgram& program, const Terrain& ground) {
+        program.program.use();
+        for (const shader::TextureUnit& unit : program.textures) {
+            const gl::Texture* texture = core_texture(unit.resource, ground);
+            if (!texture) texture = effect_textures.find(unit.resource);
+            if (!texture)
+                failed(fmt::format("render: the texture {} of {} does not exist", unit.resource,
+                                   unit.owner));
+            texture->bind(static_cast<unsigned>(unit.unit));
+        }
+    }
+
+    const gl::Texture* core_texture(const std::string& name, const Terrain& ground) const {
+        if (name == "place") return &place;
+        if (name == "radiance") return &radiance;
+        if (name == "colour") return &tone_mapped;
+        if (name == "depth") return &depth;
+        if (name == "height_pages") return &ground.height_pages();
+        if (name == "normal_pages") return &ground.normal_pages();
+        for (std::size_t i = 0; i < varyings.size(); ++i)
+            if (name == fmt::format("varyings_{}", i)) return &varyings[i];
+        return nullptr;
+    }
+
+    void draw_fullscreen() const {
+        no_inputs.bind();
+        glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+
+    void draw(Terrain& ground, const FrameBlock& block, const glm::dvec3& eye_m, PassTimes* times) {
+        frame_block.write(std::as_bytes(std::span(&block, 1)));
+        frame_block.bind_uniform(kFrameBinding);
+        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
+
+        auto began = std::chrono::steady_clock::now();
+        const auto passed = [&](const char* name) {
+            if (!times) return;
+            context.finish();
+            const auto now = std::chrono::steady_clock::now();
+            times->emplace_back(name,
+                                std::chrono::duration<double, std::milli>(now - began).count());
+            began = now;
+        };
+
+        geometry_target.bind();
+        glEnable(GL_DEPTH_TEST);
+        glDepthMask(GL_TRUE);  // clearing obeys it too
+        geometry_target.clear_colour_uint(0, glm::uvec4(0));
+        geometry_target.clear_depth(0);
+        glDepthFunc(GL_GREATER);
+        if (ground.has_holes()) glEnable(GL_CLIP_DISTANCE0);
+        bind(geometry, ground);
+        ground.draw(eye_m);
+        glDisable(GL_CLIP_DISTANCE0);
+        passed("geometry");
+
+        // The full-screen triangle lies at depth 0, the far end: "less" lets it through where
+        // something nearer was drawn, "equal" where nothing was.
+        radiance_target.bind();
+        glDepthMask(GL_FALSE);
+        glDepthFunc(GL_LESS);
+        bind(terrain, ground);
+        draw_fullscreen();
+        passed("terrain");
+        glDepthFunc(GL_EQUAL);
+        bind(sky, ground);
+        draw_fullscreen();
+        glDisable(GL_DEPTH_TEST);
+        passed("sky");
+
+        (options.antialias ? post_target : picture_target).bind();
+        bind(post, ground);
+        draw_fullscreen();
+        passed("post");
+        if (options.antialias) {
+            // Two draws: the first marks the few pixels of silhouettes, the second works on those.
+            picture.copy_from(tone_mapped);
+            picture_target.bind();
+            picture_target.clear_stencil(0);
+            glEnable(GL_STENCIL_TEST);
+            glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+            glStencilFunc(GL_ALWAYS, 1, 0xff);
+            glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+            bind(edges, ground);
+            draw_fullscreen();
+            glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+            glStencilFunc(GL_EQUAL, 1, 0xff);
+            glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+            bind(antialias, ground);
+            draw_fullscreen();
+            glDisable(GL_STENCIL_TEST);
+            passed("antialias");
+        }
+        context.check_errors();
+    }
+};
+
+Renderer::Renderer(gl::Context& context, const EffectInputs& effects,
+                   const RendererOptions& options)
+    : impl_(std::make_unique<Impl>(context, effects, options)) {}
+
+Renderer::~Renderer() = default;
+
+const std::vector<ProgramText>& Renderer::texts() const {
+    return impl_->texts;
+}
+
+void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
+                            PassTimes* times) {
+    const double footprint =
+        impl_->anisotropy > 1 ? impl_->anisotropy : kFootprintWithoutAnisotropy;
+    const FrameBlock block = make_frame_block(inputs, ground, impl_->options.width_px,
+                                              impl_->options.height_px, footprint);
+    impl_->draw(terrain, block, inputs.camera.eye_m, times);
+}
+
+image::Image8 Renderer::read_picture() const {
+    const int width = impl_->options.width_px, height = impl_->options.height_px;
+    std::vector<std::uint8_t> texels(static_cast<std::size_t>(width) *
+                                     static_cast<std::size_t>(height) * 4);
+    impl_->picture.read(0, std::as_writable_bytes(std::span(texels)));
+    image::Image8 picture(width, height, 3);
+    for (int y = 0; y < height; ++y) {
+        // GL's first row is the lowest.
+        const std::uint8_t* from = texels.data() + static_cast<std::size_t>(height - 1 - y) *
+                                                       static_cast<std::size_t>(width) * 4;
+        std::uint8_t* to = picture.row(y);
+        for (int x = 0; x < width; ++x, from += 4, to += 3)
+            std::copy_n(from, 3, to);
+    }
+    return picture;
+}
+
+image::ImageF Renderer::read_radiance() const {
+    const int width = impl_->options.width_px, height = impl_->options.height_px;
+    std::vector<float> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                              4);
+    impl_->radiance.read_floats(texels);
+    image::ImageF picture(width, height, 3);
+    for (int y = 0; y < height; ++y) {
+        const float* from = texels.data() + static_cast<std::size_t>(height - 1 - y) *
+                                                static_cast<std::size_t>(width) * 4;
+        float* to = picture.row(y);
+        for (int x = 0; x < width; ++x, from += 4, to += 3)
+            std::copy_n(from, 3, to);
+    }
+    return picture;
+}
+
+}  // namespace relevo::render

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gl/context.h"
+#include "image/image.h"
+#include "render/effect_textures.h"
+#include "render/frame_block.h"
+#include "render/programs.h"
+#include "render/terrain.h"
+#include "shader/param_store.h"
+
+namespace relevo::render {
+
+struct RendererOptions {
+    int width_px = 1280;
+    int height_px = 1024;
+    /// Normals per vertex, as the paper has them, instead of per pixel at the DEM's full
+    /// resolution.
+    bool vertex_normals = false;
+    bool antialias = true;
+};
+
+/// The enabled effects, as drawing needs them.
+struct EffectInputs {
+    shader::StitchInput stitch;  ///< its units are the device's, whatever is set
+    std::vector<TextureRequest> textures;
+};
+
+/// Milliseconds of the stages of one frame, by their names: "geometry", "terrain", "sky", "post",
+/// "antialias".
+using PassTimes = std::vector<std::pair<std::string, double>>;
+
+/// Draws frames of one size with one selection of effects.
+///
+/// A frame is a row of passes: geometry (what is where, once for every pixel), terrain (its light),
+/// sky, post (tone mapping, sRGB) and antialias.
+class Renderer {
+  public:
+    /// Stitches and compiles the programs, and loads the textures they read.
+    /// @throws Error (BadInput) for a plugin's mistake, in its file and line; (Failed) for core's
+    Renderer(gl::Context& context, const EffectInputs& effects, const RendererOptions& options);
+    ~Renderer();
+
+    /// The texts that were compiled.
+    const std::vector<ProgramText>& texts() const;
+
+    /// Draws a frame into the renderer's own target.
+    /// @param times  filled with what each pass took if not null, which makes the device wait for
+    /// each
+    void render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
+                      PassTimes* times = nullptr);
+
+    /// The last frame as RGB, rows from the top.
+    image::Image8 read_picture() const;
+    /// The last frame before exposure and tone mapping: linear radiance, RGB.
+    image::ImageF read_radiance() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relevo::render

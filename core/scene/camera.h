@@ -1,0 +1,53 @@
+#pragma once
+
+#include <span>
+
+#include <glm/vec3.hpp>
+
+#include "geo/local_frame.h"
+
+/// Where the picture is taken from. Positions are in the DEM's local frame: x east, y north, z up
+/// at its centre, metres, the DEM's exaggeration included.
+namespace relevo::scene {
+
+/// A pinhole camera.
+struct Camera {
+    glm::dvec3 eye_m{0, 0, 0};
+    glm::dvec3 forward{0, 1, 0};  ///< unit
+    glm::dvec3 up{0, 0, 1};       ///< unit, orthogonal to forward: the top of the picture
+    double fov_y_rad = 0;         ///< angle from the bottom to the top of the picture
+};
+
+inline constexpr double kDefaultFov_deg = 40;
+
+/// A camera that circles a target.
+struct Orbit {
+    double azimuth_deg = 225;  ///< where the camera stands as seen from the target, from true north
+    double elevation_deg = 25;  ///< how high it stands, -90 to 90
+    double zoom = 1;            ///< 1 shows the whole of the ground; 2 from half as far
+};
+
+/// Vertical field of view of a lens on 36 x 24 mm film, the long side of the film along the long
+/// side of the picture. @param focal_length_mm  above 0
+double fov_y_of_focal_length(double focal_length_mm, double aspect);
+
+/// Stands so that all `points` are in the picture, as near as that allows, and then nearer or
+/// farther by `zoom`.
+/// @param points   ground to show, in the local frame [m], at least one
+/// @param aspect   width / height of the picture
+Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,
+                    double aspect);
+
+/// Stands at `eye_m` and looks along a compass heading.
+/// @param axes         east, north and up at the eye
+/// @param heading_deg  clockwise from true north
+/// @param pitch_deg    above the horizontal, -90 to 90
+Camera heading_camera(const glm::dvec3& eye_m, const geo::Axes& axes, double heading_deg,
+                      double pitch_deg, double fov_y_rad);
+
+/// Stands at `eye_m` and looks at `target_m`; the local vertical `up` is upright in the picture.
+/// @throws Error (BadInput) if both are the same point
+Camera look_at_camera(const glm::dvec3& eye_m, const glm::dvec3& target_m, const glm::dvec3& up,
+                      double fov_y_rad);
+
+}  // namespace relevo::scene

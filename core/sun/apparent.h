@@ -1,0 +1,33 @@
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+namespace relevo::sun {
+
+/// The moving axes and bodies of a moment of TT, from which the sun's apparent place is taken.
+/// Celestial intermediate axes (CIRS): the pole of date and an origin that does not rotate, so that
+/// the Earth's rotation angle is a linear function of UT1. Used by position.cpp and
+/// position_table.cpp.
+class SolarEphemeris {
+  public:
+    SolarEphemeris(double tt_jd1, double tt_jd2);
+
+    /// From an observer to the sun, as the observer sees it: light time and aberration. [au], CIRS
+    /// @param from_geocenter_m, velocity_m_s  of the observer, CIRS
+    glm::dvec3 apparent_au(const glm::dvec3& from_geocenter_m = glm::dvec3(0),
+                           const glm::dvec3& velocity_m_s = glm::dvec3(0)) const;
+
+    /// Right ascension of the CIRS origin counted from the true equinox, with the sign of the
+    /// equation of the origins: equinox right ascension = CIRS right ascension - this.
+    double equation_of_origins_rad() const { return equation_of_origins_rad_; }
+
+  private:
+    double earth_barycentric_[2][3];  // au, au/d, BCRS
+    double earth_heliocentric_[2][3];
+    double to_cirs_[3][3];
+    double equation_of_origins_rad_;
+    double tt_jd_[2];
+};
+
+}  // namespace relevo::sun

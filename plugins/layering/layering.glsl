@@ -1,0 +1,141 @@
+//! provides  materials: sand, grass, rock, snow by elevation and slope, two at most at a point
+//! hook      albedo
+//! reads     height [m and 0..1], slope, latitude, ground coordinates [m]
+//! writes    material, material_weight, diffuse, ambient, specular, emissive, shininess
+//! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
+//!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section 3.1 and table 1
+
+uniform sampler2DArray layering_albedo;
+uniform sampler3D layering_noise;
+
+uniform int layering_limits = 2; //@ enum(normalised, metres, climate) label("Limits") description("Where materials change: the paper's share of the DEM's range, heights in metres, or tree and snow line of the latitude")
+
+uniform vec2 layering_sand_grass = vec2(0.20, 0.25); //@ range(0, 1) label("Sand to grass, normalised")
+uniform vec2 layering_grass_rock = vec2(0.40, 0.45); //@ range(0, 1) label("Grass to rock, normalised")
+uniform vec2 layering_rock_snow = vec2(0.80, 0.85); //@ range(0, 1) label("Rock to snow, normalised")
+uniform float layering_noise_amount = 0.03; //@ range(0, 0.5) label("Noise on limits, normalised")
+
+uniform vec2 layering_sand_grass_m = vec2(1.0, 6.0); //@ range(-12000, 9000) unit(m) label("Sand to grass")
+uniform vec2 layering_grass_rock_m = vec2(1700.0, 2300.0); //@ range(-12000, 9000) unit(m) label("Grass to rock")
+uniform vec2 layering_rock_snow_m = vec2(2700.0, 3000.0); //@ range(-12000, 9000) unit(m) label("Rock to snow")
+uniform float layering_noise_amount_m = 180.0; //@ range(0, 2000) unit(m) label("Noise on limits")
+uniform float layering_snow_shift_m = 0.0; //@ range(-9000, 9000) unit(m) label("Snow line shift") description("Added to the climate's snow line: negative in a cold season")
+
+uniform bool layering_slope = true; //@ label("Rock on steep ground")
+uniform vec2 layering_slope_deg = vec2(33.0, 47.0); //@ range(0, 90) unit(deg) label("Steep from, to")
+
+uniform bool layering_metres = true; //@ label("Scales in metres") description("Else a number of repeats over the DEM, as in the paper")
+uniform float layering_texture_m = 12.0; //@ range(0.1, 100000) unit(m) label("Texture size")
+uniform float layering_noise_m = 2400.0; //@ range(1, 1000000) unit(m) label("Noise size")
+uniform float layering_texture_repeats = 64.0; //@ range(1, 100000) label("Texture repeats")
+uniform float layering_noise_repeats = 8.0; //@ range(1, 1000) label("Noise repeats")
+uniform float layering_variation = 0.35; //@ range(0, 1) label("Variation") description("How much broad patches differ in brightness; 0 in the paper")
+
+// Coefficients of sand, grass, rock, snow.
+uniform vec4 layering_diffuse = vec4(1.0, 1.0, 1.0, 1.0); //@ range(0, 2) label("Diffuse")
+uniform vec4 layering_ambient = vec4(1.0, 1.0, 1.0, 1.0); //@ range(0, 2) label("Ambient")
+uniform vec4 layering_specular = vec4(0.02, 0.015, 0.03, 0.10); //@ range(0, 1) label("Specular")
+uniform vec4 layering_emissive = vec4(0.0, 0.0, 0.0, 0.0); //@ range(0, 10) label("Emissive")
+uniform vec4 layering_shininess = vec4(8.0, 6.0, 18.0, 30.0); //@ range(1, 1000) label("Shininess")
+
+/// Elevations at which materials change: where sand begins to turn into grass, and so on.
+struct layering_Limits {
+    vec2 sand_grass, grass_rock, rock_snow;
+};
+
+/// Tree line: where closed growth ends, by latitude; rock and snow lie above it.
+/// source: C. Koerner, A re-assessment of high elevation treeline positions and their explanation,
+/// Oecologia 115 (1998), 445: level in the tropics, then 130 m a degree from 32 to 50 degrees and 75 m a
+/// degree beyond; the snow line of temperate mountains lies some 900 m above it.
+float layering_tree_line_m(in float latitude_deg) {
+    float north = abs(latitude_deg);
+    return 3800.0 - 130.0 * clamp(north - 32.0, 0.0, 18.0) - 75.0 * max(north - 50.0, 0.0);
+}
+
+layering_Limits layering_limits_at(in float latitude_deg) {
+    layering_Limits at;
+    if (layering_limits == 0) {
+        at = layering_Limits(layering_sand_grass, layering_grass_rock, layering_rock_snow);
+    } else if (layering_limits == 1) {
+        at = layering_Limits(layering_sand_grass_m, layering_grass_rock_m, layering_rock_snow_m);
+    } else {
+        float trees = layering_tree_line_m(latitude_deg);
+        float snow = trees + 900.0 + layering_snow_shift_m;
+        at = layering_Limits(layering_sand_grass_m, trees + vec2(-150.0, 450.0),
+                             snow + vec2(-100.0, 250.0));
+    }
+    return at;
+}
+
+/// Weights of sand, grass, rock and snow, at most two above zero, sum 1.
+/// @param elevation  in the limits' unit
+/// @param noise      added to the limits, in the limits' unit
+/// @param steep      0..1: how much of the point shows rock whatever the elevation
+vec4 layering_weights(in layering_Limits limits, in float elevation, in float noise, in float steep) {
+    float grass = smoothstep(limits.sand_grass.x + noise, limits.sand_grass.y + noise, elevation);
+    float rock = smoothstep(limits.grass_rock.x + noise, limits.grass_rock.y + noise, elevation);
+    float snow = smoothstep(limits.rock_snow.x + noise, limits.rock_snow.y + noise, elevation);
+    vec4 weights = vec4(1.0 - grass, grass * (1.0 - rock), grass * rock * (1.0 - snow),
+                        grass * rock * snow);
+    weights = mix(weights, vec4(0.0, 0.0, 1.0, 0.0), steep);
+    // Where there is a third material its weight is taken from all of them, so that none comes or goes
+    // suddenly: the third largest of four, by a sorting network.
+    vec2 larger = max(weights.xz, weights.yw), smaller = min(weights.xz, weights.yw);
+    float third = min(min(larger.x, larger.y), max(smaller.x, smaller.y));
+    weights = max(weights - third, 0.0);
+    return weights / dot(weights, vec4(1.0));
+}
+
+/// How much of a slope shows rock: 0 on flat ground, 1 on cliffs.
+/// @param cosine  of the angle between the ground's normal and the vertical
+float layering_steepness(in float cosine, in float noise) {
+    if (!layering_slope) return 0.0;
+    float slope_deg = degrees(acos(clamp(cosine, 0.0, 1.0)));
+    return smoothstep(layering_slope_deg.x, layering_slope_deg.y, slope_deg + 12.0 * noise);
+}
+
+vec4 layering_read(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
+    return textureGrad(layering_albedo, vec3(at, float(material)), dx, dy);
+}
+
+void layering_on_albedo(inout Surface s) {
+    vec3 texture_scale = vec3(1.0 / layering_texture_m);
+    vec3 noise_scale = vec3(1.0 / layering_noise_m);
+    if (!layering_metres) {
+        texture_scale = vec3(layering_texture_repeats * frame.ground_extent.zw, 0.0);
+        noise_scale = vec3(layering_noise_repeats * frame.ground_extent.zw, 0.0);
+    }
+    vec3 noise_at = s.ground_m * noise_scale;
+    float noise = 2.0 * textureGrad(layering_noise, noise_at, s.ground_dx_m * noise_scale,
+                                    s.ground_dy_m * noise_scale).r - 1.0;
+
+    float latitude_deg = degrees(asin(clamp(dot(s.up, frame.polar_axis.xyz), -1.0, 1.0)));
+    layering_Limits limits = layering_limits_at(latitude_deg);
+    bool normalised = layering_limits == 0;
+    vec4 weights = layering_weights(limits, normalised ? s.height_unit : s.height_m,
+                                    noise * (normalised ? layering_noise_amount : layering_noise_amount_m),
+                                    layering_steepness(dot(s.geometric_normal, s.up), noise));
+
+    // The two materials: the heavier first.
+    float most = max(max(weights.x, weights.y), max(weights.z, weights.w));
+    int first = weights.x == most ? 0 : weights.y == most ? 1 : weights.z == most ? 2 : 3;
+    vec4 rest = weights;
+    rest[first] = 0.0;
+    float next = max(max(rest.x, rest.y), max(rest.z, rest.w));
+    int second = rest.x == next ? 0 : rest.y == next ? 1 : rest.z == next ? 2 : 3;
+    if (next == 0.0) second = first;
+    s.material = ivec2(first, second);
+    s.material_weight = vec2(most, next);
+
+    vec2 at = s.ground_m.xy * texture_scale.xy;
+    vec2 dx = s.ground_dx_m.xy * texture_scale.xy, dy = s.ground_dy_m.xy * texture_scale.xy;
+    vec3 albedo = most * layering_read(at, dx, dy, first).rgb +
+                  next * layering_read(at, dx, dy, second).rgb;
+    albedo *= 1.0 + layering_variation * noise;
+
+    s.diffuse = albedo * dot(layering_diffuse, weights);
+    s.ambient = albedo * dot(layering_ambient, weights);
+    s.specular = vec3(dot(layering_specular, weights));
+    s.emissive = albedo * dot(layering_emissive, weights);
+    s.shininess = dot(layering_shininess, weights);
+}

@@ -1,0 +1,60 @@
+//! provides  smooth silhouettes, drawn where edges.frag.glsl has marked them
+//! reads     colour: sRGB; depth, reversed
+//! writes    colour: sRGB
+//! source    after T. Lottes, FXAA (NVIDIA white paper, 2009): find the edge, walk to its two ends, and
+//!           move the sample across it by how near the closer end is
+//!
+//! Edges are steps of depth, not of brightness: ground textures are filtered already and stay sharp.
+
+uniform sampler2D colour;
+uniform sampler2D depth;
+
+layout(location = 0) out vec4 colour_out;
+
+const int kSteps = 12;  // how far an edge is followed each way [px]
+
+float depth_at(in ivec2 pixel) {
+    return texelFetch(depth, clamp(pixel, ivec2(0), ivec2(frame.viewport.xy) - 1), 0).r;
+}
+
+/// Steps from `pixel` along an edge until the mean of its two sides is no longer `middle`.
+/// @param miss  by how much it differs there; within the tolerance where no end was found
+int steps_to_end(in ivec2 pixel, in ivec2 along, in ivec2 across, in float middle, in float tolerance,
+                 out float miss) {
+    int steps = 0;
+    miss = 0.0;
+    while (steps < kSteps && abs(miss) <= tolerance) {
+        ++steps;
+        ivec2 at = pixel + along * steps;
+        miss = 0.5 * (depth_at(at) + depth_at(at + across)) - middle;
+    }
+    return steps;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float here = depth_at(pixel);
+    vec2 next = vec2(depth_at(pixel + ivec2(1, 0)), depth_at(pixel + ivec2(0, 1)));
+    vec2 back = vec2(depth_at(pixel - ivec2(1, 0)), depth_at(pixel - ivec2(0, 1)));
+    vec2 bend = abs(next + back - 2.0 * here);
+    bool horizontal = bend.y >= bend.x;  // the edge runs along x
+    ivec2 along = horizontal ? ivec2(1, 0) : ivec2(0, 1);
+    ivec2 across = along.yx;
+    float beyond = horizontal ? next.y : next.x;
+    float behind = horizontal ? back.y : back.x;
+    if (abs(beyond - here) < abs(behind - here)) {
+        across = -across;
+        beyond = behind;
+    }
+    float middle = 0.5 * (here + beyond);
+    float tolerance = 0.25 * abs(beyond - here);
+    float miss_back, miss_on;
+    int back_steps = steps_to_end(pixel, -along, across, middle, tolerance, miss_back);
+    int on_steps = steps_to_end(pixel, along, across, middle, tolerance, miss_on);
+    float miss = back_steps < on_steps ? miss_back : miss_on;
+    // Only the pixels on the side that the edge moves to at its nearer end are blended.
+    bool moves_here = abs(miss) > tolerance && (miss > 0.0) == (beyond > here);
+    float amount = 0.5 - float(min(back_steps, on_steps)) / float(back_steps + on_steps);
+    vec2 at = gl_FragCoord.xy + (moves_here ? amount : 0.0) * vec2(across);
+    colour_out = vec4(textureLod(colour, at * frame.viewport.zw, 0.0).rgb, 1.0);
+}

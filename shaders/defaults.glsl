@@ -1,0 +1,32 @@
+//! provides  what exclusive hooks do when no enabled plugin provides them
+
+/// Phong's reflection of direct light. @returns radiance for an irradiance of 1
+/// source: B. T. Phong, Illumination for computer generated pictures, CACM 18 (1975), eq. 1
+vec3 core_on_brdf(in Surface s, in vec3 to_sun, in vec3 to_eye) {
+    float facing = max(dot(s.normal, to_sun), 0.0);
+    vec3 mirrored = reflect(-to_sun, s.normal);
+    float highlight = facing > 0.0 ? pow(max(dot(mirrored, to_eye), 0.0), s.shininess) : 0.0;
+    return s.diffuse * facing + s.specular * highlight;
+}
+
+/// A plain sky: as bright as the light it sheds, paler towards the horizon.
+vec3 core_on_background_radiance(in vec3 direction, in bool with_disc) {
+    float height = clamp(dot(direction, normalize(frame.up_at_eye.xyz)), 0.0, 1.0);
+    vec3 zenith = frame.sky_irradiance.rgb;
+    vec3 horizon = vec3(dot(zenith, vec3(0.2126, 0.7152, 0.0722))) * 1.5 + zenith * 0.5;
+    return mix(horizon, zenith, sqrt(height));
+}
+
+/// Keeps colours as they are up to 0.76 and bends brighter ones softly below 1, towards white.
+/// source: Khronos PBR Neutral Tone Mapper specification 1.0 (2024), without its toe
+void core_on_tonemap(inout vec3 colour) {
+    const float start = 0.76;
+    const float desaturation = 0.15;
+    float peak = max(colour.r, max(colour.g, colour.b));
+    if (peak > start) {
+        const float room = 1.0 - start;
+        float bent = 1.0 - room * room / (peak + room - start);
+        float white = 1.0 - 1.0 / (desaturation * (peak - bent) + 1.0);
+        colour = mix(colour * (bent / peak), vec3(bent), white);
+    }
+}

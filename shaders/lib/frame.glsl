@@ -1,0 +1,26 @@
+//! provides  frame: values that are the same for every pixel of a frame. render/frame_block.h is
+//!           its mirror on the host; append-only.
+//! frame     x east, y north, z up at the DEM's centre, metres; radiance 1 is what a white diffuse
+//!           surface facing the sun outside the atmosphere reflects
+
+layout(std140, binding = 0) uniform Frame {
+    mat4 view_projection;     // from eye-relative metres to clip space, reversed depth
+    vec4 pixel_ray;           // xyz: ray through the corner of pixel (0, 0), at view depth 1
+    vec4 pixel_ray_dx;        // xyz: its change from pixel to pixel, to the right
+    vec4 pixel_ray_dy;        // xyz: and up
+    vec4 viewport;            // width, height [px], and their inverses
+    vec4 eye_m;               // xyz: the eye from the DEM's centre; w: its height above the DEM's zero
+    vec4 up_at_eye;           // xyz: normal of the ellipsoid below the eye, scaled for up_matrix
+    mat4 up_matrix;           // its change with position: up(p) = normalize(up_at_eye + up_matrix p)
+    vec4 polar_axis;          // xyz: unit vector along the Earth's axis, northwards
+    vec4 sun_direction;       // xyz: towards the sun at the DEM's centre, geometric; w: its elevation [rad]
+    vec4 sun_apparent;        // xyz: the same with refraction; w: apparent elevation [rad]
+    vec4 sun_light[4];        // polynomial over the DEM: rgb irradiance, a refraction (sun_light())
+    vec4 sun_light_domain;    // x: its centre, y: 1/half-width, in sines of the geometric elevation
+    vec4 sky_irradiance;      // rgb: on level ground from the whole sky
+    vec4 height_range;        // x: lowest post [m], y: 1/(highest - lowest) [1/m], z: exaggeration
+    vec4 ground_extent;       // xy: the DEM's south-west corner, zw: 1/its width and 1/its height, in ground_m
+    float exposure;           // factor on radiance before tone mapping
+    float footprint_limit;    // longest to shortest side of a pixel's footprint that textures resolve
+    float normal_texels_per_m;  // of the normal pages
+} frame;

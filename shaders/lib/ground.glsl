@@ -1,0 +1,26 @@
+//! provides  the local vertical and compass directions, and the light of the sun, at a point
+//! source    render/frame_block.h fits the polynomials; tests/render/test_frame_block.cpp bounds them
+
+/// Normal of the ellipsoid at a point given relative to the eye [m].
+vec3 up_at(in vec3 position_m) {
+    return normalize(frame.up_at_eye.xyz + mat3(frame.up_matrix) * position_m);
+}
+
+vec3 east_at(in vec3 up) {
+    return normalize(cross(frame.polar_axis.xyz, up));
+}
+
+float height_unit_of(in float height_m) {
+    return clamp((height_m - frame.height_range.x) * frame.height_range.y, 0.0, 1.0);
+}
+
+/// The sun as seen from a point with the given local vertical.
+/// @param to_sun  its apparent direction: refraction lifts it towards the vertical
+/// @returns irradiance on a surface that faces it, rgb
+vec3 sun_light(in vec3 up, out vec3 to_sun) {
+    float t = (dot(frame.sun_direction.xyz, up) - frame.sun_light_domain.x) * frame.sun_light_domain.y;
+    vec4 light = frame.sun_light[0] +
+                 t * (frame.sun_light[1] + t * (frame.sun_light[2] + t * frame.sun_light[3]));
+    to_sun = normalize(frame.sun_direction.xyz + light.a * up);
+    return max(light.rgb, vec3(0.0));
+}

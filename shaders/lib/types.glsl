@@ -1,0 +1,33 @@
+//! provides  VertexFrame, Surface: what hooks get. Append-only: plugins rely on every member.
+
+/// A vertex of the terrain, before and while plugins displace it.
+struct VertexFrame {
+    vec3 position_m;    // relative to the eye, x east, y north, z up [m]
+    vec3 ground_m;      // coordinates for ground textures: east, north, height [m]
+    float height_m;     // orthometric, as in the file [m]
+    float height_unit;  // 0 at the DEM's lowest post, 1 at its highest
+    vec3 up;            // normal of the ellipsoid, unit
+    float distance_m;   // from the eye [m]
+};
+
+/// A visible point of the terrain.
+struct Surface {
+    vec3 position_m;          // relative to the eye, x east, y north, z up [m]
+    vec3 ground_m;            // coordinates for ground textures: east, north, height [m]
+    float height_m;           // orthometric, as in the file [m]
+    float height_unit;        // 0 at the DEM's lowest post, 1 at its highest
+    vec3 up;                  // normal of the ellipsoid, unit
+    vec3 geometric_normal;    // of the DEM's surface, unit
+    vec3 tangent, bitangent;  // of the ground textures, unit, orthogonal to geometric_normal
+    vec3 normal;              // that light sees; hooks of `normal` perturb it, unit
+    ivec2 material;           // at most two materials ...
+    vec2 material_weight;     // ... and their weights, sum 1
+    vec3 diffuse;             // reflectance for direct light, 0..1, linear sRGB
+    vec3 specular;            // reflectance of highlights, 0..1
+    vec3 ambient;             // reflectance for the light of the sky, 0..1
+    vec3 emissive;            // radiance of its own
+    float shininess;          // exponent of the highlight
+    float distance_m;         // from the eye [m]
+    vec3 ground_dx_m;         // how ground_m changes from this pixel to the next one right ...
+    vec3 ground_dy_m;         // ... and up [m/px]: gradients for textureGrad
+};

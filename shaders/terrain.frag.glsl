@@ -1,0 +1,89 @@
+//! provides  the light that a visible point of the terrain sends to the eye
+//! reads     place (geometry.frag.glsl), normal pages
+//! writes    radiance, linear; overlay, premultiplied sRGB
+
+//@ include lib/ground.glsl
+//@ include lib/pages.glsl
+
+uniform usampler2D place;
+uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
+
+layout(location = 0) out vec4 radiance_out;
+
+/// Where the ray of the neighbouring pixel meets the plane of this point, from this point.
+vec3 footprint(in vec3 position, in vec3 normal, in vec3 ray, in vec3 ray_step) {
+    vec3 beside = ray + ray_step;
+    // A ray never meets its plane at less than about one degree: textures would fade for nothing.
+    float slant = min(dot(beside, normal), -0.02 * length(ray));
+    return beside * (min(dot(position, normal), -0.02 * length(position)) / slant) - position;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    uvec4 what = texelFetch(place, pixel, 0);
+    float depth = uintBitsToFloat(what.w);
+    vec3 ray = frame.pixel_ray.xyz + gl_FragCoord.x * frame.pixel_ray_dx.xyz +
+               gl_FragCoord.y * frame.pixel_ray_dy.xyz;
+
+    Surface s;
+    s.position_m = ray * depth;
+    s.height_m = uintBitsToFloat(what.z);
+    s.height_unit = height_unit_of(s.height_m);
+    s.ground_m = vec3(s.position_m.xy + frame.eye_m.xy, s.height_m);
+    s.up = up_at(s.position_m);
+    s.distance_m = length(s.position_m);
+    vec3 east = east_at(s.up);
+    vec3 north = cross(s.up, east);
+
+#ifdef TERRAIN_NORMAL_VERTEX
+    s.geometric_normal =
+        normalize(vec3(unpackSnorm2x16(what.x), unpackSnorm2x16(what.y).x));
+#else
+    vec2 texel = unpackUnorm2x16(what.x) * kNormalPage_px;
+    // A pixel's size on the ground, across the view, decides how fine the normals are read.
+    float size = length(frame.pixel_ray_dx.xyz) * depth * frame.normal_texels_per_m / kNormalPage_px;
+    vec2 slope = textureGrad(normal_pages, vec3(texel / kNormalPage_px, float(what.y)),
+                             vec2(size, 0.0), vec2(0.0, size)).rg;
+    float rise = sqrt(max(1.0 - dot(slope, slope), 0.0025));
+    slope *= frame.height_range.z;
+    s.geometric_normal = normalize(slope.x * east + slope.y * north + rise * s.up);
+#endif
+    s.tangent = normalize(vec3(1.0, 0.0, 0.0) - s.geometric_normal.x * s.geometric_normal);
+    s.bitangent = cross(s.geometric_normal, s.tangent);
+    s.normal = s.geometric_normal;
+
+    vec3 dx = footprint(s.position_m, s.geometric_normal, ray, frame.pixel_ray_dx.xyz);
+    vec3 dy = footprint(s.position_m, s.geometric_normal, ray, frame.pixel_ray_dy.xyz);
+    float longest = max(length(dx), length(dy));
+    float shortest = min(length(dx), length(dy));
+    float most = max(shortest * frame.footprint_limit, 1e-6);
+    s.ground_dx_m = dx * min(1.0, most / length(dx));
+    s.ground_dy_m = dy * min(1.0, most / length(dy));
+
+    s.material = ivec2(0);
+    s.material_weight = vec2(1.0, 0.0);
+    s.diffuse = vec3(0.3);
+    s.specular = vec3(0.0);
+    s.ambient = vec3(0.3);
+    s.emissive = vec3(0.0);
+    s.shininess = 8.0;
+
+    load_varyings(pixel);
+    hook_albedo(s);
+    hook_normal(s);
+    hook_material(s);
+
+    vec3 to_sun;
+    vec3 irradiance = sun_light(s.up, to_sun);
+    vec3 view = s.position_m / s.distance_m;
+    float lit = 1.0;
+    hook_facing(s, to_sun, lit);
+    hook_visibility(s, to_sun, lit);
+    // The part of the sky that a slope sees, of the light on level ground.
+    vec3 sky = frame.sky_irradiance.rgb * (0.5 + 0.5 * dot(s.normal, s.up));
+    hook_ambient(s, sky);
+    vec3 radiance = s.emissive + irradiance * lit * hook_brdf(s, to_sun, -view) + s.ambient * sky;
+    hook_lit(s, radiance);
+    hook_atmosphere(s, view, radiance);
+    radiance_out = vec4(radiance, 1.0);
+}

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace relevo::test {
+
+/// A raster to be written with GDAL, for tests that must run anywhere.
+struct Raster {
+    std::string driver = "GTiff";
+    std::string type = "Float32";  ///< GDAL's name
+    int columns = 6;
+    int rows = 4;
+    int bands = 1;
+    /// GDAL's six numbers, of cell corners; none: no georeference.
+    std::optional<std::array<double, 6>> geotransform = {{500000, 30, 0, 5200000, 0, -30}};
+    std::string crs = "EPSG:32632";  ///< empty: none
+    std::optional<double> nodata = {};
+    std::string unit = {};
+    std::optional<double> scale = {};
+    std::optional<double> offset = {};
+    std::vector<std::string> options = {};  ///< of the driver, "COMPRESS=DEFLATE"
+    /// What is stored at a column and row of a band, from 1.
+    std::function<double(int column, int row, int band)> value = [](int column, int row, int) {
+        return 100.0 + column + 10 * row;
+    };
+    /// GeoTIFF only: the tie point, which is the geotransform's first, is a post and no corner.
+    bool pixel_is_point = false;
+    bool pictures = false;  ///< the bands are red, green, blue
+    /// Where false, the cell is a hole of a mask that belongs to the whole file.
+    std::function<bool(int column, int row)> mask = {};
+};
+
+/// Writes a raster. @returns the path
+std::string write_raster(const std::filesystem::path& path, const Raster& raster);
+
+/// Keeps the first `bytes` of a file.
+void cut_short(const std::string& path, std::uintmax_t bytes);
+
+}  // namespace relevo::test

@@ -1,0 +1,272 @@
+#include <fstream>
+
+#include <cpl_error.h>
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "dem/fixture.h"
+#include "dem/load.h"
+#include "support/support.h"
+
+namespace relevo::dem {
+namespace {
+
+using test::Raster;
+using test::write_raster;
+
+std::filesystem::path folder() {
+    static const std::filesystem::path dir = test::scratch_dir("dem_errors");
+    return dir;
+}
+
+/// The message without its beginning, "exit 3: dem::load: PATH: ", which is checked.
+std::string refusal(const std::string& path, const LoadOptions& options = {}) {
+    const std::string message = test::error_of([&] { load(path, options); });
+    const std::string begin = "exit 3: dem::load: " + path + ": ";
+    return message.starts_with(begin) ? message.substr(begin.size()) : "!" + message;
+}
+
+std::string refusal(const char* name, const Raster& raster, const LoadOptions& options = {}) {
+    return refusal(write_raster(folder() / name, raster), options);
+}
+
+std::string written(const char* name, const std::string& text) {
+    const std::filesystem::path path = folder() / name;
+    std::ofstream(path, std::ios::binary) << text;
+    return path;
+}
+
+TEST(LoadError, MissingFile) {
+    EXPECT_EQ(refusal("/nowhere/alps.tif"), "cannot be read, no such file");
+    EXPECT_EQ(refusal("NETCDF:/nowhere/alps.nc:z"), "cannot be read, no such file");
+    EXPECT_EQ(refusal("/vsizip//nowhere/alps.zip/alps.tif"), "cannot be read, no such file");
+    EXPECT_EQ(test::error_of([] { load(""); }),
+              "exit 3: dem::load: \"\": cannot be read, no such file");
+}
+
+TEST(LoadError, NotARaster) {
+    EXPECT_EQ(refusal(written("notes.txt", "Heights of the Alps, to be measured.\n")),
+              "not a raster in any format that GDAL reads");
+    EXPECT_EQ(refusal(written("empty.tif", "")), "not a raster in any format that GDAL reads");
+}
+
+TEST(LoadError, Folder) {
+    EXPECT_EQ(refusal(folder().string()), "a folder, expected a raster file; name the files in it");
+}
+
+TEST(LoadError, TruncatedGeoTiffNeverGivesPartOfItself) {
+    for (const char* kind : {"NONE", "DEFLATE", "LZW"}) {
+        Raster raster;
+        raster.columns = 200;
+        raster.rows = 150;
+        raster.options = {std::string("COMPRESS=") + kind};
+        raster.value = [](int column, int row, int) { return 0.37 * column + 1.7 * row; };
+        const std::string path = write_raster(folder() / "whole.tif", raster);
+        const auto size = std::filesystem::file_size(path);
+        const std::string part = (folder() / "part.tif").string();
+        for (int i = 0; i < 40; ++i) {
+            std::filesystem::copy_file(path, part,
+                                       std::filesystem::copy_options::overwrite_existing);
+            test::cut_short(part, size * static_cast<unsigned>(i) / 40);
+            EXPECT_THROW(load(part), Error) << kind << " " << i;
+        }
+        std::filesystem::copy_file(path, part, std::filesystem::copy_options::overwrite_existing);
+        test::cut_short(part, size - 1);
+        EXPECT_THROW(load(part), Error) << kind;
+        EXPECT_NO_THROW(load(path)) << kind;
+    }
+}
+
+TEST(LoadError, TruncatedGeoTiffSaysSo) {
+    Raster raster;
+    raster.columns = 200;
+    raster.rows = 150;
+    const std::string path = write_raster(folder() / "cut.tif", raster);
+    test::cut_short(path, 60'000);
+    EXPECT_EQ(refusal(path),
+              "its heights cannot be read, IReadBlock failed at X offset 0, Y offset 7: "
+              "TIFFReadEncodedStrip() failed; the file is damaged or incomplete");
+    test::cut_short(path, 100);
+    EXPECT_EQ(refusal(path),
+              "cannot be opened as a raster, TIFFReadDirectory:Failed to read directory at offset "
+              "8; the file is damaged or incomplete");
+}
+
+TEST(LoadError, TruncatedRawFilesAreNotFilledUp) {
+    for (const char* driver : {"netCDF", "ENVI"}) {
+        Raster raster;
+        raster.driver = driver;
+        raster.columns = 200;
+        raster.rows = 150;
+        const std::string path = write_raster(folder() / (std::string("raw.") + driver), raster);
+        EXPECT_NO_THROW(load(path)) << driver;
+        const auto size = std::filesystem::file_size(path);
+        for (const auto bytes : {size - 1, size - 500, size * 2 / 3, size / 2}) {
+            test::cut_short(path, bytes);
+            EXPECT_EQ(refusal(path),
+                      fmt::format("cut short, expected {} bytes but got {}; the file "
+                                  "is damaged or incomplete",
+                                  size, bytes))
+                << driver;
+        }
+    }
+}
+
+TEST(LoadError, MosaicWithAMissingTileNeverGivesPartOfItself) {
+    const std::string mosaic =
+        written("mosaic.vrt",
+                "<VRTDataset rasterXSize=\"6\" rasterYSize=\"4\"><SRS>EPSG:32632</SRS>"
+                "<GeoTransform>500000,30,0,5200000,0,-30</GeoTransform>"
+                "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource>"
+                "<SourceFilename relativeToVRT=\"1\">tile.tif</SourceFilename>"
+                "<SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"6\" ySize=\"4\"/>"
+                "<DstRect xOff=\"0\" yOff=\"0\" xSize=\"6\" ySize=\"4\"/>"
+                "</SimpleSource></VRTRasterBand></VRTDataset>");
+    EXPECT_EQ(refusal(mosaic),
+              "its heights cannot be read, " + (folder() / "tile.tif").string() +
+                  ": No such file or directory; the file is damaged or incomplete");
+    write_raster(folder() / "tile.tif", {});
+    EXPECT_EQ(load(mosaic).height_m.at(5, 3), 135);
+}
+
+TEST(LoadError, NoCrs) {
+    Raster raster;
+    raster.crs = "";
+    EXPECT_EQ(refusal("no_crs.tif", raster), "no coordinate reference system; pass --crs EPSG:n");
+}
+
+TEST(LoadError, UnusableCrs) {
+    Raster raster;
+    raster.crs = "LOCAL_CS[\"Arbitrary\",UNIT[\"metre\",1]]";
+    EXPECT_EQ(refusal("local.tif", raster),
+              "Arbitrary: a local (engineering) coordinate reference system, which cannot place a "
+              "raster; give a geographic or projected one of the Earth with --crs EPSG:n");
+    EXPECT_EQ(
+        refusal("crs_option.tif", {}, {.crs = "EPSG:999999"}),
+        "EPSG:999999: not a coordinate reference system that PROJ knows, crs not found; write "
+        "EPSG:n, WKT or a PROJ string");
+}
+
+TEST(LoadError, WrongCrsPutsItOffTheEarth) {
+    EXPECT_EQ(
+        refusal("off_earth.tif", {}, {.crs = "EPSG:4326"}),
+        "its middle is at 500090, 5199940, which is not on the Earth in WGS 84; pass the right "
+        "one with --crs EPSG:n");
+}
+
+TEST(LoadError, NoGeoreference) {
+    Raster raster;
+    raster.geotransform.reset();
+    EXPECT_EQ(refusal("no_place.tif", raster),
+              "no georeference, it does not say where its posts are; give it one with "
+              "gdal_translate -a_ullr W N E S -a_srs EPSG:n, or a world file beside it");
+}
+
+TEST(LoadError, CellsWithoutArea) {
+    Raster raster;
+    raster.geotransform = {{500000, 30, 15, 5200000, 60, 30}};
+    EXPECT_EQ(refusal("flat.tif", raster),
+              "a georeference in which the cells have no area; the file is damaged");
+}
+
+TEST(LoadError, NoValidHeight) {
+    Raster raster;
+    raster.nodata = -9999;
+    raster.value = [](int, int, int) { return -9999.0; };
+    EXPECT_EQ(refusal("all_holes.tif", raster),
+              "not one valid height, all 24 posts are holes (nodata -9999)");
+    raster.nodata.reset();
+    raster.value = [](int, int, int) { return std::nan(""); };
+    EXPECT_EQ(refusal("all_nan.tif", raster), "not one valid height, all 24 posts are holes");
+}
+
+TEST(LoadError, TooFewPosts) {
+    Raster raster;
+    raster.columns = 1;
+    raster.rows = 1;
+    EXPECT_EQ(refusal("pixel.tif", raster), "size, expected at least 2 x 2 posts but got 1 x 1");
+    raster.columns = 7;
+    EXPECT_EQ(refusal("row.tif", raster), "size, expected at least 2 x 2 posts but got 7 x 1");
+    raster.rows = 2;
+    EXPECT_EQ(load(write_raster(folder() / "two.tif", raster)).height_m.height(), 2);
+}
+
+TEST(LoadError, BandOutOfRange) {
+    EXPECT_EQ(refusal("band.tif", {}, {.band = 2}),
+              "band, expected 1 to 1 but got 2; --band counts from 1");
+    EXPECT_EQ(refusal("band.tif", {}, {.band = -1}),
+              "band, expected 1 to 1 but got -1; --band counts from 1");
+}
+
+TEST(LoadError, UnknownUnit) {
+    Raster raster;
+    raster.unit = "furlong";
+    EXPECT_EQ(refusal("furlong.tif", raster),
+              "band 1 is in \"furlong\", expected a unit of height; if these are heights, pass "
+              "--unit m, ft, us-ft, cm or km");
+    EXPECT_NO_THROW(load((folder() / "furlong.tif").string(), {.unit = "m"}));
+    const std::string path = write_raster(folder() / "unit.tif", {});
+    EXPECT_EQ(test::error_of([&] { load(path, {.unit = "parsec"}); }),
+              "exit 2: --unit: parsec: a unit of height, expected m, ft, us-ft, cm or km");
+}
+
+TEST(LoadError, Picture) {
+    Raster raster;
+    raster.type = "Byte";
+    raster.bands = 3;
+    raster.pictures = true;
+    EXPECT_EQ(refusal("picture.tif", raster),
+              "a picture (red, green and blue bands of 8 bits), expected heights; --band N takes "
+              "band N as heights all the same");
+}
+
+TEST(LoadError, ComplexNumbers) {
+    Raster raster;
+    raster.type = "CFloat32";
+    EXPECT_EQ(refusal("complex.tif", raster), "complex numbers (CFloat32), expected heights");
+}
+
+TEST(LoadError, SeveralRastersInOneFile) {
+    Raster raster;
+    raster.driver = "GPKG";
+    raster.type = "Byte";
+    raster.columns = 256;
+    raster.rows = 256;
+    raster.value = [](int, int, int) { return 9.0; };
+    raster.options = {"RASTER_TABLE=topo"};
+    write_raster(folder() / "two.gpkg", raster);
+    raster.options = {"RASTER_TABLE=slope", "APPEND_SUBDATASET=YES"};
+    const std::string path = write_raster(folder() / "two.gpkg", raster);
+    EXPECT_EQ(refusal(path),
+              "holds 2 rasters, expected one; name the one that is meant, as in 'GPKG:" + path +
+                  ":topo'");
+    EXPECT_EQ(load("GPKG:" + path + ":slope", {.band = 1}).height_m.at(0, 0), 9);
+}
+
+TEST(LoadError, GdalItselfIsSilent) {
+    testing::internal::CaptureStderr();
+    EXPECT_THROW(load("/nowhere/alps.tif"), Error);
+    EXPECT_THROW(load((folder() / "cut.tif").string()), Error);
+    EXPECT_THROW(load(written("notes.txt", "text")), Error);
+    // What GDAL says when nobody collects, on threads of its own for one.
+    CPLError(CE_Warning, CPLE_AppDefined, "chatter");
+
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(LoadError, WhatGdalSaysIsInTheDebugLog) {
+    std::vector<std::string> lines;
+    log::set_sink([&](log::Level, std::string_view text) { lines.emplace_back(text); });
+    const log::Level before = log::level();
+    log::set_level(log::Level::Debug);
+    const std::string path = write_raster(folder() / "debug.tif", {.columns = 200, .rows = 150});
+    test::cut_short(path, 60'000);
+    EXPECT_THROW(load(path), Error);
+    log::set_level(before);
+    log::set_sink({});
+    ASSERT_FALSE(lines.empty());
+    EXPECT_TRUE(lines.front().starts_with("GDAL: ")) << lines.front();
+}
+
+}  // namespace
+}  // namespace relevo::dem

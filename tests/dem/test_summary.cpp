@@ -1,0 +1,102 @@
+#include <nlohmann/json.hpp>
+
+#include "base/units.h"
+#include "dem/fixture.h"
+#include "dem/load.h"
+#include "dem/summary.h"
+#include "support/support.h"
+
+namespace relevo::dem {
+namespace {
+
+Summary of(const char* name, const test::Raster& raster) {
+    static const std::filesystem::path dir = test::scratch_dir("dem_summary");
+    return summarize(load(test::write_raster(dir / name, raster)));
+}
+
+test::Raster alps() {
+    test::Raster raster;
+    raster.columns = 101;
+    raster.rows = 51;
+    raster.type = "Int16";
+    raster.nodata = -9999;
+    raster.value = [](int column, int row, int) {
+        return column == 0 && row == 0 ? -9999.0 : 1000.0 + column + 2 * row;
+    };
+    return raster;
+}
+
+TEST(Summary, JsonHasTheKeysOfTheContract) {
+    const nlohmann::json json = nlohmann::json::parse(to_json(of("alps.tif", alps())));
+    EXPECT_EQ(json["driver"], "GTiff");
+    EXPECT_EQ(json["size"], nlohmann::json({101, 51}));
+    EXPECT_EQ(json["crs"], "EPSG:32632");
+    EXPECT_NEAR(json["center"]["lat_deg"].get<double>(), 46.946, 0.001);
+    EXPECT_NEAR(json["center"]["lon_deg"].get<double>(), 9.02, 0.001);
+    EXPECT_NEAR(json["extent_m"][0].get<double>(), 3000 / 0.9996, 1);
+    EXPECT_NEAR(json["extent_m"][1].get<double>(), 1500 / 0.9996, 1);
+    EXPECT_NEAR(json["post_spacing_m"][0].get<double>(), 30 / 0.9996, 0.001);
+    EXPECT_NEAR(json["post_spacing_m"][1].get<double>(), 30 / 0.9996, 0.001);
+    EXPECT_EQ(json["elevation_m"], nlohmann::json({{"min", 1001.0}, {"max", 1200.0}}));
+    EXPECT_DOUBLE_EQ(json["nodata_share"].get<double>(), 1.0 / (101 * 51));
+    EXPECT_EQ(json["nodata"], -9999);
+    EXPECT_EQ(json["unit"], "m");
+    EXPECT_EQ(json["unit_source"], "assumed");
+    EXPECT_EQ(json["vertical_datum"], nullptr);
+    EXPECT_EQ(json["outliers"], 0);
+    EXPECT_EQ(json["band"], 1);
+    EXPECT_EQ(json["bands"], 1);
+    EXPECT_EQ(json["data_type"], "Int16");
+    EXPECT_EQ(json["crs_name"], "WGS 84 / UTM zone 32N");
+    EXPECT_EQ(json["assumptions"].size(), 2);
+    EXPECT_TRUE(json["path"].get<std::string>().ends_with("alps.tif"));
+}
+
+TEST(Summary, CrsWithoutACodeIsWktThatLoadsAgain) {
+    test::Raster raster = alps();
+    raster.crs = "+proj=tmerc +lat_0=0 +lon_0=9.5 +k=0.9996 +x_0=500000 +datum=WGS84";
+    const Summary summary = of("custom.tif", raster);
+    EXPECT_EQ(summary.crs_name, "Transverse Mercator on WGS 84");
+    const geo::Crs again = geo::Crs::parse(summary.crs, "test");
+    const geo::Geodetic expected =
+        geo::Crs::parse("EPSG:32632", "test").to_geodetic(510000, 5200000);
+    const geo::Geodetic found = again.to_geodetic(510000, 5200000);
+    EXPECT_DOUBLE_EQ(found.lat_rad, expected.lat_rad);
+    EXPECT_NEAR(degrees(found.lon_rad - expected.lon_rad), 0.5, 1e-12);
+}
+
+TEST(Summary, NodataThatIsNoNumberIsText) {
+    test::Raster raster = alps();
+    raster.type = "Float32";
+    raster.nodata = std::nan("");
+    raster.value = [](int column, int, int) { return column == 0 ? std::nan("") : 5.0; };
+    const nlohmann::json json = nlohmann::json::parse(to_json(of("nan.tif", raster)));
+    EXPECT_EQ(json["nodata"], "nan");
+    raster.nodata.reset();
+    EXPECT_EQ(nlohmann::json::parse(to_json(of("none.tif", raster)))["nodata"], nullptr);
+}
+
+TEST(Summary, TextForPeople) {
+    Summary summary = of("text.tif", alps());
+    summary.path = "text.tif";
+    EXPECT_EQ(
+        to_text(summary),
+        "file       text.tif\n"
+        "format     GTiff, Int16\n"
+        "posts      101 x 51\n"
+        "crs        EPSG:32632 (WGS 84 / UTM zone 32N)\n"
+        "center     46.94664 N 9.01991 E (32N 501515 E 5199235 N)\n"
+        "extent     3002 m east, 1501 m north\n"
+        "spacing    30.01 m x 30.01 m\n"
+        "heights    1001.0 to 1200.0 m\n"
+        "holes      0.01941 % (nodata -9999)\n"
+        "unit       m (assumed)\n"
+        "above      unknown\n"
+        "assumed    heights are in metres, as neither the band nor a vertical CRS says; --unit "
+        "sets another unit\n"
+        "assumed    heights are placed as ellipsoidal ones: the file does not say what they "
+        "are above\n");
+}
+
+}  // namespace
+}  // namespace relevo::dem

@@ -1,0 +1,101 @@
+#include <array>
+#include <type_traits>
+
+#include <epoxy/gl.h>
+
+#include "gl/buffer.h"
+#include "gl/context.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "gl/texture.h"
+#include "gl/timer.h"
+#include "gl/vertex_array.h"
+#include "support/support.h"
+
+namespace relevo::gl {
+namespace {
+
+class GlObjects : public testing::Test {
+  protected:
+    void TearDown() override { context_.check_errors(); }
+    Context context_{{.debug = true}};
+};
+
+TEST_F(GlObjects, AreMoveOnlyAndGoWithTheirOwner) {
+    static_assert(!std::is_copy_constructible_v<Buffer>);
+    static_assert(!std::is_copy_constructible_v<Texture>);
+    unsigned name = 0;
+    {
+        Buffer first(16, "first");
+        name = first.name();
+        const Buffer second(std::move(first));
+        EXPECT_EQ(first.name(), 0u);
+        EXPECT_EQ(second.name(), name);
+        EXPECT_TRUE(glIsBuffer(name));
+    }
+    EXPECT_FALSE(glIsBuffer(name));
+}
+
+TEST_F(GlObjects, BuffersKeepTheirBytes) {
+    const std::array numbers{1.0f, 2.0f, 3.0f};
+    const std::array five{5.0f};
+    Buffer buffer(std::as_bytes(std::span(numbers)), "numbers");
+    buffer.write(std::as_bytes(std::span(five)), sizeof(float));
+    std::array<float, 3> back{};
+    buffer.read(std::as_writable_bytes(std::span(back)));
+    EXPECT_EQ(back, (std::array{1.0f, 5.0f, 3.0f}));
+}
+
+TEST_F(GlObjects, TexturesKeepTheirTexels) {
+    Texture texture(TextureKind::D2, Format::RG32F, {2, 1, 1}, 1, "heights");
+    const std::array<float, 4> texels{-12.5f, 1.0f, 4807.0f, 0.0f};
+    texture.write(0, {0, 0, 0}, {2, 1, 1}, std::as_bytes(std::span(texels)));
+    std::array<float, 4> back{};
+    texture.read(0, std::as_writable_bytes(std::span(back)));
+    EXPECT_EQ(back, texels);
+}
+
+constexpr const char* kFullscreen =
+    "#version 450 core\n"
+    "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : "
+    "-1.0, "
+    "0.0, 1.0); }\n";
+
+TEST_F(GlObjects, ADrawReachesItsFramebuffer) {
+    const Texture target(TextureKind::D2, Format::RGBA32F, {4, 4, 1}, 1, "target");
+    const Framebuffer framebuffer({&target}, nullptr, "framebuffer");
+    Program::Failure failure;
+    const auto program =
+        Program::build(kFullscreen,
+                       "#version 450 core\n"
+                       "layout(location = 0) out vec4 colour;\n"
+                       "void main() { colour = vec4(gl_FragCoord.xy, 0.25, 1.0); }\n",
+                       "corner", failure);
+    ASSERT_TRUE(program) << failure.log;
+    const VertexArray no_inputs;
+    no_inputs.bind();
+    framebuffer.bind();
+    program->use();
+    Timer timer;
+    timer.begin();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    timer.end();
+    EXPECT_GE(timer.milliseconds().value(), 0.0);
+    std::array<float, 64> back{};
+    target.read(0, std::as_writable_bytes(std::span(back)));
+    EXPECT_EQ(back[0], 0.5f);  // the first texel is the lower left one
+    EXPECT_EQ(back[1], 0.5f);
+    EXPECT_EQ(back[2], 0.25f);
+    EXPECT_EQ(back[60], 3.5f);
+}
+
+TEST_F(GlObjects, ABrokenProgramSaysWhichStageAndWhy) {
+    Program::Failure failure;
+    EXPECT_FALSE(Program::build(kFullscreen, "#version 450 core\nvoid main() { colour = 1; }\n",
+                                "broken", failure));
+    EXPECT_EQ(failure.stage, Program::Failure::Stage::Fragment);
+    EXPECT_NE(failure.log.find("colour"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace relevo::gl

@@ -1,0 +1,108 @@
+#include <cmath>
+#include <fstream>
+
+#include "image/image.h"
+#include "support/support.h"
+
+namespace relevo::image {
+namespace {
+
+Image8 gradient(int width, int height, int channels) {
+    Image8 image(width, height, channels);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width * channels; ++x)
+            image.row(y)[x] = static_cast<std::uint8_t>((7 * x + 13 * y) % 256);
+    return image;
+}
+
+class ImageFiles : public testing::Test {
+  protected:
+    std::filesystem::path dir_ = test::scratch_dir("image");
+};
+
+TEST_F(ImageFiles, APngComesBackAsItWas) {
+    for (const int channels : {1, 2, 3, 4}) {
+        const Image8 image = gradient(37, 21, channels);
+        const auto path = dir_ / ("gradient" + std::to_string(channels) + ".png");
+        write(path, image, {{"Description", "a gradient, 45 \xc2\xb0"}});
+        const Image8 back = read(path);
+        EXPECT_EQ(back.values, image.values) << channels;
+        EXPECT_EQ(read_metadata(path).at("Description"), "a gradient, 45 \xc2\xb0");
+    }
+}
+
+TEST_F(ImageFiles, OtherFormatsComeThroughTheModule) {
+    const Image8 image = gradient(64, 48, 3);
+    write(dir_ / "a.tif", image);
+    EXPECT_EQ(read(dir_ / "a.tif").values, image.values);
+    Image8 flat(64, 48, 3);
+    std::fill(flat.values.begin(), flat.values.end(), std::uint8_t{128});
+    for (const char* name : {"a.jpg", "a.webp"}) {
+        write(dir_ / name, flat);
+        EXPECT_LE(compare(read(dir_ / name), flat).worst, 2) << name;
+    }
+    ImageF light(2, 1, 3);
+    light.values = {0.0f, 0.5f, 1.0f, 1024.0f, 1e-3f, 4.0f};
+    write(dir_ / "a.exr", light);
+    const ImageF back = read_float(dir_ / "a.exr");
+    for (std::size_t i = 0; i < light.values.size(); ++i)
+        EXPECT_NEAR(back.values[i], light.values[i], light.values[i] * 1e-3);
+}
+
+TEST_F(ImageFiles, AnExistingFileIsReplacedOnlyWhenAsked) {
+    const auto path = dir_ / "once.png";
+    write(path, gradient(4, 4, 3));
+    EXPECT_EQ(test::error_of([&] { write(path, gradient(5, 5, 3)); }),
+              "exit 3: image: " + path.string() + ": exists; pass --overwrite to replace it");
+    EXPECT_EQ(read(path).width, 4);
+    write(path, gradient(5, 5, 3), {}, true);
+    EXPECT_EQ(read(path).width, 5);
+}
+
+TEST_F(ImageFiles, NothingIsLeftBehindByAFailure) {
+    // A float picture does not fit a PNG: the write fails, no file and no part of one stays.
+    EXPECT_EQ(test::error_of([&] { write(dir_ / "light.png", ImageF(2, 2, 3)); }),
+              "exit 1: image: " + (dir_ / "light.png").string() + ": png holds 8-bit sRGB");
+    EXPECT_TRUE(std::filesystem::is_empty(dir_));
+}
+
+TEST_F(ImageFiles, OutputsAreCheckedBeforeTheWork) {
+    EXPECT_EQ(test::error_of([&] { check_output(dir_ / "none" / "a.png", false); }),
+              "exit 3: image: " + (dir_ / "none" / "a.png").string() + ": the folder " +
+                  (dir_ / "none").string() + " does not exist; make it first");
+    EXPECT_EQ(test::error_of([&] { check_output(dir_ / "a.gif", false); }),
+              "exit 3: image: " + (dir_ / "a.gif").string() +
+                  ": not the name of a picture, expected an ending of png, jpg, webp, tif or exr");
+    std::filesystem::create_directory(dir_ / "folder.png");
+    EXPECT_EQ(test::error_of([&] { check_output(dir_ / "folder.png", true); }),
+              "exit 3: image: " + (dir_ / "folder.png").string() + ": is a folder");
+}
+
+TEST_F(ImageFiles, BrokenFilesAreErrorsNotCrashes) {
+    EXPECT_EQ(test::error_of([&] { read(dir_ / "none.png"); }),
+              "exit 3: image: " + (dir_ / "none.png").string() +
+                  ": cannot be read, No such file or directory");
+    std::ofstream(dir_ / "text.png") << "not a picture";
+    EXPECT_EQ(test::error_of([&] { read(dir_ / "text.png"); }),
+              "exit 3: image: " + (dir_ / "text.png").string() + ": Not a PNG file");
+    write(dir_ / "whole.png", gradient(64, 64, 3));
+    std::filesystem::resize_file(dir_ / "whole.png", 200);
+    EXPECT_EQ(test::error_of([&] { read(dir_ / "whole.png"); }).substr(0, 8), "exit 3: ");
+}
+
+TEST(ImageCompare, MeasuresWhatDiffers) {
+    const Image8 a = gradient(10, 10, 3);
+    Image8 b = a;
+    EXPECT_TRUE(std::isinf(compare(a, b).psnr_db));
+    b.values[5] = static_cast<std::uint8_t>(b.values[5] + 1);
+    b.values[50] = static_cast<std::uint8_t>(b.values[50] + 10);
+    const Difference difference = compare(a, b);
+    EXPECT_EQ(difference.worst, 10);
+    EXPECT_DOUBLE_EQ(difference.share_over_1, 1.0 / 300);
+    EXPECT_NEAR(difference.psnr_db, 10 * std::log10(255.0 * 255.0 * 300 / 101), 1e-9);
+    EXPECT_EQ(test::error_of([&] { compare(a, gradient(9, 10, 3)); }),
+              "exit 3: image: sizes differ, 10x10 with 3 channels and 9x10 with 3");
+}
+
+}  // namespace
+}  // namespace relevo::image

@@ -1,0 +1,136 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "base/units.h"
+#include "render/frame_block.h"
+#include "sun/daylight.h"
+#include "support/support.h"
+
+namespace relevo::render {
+namespace {
+
+scene::Camera camera_at(const glm::dvec3& eye_m) {
+    return scene::look_at_camera(eye_m, {0, 0, 0}, {0, 0, 1}, radians(40));
+}
+
+FrameInputs inputs_at(const glm::dvec3& eye_m) {
+    FrameInputs inputs;
+    inputs.camera = camera_at(eye_m);
+    inputs.sun.direction = normalize(glm::dvec3(0.5, 0.3, 0.6));
+    inputs.sun.lowest_sine = 0.6;
+    inputs.sun.highest_sine = 0.8;
+    return inputs;
+}
+
+TEST(FrameBlock, UpIsTheNormalOfTheEllipsoidEverywhere) {
+    double worst = 0;
+    for (const double lat_deg : {-80.0, -33.9, 0.0, 46.5, 89.9}) {
+        const Ground ground{.frame = geo::LocalFrame(geo::geodetic_deg(lat_deg, 11, 0)),
+                            .lowest_m = 0,
+                            .highest_m = 3000};
+        const glm::dvec3 eye{3000, -8000, 4000};
+        const FrameBlock block = make_frame_block(inputs_at(eye), ground, 640, 512, 4);
+        for (const double x : {-100e3, 0.0, 400e3}) {
+            for (const double y : {-200e3, 1000.0, 100e3}) {
+                const glm::dvec3 point{x, y, 2000};
+                const geo::Geodetic place = ground.frame.to_geodetic(point);
+                const glm::dvec3 exact = ground.frame.up(place.lat_rad, place.lon_rad);
+                const glm::vec3 relative(point - eye);
+                const glm::vec3 up =
+                    normalize(glm::vec3(block.up_at_eye) + glm::mat3(block.up_matrix) * relative);
+                worst = std::max(worst, distance(exact, glm::dvec3(up)));
+            }
+        }
+    }
+    fmt::print("[ accuracy ] local vertical on the GPU: worst {:.2g} rad\n", worst);
+    // The normal of a level surface turns by flattening * height / radius, and points 400 km away
+    // in the tangent plane lie 14 km high.
+    EXPECT_LT(worst, 1e-5);
+}
+
+TEST(FrameBlock, TheTargetIsInTheMiddleOfThePicture) {
+    const Ground ground{
+        .frame = geo::LocalFrame(geo::geodetic_deg(46, 11, 0)), .lowest_m = 0, .highest_m = 3000};
+    const glm::dvec3 eye{3000, -8000, 4000};
+    const FrameBlock block = make_frame_block(inputs_at(eye), ground, 640, 512, 4);
+    const glm::vec4 clip = block.view_projection * glm::vec4(glm::vec3(-eye), 1);
+    EXPECT_NEAR(clip.x / clip.w, 0, 1e-6);
+    EXPECT_NEAR(clip.y / clip.w, 0, 1e-6);
+    EXPECT_NEAR(clip.w, length(eye), 1e-2);
+    const glm::vec3 ray = glm::vec3(block.pixel_ray) + 320.0f * glm::vec3(block.pixel_ray_dx) +
+                          256.0f * glm::vec3(block.pixel_ray_dy);
+    EXPECT_NEAR(distance(ray, glm::vec3(normalize(-eye))), 0, 1e-6);
+}
+
+TEST(FrameBlock, APointRightOfTheTargetIsDrawnRightAndAHigherOneHigher) {
+    const Ground ground{
+        .frame = geo::LocalFrame(geo::geodetic_deg(46, 11, 0)), .lowest_m = 0, .highest_m = 3000};
+    const glm::dvec3 eye{0, -8000, 4000};  // looks north
+    const FrameBlock block = make_frame_block(inputs_at(eye), ground, 640, 512, 4);
+    const auto clip = [&](const glm::dvec3& point) {
+        return block.view_projection * glm::vec4(glm::vec3(point - eye), 1);
+    };
+    EXPECT_GT(clip({1000, 0, 0}).x, 0);
+    EXPECT_GT(clip({0, 0, 1000}).y, 0);
+    // Reversed depth: nearer is larger.
+    const glm::vec4 near = clip({0, -1000, 0}), far = clip({0, 1000, 0});
+    EXPECT_GT(near.z / near.w, far.z / far.w);
+}
+
+/// What the shader computes from the fit, in single precision.
+struct Lit {
+    glm::vec3 light;
+    glm::vec3 to_sun;
+};
+Lit evaluate(const SunLightFit& fit, const glm::dvec3& direction, const glm::dvec3& up) {
+    const float t = (static_cast<float>(dot(direction, up)) - fit.domain.x) * fit.domain.y;
+    const glm::vec4 light =
+        fit.powers[0] + t * (fit.powers[1] + t * (fit.powers[2] + t * fit.powers[3]));
+    return {glm::vec3(light), normalize(glm::vec3(direction) + light.a * glm::vec3(up))};
+}
+
+TEST(SunLight, FollowsRefractionAndTransmittanceOverADem) {
+    // Bennett's formula: any smooth refraction will do, the fit is what is tested.
+    const auto refraction = [](double h_rad) {
+        const double h = std::max(degrees(h_rad), -1.0);
+        return radians(1.02 / std::tan(radians(h + 10.3 / (h + 5.11))) / 60);
+    };
+    for (const double centre_deg : {2.0, 5.0, 20.0, 60.0}) {
+        SunLight sun;
+        // A DEM of 100 km: the sun's elevation differs by 0.45 degrees to either side.
+        const double low = radians(centre_deg - 0.45), high = radians(centre_deg + 0.45);
+        sun.direction = {0, std::cos(radians(centre_deg)), std::sin(radians(centre_deg))};
+        sun.refraction_rad = refraction;
+        sun.lowest_sine = std::sin(low);
+        sun.highest_sine = std::sin(high);
+        const SunLightFit fit = fit_sun_light(sun);
+        double worst_arcsec = 0, worst_light = 0;
+        for (double tilt = -0.45; tilt <= 0.45; tilt += 0.05) {
+            const glm::dvec3 up{0, std::sin(radians(tilt)), std::cos(radians(tilt))};
+            const double elevation = std::asin(dot(sun.direction, up));
+            const Lit lit = evaluate(fit, sun.direction, up);
+            const double apparent =
+                std::atan2(dot(glm::dvec3(lit.to_sun), up),
+                           length(glm::dvec3(lit.to_sun) - dot(glm::dvec3(lit.to_sun), up) * up));
+            worst_arcsec =
+                std::max(worst_arcsec,
+                         std::abs(apparent - elevation - refraction(elevation)) / kArcsecond_rad);
+            const glm::dvec3 exact =
+                sun::direct_transmittance(elevation + refraction(elevation), 0);
+            worst_light = std::max(worst_light, std::abs(lit.light.r - exact.r) / exact.r);
+        }
+        fmt::print(
+            "[ accuracy ] light at {} degrees over 100 km: refraction {:.2g} arcsec, "
+            "irradiance {:.2g} %\n",
+            centre_deg, worst_arcsec, 100 * worst_light);
+        // Single precision alone is worth 0.05 arcsec.
+        EXPECT_LT(worst_arcsec, centre_deg >= 5 ? 0.2 : 2.0);
+        EXPECT_LT(worst_light, 0.01);
+    }
+}
+
+}  // namespace
+}  // namespace relevo::render

@@ -1,0 +1,93 @@
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "maps.h"
+#include "material.h"
+#include "preview.h"
+#include "volume.h"
+
+namespace relevo::ground {
+namespace {
+
+struct Options {
+    std::filesystem::path output;
+    std::filesystem::path png;
+    std::vector<std::string> only;
+    int size = 1024;
+    int volume_size = 128;
+};
+
+void run(const Options& options) {
+    const auto start = std::chrono::steady_clock::now();
+    std::filesystem::create_directories(options.output / "ground");
+    std::filesystem::create_directories(options.output / "noise");
+    if (!options.png.empty()) std::filesystem::create_directories(options.png);
+
+    std::map<std::string, std::pair<image::TextureData, image::TextureData>> made;
+    const std::vector<std::string> names = options.only.empty() ? material_names() : options.only;
+    for (const std::string& name : names) {
+        const Material material = make_material(name, options.size);
+        auto& [albedo, normal] = made[name] = {albedo_texture(material), normal_texture(material)};
+        write_ktx(options.output / "ground" / (name + "_albedo.ktx2"), albedo);
+        write_ktx(options.output / "ground" / (name + "_normal.ktx2"), normal);
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+        log::debug(fmt::format("{} done at {:.2f} s", name, taken.count()));
+    }
+    const image::TextureData volume = perlin_texture(options.volume_size);
+    write_ktx(options.output / "noise" / "perlin.ktx2", volume);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    log::debug(fmt::format("all done at {:.2f} s", taken.count()));
+
+    if (options.png.empty()) return;
+    std::vector<Ground> grounds;
+    for (const std::string& name : names) {
+        const auto& [albedo, normal] = made[name];
+        write_previews(options.png, name, albedo, normal);
+        grounds.push_back({&albedo, &normal});
+    }
+    write_composite(options.png / "composite_near.png", grounds, 4, 45);
+    write_composite(options.png / "composite_low.png", grounds, 4, 10);
+    write_composite(options.png / "composite_far.png", grounds, 64, 45);
+    write_volume_preview(options.png / "perlin.png", volume);
+}
+
+}  // namespace
+}  // namespace relevo::ground
+
+int main(int argc, char** argv) {
+    using namespace relevo;
+    ground::Options options;
+    bool verbose = false;
+    CLI::App app{"Makes the ground materials and the noise volume of Relevo"};
+    app.add_option("output", options.output, "Folder to write ground/ and noise/ into")->required();
+    app.add_option("--png", options.png, "Folder for pictures to look at");
+    app.add_option("--only", options.only, "Grounds to make: sand, grass, rock, snow")
+        ->delimiter(',');
+    app.add_option("--size", options.size, "Texels a side of the grounds: a power of two")
+        ->check(CLI::IsMember({64, 128, 256, 512, 1024, 2048}));
+    app.add_option("--volume-size", options.volume_size, "Texels a side of the noise")
+        ->check(CLI::IsMember({32, 64, 128, 256}));
+    app.add_flag("-v,--verbose", verbose, "Say how long each part takes");
+    CLI11_PARSE(app, argc, argv);
+    if (verbose) log::set_level(log::Level::Debug);
+    try {
+        ground::run(options);
+        return 0;
+    } catch (const Error& error) {
+        log::error(error.what());
+        return error.exit_status();
+    } catch (const std::exception& error) {
+        log::error(fmt::format("relevo_make_ground: {}", error.what()));
+        return 1;
+    }
+}
