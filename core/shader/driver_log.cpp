@@ -113,7 +113,7 @@ DriverLog parse_driver_log(std::string_view log, const LineMap& lines) {
     DriverLog result;
     result.raw = log;
     for (const std::string& piece : split(log, '\n')) {
-        const std::string_view text = trimmed(piece.substr(0, piece.find('\0')));
+        const std::string_view text = trimmed(std::string_view(piece).substr(0, piece.find('\0')));
         if (text.empty()) continue;
         std::optional<Parsed> parsed = parse_mesa_or_nvidia(text);
         if (!parsed) parsed = parse_severity_first(text);

@@ -13,8 +13,8 @@ constexpr auto kFragment = HookStage::Fragment;
 constexpr auto kChain = HookKind::Chain;
 
 constexpr std::array kHooks = {
-    Hook{"displace", kVertex, kChain, "void displace(in VertexFrame frame, inout vec3 position_m)"},
-    Hook{"vertex", kVertex, kChain, "void vertex(in VertexFrame frame)"},
+    Hook{"displace", kVertex, kChain, "void displace(in VertexFrame v, inout vec3 position_m)"},
+    Hook{"vertex", kVertex, kChain, "void vertex(in VertexFrame v)"},
     Hook{"albedo", kFragment, kChain, "void albedo(inout Surface s)"},
     Hook{"normal", kFragment, kChain, "void normal(inout Surface s)"},
     Hook{"material", kFragment, kChain, "void material(inout Surface s)"},

@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "shader/annotation.h"
+#include "shader/source_checks.h"
 
 namespace relevo::shader {
 namespace {
@@ -25,9 +26,6 @@ constexpr std::array<std::string_view, 21> kQualifiers = {
     "highp",    "invariant", "mediump", "lowp",   "attribute", "subroutine", "noperspective"};
 constexpr std::array<std::string_view, 8> kNotForPlugins = {
     "layout", "buffer", "shared", "subroutine", "patch", "sample", "centroid", "invariant"};
-constexpr std::array<std::string_view, 9> kOwnedByCore = {
-    "gl_Position",   "gl_PointSize", "gl_ClipDistance",  "gl_CullDistance", "gl_FragDepth",
-    "gl_SampleMask", "gl_Layer",     "gl_ViewportIndex", "gl_PrimitiveID"};
 constexpr std::array<std::string_view, 8> kDirectives = {"define", "undef", "if",   "ifdef",
                                                          "ifndef", "elif",  "else", "endif"};
 constexpr std::array<std::string_view, 14> kVaryingTypes = {
@@ -58,8 +56,8 @@ class Parser {
     }
 
     Source run() {
-        check_words();
-        check_brackets();
+        check_words(source_);
+        check_brackets(source_);
         read_includes();
         while (at_ < source_.tokens.size())
             item();
@@ -100,85 +98,6 @@ class Parser {
             ++i;
         } while (depth > 0);
         return i;
-    }
-
-    // ---- checks of the whole file
-
-    void check_words() const {
-        for (std::size_t i = 0; i < source_.tokens.size(); ++i) {
-            if (!is_word(i) || !is_snippet()) continue;
-            const std::string_view word = str(i);
-            const int line = token(i).line;
-            if (word.find("__") != std::string_view::npos)
-                fail(line, fmt::format("{}: GLSL keeps names with __ to itself", word));
-            if (is_one_of(word, kOwnedByCore))
-                fail(line, fmt::format("{} is core's; a plugin moves the ground in {}_on_displace",
-                                       word, source_.owner));
-            if (word.substr(0, 5) == "hook_")
-                fail(line, fmt::format("{}: only core's main programs call hooks", word));
-        }
-    }
-
-    struct Open {
-        char bracket;
-        int line;
-    };
-
-    void bracket(std::vector<Open>& open, std::string_view text, int line) const {
-        if (text == "(" || text == "[" || text == "{") {
-            open.push_back({text[0], line});
-        } else if (text == ")" || text == "]" || text == "}") {
-            const char expected = text == ")" ? '(' : text == "]" ? '[' : '{';
-            if (open.empty()) fail(line, fmt::format("{} closes nothing", text));
-            if (open.back().bracket != expected)
-                fail(line, fmt::format("{} cannot close the {} of line {}", text,
-                                       open.back().bracket, open.back().line));
-            open.pop_back();
-        }
-    }
-
-    // Each branch of a conditional balances by itself, so the file does whichever is taken.
-    void check_brackets() const {
-        std::vector<Open> open;
-        struct Branch {
-            std::size_t depth;
-            int line;
-        };
-        std::vector<Branch> branches;
-        for (std::size_t i = 0; i < source_.tokens.size(); ++i) {
-            const int line = token(i).line;
-            if (token(i).kind != TokenKind::Directive) {
-                bracket(open, str(i), line);
-                if (!branches.empty() && open.size() < branches.back().depth)
-                    fail(line, fmt::format("{} closes a bracket that was opened before the #if of "
-                                           "line {}",
-                                           str(i), branches.back().line));
-                continue;
-            }
-            const std::vector<Token> words = directive_tokens(source_.text, token(i), source_.file);
-            if (words.empty()) continue;
-            const std::string_view name = source_.str(words[0]);
-            if (name == "define") {
-                std::vector<Open> inside;
-                for (const Token& word : words)
-                    bracket(inside, source_.str(word), word.line);
-                if (!inside.empty())
-                    fail(inside.back().line,
-                         fmt::format("{} is never closed in this #define", inside.back().bracket));
-            } else if (name.substr(0, 2) == "if") {
-                branches.push_back({open.size(), line});
-            } else if (name == "elif" || name == "else" || name == "endif") {
-                if (branches.empty()) fail(line, fmt::format("#{} without an #if", name));
-                if (open.size() != branches.back().depth)
-                    fail(open.back().line, fmt::format("{} is not closed before the #{} of line {}",
-                                                       open.back().bracket, name, line));
-                if (name == "endif") branches.pop_back();
-            }
-        }
-        // What the innermost forgotten brace left open is its function, not itself.
-        if (!open.empty())
-            fail(open.front().line, fmt::format("{} is never closed", open.front().bracket));
-        if (!branches.empty()) fail(branches.back().line, "#if without an #endif");
     }
 
     void read_includes() {
@@ -376,6 +295,8 @@ class Parser {
         check_name(name, str(name));
         std::vector<std::string> names = {std::string(str(name))};
         at_ = behind_brackets(at_ + 1);
+        if (is_word(at_) && token(at_).line > end_line(at_ - 1))
+            fail(token(at_ - 1).line, fmt::format("expected ; behind the struct {}", names[0]));
         if (is_word(at_)) {
             const std::size_t variable = at_++;
             declarators(variable, names);

@@ -1,7 +1,6 @@
 #include "shader/stage.h"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 
 #include <fmt/format.h>
@@ -15,27 +14,6 @@ namespace {
 
 constexpr std::string_view kHasPrefix = "HAS_";
 constexpr std::string_view kHookPrefix = "hook_";
-
-// GLSL 4.50, 7.1 and 8: what only one of the two stages has.
-constexpr std::array<std::string_view, 18> kFragmentOnly = {"dFdx",
-                                                            "dFdy",
-                                                            "fwidth",
-                                                            "dFdxFine",
-                                                            "dFdyFine",
-                                                            "fwidthFine",
-                                                            "dFdxCoarse",
-                                                            "dFdyCoarse",
-                                                            "fwidthCoarse",
-                                                            "discard",
-                                                            "gl_FragCoord",
-                                                            "gl_FrontFacing",
-                                                            "gl_PointCoord",
-                                                            "textureQueryLod",
-                                                            "gl_SampleID",
-                                                            "interpolateAtCentroid",
-                                                            "interpolateAtSample",
-                                                            "interpolateAtOffset"};
-constexpr std::array<std::string_view, 2> kVertexOnly = {"gl_VertexID", "gl_InstanceID"};
 
 std::string bare_name(const std::string& file) {
     const std::size_t slash = file.rfind('/');
@@ -187,6 +165,14 @@ const Item& Stage::item(const Place& place) const {
     return unit_of(place).source->items[place.item];
 }
 
+const Stage::Place& Stage::definition(const std::string& function) const {
+    const std::vector<Place>& places = places_.find(function)->second;
+    const auto found = std::find_if(places.begin(), places.end(), [&](const Place& place) {
+        return item(place).kind == Item::Kind::Function;
+    });
+    return found == places.end() ? places.front() : *found;
+}
+
 void Stage::fail(const Place& place, std::string_view message) const {
     const Source& source = *unit_of(place).source;
     const std::string text =
@@ -327,17 +313,18 @@ void Stage::keep(const Place& place) {
     if (units_[place.unit].kept[place.item]) return;
     units_[place.unit].kept[place.item] = true;
     queue_.push_back(place);
-    keep_conditionals(place);
+    if (item(place).kind != Item::Kind::Conditional) keep_conditionals(place);
 }
 
 // The directives around an item stay with it where it is for the driver to decide.
 void Stage::keep_conditionals(const Place& place) {
     Unit& unit = units_[place.unit];
     const std::vector<Item>& items = unit.source->items;
-    std::vector<std::vector<std::size_t>> open;  // of groups around the item, their directives
+    std::vector<std::vector<std::size_t>> open;  // directives of the groups around items[i]
     std::vector<std::vector<std::size_t>> around;
+    std::size_t still_open = 0;  // of those around the item
     for (std::size_t i = 0; i < items.size(); ++i) {
-        if (i == place.item) around = open;
+        if (i == place.item) still_open = open.size();
         if (items[i].kind != Item::Kind::Conditional) continue;
         const Token& token = unit.source->tokens[items[i].first];
         const std::string_view name =
@@ -345,8 +332,10 @@ void Stage::keep_conditionals(const Place& place) {
         if (name.substr(0, 2) == "if") open.emplace_back();
         open.back().push_back(i);
         if (name != "endif") continue;
-        // Every group that was open at the item closes behind it, innermost first.
-        if (i > place.item && open.size() <= around.size()) around[open.size() - 1] = open.back();
+        if (i > place.item && open.size() == still_open) {
+            around.push_back(open.back());
+            --still_open;
+        }
         open.pop_back();
     }
     for (const std::vector<std::size_t>& group : around)
@@ -398,127 +387,6 @@ void Stage::call_hook(const Hook& hook, const Place& from, const std::string& by
         calls.calls.insert(function);
     }
     functions_.try_emplace(name, calls);
-}
-
-// ---- checks
-
-void Stage::check_default(const std::string& function, const Hook& hook) const {
-    const std::string& file = unit(UnitRole::Defaults).source->file;
-    const auto places = places_.find(function);
-    if (places == places_.end())
-        failed(fmt::format("shader::stitch: {}: no {}, the default of the hook {}", file, function,
-                           hook.name));
-    Signature expected = parse_signature(hook.signature);
-    expected.name = function;
-    const Signature found = unit_of(places->second[0]).source->signature(item(places->second[0]));
-    if (!found.matches(expected))
-        fail(places->second[0], fmt::format("{}: wrong signature, expected {} but got {}", function,
-                                            expected.text(), found.text()));
-}
-
-// A plugin may use itself, core's functions it has asked for, and services.
-void Stage::check_name(const Place& place, const std::string& name, bool called) const {
-    const Source& source = *unit_of(place).source;
-    if (source.kind != SourceKind::Snippet) return;
-    if (const auto lifted = lifted_.find(name); lifted != lifted_.end()) {
-        if (lifted->second.owner != "core" && lifted->second.owner != source.owner)
-            fail(place, fmt::format("{} uses {}, which is the plugin {}'s; a plugin uses only "
-                                    "itself, core and services",
-                                    item(place).names[0], name, lifted->second.owner));
-    }
-    const auto places = places_.find(name);
-    if (places == places_.end()) return;
-    const Place& target = places->second[0];
-    const Unit& owner = unit_of(target);
-    if (owner.role == UnitRole::Snippet) {
-        if (owner.source->owner != source.owner)
-            fail(place, fmt::format("{} uses {}, which is the plugin {}'s; a plugin uses only "
-                                    "itself, core and services",
-                                    item(place).names[0], name, owner.source->owner));
-        return;
-    }
-    const Item::Kind kind = item(target).kind;
-    const bool function = kind == Item::Kind::Function || kind == Item::Kind::Prototype;
-    if (function && !called) return;  // a local variable of that name
-    if (owner.role == UnitRole::Main)
-        fail(place, fmt::format("{} uses {}, which is {}'s own; a plugin uses only itself, "
-                                "shaders/lib and services",
-                                item(place).names[0], name, owner.title));
-    const auto asked = includes_.find(source.owner);
-    const bool included = asked != includes_.end() && asked->second.count(owner.title) > 0;
-    if (owner.role == UnitRole::Lib && !included)
-        fail(place, fmt::format("{} uses {} of {}; add //@ include {}", item(place).names[0], name,
-                                owner.title, owner.title));
-}
-
-void Stage::check_stage(const Place& place, const Uses& uses) const {
-    const bool vertex = kind_ == StageKind::Vertex;
-    for (const std::string& name : uses.names) {
-        const bool foreign =
-            vertex
-                ? std::find(kFragmentOnly.begin(), kFragmentOnly.end(), name) != kFragmentOnly.end()
-                : std::find(kVertexOnly.begin(), kVertexOnly.end(), name) != kVertexOnly.end();
-        if (foreign)
-            fail(place,
-                 fmt::format("{} uses {}, which only the {} side has, but the {} side reaches it "
-                             "({})",
-                             item(place).names[0], name, vertex ? "fragment" : "vertex",
-                             vertex ? "vertex" : "fragment", trail(item(place).names[0])));
-    }
-}
-
-void Stage::check_recursion() const {
-    std::set<std::string> done;
-    std::vector<std::string> path;
-    const std::function<void(const std::string&)> visit = [&](const std::string& name) {
-        const auto function = functions_.find(name);
-        if (function == functions_.end() || done.count(name) > 0) return;
-        const auto start = std::find(path.begin(), path.end(), name);
-        if (start != path.end()) {
-            std::vector<std::string> circle(start, path.end());
-            circle.push_back(name);
-            const auto written =
-                std::find_if(circle.begin(), circle.end(),
-                             [&](const std::string& f) { return places_.count(f) > 0; });
-            fail(places_.find(*written)->second[0],
-                 fmt::format("{} calls itself ({}); GLSL has no recursion", *written,
-                             fmt::join(circle, " -> ")));
-        }
-        path.push_back(name);
-        for (const std::string& callee : function->second.calls) {
-            const bool hook = hooks_.count(callee) > 0;
-            if (hook || functions_.count(callee) > 0) visit(callee);
-        }
-        path.pop_back();
-        done.insert(name);
-    };
-    for (const auto& [name, uses] : functions_)
-        visit(name);
-}
-
-// Core may move a vertex several times, for its neighbours' sake, and does so in depth passes too.
-void Stage::check_displace() const {
-    const Hook& displace = *find_hook("displace");
-    if (!calls(displace)) return;
-    for (const std::string& function : answers(displace)) {
-        std::vector<std::string> pending = {function};
-        std::set<std::string> seen;
-        while (!pending.empty()) {
-            const std::string name = pending.back();
-            pending.pop_back();
-            const auto found = functions_.find(name);
-            if (found == functions_.end() || !seen.insert(name).second) continue;
-            for (const std::string& used : found->second.names) {
-                const auto lifted = lifted_.find(used);
-                if (lifted != lifted_.end() && lifted->second.varying)
-                    fail(places_.find(name)->second[0],
-                         fmt::format("{} uses the varying {}; varyings are filled in "
-                                     "{}_on_vertex, displace runs in depth passes too",
-                                     name, used, lifted->second.owner));
-            }
-            pending.insert(pending.end(), found->second.calls.begin(), found->second.calls.end());
-        }
-    }
 }
 
 }  // namespace relevo::shader

@@ -50,8 +50,7 @@ class Stage {
 
     /// Finds what `main` reaches.
     /// @param readers  the fragment sides, when this is the vertex side: plugins whose varyings
-    /// they
-    ///                 do not read are not asked to fill them
+    ///                 they do not read are not asked to fill them
     void reach(std::vector<const Stage*> readers);
 
     StageKind kind() const { return kind_; }
@@ -101,6 +100,7 @@ class Stage {
 
     const Item& item(const Place& place) const;
     const Unit& unit_of(const Place& place) const { return units_[place.unit]; }
+    const Place& definition(const std::string& function) const;  ///< not a prototype of it
     [[noreturn]] void fail(const Place& place, std::string_view message) const;
 
     void need(const std::string& name, const std::string& by);

@@ -9,13 +9,11 @@
 
 #include "base/error.h"
 #include "shader/stage.h"
+#include "shader/stored_varyings.h"
 #include "shader/text_builder.h"
 
 namespace relevo::shader {
 namespace {
-
-/// Outputs 1 to 7 beside the place: GL guarantees eight.
-constexpr std::size_t kMaxVaryingTargets = 7;
 
 std::string zero_of(const std::string& type) {
     if (type == "float") return "0.0";
@@ -57,8 +55,9 @@ class Stitcher {
         vertex_.reach(readers);
         for (const Stage* reader : readers)
             check_varyings(*reader);
-        if (shading_) pack_varyings(*shading_);
-        if (!program_.geometry_of.empty()) pack_varyings(fragment_);
+        if (shading_) stored_ = StoredVaryings(*shading_, program_name());
+        if (loads()) stored_ = StoredVaryings(fragment_, program_name());
+        result_.varying_targets = stored_.targets();
 
         std::vector<Param> params;
         for (const Snippet* snippet : input_.snippets)
@@ -80,12 +79,15 @@ class Stitcher {
         return program_.vertex_main + " + " + program_.fragment_main;
     }
 
+    /// Whether this is a shading program, which loads what a geometry program stored.
+    bool loads() const { return !program_.geometry_of.empty(); }
+
     // ---- varyings
 
     void check_varyings(const Stage& reader) const {
         for (const Varying* read : reader.varyings()) {
             // The shading program's come out of textures; the geometry program checks them.
-            if (!program_.geometry_of.empty() && reader.owner_of(read->name) != "core") continue;
+            if (loads() && reader.owner_of(read->name) != "core") continue;
             const Varying* const written = vertex_.find_varying(read->name);
             const std::string where =
                 fmt::format("shader::stitch: {}:{}: {}", read->file, read->line, read->name);
@@ -94,84 +96,17 @@ class Stitcher {
                     fmt::format("{}: the fragment side reads it ({}), but nothing that {} "
                                 "calls writes it",
                                 where, reader.trail(read->name), program_.vertex_main));
-            if (written->type != read->type || written->interpolation != read->interpolation)
-                failed(fmt::format("{}: expected {} {} as in {}:{} but got {} {}", where,
-                                   written->interpolation, written->type, written->file,
-                                   written->line, read->interpolation, read->type));
+            if (qualified(*written) != qualified(*read))
+                failed(fmt::format("{}: expected {} as in {}:{} but got {}", where,
+                                   qualified(*written), written->file, written->line,
+                                   qualified(*read)));
         }
     }
 
-    // ---- varyings that are stored between two programs
-
-    /// A varying's place in the targets: components [first, first + count) of one of them.
-    struct Stored {
-        const Varying* varying;
-        int target, first, count;
-    };
-
-    // Into the first target with room, in the order of the files: both programs come to the same.
-    void pack_varyings(const Stage& shading) {
-        std::vector<int> used;
-        for (const Varying* varying : shading.varyings()) {
-            if (shading.owner_of(varying->name) == "core") continue;
-            const int count = components(*varying);
-            std::size_t target = 0;
-            while (target < used.size() && used[target] + count > 4)
-                ++target;
-            if (target == used.size()) used.push_back(0);
-            stored_.push_back({varying, static_cast<int>(target), used[target], count});
-            used[target] += count;
-        }
-        result_.varying_targets = static_cast<int>(used.size());
-        if (used.size() > kMaxVaryingTargets)
-            failed(fmt::format(
-                "shader::stitch: {}: expected at most {} floats of varyings but got more; "
-                "switch a plugin off",
-                program_name(), 4 * kMaxVaryingTargets));
-    }
-
-    static int components(const Varying& varying) {
-        if (varying.type == "float" || varying.type == "int" || varying.type == "uint") return 1;
-        if (varying.type.size() == 4 && varying.type.substr(0, 3) == "vec")
-            return varying.type[3] - '0';
-        bad_input(
-            fmt::format("shader::stitch: {}:{}: {}: expected a varying of type float, int, uint, "
-                        "vec2, vec3 or vec4 but got {}",
-                        varying.file, varying.line, varying.name, varying.type));
-    }
-
-    static std::string swizzle(const Stored& stored) {
-        return std::string("xyzw").substr(static_cast<std::size_t>(stored.first),
-                                          static_cast<std::size_t>(stored.count));
-    }
-
-    void write_store(TextBuilder& out) const {
-        for (int i = 0; i < result_.varying_targets; ++i)
-            out.line(fmt::format("layout(location = {}) out vec4 stored_{};", i + 1, i));
-        out.line("void store_varyings() {");
-        for (int i = 0; i < result_.varying_targets; ++i)
-            out.line(fmt::format("    stored_{} = vec4(0.0);", i));
-        for (const Stored& stored : stored_)
-            out.line(fmt::format("    stored_{}.{} = {}({});", stored.target, swizzle(stored),
-                                 stored.count == 1 ? "float" : stored.varying->type,
-                                 stored.varying->name));
-        out.line("}");
-    }
-
-    void write_load(TextBuilder& out) const {
-        out.line("void load_varyings(in ivec2 pixel) {");
-        for (int i = 0; i < result_.varying_targets; ++i)
-            out.line(fmt::format("    vec4 stored_{0} = texelFetch(varyings_{0}, pixel, 0);", i));
-        for (const Stored& stored : stored_)
-            out.line(fmt::format("    {} = {}(stored_{}.{});", stored.varying->name,
-                                 stored.varying->type, stored.target, swizzle(stored)));
-        out.line("}");
-    }
-
-    bool is_stored(const Varying& varying) const {
-        return std::any_of(stored_.begin(), stored_.end(), [&](const Stored& stored) {
-            return stored.varying->name == varying.name;
-        });
+    /// "flat int"
+    static std::string qualified(const Varying& varying) {
+        return varying.interpolation.empty() ? varying.type
+                                             : varying.interpolation + ' ' + varying.type;
     }
 
     // ---- texture units
@@ -240,9 +175,9 @@ class Stitcher {
             textures_[i].unit.unit = static_cast<int>(i);
             result_.textures.push_back(textures_[i].unit);
         }
-        if (!program_.geometry_of.empty()) {
+        if (loads()) {
             for (int i = 0; i < result_.varying_targets; ++i) {
-                const std::string name = fmt::format("varyings_{}", i);
+                const std::string name = StoredVaryings::texture(i);
                 result_.textures.push_back(
                     {static_cast<int>(result_.textures.size()), name, "sampler2D", name, "core"});
             }
@@ -271,6 +206,8 @@ class Stitcher {
         write_params(out, stage);
         write_samplers(out, stage);
         write_varyings(out, stage);
+        // Before its readers: Mesa warns of a global that is read above the line that sets it.
+        if (stage.kind() == StageKind::Fragment && loads()) stored_.write_load(out);
         write_prototypes(out, stage);
         for (const Unit& unit : stage.units())
             if (unit.role == UnitRole::Lib) write_unit(out, unit);
@@ -279,8 +216,7 @@ class Stitcher {
         out.heading("hooks");
         for (const Hook& hook : hooks())
             if (stage.calls(hook)) write_hook(out, stage, hook);
-        if (stage.kind() == StageKind::Fragment && shading_) write_store(out);
-        if (stage.kind() == StageKind::Fragment && !program_.geometry_of.empty()) write_load(out);
+        if (stage.kind() == StageKind::Fragment && shading_) stored_.write_store(out);
         write_unit(out, stage.unit(UnitRole::Main));
         return out.take();
     }
@@ -350,30 +286,31 @@ class Stitcher {
 
     /// Whether a varying of the vertex side goes on to a fragment side.
     bool is_handed_on(const Varying& varying) const {
-        return fragment_.reaches(varying.name) || is_stored(varying);
+        return fragment_.reaches(varying.name) || stored_.holds(varying);
     }
 
     void write_varyings(TextBuilder& out, const Stage& stage) {
         out.heading("varyings");
         const bool fragment = stage.kind() == StageKind::Fragment;
-        const bool loads = fragment && !program_.geometry_of.empty();
         const auto write_one = [&](const Varying& varying, const Stage& declared_in) {
             const LineOrigin from = origin(declared_in, varying.name, varying.file, varying.line);
-            const bool plain = loads ? is_stored(varying) : !fragment && !is_handed_on(varying);
+            const bool plain =
+                fragment && loads() ? stored_.holds(varying) : !fragment && !is_handed_on(varying);
             // Plain: loaded from a texture, or written for nobody, where an output would be
             // interpolated all the same.
             if (plain)
                 out.line(fmt::format("{} {};", varying.type, varying.name), from);
             else
-                out.line(fmt::format("{}{}{} {} {};", varying.interpolation,
-                                     varying.interpolation.empty() ? "" : " ",
-                                     fragment ? "in" : "out", varying.type, varying.name),
-                         from);
+                out.line(
+                    fmt::format("{}{} {} {};",
+                                varying.interpolation.empty() ? "" : varying.interpolation + ' ',
+                                fragment ? "in" : "out", varying.type, varying.name),
+                    from);
         };
         for (const Varying* varying : stage.varyings())
             write_one(*varying, stage);
         if (fragment && shading_)
-            for (const Stored& stored : stored_)
+            for (const StoredVaryings::Stored& stored : stored_.all())
                 if (!stage.reaches(stored.varying->name)) write_one(*stored.varying, *shading_);
         out.heading("");
     }
@@ -438,7 +375,7 @@ class Stitcher {
     Stage fragment_;
     ProgramRecipe shading_recipe_;
     std::optional<Stage> shading_;
-    std::vector<Stored> stored_;
+    StoredVaryings stored_;
     std::vector<Texture> textures_;
     Stitched result_;
 };

@@ -19,17 +19,17 @@ struct Define {
 struct ProgramRecipe {
     std::string vertex_main;    ///< "terrain.vert.glsl"
     std::string fragment_main;  ///< "depth.frag.glsl"
-    std::vector<Define> defines;
+    std::vector<Define> defines{};
 
     /// Deferred shading splits a program in two. The geometry program stores what plugins hand from
     /// the vertex to the fragment side; the shading program, drawn later over the whole picture,
     /// loads it again for each pixel. Set on the geometry program: the fragment main of the shading
     /// program. Its own fragment main then calls `store_varyings()`, which writes to the outputs at
     /// location 1 and up.
-    std::string shaded_by;
+    std::string shaded_by{};
     /// Set on the shading program: the vertex main of the geometry program. Its fragment main then
     /// calls `load_varyings(pixel)` before any hook.
-    std::string geometry_of;
+    std::string geometry_of{};
 };
 
 struct StitchInput {

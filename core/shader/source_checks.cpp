@@ -1,0 +1,116 @@
+#include "shader/source_checks.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace relevo::shader {
+namespace {
+
+constexpr std::array<std::string_view, 8> kOwnedByCore = {
+    "gl_Position",  "gl_PointSize",  "gl_ClipDistance", "gl_CullDistance",
+    "gl_FragDepth", "gl_SampleMask", "gl_Layer",        "gl_ViewportIndex"};
+
+struct Open {
+    char bracket;
+    int line;
+};
+
+struct Branch {
+    std::size_t depth;  ///< brackets that were open before the #if
+    int line;
+};
+
+class Brackets {
+  public:
+    explicit Brackets(const Source& source) : source_(source) {}
+
+    void check() {
+        for (const Token& token : source_.tokens) {
+            if (token.kind == TokenKind::Directive) {
+                directive(token);
+                continue;
+            }
+            bracket(open_, source_.str(token), token.line);
+            if (!branches_.empty() && open_.size() < branches_.back().depth)
+                fail(token.line, fmt::format("{} closes a bracket that was opened before the #if "
+                                             "of line {}",
+                                             source_.str(token), branches_.back().line));
+        }
+        // What the innermost forgotten brace left open is its function, not itself.
+        if (!open_.empty())
+            fail(open_.front().line, fmt::format("{} is never closed", open_.front().bracket));
+        if (!branches_.empty()) fail(branches_.back().line, "#if without an #endif");
+    }
+
+  private:
+    [[noreturn]] void fail(int line, std::string_view message) const {
+        source_error(source_.file, line, message);
+    }
+
+    void bracket(std::vector<Open>& open, std::string_view text, int line) const {
+        if (text == "(" || text == "[" || text == "{") {
+            open.push_back({text[0], line});
+        } else if (text == ")" || text == "]" || text == "}") {
+            const char expected = text == ")" ? '(' : text == "]" ? '[' : '{';
+            if (open.empty()) fail(line, fmt::format("{} closes nothing", text));
+            if (open.back().bracket != expected)
+                fail(line, fmt::format("{} cannot close the {} of line {}", text,
+                                       open.back().bracket, open.back().line));
+            open.pop_back();
+        }
+    }
+
+    void directive(const Token& token) {
+        const std::vector<Token> words = directive_tokens(source_.text, token, source_.file);
+        if (words.empty()) return;
+        const std::string_view name = source_.str(words[0]);
+        if (name == "define") {
+            std::vector<Open> inside;
+            for (const Token& word : words)
+                bracket(inside, source_.str(word), word.line);
+            if (!inside.empty())
+                fail(inside.back().line,
+                     fmt::format("{} is never closed in this #define", inside.back().bracket));
+        } else if (name.substr(0, 2) == "if") {
+            branches_.push_back({open_.size(), token.line});
+        } else if (name == "elif" || name == "else" || name == "endif") {
+            if (branches_.empty()) fail(token.line, fmt::format("#{} without an #if", name));
+            if (open_.size() != branches_.back().depth)
+                fail(open_.back().line, fmt::format("{} is not closed before the #{} of line {}",
+                                                    open_.back().bracket, name, token.line));
+            if (name == "endif") branches_.pop_back();
+        }
+    }
+
+    const Source& source_;
+    std::vector<Open> open_;
+    std::vector<Branch> branches_;
+};
+
+}  // namespace
+
+void check_words(const Source& source) {
+    if (source.kind != SourceKind::Snippet) return;
+    for (const Token& token : source.tokens) {
+        if (token.kind != TokenKind::Word) continue;
+        const std::string_view word = source.str(token);
+        const auto fail = [&](const std::string& message) {
+            source_error(source.file, token.line, message);
+        };
+        if (word.find("__") != std::string_view::npos)
+            fail(fmt::format("{}: GLSL keeps names with __ to itself", word));
+        if (std::find(kOwnedByCore.begin(), kOwnedByCore.end(), word) != kOwnedByCore.end())
+            fail(fmt::format("{} is core's; a plugin moves the ground in {}_on_displace", word,
+                             source.owner));
+        if (word.substr(0, 5) == "hook_")
+            fail(fmt::format("{}: only core's main programs call hooks", word));
+    }
+}
+
+void check_brackets(const Source& source) {
+    Brackets(source).check();
+}
+
+}  // namespace relevo::shader

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "shader/stage.h"
+#include "shader/text_builder.h"
+
+namespace relevo::shader {
+
+/// The varyings that a geometry program stores in textures for its shading program to load. Both
+/// programs come to the same places: into the first texture with room, in the order of the files.
+class StoredVaryings {
+  public:
+    StoredVaryings() = default;
+    /// Takes what plugins' functions on the shading side read.
+    /// @param shading  the fragment side of the shading program
+    /// @param program  its name, for messages
+    /// @throws Error (Failed) if they do not fit into the textures there are, (BadInput) for a type
+    ///         that a texture cannot hold
+    StoredVaryings(const Stage& shading, const std::string& program);
+
+    struct Stored {
+        const Varying* varying;
+        int target, first, count;  ///< components [first, first + count) of that texture
+    };
+    const std::vector<Stored>& all() const { return stored_; }
+    int targets() const { return targets_; }
+    bool holds(const Varying& varying) const;
+
+    /// The sampler of a target in the shading program.
+    static std::string texture(int target);
+
+    /// `store_varyings()`, which fills the outputs at location 1 and up.
+    void write_store(TextBuilder& out) const;
+    /// `load_varyings(pixel)`.
+    void write_load(TextBuilder& out) const;
+
+  private:
+    std::vector<Stored> stored_;
+    int targets_ = 0;
+};
+
+}  // namespace relevo::shader
