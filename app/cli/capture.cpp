@@ -41,8 +41,8 @@ double milliseconds(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
-/// What each stage took. Loading goes on beside the start of the device, so that the stages' sum is more
-/// than the whole.
+/// What each stage took. Loading goes on beside the start of the device, so that the stages' sum is
+/// more than the whole.
 class Timings {
   public:
     void add(const std::string& stage, Clock::time_point began) {
@@ -50,7 +50,8 @@ class Timings {
     }
 
     void write(const std::filesystem::path& path, const render::PassTimes& passes,
-               std::vector<double> frames_ms, const render::Terrain& terrain, const gl::DeviceInfo& device) {
+               std::vector<double> frames_ms, const render::Terrain& terrain,
+               const gl::DeviceInfo& device) {
         nlohmann::ordered_json json;
         json["device"] = device.renderer;
         json["triangles"] = terrain.triangles();
@@ -93,15 +94,14 @@ void capture(const Arguments& arguments) {
         return field;
     });
     const auto device_began = Clock::now();
-    const ActiveEffects effects = arguments.effects.active();
+    const std::unique_ptr<ActiveEffects> effects = arguments.effects.active();
     gl::Context context({.device = arguments.device});
     timings.add("device", device_began);
     const auto compile_began = Clock::now();
-    render::Renderer renderer(context, effects.inputs(),
-                              {.width_px = size.x,
-                               .height_px = size.y,
-                               .vertex_normals = effects.vertex_normals()});
-    if (!arguments.dump_shaders.empty()) render::dump_programs(renderer.texts(), arguments.dump_shaders);
+    render::Renderer renderer(context, effects->inputs(),
+                              {.width_px = size.x, .height_px = size.y});
+    if (!arguments.dump_shaders.empty())
+        render::dump_programs(renderer.texts(), arguments.dump_shaders);
     timings.add("compile", compile_began);
     const dem::Heightfield dem = loading.get();
 
@@ -138,7 +138,8 @@ void capture(const Arguments& arguments) {
 
     const image::Metadata metadata{
         {"Software", "Relevo " RELEVO_VERSION},
-        {"Description", fmt::format("{}; {}; {}", geo::degrees_text(place), sun::to_iso(utc), sun_text)}};
+        {"Description",
+         fmt::format("{}; {}; {}", geo::degrees_text(place), sun::to_iso(utc), sun_text)}};
     const auto readback_began = Clock::now();
     if (image::holds_linear_light(output)) {
         const image::ImageF picture = renderer.read_radiance();
@@ -172,7 +173,8 @@ void add_capture(CLI::App& app) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb = *app.add_subcommand("capture", "Takes one picture");
     arguments->dem.add_to(verb);
-    verb.add_option("-o,--output", arguments->output, "Picture to write: png, jpg, webp, tif, or exr in linear light")
+    verb.add_option("-o,--output", arguments->output,
+                    "Picture to write: png, jpg, webp, tif, or exr in linear light")
         ->required();
     verb.add_option("--size", arguments->size, "Width and height in pixels, 1280x1024");
     verb.add_flag("--overwrite", arguments->overwrite, "Replace an existing picture");
@@ -182,14 +184,17 @@ void add_capture(CLI::App& app) {
     arguments->effects.add_to(verb);
     verb.add_option("--exposure", arguments->exposure_ev, "Stops brighter than natural, EV")
         ->check(CLI::Range(-20.0, 20.0));
-    verb.add_option("--device", arguments->device, "GL device: auto, an index, software, or a part of its name");
-    CLI::Option* timings = verb.add_option("--timings", arguments->timings, "Write what each stage took, as JSON")
-                               ->group("Diagnosis");
+    verb.add_option("--device", arguments->device,
+                    "GL device: auto, an index, software, or a part of its name");
+    CLI::Option* timings =
+        verb.add_option("--timings", arguments->timings, "Write what each stage took, as JSON")
+            ->group("Diagnosis");
     verb.add_option("--repeat", arguments->repeat, "Further frames to time")
         ->needs(timings)
         ->check(CLI::NonNegativeNumber)
         ->group("Diagnosis");
-    verb.add_option("--dump-shaders", arguments->dump_shaders, "Write the stitched programs into a folder")
+    verb.add_option("--dump-shaders", arguments->dump_shaders,
+                    "Write the stitched programs into a folder")
         ->group("Diagnosis");
     verb.callback([arguments] { capture(*arguments); });
 }

@@ -14,8 +14,8 @@
 #include "sun/refraction.h"
 #include "sun/zone.h"
 
-/// Options that several verbs take. Each struct adds its options to a verb, and makes a value of core's
-/// from what was given.
+/// Options that several verbs take. Each struct adds its options to a verb, and makes a value of
+/// core's from what was given.
 namespace relevo::cli {
 
 /// DEM... and how to read it.

@@ -16,8 +16,8 @@ namespace {
 
 /// A direction in words of the compass rose: "ESE".
 const char* compass_point(double azimuth_deg) {
-    constexpr const char* kPoints[] = {"N",  "NNE", "NE", "ENE", "E",  "ESE", "SE", "SSE",
-                                       "S",  "SSW", "SW", "WSW", "W",  "WNW", "NW", "NNW"};
+    constexpr const char* kPoints[] = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
+                                       "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
     return kPoints[static_cast<int>(azimuth_deg / 22.5 + 0.5) % 16];
 }
 
@@ -37,7 +37,8 @@ void add_position(CLI::App& sun_verb) {
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");
     verb.callback([arguments] {
         const geo::PlaceText at = geo::parse_place(arguments->at, "--at");
-        if (at.above_ground) bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
+        if (at.above_ground)
+            bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
         const sun::ParsedTime when = arguments->time.parse();
         const sun::Position position = sun::position(when.utc, at.place);
         const sun::Refraction air = arguments->refraction.at(at.place);
@@ -58,10 +59,14 @@ void add_position(CLI::App& sun_verb) {
             fmt::print("{}\n", json.dump(2));
             return;
         }
-        fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(at.place), at.place.height_m);
-        fmt::print("time                {}  ({})\n", sun::to_iso(when.utc, when.zone), sun::to_iso(when.utc));
-        fmt::print("azimuth             {:9.4f} deg  {}\n", azimuth_deg, compass_point(azimuth_deg));
-        fmt::print("elevation           {:9.4f} deg  geometric, without air\n", degrees(position.elevation_rad));
+        fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(at.place),
+                   at.place.height_m);
+        fmt::print("time                {}  ({})\n", sun::to_iso(when.utc, when.zone),
+                   sun::to_iso(when.utc));
+        fmt::print("azimuth             {:9.4f} deg  {}\n", azimuth_deg,
+                   compass_point(azimuth_deg));
+        fmt::print("elevation           {:9.4f} deg  geometric, without air\n",
+                   degrees(position.elevation_rad));
         fmt::print("apparent elevation  {:9.4f} deg  {}\n", apparent_deg, air.description());
         fmt::print("distance            {:9.6f} au\n", position.distance_au);
         fmt::print("declination         {:9.4f} deg\n", degrees(position.declination_rad));

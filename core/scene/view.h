@@ -16,16 +16,16 @@ struct Standpoint {
     bool above_ground = false;  ///< place.height_m counts from the ground
 };
 
-/// What the user says of the camera, before the DEM is known: an orbit, or an eye that looks at a place
-/// or along a heading.
+/// What the user says of the camera, before the DEM is known: an orbit, or an eye that looks at a
+/// place or along a heading.
 struct View {
     Orbit orbit;
     std::optional<Standpoint> eye;
     std::optional<Standpoint> look_at;
     double heading_deg = 0;
     double pitch_deg = 0;
-    double fov_y_rad = 0;            ///< 0: from the focal length, else the default
-    double focal_length_mm = 0;      ///< 35 mm equivalent; 0: none given
+    double fov_y_rad = 0;        ///< 0: from the focal length, else the default
+    double focal_length_mm = 0;  ///< 35 mm equivalent; 0: none given
 };
 
 /// Reads `az=225,el=25,zoom=1`; what is left out stays as it is in Orbit.

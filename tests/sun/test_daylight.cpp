@@ -12,9 +12,9 @@ TEST(AirMass, FollowsTheTableOfKastenAndYoung) {
     struct Row {
         double elevation_deg, mass;
     };
-    for (const Row& row : {Row{90, 1.0000}, Row{60, 1.1539}, Row{45, 1.4128}, Row{30, 1.9943},
-                           Row{20, 2.9016}, Row{10, 5.5841}, Row{5, 10.3164}, Row{1, 26.2595},
-                           Row{0, 38.0868}})
+    for (const Row& row :
+         {Row{90, 1.0000}, Row{60, 1.1539}, Row{45, 1.4128}, Row{30, 1.9943}, Row{20, 2.9016},
+          Row{10, 5.5841}, Row{5, 10.3164}, Row{1, 26.2595}, Row{0, 38.0868}})
         EXPECT_NEAR(air_mass(radians(row.elevation_deg)), row.mass, 0.005 * row.mass)
             << row.elevation_deg;
 }
@@ -39,8 +39,8 @@ TEST(Daylight, EndsWhenTheWholeDiscHasSet) {
 }
 
 TEST(Twilight, IsAsBrightAsTheAlmanacSays) {
-    // Explanatory Supplement (1992), p. 491: 3.4 lux at the end of civil twilight, 0.0083 at the end of
-    // nautical twilight; the day's formula is 5 % higher where the two meet.
+    // Explanatory Supplement (1992), p. 491: 3.4 lux at the end of civil twilight, 0.0083 at the
+    // end of nautical twilight; the day's formula is 5 % higher where the two meet.
     EXPECT_NEAR(sky_illuminance_lux(radians(-6)), 3.4 * 1.054, 0.1);
     EXPECT_NEAR(sky_illuminance_lux(radians(-12)), 0.0083 * 1.054, 0.0005);
     EXPECT_EQ(sky_illuminance_lux(radians(-30)), 0.002);
