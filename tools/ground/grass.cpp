@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "base/parallel_for.h"
-#include "maps.h"
 #include "material.h"
 #include "noise.h"
 
