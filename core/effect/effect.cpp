@@ -1,0 +1,141 @@
+#include "effect/effect.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace relevo::effect {
+namespace {
+
+constexpr std::string_view kWho = "effect::load";
+
+[[noreturn]] void fail(const std::string& file, int line, const std::string& message) {
+    bad_input(fmt::format("{}: {}:{}: {}", kWho, file, line, message));
+}
+
+bool contains(const std::vector<std::string>& words, std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::string_view sampler_of(TextureSpec::Kind kind) {
+    switch (kind) {
+        case TextureSpec::Kind::D2:
+            return "sampler2D";
+        case TextureSpec::Kind::D2Array:
+            return "sampler2DArray";
+        default:
+            return "sampler3D";
+    }
+}
+
+void check_wants(const Effect& effect) {
+    for (const shader::Snippet& snippet : effect.snippets)
+        for (const shader::Wanted& wanted : snippet.wanted)
+            if (!contains(effect.manifest.wants, wanted.word))
+                fail(snippet.file, wanted.line,
+                     fmt::format("HAS_{}: {} does not want it; add \"{}\" to its \"wants\"",
+                                 wanted.word, effect.manifest.file.string(), wanted.word));
+}
+
+void check_sampler(const Effect& effect, const shader::Sampler& sampler) {
+    const Manifest& manifest = effect.manifest;
+    const std::string prefix = effect.id() + '.';
+    if (sampler.resource.substr(0, prefix.size()) != prefix) return;  // another plugin's
+    const std::string name = sampler.resource.substr(prefix.size());
+    std::vector<std::string> names;
+    for (const TextureSpec& texture : manifest.textures) {
+        names.push_back(texture.name);
+        if (texture.name != name) continue;
+        if (sampler.type != sampler_of(texture.kind))
+            fail(sampler.file, sampler.line,
+                 fmt::format("{}: expected a {} for the texture {} of {}:{} but got a {}",
+                             sampler.name, sampler_of(texture.kind), name, manifest.file.string(),
+                             texture.line, sampler.type));
+        return;
+    }
+    const bool written =
+        std::any_of(manifest.passes.begin(), manifest.passes.end(),
+                    [&](const PassSpec& pass) { return contains(pass.writes, sampler.resource); });
+    if (written || !manifest.module.empty()) return;
+    const std::optional<std::string> near = nearest(name, names);
+    fail(sampler.file, sampler.line,
+         fmt::format("{}: {} has no texture {}{}", sampler.name, manifest.file.string(), name,
+                     near ? fmt::format("; did you mean {}?", *near) : ""));
+}
+
+void check_textures(const Effect& effect) {
+    for (const shader::Snippet& snippet : effect.snippets)
+        for (const shader::Sampler& sampler : snippet.source.samplers)
+            check_sampler(effect, sampler);
+    if (!effect.manifest.module.empty()) return;
+    for (const TextureSpec& texture : effect.manifest.textures) {
+        const bool read = std::any_of(
+            effect.snippets.begin(), effect.snippets.end(), [&](const shader::Snippet& snippet) {
+                const auto& samplers = snippet.source.samplers;
+                return std::any_of(samplers.begin(), samplers.end(), [&](const auto& sampler) {
+                    return sampler.resource == texture.resource;
+                });
+            });
+        if (!read)
+            fail(effect.manifest.file.string(), texture.line,
+                 fmt::format("textures.{}: nothing reads it; expected uniform {} {}_{}; in the "
+                             "plugin's GLSL",
+                             texture.name, sampler_of(texture.kind), effect.id(), texture.name));
+    }
+}
+
+void check_hooks(const Effect& effect) {
+    for (const shader::Snippet& snippet : effect.snippets) {
+        for (const shader::HookFunction& function : snippet.hooks) {
+            for (const shader::Snippet& other : effect.snippets) {
+                if (&other == &snippet) break;
+                if (const shader::HookFunction* first = other.find(function.hook->name))
+                    fail(snippet.file, function.line,
+                         fmt::format("{}: defined already in {}:{}", function.name, other.file,
+                                     first->line));
+            }
+        }
+    }
+    const bool any = std::any_of(effect.snippets.begin(), effect.snippets.end(),
+                                 [](const shader::Snippet& s) { return !s.hooks.empty(); });
+    if (!any && effect.manifest.module.empty())
+        bad_input(
+            fmt::format("{}: {}: no hook and no module, so it does nothing; define a "
+                        "function such as {}_on_albedo",
+                        kWho, effect.manifest.file.string(), effect.id()));
+}
+
+}  // namespace
+
+bool Effect::provides(std::string_view capability) const {
+    return contains(manifest.provides, capability);
+}
+
+bool Effect::answers(std::string_view hook) const {
+    return std::any_of(snippets.begin(), snippets.end(),
+                       [&](const shader::Snippet& snippet) { return snippet.find(hook); });
+}
+
+std::vector<shader::Param> Effect::params() const {
+    std::vector<shader::Param> result;
+    for (const shader::Snippet& snippet : snippets)
+        result.insert(result.end(), snippet.source.params.begin(), snippet.source.params.end());
+    return result;
+}
+
+Effect load_effect(const std::filesystem::path& folder, const std::filesystem::path& data_dir) {
+    Effect effect;
+    effect.manifest = load_manifest(folder, data_dir);
+    for (const std::filesystem::path& file : effect.manifest.glsl)
+        effect.snippets.push_back(
+            shader::parse_snippet(effect.id(), file.string(), read_text(file, kWho)));
+    check_hooks(effect);
+    check_wants(effect);
+    check_textures(effect);
+    return effect;
+}
+
+}  // namespace relevo::effect

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// JSON files that people write: values that know their line, and objects that refuse what they do
+/// not know.
+namespace relevo::effect {
+
+struct Json {
+    enum class Kind { Null, Bool, Number, String, Array, Object };
+    Kind kind = Kind::Null;
+    bool boolean = false;
+    double number = 0;
+    std::string text;
+    std::vector<Json> items;                            ///< of an array
+    std::vector<std::pair<std::string, Json>> members;  ///< of an object, in the file's order
+    int line = 0;                                       ///< of a member: its key's
+};
+
+/// What a value is, for messages: `"haze"`, `12`, `a list`, `an object`.
+std::string describe(const Json& value);
+
+/// @param who   as messages begin: "effect::load"
+/// @param file  as messages name it
+/// @throws Error (BadInput) `who: file:line: ...` for a mistake in the syntax, or a key given twice
+Json parse_json(std::string_view who, std::string_view file, std::string_view text);
+
+/// Takes the members of an object one by one; what is left over is an error.
+class ObjectReader {
+  public:
+    /// @param path  where the object stands in the file: "" at the top, "textures.noise" inside
+    /// @throws Error (BadInput) if it is no object
+    ObjectReader(std::string_view who, std::string_view file, std::string_view path,
+                 const Json& value);
+
+    /// The member, or null. A key taken is a key known.
+    const Json* take(const std::string& key);
+    /// @throws Error (BadInput) if the member is missing
+    const Json& need(const std::string& key);
+
+    std::string string(const std::string& key, std::optional<std::string> otherwise = {});
+    bool boolean(const std::string& key, bool otherwise);
+    /// A number in [min, max], whole if `whole`.
+    double number(const std::string& key, double otherwise, double min, double max, bool whole);
+    /// A list of strings; none if the member is missing.
+    std::vector<std::string> strings(const std::string& key);
+    /// One of the words, as its index.
+    std::size_t choice(const std::string& key, const std::vector<std::string>& words,
+                       std::optional<std::size_t> otherwise = {});
+
+    /// @throws Error (BadInput) for the first member that nobody took, with the nearest known key
+    void finish() const;
+
+    /// Throws `Error(BadInput, "who: file:line: path.key: message")`.
+    [[noreturn]] void fail(int line, std::string_view key, std::string_view message) const;
+    int line() const { return object_.line; }
+    /// The line of a member, of the object if there is none.
+    int line_of(std::string_view key) const;
+
+  private:
+    std::string who_;
+    std::string file_;
+    std::string path_;
+    const Json& object_;
+    std::vector<std::string> known_;
+};
+
+}  // namespace relevo::effect

@@ -1,0 +1,241 @@
+#include "effect/manifest.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "effect/json.h"
+
+namespace relevo::effect {
+namespace {
+
+constexpr std::string_view kWho = "effect::load";
+constexpr int kFormat = 1;
+
+// Prefixes and owners that core's own texts, parameters and command line use.
+constexpr std::array<std::string_view, 12> kReserved = {"all",   "camera", "core",    "data",
+                                                        "frame", "gl",     "hook",    "none",
+                                                        "scene", "stored", "terrain", "varyings"};
+
+const std::vector<std::string>& formats() {
+    static const std::vector<std::string> names = {
+        "r8", "rg8", "rgba8", "r16f", "rg16f", "rgba16f", "r32f", "rg32f", "rgba32f", "depth32f"};
+    return names;
+}
+
+bool is_lower(char c) {
+    return c >= 'a' && c <= 'z';
+}
+
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+bool is_id(std::string_view text) {
+    return !text.empty() && is_lower(text[0]) &&
+           std::all_of(text.begin(), text.end(), [](char c) { return is_lower(c) || is_digit(c); });
+}
+
+/// A word, which becomes a part of a GLSL name.
+bool is_word(std::string_view text) {
+    return !text.empty() && is_lower(text[0]) && text.back() != '_' &&
+           text.find("__") == std::string_view::npos &&
+           std::all_of(text.begin(), text.end(),
+                       [](char c) { return is_lower(c) || is_digit(c) || c == '_'; });
+}
+
+bool is_resource(std::string_view text) {
+    const std::size_t dot = text.find('.');
+    return dot != std::string_view::npos && is_id(text.substr(0, dot)) &&
+           is_word(text.substr(dot + 1));
+}
+
+std::vector<std::string> words(ObjectReader& object, const std::string& key) {
+    std::vector<std::string> result = object.strings(key);
+    for (const std::string& word : result)
+        if (!is_word(word))
+            object.fail(object.line_of(key), key,
+                        fmt::format("expected words of a-z, 0-9 and _ but got \"{}\"", word));
+    return result;
+}
+
+std::filesystem::path own_file(const ObjectReader& object, int line, const std::string& key,
+                               const std::filesystem::path& folder, const std::string& name) {
+    const std::filesystem::path path(name);
+    const bool inside = path.is_relative() && std::none_of(path.begin(), path.end(),
+                                                           [](const auto& p) { return p == ".."; });
+    if (!inside)
+        object.fail(line, key,
+                    fmt::format("expected a file of the plugin's own folder but got {}", name));
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(folder / path, ignored))
+        object.fail(line, key, fmt::format("{}: no such file", (folder / path).string()));
+    return folder / path;
+}
+
+class ManifestReader {
+  public:
+    ManifestReader(const std::filesystem::path& folder, const std::filesystem::path& data_dir)
+        : data_dir_(data_dir) {
+        manifest_.folder = folder;
+        manifest_.file = folder / "plugin.json";
+    }
+
+    Manifest run() {
+        const std::string file = manifest_.file.string();
+        const Json json = parse_json(kWho, file, read_text(manifest_.file, kWho));
+        ObjectReader object(kWho, file, "", json);
+        const Json& format = object.need("format");
+        if (format.kind != Json::Kind::Number || format.number != kFormat)
+            object.fail(format.line, "format",
+                        fmt::format("expected {}, the format that this program reads, but got {}",
+                                    kFormat, describe(format)));
+        identity(object);
+        manifest_.provides = words(object, "provides");
+        manifest_.needs = words(object, "requires");
+        manifest_.wants = words(object, "wants");
+        manifest_.after = words(object, "after");
+        manifest_.module = object.string("module", "");
+        if (manifest_.module.find_first_of("/\\") != std::string::npos)
+            object.fail(object.line_of("module"), "module",
+                        fmt::format("expected the bare name of a library but got \"{}\"",
+                                    manifest_.module));
+        glsl(object);
+        textures(object);
+        passes(object);
+        object.finish();
+        return std::move(manifest_);
+    }
+
+  private:
+    void identity(ObjectReader& object) {
+        manifest_.id = object.string("id");
+        if (!is_id(manifest_.id))
+            object.fail(
+                object.line_of("id"), "id",
+                fmt::format("expected a letter a-z and then letters and digits but got \"{}\"",
+                            manifest_.id));
+        if (std::find(kReserved.begin(), kReserved.end(), manifest_.id) != kReserved.end())
+            object.fail(object.line_of("id"), "id",
+                        fmt::format("{} is a word of core's; choose another", manifest_.id));
+        manifest_.name = object.string("name");
+        manifest_.description = object.string("description", "");
+        manifest_.version = object.string("version");
+        manifest_.enabled_by_default = object.boolean("enabled_by_default", true);
+    }
+
+    void glsl(ObjectReader& object) {
+        const int line = object.line_of("glsl");
+        const bool given = object.take("glsl") != nullptr;
+        std::vector<std::string> names = object.strings("glsl");
+        const std::string usual = manifest_.id + ".glsl";
+        if (!given) {
+            std::error_code ignored;
+            const bool there = std::filesystem::is_regular_file(manifest_.folder / usual, ignored);
+            if (there || manifest_.module.empty()) names = {usual};
+        }
+        for (const std::string& name : names)
+            manifest_.glsl.push_back(own_file(object, line, "glsl", manifest_.folder, name));
+    }
+
+    void textures(ObjectReader& object) {
+        const Json* const list = object.take("textures");
+        if (!list) return;
+        if (list->kind != Json::Kind::Object)
+            object.fail(
+                list->line, "textures",
+                fmt::format("expected an object of name and texture but got {}", describe(*list)));
+        for (const auto& [name, value] : list->members) {
+            if (!is_word(name))
+                object.fail(value.line, "textures",
+                            fmt::format("expected words of a-z, 0-9 and _ but got \"{}\"", name));
+            manifest_.textures.push_back(texture(name, value));
+        }
+    }
+
+    TextureSpec texture(const std::string& name, const Json& value) {
+        ObjectReader object(kWho, manifest_.file.string(), "textures." + name, value);
+        TextureSpec spec;
+        spec.name = name;
+        spec.resource = manifest_.id + '.' + name;
+        spec.line = value.line;
+        spec.kind = static_cast<TextureSpec::Kind>(object.choice("kind", {"2d", "2d-array", "3d"}));
+        if (spec.kind == TextureSpec::Kind::D2Array) {
+            for (const std::string& file : object.strings("files"))
+                spec.files.push_back(picture(object, "files", file));
+            if (spec.files.empty())
+                object.fail(object.line_of("files"), "files",
+                            "expected a list of files, one a layer");
+        } else {
+            spec.files.push_back(picture(object, "file", object.string("file")));
+        }
+        if (spec.kind == TextureSpec::Kind::D3)
+            spec.slices = static_cast<int>(object.number("slices", 1, 1, 2048, true));
+        spec.srgb = object.choice("encoding", {"linear", "srgb"}) == 1;
+        spec.wrap = static_cast<TextureSpec::Wrap>(object.choice("wrap", {"repeat", "clamp"}, 0));
+        spec.mipmaps = object.boolean("mipmaps", true);
+        object.finish();
+        return spec;
+    }
+
+    std::filesystem::path picture(const ObjectReader& object, const std::string& key,
+                                  const std::string& name) const {
+        constexpr std::string_view kShared = "data:";
+        const bool shared = name.substr(0, kShared.size()) == kShared;
+        return own_file(object, object.line_of(key), key, shared ? data_dir_ : manifest_.folder,
+                        shared ? name.substr(kShared.size()) : name);
+    }
+
+    void passes(ObjectReader& object) {
+        const Json* const list = object.take("passes");
+        if (!list) return;
+        if (list->kind != Json::Kind::Array)
+            object.fail(list->line, "passes",
+                        fmt::format("expected a list of passes but got {}", describe(*list)));
+        for (std::size_t i = 0; i < list->items.size(); ++i)
+            manifest_.passes.push_back(pass(list->items[i], i));
+    }
+
+    PassSpec pass(const Json& value, std::size_t index) {
+        ObjectReader object(kWho, manifest_.file.string(), fmt::format("passes.{}", index), value);
+        PassSpec spec;
+        spec.name = object.string("name");
+        if (!is_word(spec.name))
+            object.fail(object.line_of("name"), "name",
+                        fmt::format("expected words of a-z, 0-9 and _ but got \"{}\"", spec.name));
+        spec.target = static_cast<PassSpec::Target>(object.choice("target", {"screen", "sun"}));
+        spec.format = formats()[object.choice("format", formats())];
+        spec.scale = object.number("scale", 1, 1.0 / 64, 1, false);
+        spec.reads = object.strings("reads");
+        spec.writes = object.strings("writes");
+        for (const std::string& resource : spec.reads)
+            if (!is_resource(resource))
+                object.fail(
+                    object.line_of("reads"), "reads",
+                    fmt::format("expected resources such as vsm.moments but got \"{}\"", resource));
+        const std::string prefix = manifest_.id + '.';
+        for (const std::string& resource : spec.writes)
+            if (!is_resource(resource) || resource.substr(0, prefix.size()) != prefix)
+                object.fail(object.line_of("writes"), "writes",
+                            fmt::format("expected resources that begin with {} but got \"{}\"",
+                                        prefix, resource));
+        if (spec.writes.empty())
+            object.fail(object.line_of("writes"), "writes",
+                        "expected at least one resource that the pass writes");
+        object.finish();
+        return spec;
+    }
+
+    Manifest manifest_;
+    const std::filesystem::path& data_dir_;
+};
+
+}  // namespace
+
+Manifest load_manifest(const std::filesystem::path& folder, const std::filesystem::path& data_dir) {
+    return ManifestReader(folder, data_dir).run();
+}
+
+}  // namespace relevo::effect

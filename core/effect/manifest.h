@@ -1,0 +1,67 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace relevo::effect {
+
+/// A texture that a plugin brings: the sampler `<id>_<name>` reads it.
+struct TextureSpec {
+    enum class Kind { D2, D2Array, D3 };
+    enum class Wrap { Repeat, Clamp };
+
+    std::string name;      ///< "noise"
+    std::string resource;  ///< "haze.noise": what the stitcher calls it
+    Kind kind = Kind::D2;
+    std::vector<std::filesystem::path> files;  ///< one; of an array, its layers. They exist
+    int slices = 1;     ///< of a volume in a picture: slices that lie below each other
+    bool srgb = false;  ///< colours, linearised when read; else plain numbers
+    Wrap wrap = Wrap::Repeat;
+    bool mipmaps = true;
+    int line = 0;  ///< in plugin.json
+};
+
+/// A pass that a plugin wants drawn. Read and checked; nothing draws them yet.
+struct PassSpec {
+    enum class Target { Screen, Sun };  ///< over the picture, or over the map as the sun sees it
+
+    std::string name;
+    Target target = Target::Screen;
+    std::string format;               ///< of what it writes: "rgba16f"
+    double scale = 1;                 ///< of its size to the picture's, in (0, 1]
+    std::vector<std::string> reads;   ///< resources, "vsm.moments"
+    std::vector<std::string> writes;  ///< resources of its own, "haze.blurred"
+};
+
+/// What plugin.json says. The format is docs/plugin-guide.md's.
+struct Manifest {
+    std::string id;  ///< `[a-z][a-z0-9]*`
+    std::string name;
+    std::string description;
+    std::string version;
+    bool enabled_by_default = true;
+
+    // Capability words, `[a-z][a-z0-9_]*`.
+    std::vector<std::string> provides;
+    std::vector<std::string> needs;  ///< "requires": off without them
+    std::vector<std::string> wants;  ///< HAS_<word> in its GLSL says whether they are there
+    std::vector<std::string> after;  ///< comes behind the effects that provide them
+
+    std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
+    std::vector<TextureSpec> textures;
+    std::vector<PassSpec> passes;
+    std::string module;  ///< name of a native library, or empty
+
+    std::filesystem::path folder;
+    std::filesystem::path file;  ///< folder / "plugin.json"
+};
+
+/// Reads `folder/plugin.json`.
+/// @param data_dir  where `data:ground/rock.png` is: `share_dir() / "data"`
+/// @throws Error (BadInput) `effect::load: folder/plugin.json:line: ...`
+Manifest load_manifest(const std::filesystem::path& folder, const std::filesystem::path& data_dir);
+
+}  // namespace relevo::effect

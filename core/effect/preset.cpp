@@ -1,0 +1,109 @@
+#include "effect/preset.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/paths.h"
+#include "base/text.h"
+#include "effect/json.h"
+
+namespace relevo::effect {
+namespace {
+
+constexpr std::string_view kWho = "effect::load_preset";
+
+std::filesystem::path presets_dir() {
+    return share_dir() / "presets";
+}
+
+std::filesystem::path find_preset(const std::string& name) {
+    const std::filesystem::path path(name);
+    if (name.find('/') != std::string::npos || path.extension() == ".json") return path;
+    const std::vector<std::string> names = preset_names();
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+        const std::optional<std::string> near = nearest(name, names);
+        bad_input(fmt::format(
+            "{}: {}: no such preset; {}", kWho, name,
+            near ? fmt::format("did you mean {}?", *near)
+                 : fmt::format("there are {}", names.empty()
+                                                   ? std::string("none")
+                                                   : fmt::format("{}", fmt::join(names, ", ")))));
+    }
+    return presets_dir() / (name + ".json");
+}
+
+/// A value as it would stand on the command line.
+std::optional<std::string> value_text(const Json& value) {
+    switch (value.kind) {
+        case Json::Kind::Bool:
+        case Json::Kind::Number:
+            return describe(value);
+        case Json::Kind::String:
+            return value.text;
+        case Json::Kind::Array: {
+            std::vector<std::string> texts;
+            for (const Json& item : value.items) {
+                if (item.kind != Json::Kind::Number) return std::nullopt;
+                texts.push_back(describe(item));
+            }
+            return fmt::format("{}", fmt::join(texts, ","));
+        }
+        default:
+            return std::nullopt;
+    }
+}
+
+}  // namespace
+
+Setting parse_setting(std::string_view text) {
+    const std::size_t equals = text.find('=');
+    const std::size_t dot = text.find('.');
+    if (equals == std::string_view::npos || dot == std::string_view::npos || dot == 0 ||
+        dot > equals)
+        bad_usage(fmt::format("--set: expected PLUGIN.PARAMETER=VALUE but got \"{}\"", text));
+    return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1)), 0};
+}
+
+Preset load_preset(const std::string& name_or_path) {
+    const std::filesystem::path path = find_preset(name_or_path);
+    Preset preset;
+    preset.name = path.stem().string();
+    preset.file = path.string();
+    const Json json = parse_json(kWho, preset.file, read_text(path, kWho));
+    ObjectReader object(kWho, preset.file, "", json);
+    preset.description = object.string("description", "");
+    if (object.take("only")) preset.switches.only = object.strings("only");
+    preset.switches.enable = object.strings("enable");
+    preset.switches.disable = object.strings("disable");
+    if (const Json* const set = object.take("set")) {
+        if (set->kind != Json::Kind::Object)
+            object.fail(
+                set->line, "set",
+                fmt::format("expected an object of address and value but got {}", describe(*set)));
+        for (const auto& [address, value] : set->members) {
+            const std::optional<std::string> text = value_text(value);
+            if (!text)
+                object.fail(value.line, "set",
+                            fmt::format("{}: expected a number, true or false, a text or a list of "
+                                        "numbers but got {}",
+                                        address, describe(value)));
+            preset.settings.push_back({address, *text, value.line});
+        }
+    }
+    object.finish();
+    return preset;
+}
+
+std::vector<std::string> preset_names() {
+    std::vector<std::string> names;
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(presets_dir(), ignored))
+        if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+}  // namespace relevo::effect

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace relevo::effect {
+
+/// Which effects are to be on, by their ids.
+struct Switches {
+    std::optional<std::vector<std::string>> only;  ///< these and nothing else
+    std::vector<std::string> enable;
+    std::vector<std::string> disable;
+};
+
+/// A value for a parameter.
+struct Setting {
+    std::string address;  ///< "haze.density"
+    std::string text;     ///< as shader::parse_value reads it
+    int line = 0;         ///< in a preset's file; 0 on the command line
+};
+
+/// A file of switches and values.
+struct Preset {
+    std::string name;
+    std::string file;
+    std::string description;
+    Switches switches;
+    std::vector<Setting> settings;
+};
+
+/// Reads `haze.density=0.2`.
+/// @throws Error (Usage) if it is not of that form
+Setting parse_setting(std::string_view text);
+
+/// Reads a preset: `share_dir()/presets/NAME.json`, or a path if there is a slash or `.json` in it.
+/// @throws Error (BadInput) `effect::load_preset: file:line: ...`
+Preset load_preset(const std::string& name_or_path);
+
+/// Names of the presets that came with the program.
+std::vector<std::string> preset_names();
+
+}  // namespace relevo::effect

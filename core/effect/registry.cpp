@@ -1,0 +1,105 @@
+#include "effect/registry.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/paths.h"
+#include "base/text.h"
+
+namespace relevo::effect {
+namespace {
+
+bool is_plugin(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(folder / "plugin.json", ignored);
+}
+
+std::vector<std::filesystem::path> plugin_folders(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(path, error))
+        bad_input(fmt::format("effect::load: {}: no such folder", path.string()));
+    if (is_plugin(path)) return {path};
+    std::vector<std::filesystem::path> folders;
+    for (const auto& entry : std::filesystem::directory_iterator(path, error))
+        if (is_plugin(entry.path())) folders.push_back(entry.path());
+    if (error)
+        bad_input(
+            fmt::format("effect::load: {}: cannot be read, {}", path.string(), error.message()));
+    // A folder's own order is the file system's.
+    std::sort(folders.begin(), folders.end());
+    return folders;
+}
+
+}  // namespace
+
+Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
+                        const std::filesystem::path& data_dir) {
+    Registry registry;
+    for (const std::filesystem::path& path : search_paths) {
+        for (const std::filesystem::path& folder : plugin_folders(path)) {
+            std::string id =
+                std::filesystem::absolute(folder).lexically_normal().filename().string();
+            try {
+                Effect effect = load_effect(folder, data_dir);
+                id = effect.id();
+                if (const Effect* first = registry.find(id))
+                    bad_input(fmt::format(
+                        "effect::load: {}: the id {} is taken by {}; one of the "
+                        "two has to go",
+                        effect.manifest.file.string(), id, first->manifest.file.string()));
+                registry.effects_.push_back(std::move(effect));
+            } catch (const Error& error) {
+                registry.broken_.push_back({id, folder, error.what()});
+            }
+        }
+    }
+    std::sort(registry.effects_.begin(), registry.effects_.end(),
+              [](const Effect& a, const Effect& b) { return a.id() < b.id(); });
+    return registry;
+}
+
+Registry Registry::load_installed(const std::vector<std::filesystem::path>& extra) {
+    std::vector<std::filesystem::path> paths;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(share_dir() / "plugins", ignored))
+        paths.push_back(share_dir() / "plugins");
+    paths.insert(paths.end(), extra.begin(), extra.end());
+    return load(paths, share_dir() / "data");
+}
+
+const Effect* Registry::find(std::string_view id) const {
+    const auto found = std::find_if(effects_.begin(), effects_.end(),
+                                    [&](const Effect& effect) { return effect.id() == id; });
+    return found == effects_.end() ? nullptr : &*found;
+}
+
+const Effect& Registry::effect(std::string_view id, std::string_view who) const {
+    if (const Effect* found = find(id)) return *found;
+    for (const BrokenEffect& broken : broken_)
+        if (broken.id == id)
+            bad_input(
+                fmt::format("{}: {}: this plugin could not be loaded: {}", who, id, broken.error));
+    std::vector<std::string> ids;
+    for (const Effect& effect : effects_)
+        ids.push_back(effect.id());
+    const std::optional<std::string> near = nearest(id, ids);
+    bad_input(fmt::format(
+        "{}: {}: no such plugin; {}", who, id,
+        near ? fmt::format("did you mean {}?", *near)
+             : fmt::format("there are {}", ids.empty() ? std::string("none")
+                                                       : fmt::format("{}", fmt::join(ids, ", ")))));
+}
+
+std::vector<shader::Param> Registry::params() const {
+    std::vector<shader::Param> result;
+    for (const Effect& effect : effects_) {
+        const std::vector<shader::Param> own = effect.params();
+        result.insert(result.end(), own.begin(), own.end());
+    }
+    return result;
+}
+
+}  // namespace relevo::effect

@@ -1,0 +1,305 @@
+#include "effect/selection.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace relevo::effect {
+namespace {
+
+constexpr std::string_view kWho = "effect::select";
+
+bool contains(const std::vector<std::string>& words, std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+class Selector {
+  public:
+    Selector(const Registry& registry, const std::vector<Preset>& presets,
+             const Switches& command_line)
+        : registry_(registry) {
+        for (const Effect& effect : registry.effects())
+            if (effect.manifest.enabled_by_default) on_.insert(effect.id());
+        for (const Preset& preset : presets)
+            apply(known_of(preset));
+        check_command_line(command_line);
+        apply(command_line);
+    }
+
+    Selection run() {
+        while (meet_requirements()) {
+        }
+        check_exclusive_hooks();
+        Selection selection;
+        selection.effects = ordered();
+        std::set<std::string> words;
+        for (const Effect* effect : selection.effects)
+            words.insert(effect->manifest.provides.begin(), effect->manifest.provides.end());
+        selection.capabilities.assign(words.begin(), words.end());
+        selection.notices = std::move(notices_);
+        return selection;
+    }
+
+  private:
+    const Effect& effect(const std::string& id) const { return registry_.effect(id, kWho); }
+
+    // ---- what was asked for
+
+    /// A preset's switches without the plugins that are not there.
+    Switches known_of(const Preset& preset) {
+        const auto known = [&](const std::vector<std::string>& ids) {
+            std::vector<std::string> result;
+            for (const std::string& id : ids) {
+                if (registry_.find(id))
+                    result.push_back(id);
+                else
+                    notices_.push_back(
+                        fmt::format("{}: {} is skipped, there is no such plugin", preset.file, id));
+            }
+            return result;
+        };
+        Switches switches;
+        if (preset.switches.only) switches.only = known(*preset.switches.only);
+        switches.enable = known(preset.switches.enable);
+        switches.disable = known(preset.switches.disable);
+        return switches;
+    }
+
+    void check_command_line(const Switches& switches) const {
+        const std::vector<std::string> only = switches.only.value_or(std::vector<std::string>{});
+        for (const auto* ids : {&only, &switches.enable, &switches.disable})
+            for (const std::string& id : *ids)
+                effect(id);
+        for (const std::string& id : switches.disable)
+            if (contains(switches.enable, id) || contains(only, id))
+                bad_input(
+                    fmt::format("{}: {}: expected it either on or off but got both", kWho, id));
+    }
+
+    void apply(const Switches& switches) {
+        const auto ask = [&](const std::string& id) {
+            on_.insert(id);
+            asked_.insert(id);
+            disabled_.erase(id);
+        };
+        if (switches.only) {
+            on_.clear();
+            asked_.clear();
+            disabled_.clear();
+            for (const std::string& id : *switches.only)
+                ask(id);
+        }
+        for (const std::string& id : switches.enable)
+            ask(id);
+        for (const std::string& id : switches.disable) {
+            on_.erase(id);
+            asked_.erase(id);
+            disabled_.insert(id);
+        }
+    }
+
+    // ---- requirements
+
+    bool is_provided(const std::string& word) const {
+        return std::any_of(on_.begin(), on_.end(),
+                           [&](const std::string& id) { return effect(id).provides(word); });
+    }
+
+    /// Providers that are off, those that would be on by default first.
+    std::vector<const Effect*> providers(const std::string& word) const {
+        std::vector<const Effect*> result;
+        for (const Effect& effect : registry_.effects())
+            if (effect.provides(word)) result.push_back(&effect);
+        std::stable_partition(result.begin(), result.end(), [](const Effect* effect) {
+            return effect->manifest.enabled_by_default;
+        });
+        return result;
+    }
+
+    /// Mends one unmet requirement; false if there is none.
+    bool meet_requirements() {
+        for (const std::string& id : on_) {
+            for (const std::string& word : effect(id).manifest.needs) {
+                if (is_provided(word)) continue;
+                if (asked_.count(id) == 0 || !pull_in(id, word)) switch_off(id, word);
+                return true;
+            }
+        }
+        return false;
+    }
+
+    bool pull_in(const std::string& id, const std::string& word) {
+        for (const Effect* provider : providers(word)) {
+            if (disabled_.count(provider->id()) > 0 || unmet_.count(provider->id()) > 0) continue;
+            notices_.push_back(
+                fmt::format("{} requires {}: {} is switched on too", id, word, provider->id()));
+            on_.insert(provider->id());
+            asked_.insert(provider->id());
+            return true;
+        }
+        return false;
+    }
+
+    void switch_off(const std::string id, const std::string& word) {
+        std::vector<std::string> offers;
+        for (const Effect* provider : providers(word)) {
+            const bool disabled = disabled_.count(provider->id()) > 0;
+            const bool unmet = unmet_.count(provider->id()) > 0;
+            offers.push_back(
+                fmt::format("{} is {}", provider->id(),
+                            disabled ? "disabled"
+                            : unmet  ? "off"
+                                     : "off, --enable " + provider->id() + " changes that"));
+        }
+        notices_.push_back(fmt::format("{} is off: it requires {}, {}", id, word,
+                                       offers.empty()
+                                           ? "which no plugin here provides"
+                                           : fmt::format("{}", fmt::join(offers, "; "))));
+        on_.erase(id);
+        asked_.erase(id);
+        unmet_.insert(id);
+    }
+
+    // ---- hooks and order
+
+    void check_exclusive_hooks() const {
+        for (const shader::Hook& hook : shader::hooks()) {
+            if (hook.kind == shader::HookKind::Chain) continue;
+            std::vector<std::string> ids, mends;
+            for (const std::string& id : on_) {
+                if (!effect(id).answers(hook.name)) continue;
+                ids.push_back(id);
+                mends.push_back("--disable " + id);
+            }
+            if (ids.size() > 1)
+                bad_input(fmt::format(
+                    "{}: {}: expected one provider of this exclusive hook but got {}; add {}", kWho,
+                    hook.name, fmt::join(ids, " and "), fmt::join(mends, " or ")));
+        }
+    }
+
+    /// Effects that have to come before, and the word that says so.
+    std::map<std::string, std::string> before(const std::string& id) const {
+        std::map<std::string, std::string> result;
+        for (const std::string& word : effect(id).manifest.after)
+            for (const std::string& other : on_)
+                if (other != id && effect(other).provides(word)) result.emplace(other, word);
+        return result;
+    }
+
+    std::vector<const Effect*> ordered() const {
+        std::vector<const Effect*> order;
+        std::set<std::string> left = on_;
+        while (!left.empty()) {
+            const auto next = std::find_if(left.begin(), left.end(), [&](const std::string& id) {
+                const auto others = before(id);
+                return std::none_of(others.begin(), others.end(),
+                                    [&](const auto& other) { return left.count(other.first) > 0; });
+            });
+            if (next == left.end()) fail_circle(left);
+            order.push_back(&effect(*next));
+            left.erase(next);
+        }
+        return order;
+    }
+
+    /// Every effect of `left` has another of `left` before it, so walking back meets one twice.
+    [[noreturn]] void fail_circle(const std::set<std::string>& left) const {
+        std::vector<std::string> path = {*left.begin()};
+        while (true) {
+            const auto others = before(path.back());
+            const auto next = std::find_if(others.begin(), others.end(), [&](const auto& other) {
+                return left.count(other.first) > 0;
+            });
+            const auto seen = std::find(path.begin(), path.end(), next->first);
+            if (seen == path.end()) {
+                path.push_back(next->first);
+                continue;
+            }
+            path.erase(path.begin(), seen);
+            break;
+        }
+        std::vector<std::string> links, files;
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            const std::string& other = path[(i + 1) % path.size()];
+            links.push_back(
+                fmt::format("{} after {} ({})", path[i], other, before(path[i]).at(other)));
+            files.push_back(effect(path[i]).manifest.file.string());
+        }
+        bad_input(fmt::format("{}: {}: they wait for each other: {}; change \"after\" in {}", kWho,
+                              fmt::join(path, " and "), fmt::join(links, ", "),
+                              fmt::join(files, " or ")));
+    }
+
+    const Registry& registry_;
+    std::set<std::string> on_;
+    std::set<std::string> asked_;     // by name, or by what was asked for
+    std::set<std::string> disabled_;  // by name
+    std::set<std::string> unmet_;     // switched off here
+    std::vector<std::string> notices_;
+};
+
+std::string plugin_of(const std::string& address) {
+    return address.substr(0, address.find('.'));
+}
+
+}  // namespace
+
+bool Selection::has(std::string_view id) const {
+    return std::any_of(effects.begin(), effects.end(),
+                       [&](const Effect* effect) { return effect->id() == id; });
+}
+
+std::vector<const shader::Snippet*> Selection::snippets() const {
+    std::vector<const shader::Snippet*> result;
+    for (const Effect* effect : effects)
+        for (const shader::Snippet& snippet : effect->snippets)
+            result.push_back(&snippet);
+    return result;
+}
+
+Selection select(const Registry& registry, const std::vector<Preset>& presets,
+                 const Switches& command_line) {
+    return Selector(registry, presets, command_line).run();
+}
+
+std::vector<std::string> apply_settings(shader::ParamStore& store, const Registry& registry,
+                                        const Selection& selection,
+                                        const std::vector<Preset>& presets,
+                                        const std::vector<Setting>& command_line) {
+    std::vector<std::string> notices;
+    for (const Preset& preset : presets) {
+        for (const Setting& setting : preset.settings) {
+            const std::string plugin = plugin_of(setting.address);
+            const std::string place = fmt::format("{}:{}", preset.file, setting.line);
+            if (!store.find(setting.address) && !registry.find(plugin)) {
+                notices.push_back(fmt::format("{}: {} is skipped, there is no plugin {}", place,
+                                              setting.address, plugin));
+                continue;
+            }
+            try {
+                store.set(setting.address, setting.text);
+            } catch (const Error& error) {
+                const std::string_view what = error.what();
+                throw Error(error.code(), fmt::format("effect::apply_settings: {}: {}", place,
+                                                      what.substr(what.find(": ") + 2)));
+            }
+        }
+    }
+    for (const Setting& setting : command_line) {
+        store.set(setting.address, setting.text);
+        const std::string plugin = plugin_of(setting.address);
+        if (registry.find(plugin) && !selection.has(plugin))
+            notices.push_back(fmt::format("{} is set, but {} is off; --enable {} switches it on",
+                                          setting.address, plugin, plugin));
+    }
+    return notices;
+}
+
+}  // namespace relevo::effect

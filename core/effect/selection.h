@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "effect/preset.h"
+#include "effect/registry.h"
+#include "shader/param_store.h"
+
+namespace relevo::effect {
+
+/// The effects that are on.
+struct Selection {
+    std::vector<const Effect*> effects;     ///< in calling order; they live in the registry
+    std::vector<std::string> capabilities;  ///< what they provide, sorted
+    std::vector<std::string> notices;  ///< what was switched on or off beyond the asked, and why
+
+    bool has(std::string_view id) const;
+    std::vector<const shader::Snippet*> snippets() const;  ///< for shader::StitchInput
+};
+
+/// Decides which effects are on, and in which order they are called.
+///
+/// On are those with `enabled_by_default`; each preset, and then the command line, changes that:
+/// `only` puts its own list in its place, `enable` adds, `disable` takes away. What `only` and
+/// `enable` name pulls in effects that provide what it requires, except disabled ones. An effect
+/// whose requirement nobody provides goes off. Order: behind every provider of a word in `after`;
+/// ties by id.
+///
+/// What a preset names and is not there is a notice, so that deleting a plugin breaks no preset.
+/// @throws Error (BadInput) for an id on the command line that is unknown, or both on and off; a
+///         circle of `after`; two providers of an exclusive hook
+Selection select(const Registry& registry, const std::vector<Preset>& presets,
+                 const Switches& command_line);
+
+/// Sets the values of presets, then those of the command line. Never switches an effect on.
+/// @param store  has been told of all parameters there are
+/// @returns notices: what a preset sets of plugins that are not there, and what the command line
+///          sets of effects that are off
+/// @throws Error (BadInput) for values that a parameter cannot have, and for unknown parameters: on
+///         the command line all, in a preset those of plugins that are there
+std::vector<std::string> apply_settings(shader::ParamStore& store, const Registry& registry,
+                                        const Selection& selection,
+                                        const std::vector<Preset>& presets,
+                                        const std::vector<Setting>& command_line);
+
+}  // namespace relevo::effect
