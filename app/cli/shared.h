@@ -1,69 +1,59 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "dem/load.h"
-#include "effect/selection.h"
-#include "scene/camera.h"
+#include "scene/view.h"
+#include "sun/refraction.h"
 #include "sun/zone.h"
 
-/// Options that several verbs take.
+/// Options that several verbs take. Each struct adds its options to a verb, and makes a value of
+/// core's from what was given.
 namespace relevo::cli {
 
 /// DEM... and how to read it.
 struct DemArguments {
     std::vector<std::string> paths;
-    std::string crs, unit;
-    int band = 0;
-    std::optional<double> nodata;
+    dem::LoadOptions options;
 
     void add_to(CLI::App& verb);
-    dem::LoadOptions options() const;
 };
 
 /// --time and --tz.
 struct TimeArguments {
     std::string time, zone;
 
-    void add_to(CLI::App& verb, bool required);
+    void add_to(CLI::App& verb);
     bool given() const { return !time.empty(); }
-    /// Tells the user where a wall time was skipped or came twice.
+    /// Tells the user where a wall time was skipped or came twice. @throws Error (Usage)
     sun::ParsedTime parse() const;
 };
 
-/// --no-refraction and --refraction.
+/// --refraction and --no-refraction.
 struct RefractionArguments {
-    bool off = false;
     std::string model = "standard";
+    bool off = false;
 
     void add_to(CLI::App& verb);
-    sun::Refraction refraction(const geo::Geodetic& place) const;
+    sun::Refraction at(const geo::Geodetic& place) const;
 };
 
 /// Where the camera stands.
 struct ViewArguments {
     std::string view, eye, look_at;
     std::optional<double> heading_deg, pitch_deg, fov_deg, focal_length_mm;
-    double exaggerate = 1;
+    double exaggeration = 1;
 
     void add_to(CLI::App& verb);
-    /// @throws Error (Usage) for options that exclude each other or cannot be read; before any work
-    void check() const;
-    scene::Camera camera(const dem::Heightfield& dem, const geo::LocalFrame& frame,
-                         std::span<const glm::dvec3> points, double aspect) const;
-};
-
-/// Which effects are on, with which values.
-struct EffectArguments {
-    std::vector<std::string> only, enable, disable, set, plugin_path;
-    std::string preset;
-    bool only_given = false;
-
-    void add_to(CLI::App& verb);
+    /// Reads what can be read before any work is done. @throws Error (Usage)
+    scene::View view_of() const;
 };
 
 /// "1280x1024" as width and height. @throws Error (Usage)

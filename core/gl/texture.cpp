@@ -156,8 +156,8 @@ void Texture::set_sampling(Filter filter, Wrap wrap, double anisotropy) {
 
 void Texture::copy_from(const Texture& other) {
     assert(other.format_ == format_ && other.extent_.width == extent_.width);
-    glCopyImageSubData(other.name(), target(other.kind_), 0, 0, 0, 0, name(), target(kind_), 0, 0, 0, 0,
-                       extent_.width, extent_.height, extent_.depth);
+    glCopyImageSubData(other.name(), target(other.kind_), 0, 0, 0, 0, name(), target(kind_), 0, 0,
+                       0, 0, extent_.width, extent_.height, extent_.depth);
 }
 
 void Texture::make_mipmaps() {

@@ -16,7 +16,7 @@ struct ProgramText {
 };
 
 struct ProgramOptions {
-    bool vertex_normals = false;  ///< see RendererOptions
+    bool vertex_normals = false;  ///< per vertex instead of per fragment
 };
 
 /// Stitches all programs of a frame. @throws Error as shader::stitch

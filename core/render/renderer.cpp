@@ -27,7 +27,21 @@ constexpr unsigned kParamsBinding = 1;
 constexpr double kFootprintWithoutAnisotropy = 2.5;
 constexpr double kAnisotropy = 8;
 
+constexpr const char* kNormalAddress = "terrain.normal";
+
 }  // namespace
+
+std::vector<shader::Param> core_params() {
+    shader::Param normal;
+    normal.name = "terrain_normal";
+    normal.address = kNormalAddress;
+    normal.type = shader::ParamType::Int;
+    normal.words = {"fragment", "vertex"};
+    normal.is_static = true;
+    normal.label = "Normals";
+    normal.description = "Per fragment at the DEM's full resolution, or per vertex as in the paper";
+    return {normal};
+}
 
 struct Renderer::Impl {
     gl::Context& context;
@@ -49,7 +63,7 @@ struct Renderer::Impl {
           options(o),
           // A software renderer pays for every tap of an anisotropic filter (four times the frame).
           anisotropy(c.info().device.software ? 1 : std::min(kAnisotropy, c.info().max_anisotropy)),
-          texts(stitch(effects.stitch, o, c.info().max_texture_units)),
+          texts(stitch(effects.stitch, c.info().max_texture_units)),
           geometry(link("geometry")),
           terrain(link("terrain")),
           sky(link("sky")),
@@ -93,17 +107,18 @@ struct Renderer::Impl {
         picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
     }
 
-    static std::vector<ProgramText> stitch(shader::StitchInput input, const RendererOptions& o,
-                                           int max_texture_units) {
+    static std::vector<ProgramText> stitch(shader::StitchInput input, int max_texture_units) {
         input.max_texture_units = max_texture_units;
         const shader::FolderTexts core(share_dir() / "shaders");
-        return stitch_programs(core, input, {.vertex_normals = o.vertex_normals});
+        const bool vertex_normals = input.values && input.values->find(kNormalAddress) &&
+                                    input.values->value(kNormalAddress)[0] == 1;
+        return stitch_programs(core, input, {.vertex_normals = vertex_normals});
     }
 
     const ProgramText& text(const std::string& name) const {
-        const auto found = std::find_if(texts.begin(), texts.end(), [&](const ProgramText& program) {
-            return program.name == name;
-        });
+        const auto found =
+            std::find_if(texts.begin(), texts.end(),
+                         [&](const ProgramText& program) { return program.name == name; });
         assert(found != texts.end());
         return *found;
     }

@@ -18,17 +18,17 @@ namespace relevo::render {
 struct RendererOptions {
     int width_px = 1280;
     int height_px = 1024;
-    /// Normals per vertex, as the paper has them, instead of per pixel at the DEM's full
-    /// resolution.
-    bool vertex_normals = false;
     bool antialias = true;
 };
 
 /// The enabled effects, as drawing needs them.
 struct EffectInputs {
     shader::StitchInput stitch;  ///< its units are the device's, whatever is set
-    std::vector<TextureRequest> textures;
+    std::vector<effect::TextureSpec> textures;
 };
+
+/// Core's own parameters, beside those of plugins: `terrain.normal`, fragment or vertex.
+std::vector<shader::Param> core_params();
 
 /// Milliseconds of the stages of one frame, by their names: "geometry", "terrain", "sky", "post",
 /// "antialias".

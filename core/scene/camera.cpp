@@ -61,8 +61,8 @@ Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, doub
     double distance = std::max((horizontal.highest - horizontal.lowest) / (2 * tan_x),
                                (vertical.highest - vertical.lowest) / (2 * tan_y));
     distance = std::max(distance, nearest + 1);
-    // That is the nearest place from which all is seen, but where one direction has room to spare the
-    // ground need not lie in its middle: shift it there, as seen.
+    // That is the nearest place from which all is seen, but where one direction has room to spare
+    // the ground need not lie in its middle: shift it there, as seen.
     double a = (horizontal.highest + horizontal.lowest) / 2;
     double b = (vertical.highest + vertical.lowest) / 2;
     double middle = 0;  // depth of the ground's middle

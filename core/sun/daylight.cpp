@@ -106,7 +106,7 @@ double natural_exposure(double elevation_rad) {
                sky_illuminance_lux(h_rad);
     };
     static const double kReference_lux = level_lux(radians(45));
-    return std::pow(kReference_lux / level_lux(elevation_rad), 0.8);
+    return 1.8 * std::pow(kReference_lux / level_lux(elevation_rad), 0.8);
 }
 
 }  // namespace relevo::sun

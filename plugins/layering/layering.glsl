@@ -18,7 +18,7 @@ uniform float layering_noise_amount = 0.03; //@ range(0, 0.5) label("Noise on li
 uniform vec2 layering_sand_grass_m = vec2(1.0, 6.0); //@ range(-12000, 9000) unit(m) label("Sand to grass")
 uniform vec2 layering_grass_rock_m = vec2(1700.0, 2300.0); //@ range(-12000, 9000) unit(m) label("Grass to rock")
 uniform vec2 layering_rock_snow_m = vec2(2700.0, 3000.0); //@ range(-12000, 9000) unit(m) label("Rock to snow")
-uniform float layering_noise_amount_m = 180.0; //@ range(0, 2000) unit(m) label("Noise on limits")
+uniform vec3 layering_noise_amount_m = vec3(2.0, 180.0, 180.0); //@ range(0, 2000) unit(m) label("Noise on limits") description("On the limits from sand to grass, to rock, to snow")
 uniform float layering_snow_shift_m = 0.0; //@ range(-9000, 9000) unit(m) label("Snow line shift") description("Added to the climate's snow line: negative in a cold season")
 
 uniform bool layering_slope = true; //@ label("Rock on steep ground")
@@ -69,12 +69,12 @@ layering_Limits layering_limits_at(in float latitude_deg) {
 
 /// Weights of sand, grass, rock and snow, at most two above zero, sum 1.
 /// @param elevation  in the limits' unit
-/// @param noise      added to the limits, in the limits' unit
+/// @param noise      added to the three limits, in their unit
 /// @param steep      0..1: how much of the point shows rock whatever the elevation
-vec4 layering_weights(in layering_Limits limits, in float elevation, in float noise, in float steep) {
-    float grass = smoothstep(limits.sand_grass.x + noise, limits.sand_grass.y + noise, elevation);
-    float rock = smoothstep(limits.grass_rock.x + noise, limits.grass_rock.y + noise, elevation);
-    float snow = smoothstep(limits.rock_snow.x + noise, limits.rock_snow.y + noise, elevation);
+vec4 layering_weights(in layering_Limits limits, in float elevation, in vec3 noise, in float steep) {
+    float grass = smoothstep(limits.sand_grass.x + noise.x, limits.sand_grass.y + noise.x, elevation);
+    float rock = smoothstep(limits.grass_rock.x + noise.y, limits.grass_rock.y + noise.y, elevation);
+    float snow = smoothstep(limits.rock_snow.x + noise.z, limits.rock_snow.y + noise.z, elevation);
     vec4 weights = vec4(1.0 - grass, grass * (1.0 - rock), grass * rock * (1.0 - snow),
                         grass * rock * snow);
     weights = mix(weights, vec4(0.0, 0.0, 1.0, 0.0), steep);
@@ -113,7 +113,7 @@ void layering_on_albedo(inout Surface s) {
     layering_Limits limits = layering_limits_at(latitude_deg);
     bool normalised = layering_limits == 0;
     vec4 weights = layering_weights(limits, normalised ? s.height_unit : s.height_m,
-                                    noise * (normalised ? layering_noise_amount : layering_noise_amount_m),
+                                    noise * (normalised ? vec3(layering_noise_amount) : layering_noise_amount_m),
                                     layering_steepness(dot(s.geometric_normal, s.up), noise));
 
     // The two materials: the heavier first.

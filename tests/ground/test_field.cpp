@@ -67,18 +67,6 @@ TEST(Field, SamplingAtTexelCentresGivesTheTexels) {
         }
 }
 
-TEST(Field, StandardiseGivesMeanZeroAndDeviationOne) {
-    Field field = make_field(64, [](float s, float t) { return 3 + s * t; });
-    standardise(field);
-    EXPECT_NEAR(mean(field), 0, 1e-6);
-    EXPECT_NEAR(standard_deviation(field), 1, 1e-6);
-}
-
-TEST(Field, QuantileIsTheValueWithThatShareBelow) {
-    const Field field = make_field(64, [](float s, float) { return s; });
-    EXPECT_NEAR(quantile(field, 0.25), 0.25, 1.0 / 64);
-}
-
 // A Gaussian of deviation sigma leaves exp(-2 (pi sigma k / n)^2) of a wave of k cycles.
 TEST(Blurred, LeavesAWaveWhatTheGaussiansTransformSays) {
     constexpr int n = 128;

@@ -116,6 +116,10 @@ struct BrokenFile {
     const char* message;
 };
 
+void PrintTo(const BrokenFile& file, std::ostream* out) {
+    *out << file.name;
+}
+
 // A 4 x 4 RGBA8 texture with three levels: index at 80, descriptor at 152, pairs at 244, levels at
 // 268 (1 x 1), 272 (2 x 2) and 288 (4 x 4); 352 bytes.
 class BrokenKtx : public testing::TestWithParam<BrokenFile> {};

@@ -14,21 +14,6 @@
 namespace relevo::ground {
 namespace {
 
-/// Sums by rows first, so that the result does not depend on the threads.
-template <typename Term>
-double row_sums(const Field& field, Term term) {
-    std::vector<double> sums(static_cast<std::size_t>(field.height()));
-    parallel_for(0, field.height(), 32, [&](int first, int last) {
-        for (int r = first; r < last; ++r)
-            for (const float value : field.row(r))
-                sums[static_cast<std::size_t>(r)] += term(value);
-    });
-    double sum = 0;
-    for (const double s : sums)
-        sum += s;
-    return sum;
-}
-
 /// Frequencies that flatten() touches: -7 to 7 cycles a tile.
 constexpr int kFlattened = 7;
 
@@ -121,28 +106,17 @@ float smooth_sample(const Field& field, float s, float t) {
 }
 
 double mean(const Field& field) {
-    return row_sums(field, [](float v) { return static_cast<double>(v); }) /
-           static_cast<double>(field.size());
-}
-
-double standard_deviation(const Field& field) {
-    const double m = mean(field);
-    return std::sqrt(row_sums(field, [m](float v) { return (v - m) * (v - m); }) /
-                     static_cast<double>(field.size()));
-}
-
-void standardise(Field& field) {
-    const auto m = static_cast<float>(mean(field));
-    const auto scale = static_cast<float>(1.0 / standard_deviation(field));
-    for_each_texel(field.width(),
-                   [&](int c, int r) { field.at(c, r) = (field.at(c, r) - m) * scale; });
-}
-
-float quantile(const Field& field, double share) {
-    std::vector<float> values(field.begin(), field.end());
-    const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + at, values.end());
-    return values[static_cast<std::size_t>(at)];
+    // By rows first, so that the result does not depend on the threads.
+    std::vector<double> sums(static_cast<std::size_t>(field.height()));
+    parallel_for(0, field.height(), 32, [&](int first, int last) {
+        for (int r = first; r < last; ++r)
+            for (const float value : field.row(r))
+                sums[static_cast<std::size_t>(r)] += static_cast<double>(value);
+    });
+    double sum = 0;
+    for (const double s : sums)
+        sum += s;
+    return sum / static_cast<double>(field.size());
 }
 
 Field blurred(const Field& field, double sigma_px) {

@@ -16,8 +16,7 @@ using ColourField = Array2d<glm::vec3>;  ///< linear sRGB (BT.709 primaries, D65
 /// A field of n x n texels filled in parallel by value(s, t), 0 <= s, t < 1.
 Field make_field(int n, const std::function<float(float s, float t)>& value);
 
-/// The same in an n/4 x n/4 field, for what varies slowly: `cells across the tile` of the finest
-/// octave should not be above n/8. To be read with sample().
+/// The same in n/4 x n/4 texels, for what varies slowly; to be read with sample().
 Field make_coarse_field(int n, const std::function<float(float s, float t)>& value);
 
 /// Calls body(column, row) for all n x n texels in parallel.
@@ -31,16 +30,8 @@ float sample(const Field& field, float s, float t);
 float smooth_sample(const Field& field, float s, float t);
 
 double mean(const Field& field);
-double standard_deviation(const Field& field);
 
-/// Shifted and scaled to mean 0 and standard deviation 1.
-void standardise(Field& field);
-
-/// What lies under a share of the texels: quantile(field, 0.5) is the median.
-float quantile(const Field& field, double share);
-
-/// Gaussian blur by a standard deviation in texels. Exact on the torus (done in the frequency
-/// domain).
+/// Gaussian blur on the torus by a standard deviation in texels, cut off at 3.5 of it.
 Field blurred(const Field& field, double sigma_px);
 
 /// Takes out what makes a tile visible when it is repeated: waves of up to four cycles a tile are

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "base/parallel_for.h"
-#include "maps.h"
 #include "material.h"
 #include "noise.h"
 
@@ -24,7 +23,11 @@ struct Leaf {
 /// What is seen from above, the highest leaf winning.
 class Canopy {
   public:
-    explicit Canopy(int n) : n_(n), height_m(n, n), colour(n, n), gloss(n, n) {}
+    explicit Canopy(int n) : height_m(n, n), colour(n, n), gloss(n, n), n_(n) {}
+
+    Field height_m;
+    ColourField colour;
+    Field gloss;
 
     /// Draws every leaf. Bands of rows are drawn in parallel, each with all its leaves in order, so
     /// that the threads do not show.
@@ -102,21 +105,16 @@ class Canopy {
             }
         }
     }
-
-  public:
-    Field height_m;
-    ColourField colour;
-    Field gloss;
 };
 
 // Reflectances, linear sRGB, of the parts (docs/ground-materials.md has their sources).
 constexpr glm::vec3 kGreen{0.062f, 0.098f, 0.031f}, kYellowGreen{0.120f, 0.138f, 0.043f},
     kDarkGreen{0.038f, 0.066f, 0.028f}, kStraw{0.29f, 0.225f, 0.115f},
-    kThatch{0.145f, 0.108f, 0.062f}, kSoil{0.110f, 0.073f, 0.034f};
+    kThatch{0.145f, 0.108f, 0.062f}, kSoil{0.100f, 0.072f, 0.038f};
 
 /// Fields that the leaves go by, -1..1 or so, over the unit tile.
 float vigour(float s, float t) {
-    return fractal_noise(kSeed + 1, s, t, 7, 4, 0.6f);
+    return fractal_noise(kSeed + 1, s, t, 10, 4, 0.5f);
 }
 
 float dryness(float s, float t) {
@@ -136,7 +134,7 @@ std::vector<Leaf> thatch() {
             const auto random = [&](int k) { return hash_unit(kSeed + 10, i, j, k); };
             const glm::vec2 unit{(static_cast<float>(i) + random(0)) / kAcross,
                                  (static_cast<float>(j) + random(1)) / kAcross};
-            if (random(2) > 0.80f + 0.5f * vigour(unit.x, unit.y)) continue;
+            if (random(2) > 0.75f + 0.7f * vigour(unit.x, unit.y)) continue;
             const glm::vec2 root = unit * static_cast<float>(kTile_m);
             const glm::vec2 way = turned(random(3) * 6.2831853f);
             const float length_m = 0.03f + 0.07f * random(4);
@@ -166,9 +164,9 @@ std::vector<Leaf> blades() {
             const auto of_tuft = [&](int k) {
                 return hash_unit(kSeed + 21, static_cast<int>(tuft.id & 0xFFFFFu), k);
             };
-            const float strength = 0.55f + 0.55f * vigour(s, t) + 0.25f * (of_tuft(0) - 0.5f);
+            const float strength = 0.56f + 0.80f * vigour(s, t) + 0.25f * (of_tuft(0) - 0.5f);
             // Sparse between the tufts and where little grows: thatch and soil show.
-            const float cover = smoothstep(-0.25f, 0.35f, strength) *
+            const float cover = smoothstep(0.0f, 0.38f, strength) *
                                 (1.05f - 0.75f * smoothstep(0.30f, 0.75f, tuft.nearest));
             if (random(2) > cover) continue;
             const float dry = dryness(s, t) + 0.8f * (of_tuft(1) - 0.5f);
@@ -246,9 +244,10 @@ Material make_grass(int n) {
         make_field(n, [](float s, float t) { return fractal_noise(kSeed + 5, s, t, 90, 3, 0.7f); });
     for_each_texel(fine, [&](int c, int r) {
         const float crumb = crumbs.at(c / 2, r / 2);
-        canopy.height_m.at(c, r) = 0.002f + 0.0035f * crumb;
-        canopy.colour.at(c, r) =
-            glm::mix(kSoil, kThatch, 0.35f + 0.25f * crumb) * (1 + 0.25f * crumb);
+        const float grain = hash_normal(kSeed + 6, c, r);
+        canopy.height_m.at(c, r) = 0.002f + 0.006f * crumb + 0.0008f * grain;
+        canopy.colour.at(c, r) = glm::mix(kSoil, kThatch, 0.30f + 0.30f * crumb) *
+                                 std::max(0.4f, 1 + 0.55f * crumb + 0.16f * grain);
         canopy.gloss.at(c, r) = 0.05f;
     });
     canopy.draw(thatch());

@@ -63,12 +63,6 @@ float hash_normal(std::uint32_t seed, int x, int y, int z) {
     return (sum * 0x1p-16f - 2.0f) * 1.7320508f;
 }
 
-glm::vec2 Lattice::in_tile(glm::vec2 q) const {
-    const float cells = static_cast<float>(a_ * d_ - b_ * c_);
-    return {(static_cast<float>(d_) * q.x - static_cast<float>(b_) * q.y) / cells,
-            (static_cast<float>(a_) * q.y - static_cast<float>(c_) * q.x) / cells};
-}
-
 glm::ivec2 Lattice::wrapped(int i, int j) const {
     // Steps over the tile's edges that lead to (i, j): the inverse matrix, rounded down. In whole
     // numbers, so that both sides of an edge agree.
@@ -100,12 +94,13 @@ float gradient_noise(std::uint32_t seed, const Lattice& lattice, glm::vec2 q) {
 float fractal_noise(std::uint32_t seed, const Lattice& cells, float s, float t, int octaves,
                     float gain) {
     float sum = 0, strength = 1, square = 0;
+    Lattice lattice = cells;
     for (int o = 0; o < octaves; ++o) {
-        const Lattice lattice = cells.finer(1 << o);
         sum += strength * gradient_noise(seed + static_cast<std::uint32_t>(o) * 101u, lattice,
                                          lattice.at(s, t));
         square += strength * strength;
         strength *= gain;
+        lattice = lattice.finer();
     }
     return sum / std::sqrt(square);
 }

@@ -11,10 +11,11 @@ constexpr std::uint32_t kSeed = 0x50CC;
 constexpr double kTile_m = 8;
 
 // The beds strike about 20 degrees off the tile's axes; what they shape is drawn out along them.
-const Lattice kBlocks(7, 3, -5, 15);     // blocks of 1.1 x 0.5 m
-const Lattice kSlabs(17, 7, -13, 34);    // the pieces they break into, 0.45 x 0.2 m
-const Lattice kBeds(4, 1, -14, 38);      // foliation, drawn out seven to one
-const Lattice kFlakes(26), kChips(62);   // scars that pieces left, 30 and 13 cm
+const Lattice kBlocks(7, 3, -5, 15);   // blocks of 1.1 x 0.5 m
+const Lattice kSlabs(17, 7, -13, 34);  // the pieces they break into, 0.45 x 0.2 m
+const Lattice kBeds(4, 1, -14, 38);    // foliation, drawn out seven to one
+const Lattice kFlakes(24, 10, -10, 24),
+    kChips(51, -35, 35, 51);             // scars that pieces left, 30 and 13 cm
 const Lattice kCrusts(44), kSpots(120);  // lichens, up to 18 and 7 cm
 
 float unit_of(std::uint32_t id, int k) {
@@ -58,17 +59,18 @@ Fracture fracture(std::uint32_t seed, const Lattice& lattice, float s, float t, 
 float scars(std::uint32_t seed, const Lattice& lattice, float s, float t) {
     const glm::vec2 q = lattice.at(s, t);
     const int i0 = static_cast<int>(std::floor(q.x)), j0 = static_cast<int>(std::floor(q.y));
+    // A bowl two cells away lies above 0.9 here and so never shows.
     float lowest = 9;
     for (int j = j0 - 1; j <= j0 + 1; ++j)
         for (int i = i0 - 1; i <= i0 + 1; ++i) {
             const glm::ivec2 cell = lattice.wrapped(i, j);
             const std::uint32_t id = hash(seed, cell.x, cell.y);
             const auto part = [id](int shift) {
-                return static_cast<float>(id >> shift & 0xFFu) * 0x1p-8f - 0.5f;
+                return static_cast<float>(id >> shift & 0x3Fu) / 63 - 0.5f;
             };
-            const glm::vec2 d = q - (glm::vec2(i, j) + 0.5f + 0.7f * glm::vec2(part(0), part(8)));
-            const float slope = part(16) * d.x + part(24) * d.y;
-            lowest = std::min(lowest, glm::dot(d, d) + 0.9f * slope + 0.35f * part(4));
+            const glm::vec2 d = q - (glm::vec2(i, j) + 0.5f + 0.6f * glm::vec2(part(0), part(6)));
+            const float slope = part(12) * d.x + part(18) * d.y;
+            lowest = std::min(lowest, glm::dot(d, d) + 0.5f * slope + 0.25f * part(24));
         }
     return lowest;
 }
@@ -118,7 +120,7 @@ Material make_rock(int n) {
     const Field warmth = make_coarse_field(
         n, [](float s, float t) { return fractal_noise(kSeed + 11, s, t, 8, 4, 0.6f); });
     const Field iron = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 12, s, t, 10, 4, 0.6f); });
+        n, [](float s, float t) { return fractal_noise(kSeed + 12, s, t, 10, 3, 0.6f); });
     const Field colonies = make_coarse_field(
         n, [](float s, float t) { return fractal_noise(kSeed + 15, s, t, 9, 3, 0.6f); });
 
@@ -140,24 +142,24 @@ Material make_rock(int n) {
         const float open = std::max(block.open, broken * slab.open);
 
         // Foliation: thin plates that end in little steps, where the rock parts along it.
-        const float bed = fractal_noise(kSeed + 5, kBeds, ws, wt, 4, 0.6f);
+        const float bed = fractal_noise(kSeed + 5, kBeds, ws, wt, 3, 0.6f);
         const float parts =
             smoothstep(-0.2f, 0.6f, sample(parting, s, t) + unit_of(block.id, 8) - 0.5f);
         const float plates = 3.0f * bed + 1.4f * fractal_noise(kSeed + 6, s, t, 15, 3, 0.55f);
         const float step = plates - std::floor(plates);
         const float ledge = std::floor(plates) + smoothstep(0.75f, 1.0f, step) + 0.3f * step;
 
-        const float rough = fractal_noise(kSeed + 7, s, t, 14, 6, 0.64f);
+        const float rough = fractal_noise(kSeed + 7, s, t, 14, 5, 0.62f);
         const float grain = hash_normal(kSeed + 9, c, r);
         const float flakes = scars(kSeed + 22, kFlakes, ws, wt);
         const float chips = scars(kSeed + 23, kChips, ws + fray, wt);
         m.height_m.at(c, r) = block.face_m + (0.3f + 0.7f * broken) * slab.face_m +
-                              0.0050f * parts * ledge + 0.014f * rough + 0.042f * flakes +
-                              0.017f * chips + 0.0005f * grain - 0.016f * block.open -
+                              0.0050f * parts * ledge + 0.014f * rough + 0.045f * flakes +
+                              0.019f * chips + 0.0005f * grain - 0.016f * block.open -
                               0.008f * broken * slab.open;
 
         // The rock itself: light and dark minerals in bands, and a tint for every block.
-        const float band = fractal_noise(kSeed + 10, kBeds, ws, wt, 5, 0.78f);
+        const float band = fractal_noise(kSeed + 10, kBeds, ws, wt, 4, 0.8f);
         float light = 1 + 0.16f * (unit_of(block.id, 6) - 0.5f) +
                       0.20f * broken * (unit_of(slab.id, 6) - 0.5f);
         light *= 1 + 0.20f * band + 0.10f * rough + 0.06f * grain;
@@ -169,10 +171,10 @@ Material make_rock(int n) {
             smoothstep(0.2f, 0.9f, sample(iron, s, t) + 0.5f * block.near_crack + 0.2f * band);
         colour *= glm::mix(glm::vec3(1), glm::vec3(1.06f, 0.88f, 0.68f), 0.5f * rust);
         const float film =
-            smoothstep(0.15f, 0.95f, fractal_noise(kSeed + 13, ws, wt, 10, 6, 0.66f));
+            smoothstep(0.15f, 0.95f, fractal_noise(kSeed + 13, ws, wt, 10, 5, 0.66f));
         colour *= glm::mix(glm::vec3(1), glm::vec3(0.60f, 0.61f, 0.62f), 0.75f * film);
 
-        const float ragged = fractal_noise(kSeed + 14, s, t, 64, 4, 0.75f);
+        const float ragged = fractal_noise(kSeed + 14, s, t, 64, 3, 0.75f);
         const float colony = smoothstep(-0.45f, 0.35f, sample(colonies, s, t));
         const Lichen crust = lichen(kSeed + 16, kCrusts, ws, wt, 0.50f * colony, ragged);
         const Lichen spot = lichen(kSeed + 17, kSpots, ws, wt, 0.35f * colony, ragged);

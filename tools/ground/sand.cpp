@@ -99,7 +99,7 @@ Material make_sand(int n) {
         const float heavy = smoothstep(0.0f, 0.9f, sample(minerals, s, t));
         float light = 1 + 0.055f * grains + 0.05f * fine + 0.05f * mottle;
         light *= 1 + 0.05f * a * (k - 0.5f);
-        light *= 1 - a * (1 - k) * (1 - k) * (0.04f + 0.16f * heavy);
+        light *= 1 - a * (1 - k) * (1 - k) * (0.04f + 0.11f * heavy);
         glm::vec3 colour = m.mean_albedo * light;
         // Iron on the grains varies: redder and yellower patches and grains.
         const float iron = 0.05f * sample(redness, s, t) + 0.03f * hash_normal(kSeed + 8, c, r);

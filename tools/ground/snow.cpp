@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "maps.h"
 #include "material.h"
 #include "noise.h"
 
@@ -30,7 +29,7 @@ Material make_snow(int n) {
     // Sastrugi: whatever is hard stands, and shelters a tail that slopes down along the wind; their
     // points face the wind. Each place takes the highest tail that reaches it.
     const Field hard = make_field(n, [](float s, float t) {
-        const float knobs = fractal_noise(kSeed + 1, kSastrugi, s, t, 4, 0.5f);
+        const float knobs = fractal_noise(kSeed + 1, kSastrugi, s, t, 4, 0.46f);
         return 0.055f * smoothstep(-0.1f, 0.9f, knobs) +
                0.010f * fractal_noise(kSeed + 2, s, t, 26, 3, 0.5f);
     });
@@ -52,9 +51,9 @@ Material make_snow(int n) {
     });
 
     const Field drifts = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 3, kDrifts, s, t, 3, 0.45f); });
+        n, [](float s, float t) { return fractal_noise(kSeed + 3, kDrifts, s, t, 3, 0.42f); });
     const Field looseness = make_coarse_field(
-        n, [](float s, float t) { return fractal_noise(kSeed + 4, s, t, 7, 4, 0.55f); });
+        n, [](float s, float t) { return fractal_noise(kSeed + 4, s, t, 11, 3, 0.55f); });
     const Field warp = make_coarse_field(
         n, [](float s, float t) { return 0.006f * fractal_noise(kSeed + 5, s, t, 18, 3); });
 

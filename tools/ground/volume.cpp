@@ -30,9 +30,12 @@ image::TextureData perlin_texture(int n) {
                     for (int o = 0; o < kVolumeOctaves; ++o) {
                         const int cells = kVolumeCells << o;
                         const double scale = static_cast<double>(cells) / n;
+                        // Shifted, so that no plane of the volume is a lattice plane of all
+                        // octaves, where gradient noise is weak.
                         sum += strength * perlin_noise(kSeed + static_cast<std::uint32_t>(o),
-                                                       (c + 0.5) * scale, (r + 0.5) * scale,
-                                                       (s + 0.5) * scale, cells);
+                                                       (c + 0.5) * scale + 0.31 * o,
+                                                       (r + 0.5) * scale + 0.57 * o,
+                                                       (s + 0.5) * scale + 0.43 * o, cells);
                         strength *= 0.5f;
                     }
                     noise[index(n, c, r, s)] = sum;

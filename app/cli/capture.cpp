@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <future>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/units.h"
+#include "cli/commands.h"
+#include "cli/effects.h"
+#include "cli/shared.h"
+#include "geo/format.h"
+#include "render/ground.h"
+#include "render/renderer.h"
+#include "scene/moment.h"
+#include "sun/position.h"
+
+namespace relevo::cli {
+namespace {
+
+struct Arguments {
+    DemArguments dem;
+    TimeArguments time;
+    RefractionArguments refraction;
+    ViewArguments view;
+    EffectArguments effects;
+    std::string output, size = "1280x1024", device = "auto", timings, dump_shaders;
+    double exposure_ev = 0;
+    int repeat = 0;
+    bool overwrite = false;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+/// What each stage took. Loading goes on beside the start of the device, so that the stages' sum is
+/// more than the whole.
+class Timings {
+  public:
+    void add(const std::string& stage, Clock::time_point began) {
+        stages_[stage] = milliseconds(began, Clock::now());
+    }
+
+    void write(const std::filesystem::path& path, const render::PassTimes& passes,
+               std::vector<double> frames_ms, const render::Terrain& terrain,
+               const gl::DeviceInfo& device) {
+        nlohmann::ordered_json json;
+        json["device"] = device.renderer;
+        json["triangles"] = terrain.triangles();
+        json["stages_ms"] = stages_;
+        json["whole_ms"] = milliseconds(began_, Clock::now());
+        nlohmann::ordered_json& pass_json = json["passes_ms"] = nlohmann::ordered_json::object();
+        for (const auto& [name, ms] : passes)
+            pass_json[name] = ms;
+        if (!frames_ms.empty()) {
+            std::sort(frames_ms.begin(), frames_ms.end());
+            json["frames"] = {{"count", frames_ms.size()},
+                              {"min_ms", frames_ms.front()},
+                              {"median_ms", frames_ms[frames_ms.size() / 2]},
+                              {"max_ms", frames_ms.back()}};
+        }
+        std::ofstream file(path);
+        file << json.dump(2) << '\n';
+        if (!file.flush()) failed(fmt::format("--timings: {}: cannot be written", path.string()));
+    }
+
+  private:
+    Clock::time_point began_ = Clock::now();
+    nlohmann::ordered_json stages_ = nlohmann::ordered_json::object();
+};
+
+void capture(const Arguments& arguments) {
+    Timings timings;
+    const std::filesystem::path output = arguments.output;
+    image::check_output(output, arguments.overwrite);
+    const glm::ivec2 size = parse_size(arguments.size);
+    const scene::View view = arguments.view.view_of();
+    std::optional<sun::ParsedTime> given_time;
+    if (arguments.time.given()) given_time = arguments.time.parse();
+
+    // The DEM is read on a thread of its own while the device starts and the programs are compiled.
+    auto loading = std::async(std::launch::async, [&] {
+        const auto began = Clock::now();
+        dem::Heightfield field = dem::load(arguments.dem.paths, arguments.dem.options);
+        timings.add("load", began);
+        return field;
+    });
+    const auto device_began = Clock::now();
+    const std::unique_ptr<ActiveEffects> effects = arguments.effects.active();
+    gl::Context context({.device = arguments.device});
+    timings.add("device", device_began);
+    const auto compile_began = Clock::now();
+    render::Renderer renderer(context, effects->inputs(),
+                              {.width_px = size.x, .height_px = size.y});
+    if (!arguments.dump_shaders.empty())
+        render::dump_programs(renderer.texts(), arguments.dump_shaders);
+    timings.add("compile", compile_began);
+    const dem::Heightfield dem = loading.get();
+
+    const auto upload_began = Clock::now();
+    const render::Ground ground = render::make_ground(dem);
+    render::Terrain terrain(dem, ground.frame, {}, context.info().max_array_layers);
+    timings.add("upload", upload_began);
+
+    const geo::Geodetic place = ground.frame.origin();
+    const sun::Instant utc = given_time ? given_time->utc : scene::default_moment(place);
+    const sun::Position position = sun::position(utc, place);
+    const sun::Refraction air = arguments.refraction.at(
+        {place.lat_rad, place.lon_rad, 0.5 * (ground.lowest_m + ground.highest_m)});
+    const std::string sun_text =
+        fmt::format("sun at azimuth {:.2f}, elevation {:.2f} ({:.2f} with refraction)",
+                    degrees(position.azimuth_rad), degrees(position.elevation_rad),
+                    degrees(air.apparent_rad(position.elevation_rad)));
+    log::info(fmt::format("{}, {}: {}{}", geo::degrees_text(place), sun::to_iso(utc), sun_text,
+                          given_time ? "" : "; no --time given, so a summer morning was taken"));
+
+    render::FrameInputs inputs;
+    inputs.sun = render::make_sun_light(position, air, ground, dem.grid);
+    inputs.exposure_ev = arguments.exposure_ev;
+    inputs.exaggeration = arguments.view.exaggeration;
+    inputs.camera = scene::make_camera(view, dem, ground.frame,
+                                       render::points_to_show(dem, ground, inputs.exaggeration),
+                                       static_cast<double>(size.x) / size.y, inputs.exaggeration);
+
+    const bool timed = !arguments.timings.empty();
+    render::PassTimes passes;
+    const auto passes_began = Clock::now();
+    renderer.render_frame(terrain, ground, inputs, timed ? &passes : nullptr);
+    timings.add("passes", passes_began);
+
+    const image::Metadata metadata{
+        {"Software", "Relevo " RELEVO_VERSION},
+        {"Description",
+         fmt::format("{}; {}; {}", geo::degrees_text(place), sun::to_iso(utc), sun_text)}};
+    const auto readback_began = Clock::now();
+    if (image::holds_linear_light(output)) {
+        const image::ImageF picture = renderer.read_radiance();
+        timings.add("readback", readback_began);
+        const auto write_began = Clock::now();
+        image::write(output, picture, metadata, arguments.overwrite);
+        timings.add("write", write_began);
+    } else {
+        const image::Image8 picture = renderer.read_picture();
+        timings.add("readback", readback_began);
+        const auto write_began = Clock::now();
+        image::write(output, picture, metadata, arguments.overwrite);
+        timings.add("write", write_began);
+    }
+
+    if (timed) {
+        std::vector<double> frames_ms;
+        for (int i = 0; i < arguments.repeat; ++i) {
+            const auto began = Clock::now();
+            renderer.render_frame(terrain, ground, inputs);
+            context.finish();
+            frames_ms.push_back(milliseconds(began, Clock::now()));
+        }
+        timings.write(arguments.timings, passes, frames_ms, terrain, context.info());
+    }
+}
+
+}  // namespace
+
+void add_capture(CLI::App& app) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App& verb = *app.add_subcommand("capture", "Takes one picture");
+    arguments->dem.add_to(verb);
+    verb.add_option("-o,--output", arguments->output,
+                    "Picture to write: png, jpg, webp, tif, or exr in linear light")
+        ->required();
+    verb.add_option("--size", arguments->size, "Width and height in pixels, 1280x1024");
+    verb.add_flag("--overwrite", arguments->overwrite, "Replace an existing picture");
+    arguments->time.add_to(verb);
+    arguments->refraction.add_to(verb);
+    arguments->view.add_to(verb);
+    arguments->effects.add_to(verb);
+    verb.add_option("--exposure", arguments->exposure_ev, "Stops brighter than natural, EV")
+        ->check(CLI::Range(-20.0, 20.0));
+    verb.add_option("--device", arguments->device,
+                    "GL device: auto, an index, software, or a part of its name");
+    CLI::Option* timings =
+        verb.add_option("--timings", arguments->timings, "Write what each stage took, as JSON")
+            ->group("Diagnosis");
+    verb.add_option("--repeat", arguments->repeat, "Further frames to time")
+        ->needs(timings)
+        ->check(CLI::NonNegativeNumber)
+        ->group("Diagnosis");
+    verb.add_option("--dump-shaders", arguments->dump_shaders,
+                    "Write the stitched programs into a folder")
+        ->group("Diagnosis");
+    verb.callback([arguments] { capture(*arguments); });
+}
+
+}  // namespace relevo::cli

@@ -1,0 +1,72 @@
+#include "cli/effects.h"
+
+#include "base/log.h"
+
+namespace relevo::cli {
+
+render::EffectInputs ActiveEffects::inputs() const {
+    render::EffectInputs inputs;
+    inputs.stitch.snippets = selection.snippets();
+    inputs.stitch.capabilities = selection.capabilities;
+    inputs.stitch.values = &values;
+    for (const effect::Effect* effect : selection.effects)
+        inputs.textures.insert(inputs.textures.end(), effect->manifest.textures.begin(),
+                               effect->manifest.textures.end());
+    return inputs;
+}
+
+void EffectArguments::add_to(CLI::App& verb) {
+    only_option =
+        verb.add_option("--only", only, "These effects and no others (an empty list: none)")
+            ->delimiter(',')
+            ->expected(0, CLI::detail::expected_max_vector_size)
+            ->group("Effects");
+    verb.add_option("--enable", enable, "Effects to switch on")->delimiter(',')->group("Effects");
+    verb.add_option("--disable", disable, "Effects to switch off")
+        ->delimiter(',')
+        ->group("Effects");
+    verb.add_option("--set", settings, "Value of a parameter: layering.texture_m=8")
+        ->allow_extra_args(false)
+        ->group("Effects");
+    verb.add_option("--preset", presets, "File of switches and values, by name or path: paper")
+        ->allow_extra_args(false)
+        ->group("Effects");
+    verb.add_option("--plugin-path", plugin_path, "Folder of further plugins")
+        ->allow_extra_args(false)
+        ->group("Effects");
+}
+
+std::unique_ptr<ActiveEffects> EffectArguments::active() const {
+    auto active = std::make_unique<ActiveEffects>();
+    active->registry = effect::Registry::load_installed({plugin_path.begin(), plugin_path.end()});
+    for (const effect::BrokenEffect& broken : active->registry.broken())
+        log::warning(broken.error);
+    std::vector<effect::Preset> loaded;
+    for (const std::string& preset : presets)
+        loaded.push_back(effect::load_preset(preset));
+    effect::Switches switches;
+    if (only_option && only_option->count() > 0) {
+        switches.only.emplace();
+        for (const std::string& id : only)
+            if (!id.empty()) switches.only->push_back(id);
+    }
+    switches.enable = enable;
+    switches.disable = disable;
+    active->selection = effect::select(active->registry, loaded, switches);
+    std::vector<shader::Param> params = active->registry.params();
+    for (const shader::Param& param : render::core_params())
+        params.push_back(param);
+    active->values.declare(params);
+    std::vector<effect::Setting> given;
+    for (const std::string& setting : settings)
+        given.push_back(effect::parse_setting(setting));
+    const std::vector<std::string> notices =
+        effect::apply_settings(active->values, active->registry, active->selection, loaded, given);
+    for (const std::string& notice : active->selection.notices)
+        log::info(notice);
+    for (const std::string& notice : notices)
+        log::info(notice);
+    return active;
+}
+
+}  // namespace relevo::cli

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "effect/selection.h"
+#include "render/renderer.h"
+
+namespace relevo::cli {
+
+/// The plugins there are, those that are on, and the values of their parameters.
+struct ActiveEffects {
+    effect::Registry registry;
+    effect::Selection selection;  // points into registry
+    shader::ParamStore values;
+
+    /// For a renderer; valid as long as this is.
+    render::EffectInputs inputs() const;
+};
+
+/// --only, --enable, --disable, --set, --preset and --plugin-path.
+struct EffectArguments {
+    std::vector<std::string> only, enable, disable, settings, presets, plugin_path;
+    CLI::Option* only_option = nullptr;
+
+    void add_to(CLI::App& verb);
+    /// Loads the plugins and switches them; says on standard error what is not as asked.
+    std::unique_ptr<ActiveEffects> active() const;
+};
+
+}  // namespace relevo::cli

@@ -1,0 +1,108 @@
+#include <memory>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/effects.h"
+
+namespace relevo::cli {
+namespace {
+
+nlohmann::ordered_json json_of(const effect::Effect& effect) {
+    const effect::Manifest& manifest = effect.manifest;
+    nlohmann::ordered_json params = nlohmann::ordered_json::array();
+    for (const shader::Param& param : effect.params())
+        params.push_back({{"address", param.address},
+                          {"type", shader::glsl_name(param.type)},
+                          {"default", shader::format_value(param, param.initial)},
+                          {"values", shader::describe_values(param)},
+                          {"unit", param.unit},
+                          {"label", param.label},
+                          {"description", param.description}});
+    return {{"id", manifest.id},
+            {"name", manifest.name},
+            {"description", manifest.description},
+            {"version", manifest.version},
+            {"enabled_by_default", manifest.enabled_by_default},
+            {"provides", manifest.provides},
+            {"requires", manifest.needs},
+            {"folder", manifest.folder.string()},
+            {"parameters", params}};
+}
+
+void list(const effect::Registry& registry, bool json) {
+    if (json) {
+        nlohmann::ordered_json plugins = nlohmann::ordered_json::array();
+        for (const effect::Effect& effect : registry.effects())
+            plugins.push_back(json_of(effect));
+        nlohmann::ordered_json broken = nlohmann::ordered_json::array();
+        for (const effect::BrokenEffect& effect : registry.broken())
+            broken.push_back(
+                {{"id", effect.id}, {"folder", effect.folder.string()}, {"error", effect.error}});
+        const nlohmann::ordered_json all = {{"plugins", plugins}, {"broken", broken}};
+        fmt::print("{}\n", all.dump(2));
+        return;
+    }
+    for (const effect::Effect& effect : registry.effects())
+        fmt::print("{:<12} {:<4} {}\n", effect.id(),
+                   effect.manifest.enabled_by_default ? "on" : "off", effect.manifest.description);
+    for (const effect::BrokenEffect& effect : registry.broken())
+        fmt::print("{:<12} {:<4} {}\n", effect.id, "-", effect.error);
+}
+
+void info(const effect::Effect& effect, bool json) {
+    if (json) {
+        fmt::print("{}\n", json_of(effect).dump(2));
+        return;
+    }
+    const effect::Manifest& manifest = effect.manifest;
+    fmt::print("{} ({} {})\n{}\n", manifest.name, manifest.id, manifest.version,
+               manifest.description);
+    fmt::print("folder    {}\n", manifest.folder.string());
+    fmt::print("default   {}\n", manifest.enabled_by_default ? "on" : "off");
+    if (!manifest.provides.empty())
+        fmt::print("provides  {}\n", fmt::join(manifest.provides, ", "));
+    if (!manifest.needs.empty()) fmt::print("requires  {}\n", fmt::join(manifest.needs, ", "));
+    if (!manifest.wants.empty()) fmt::print("wants     {}\n", fmt::join(manifest.wants, ", "));
+    for (const shader::Param& param : effect.params()) {
+        fmt::print("\n{} = {}\n    {}", param.address, shader::format_value(param, param.initial),
+                   param.label);
+        fmt::print("{}{}\n", param.description.empty() ? "" : ": ", param.description);
+        fmt::print("    {}\n", shader::describe_values(param));
+    }
+}
+
+}  // namespace
+
+void add_plugins(CLI::App& app) {
+    struct Arguments {
+        std::vector<std::string> plugin_path;
+        std::string id;
+        bool json = false;
+
+        effect::Registry registry() const {
+            return effect::Registry::load_installed({plugin_path.begin(), plugin_path.end()});
+        }
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App& verb = *app.add_subcommand("plugins", "The effects there are, and their parameters");
+    verb.require_subcommand(0, 1);
+    verb.add_option("--plugin-path", arguments->plugin_path, "Folder of further plugins")
+        ->allow_extra_args(false);
+    verb.add_flag("--json", arguments->json, "One JSON object on standard output");
+    verb.fallthrough();
+    CLI::App& list_verb = *verb.add_subcommand("list", "A line each");
+    CLI::App& info_verb = *verb.add_subcommand("info", "One plugin and all its parameters");
+    info_verb.add_option("ID", arguments->id, "Plugin")->required();
+    info_verb.callback([arguments] {
+        info(arguments->registry().effect(arguments->id, "plugins"), arguments->json);
+    });
+    list_verb.callback([] {});
+    verb.callback([arguments, &info_verb] {
+        if (info_verb.count() == 0) list(arguments->registry(), arguments->json);
+    });
+}
+
+}  // namespace relevo::cli

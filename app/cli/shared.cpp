@@ -1,0 +1,124 @@
+#include "cli/shared.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "geo/geodetic.h"
+
+namespace relevo::cli {
+
+void DemArguments::add_to(CLI::App& verb) {
+    verb.add_option("DEM", paths, "Elevation raster: anything GDAL opens")->required();
+    verb.add_option("--crs", options.crs,
+                    "Coordinate reference system instead of the file's (EPSG:n, WKT)")
+        ->group("DEM");
+    verb.add_option("--band", options.band, "Band that holds the heights, from 1")
+        ->check(CLI::PositiveNumber)
+        ->group("DEM");
+    verb.add_option("--unit", options.unit, "Unit of the heights: m, ft, us-ft, cm, km")
+        ->group("DEM");
+    verb.add_option("--nodata", options.nodata, "Stored value that marks a hole")->group("DEM");
+}
+
+void TimeArguments::add_to(CLI::App& verb) {
+    verb.add_option("--time", time,
+                    "Moment: 2026-06-21T18:30+02:00, or without offset together with --tz");
+    verb.add_option("--tz", zone, "Time zone: Europe/Zurich, +05:30");
+}
+
+sun::ParsedTime TimeArguments::parse() const {
+    std::optional<sun::Zone> in_zone;
+    if (!zone.empty()) in_zone = sun::Zone::named(zone);
+    sun::ParsedTime parsed = sun::parse_time(time, in_zone);
+    if (!parsed.note.empty()) log::info(parsed.note);
+    return parsed;
+}
+
+void RefractionArguments::add_to(CLI::App& verb) {
+    verb.add_option(
+            "--refraction", model,
+            "How the air lifts the sun: standard (integrated ICAO atmosphere), saemundsson (as JPL "
+            "Horizons), none")
+        ->check(CLI::IsMember({"standard", "saemundsson", "none"}));
+    verb.add_flag("--no-refraction", off, "Same as --refraction none");
+}
+
+sun::Refraction RefractionArguments::at(const geo::Geodetic& place) const {
+    if (off || model == "none") return sun::Refraction::none();
+    if (model == "saemundsson") return sun::Refraction::saemundsson();
+    return sun::Refraction::standard(place);
+}
+
+void ViewArguments::add_to(CLI::App& verb) {
+    verb.add_option(
+            "--view", view,
+            "Orbit: where the camera stands as seen from the DEM's centre, az=225,el=25,zoom=1")
+        ->group("View");
+    verb.add_option("--eye", eye,
+                    "Camera at LAT,LON[,H]; H in metres, with suffix agl above the ground")
+        ->group("View");
+    verb.add_option("--look-at", look_at, "Place in the middle of the picture, LAT,LON[,H]")
+        ->group("View");
+    verb.add_option("--heading", heading_deg,
+                    "Direction from --eye, degrees clockwise from true north")
+        ->group("View");
+    verb.add_option("--pitch", pitch_deg, "Degrees above the horizontal")
+        ->check(CLI::Range(-90, 90))
+        ->group("View");
+    verb.add_option("--fov", fov_deg, "Angle of view from bottom to top, degrees (40)")
+        ->check(CLI::Range(0.1, 170.0))
+        ->group("View");
+    verb.add_option("--focal-length", focal_length_mm, "Lens instead of --fov, mm on 35 mm film")
+        ->check(CLI::Range(1.0, 10000.0))
+        ->group("View");
+    verb.add_option("--exaggerate", exaggeration, "Factor on heights")
+        ->check(CLI::Range(0.01, 1000.0))
+        ->group("View");
+}
+
+scene::View ViewArguments::view_of() const {
+    scene::View result;
+    if (!view.empty() && !eye.empty())
+        bad_usage("--view and --eye exclude each other; give one of them");
+    if (eye.empty() && (!look_at.empty() || heading_deg || pitch_deg))
+        bad_usage("--look-at, --heading and --pitch need --eye");
+    if (!look_at.empty() && (heading_deg || pitch_deg))
+        bad_usage("--look-at and --heading or --pitch exclude each other; give one of them");
+    if (fov_deg && focal_length_mm)
+        bad_usage("--fov and --focal-length exclude each other; give one of them");
+    if (!view.empty()) result.orbit = scene::parse_orbit(view);
+    const auto standpoint = [](const std::string& text, const char* option, double height_agl_m) {
+        const geo::PlaceText parsed = geo::parse_place(text, option);
+        scene::Standpoint at{parsed.place, parsed.above_ground};
+        if (!parsed.has_height) {
+            at.place.height_m = height_agl_m;
+            at.above_ground = true;
+        }
+        return at;
+    };
+    if (!eye.empty()) result.eye = standpoint(eye, "--eye", scene::kEyeHeight_m);
+    if (!look_at.empty()) result.look_at = standpoint(look_at, "--look-at", 0);
+    result.heading_deg = heading_deg.value_or(0);
+    result.pitch_deg = pitch_deg.value_or(0);
+    if (fov_deg) result.fov_y_rad = radians(*fov_deg);
+    result.focal_length_mm = focal_length_mm.value_or(0);
+    return result;
+}
+
+glm::ivec2 parse_size(const std::string& text) {
+    const std::vector<std::string> pieces = split(text, 'x');
+    if (pieces.size() == 2) {
+        const auto width = parse_number(pieces[0]), height = parse_number(pieces[1]);
+        if (width && height && *width == std::floor(*width) && *height == std::floor(*height) &&
+            *width >= 1 && *height >= 1 && *width <= 16384 && *height <= 16384)
+            return {static_cast<int>(*width), static_cast<int>(*height)};
+    }
+    bad_usage(fmt::format("--size: expected WIDTHxHEIGHT, each 1 to 16384, but got \"{}\"", text));
+}
+
+}  // namespace relevo::cli

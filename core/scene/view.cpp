@@ -1,0 +1,98 @@
+#include "scene/view.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "geo/format.h"
+
+namespace relevo::scene {
+namespace {
+
+constexpr double kClearance_m = 2;  // of a camera above the ground
+
+/// Height of the ground below a place, NaN where the DEM has none.
+double ground_height_m(const dem::Heightfield& dem, const geo::Geodetic& place) {
+    const glm::dvec2 post = dem.grid.post(place);
+    return dem.height_at(post.x, post.y);
+}
+
+/// A standpoint in the local frame, the DEM's exaggeration included.
+glm::dvec3 position_of(const Standpoint& standpoint, std::string_view option,
+                       const dem::Heightfield& dem, const geo::LocalFrame& frame,
+                       double exaggeration) {
+    geo::Geodetic place = standpoint.place;
+    if (standpoint.above_ground) {
+        const double ground_m = ground_height_m(dem, place);
+        if (std::isnan(ground_m))
+            bad_input(fmt::format("{}: {}: the DEM has no ground there; give a height without agl",
+                                  option, geo::degrees_text(place)));
+        place.height_m += ground_m * exaggeration;
+    } else {
+        place.height_m *= exaggeration;
+    }
+    return frame.to_local(place);
+}
+
+}  // namespace
+
+Orbit parse_orbit(std::string_view text) {
+    Orbit orbit;
+    for (const std::string& piece : split(text, ',')) {
+        const std::size_t equals = piece.find('=');
+        const std::string key = piece.substr(0, equals);
+        const auto value = equals == std::string::npos
+                               ? std::nullopt
+                               : parse_number(std::string_view(piece).substr(equals + 1));
+        if (!value || (key != "az" && key != "el" && key != "zoom"))
+            bad_usage(fmt::format(
+                "--view: {}: expected az=DEG, el=DEG or zoom=FACTOR but got \"{}\"", text, piece));
+        if (key == "az") orbit.azimuth_deg = *value;
+        if (key == "el") orbit.elevation_deg = *value;
+        if (key == "zoom") orbit.zoom = *value;
+    }
+    if (orbit.elevation_deg < -90 || orbit.elevation_deg > 90)
+        bad_usage(fmt::format("--view: {}: expected an elevation of -90 to 90 degrees but got {}",
+                              text, orbit.elevation_deg));
+    if (orbit.zoom <= 0)
+        bad_usage(fmt::format("--view: {}: expected a zoom above 0 but got {}", text, orbit.zoom));
+    return orbit;
+}
+
+Camera make_camera(const View& view, const dem::Heightfield& dem, const geo::LocalFrame& frame,
+                   std::span<const glm::dvec3> points, double aspect, double exaggeration) {
+    const double fov_y_rad = view.fov_y_rad > 0 ? view.fov_y_rad
+                             : view.focal_length_mm > 0
+                                 ? fov_y_of_focal_length(view.focal_length_mm, aspect)
+                                 : radians(kDefaultFov_deg);
+    if (!view.eye) {
+        Camera camera = orbit_camera(view.orbit, points, fov_y_rad, aspect);
+        // Zoomed in, the camera may come to stand inside a mountain: then it stands on it.
+        const geo::Geodetic place = frame.to_geodetic(camera.eye_m);
+        const double ground_m = ground_height_m(dem, place) * exaggeration;
+        if (!std::isnan(ground_m) && place.height_m < ground_m + kClearance_m)
+            camera.eye_m = frame.to_local({place.lat_rad, place.lon_rad, ground_m + kClearance_m});
+        return camera;
+    }
+    const glm::dvec3 eye_m = position_of(*view.eye, "--eye", dem, frame, exaggeration);
+    const geo::Geodetic place = frame.to_geodetic(eye_m);
+    const double ground_m = ground_height_m(dem, place) * exaggeration;
+    if (place.height_m < ground_m)
+        log::warning(fmt::format(
+            "--eye: it is {:.0f} m below the ground, which is at {:.0f} m there; a height "
+            "with the suffix agl counts from the ground",
+            ground_m - place.height_m, ground_m / exaggeration));
+    const geo::Axes axes = frame.axes(place.lat_rad, place.lon_rad);
+    if (view.look_at)
+        return look_at_camera(eye_m,
+                              position_of(*view.look_at, "--look-at", dem, frame, exaggeration),
+                              axes.up, fov_y_rad);
+    return heading_camera(eye_m, axes, view.heading_deg, view.pitch_deg, fov_y_rad);
+}
+
+}  // namespace relevo::scene

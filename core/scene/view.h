@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "dem/heightfield.h"
+#include "geo/geodetic.h"
+#include "scene/camera.h"
+
+namespace relevo::scene {
+
+/// A place and a height as people give them: above the DEM's zero, or above the ground there.
+struct Standpoint {
+    geo::Geodetic place;
+    bool above_ground = false;  ///< place.height_m counts from the ground
+};
+
+/// What the user says of the camera, before the DEM is known: an orbit, or an eye that looks at a
+/// place or along a heading.
+struct View {
+    Orbit orbit;
+    std::optional<Standpoint> eye;
+    std::optional<Standpoint> look_at;
+    double heading_deg = 0;
+    double pitch_deg = 0;
+    double fov_y_rad = 0;        ///< 0: from the focal length, else the default
+    double focal_length_mm = 0;  ///< 35 mm equivalent; 0: none given
+};
+
+/// Reads `az=225,el=25,zoom=1`; what is left out stays as it is in Orbit.
+/// @throws Error (Usage) `--view: text: what, expected E but got G`
+Orbit parse_orbit(std::string_view text);
+
+/// Height of the eye above the ground where none is given [m]: a person's.
+inline constexpr double kEyeHeight_m = 1.7;
+
+/// The camera of a view of this DEM.
+/// @param frame   the DEM's local frame
+/// @param points  ground that an orbit has to show, in that frame
+/// @param aspect  width / height of the picture
+/// @throws Error (BadInput) for a standpoint above the ground where the DEM has none
+Camera make_camera(const View& view, const dem::Heightfield& dem, const geo::LocalFrame& frame,
+                   std::span<const glm::dvec3> points, double aspect, double exaggeration);
+
+}  // namespace relevo::scene

@@ -1,0 +1,49 @@
+#include "cli/program.h"
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "base/text.h"
+#include "support/support.h"
+
+namespace relevo::test {
+namespace {
+
+std::string quoted(const std::string& text) {
+    std::string result = "'";
+    for (const char c : text)
+        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return result + "'";
+}
+
+}  // namespace
+
+Result relevo(const std::vector<std::string>& arguments, const std::vector<std::string>& environment) {
+    static int count = 0;
+    const std::filesystem::path dir = build_dir() / "scratch";
+    std::filesystem::create_directories(dir);
+    const std::filesystem::path out = dir / ("cli." + std::to_string(++count) + ".out");
+    const std::filesystem::path err = dir / ("cli." + std::to_string(count) + ".err");
+    std::string command = "env ";
+    for (const std::string& variable : environment)
+        command += quoted(variable) + " ";
+    command += quoted((build_dir() / "bin/relevo").string());
+    for (const std::string& argument : arguments)
+        command += " " + quoted(argument);
+    command += " >" + quoted(out.string()) + " 2>" + quoted(err.string());
+    const int status = std::system(command.c_str());
+    Result run;
+    run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    run.out = read_text(out, "test");
+    run.err = read_text(err, "test");
+    std::filesystem::remove(out);
+    std::filesystem::remove(err);
+    return run;
+}
+
+std::string bundled_dem() {
+    return (source_dir() / "data/dem/jacksboro.tif").string();
+}
+
+}  // namespace relevo::test

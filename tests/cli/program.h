@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace relevo::test {
+
+/// What the program did.
+struct Result {
+    int status = -1;
+    std::string out;  ///< standard output
+    std::string err;  ///< standard error
+};
+
+/// Runs `relevo` of the build under test. The device is the software renderer wherever one is drawn with.
+Result relevo(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {});
+
+/// The DEM that comes along.
+std::string bundled_dem();
+
+}  // namespace relevo::test

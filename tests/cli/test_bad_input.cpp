@@ -1,0 +1,151 @@
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "cli/program.h"
+#include "dem/fixture.h"
+#include "support/support.h"
+
+namespace relevo::test {
+namespace {
+
+std::filesystem::path dir() {
+    static const std::filesystem::path folder = scratch_dir("cli_bad_input");
+    return folder;
+}
+
+std::string out_png() {
+    return (dir() / "out.png").string();
+}
+
+/// Status and whole message of a run that fails, and that nothing was written.
+void expect_failure(const std::vector<std::string>& arguments, int status, const std::string& message) {
+    const Result run = relevo(arguments);
+    EXPECT_EQ(run.status, status) << run.err;
+    EXPECT_EQ(run.err, "relevo: error: " + message + "\n");
+    EXPECT_EQ(run.out, "");
+    EXPECT_FALSE(std::filesystem::exists(out_png()));
+}
+
+std::string written(const char* name, const Raster& raster) {
+    return write_raster(dir() / name, raster);
+}
+
+TEST(BadDem, EachHasItsMessage) {
+    std::ofstream(dir() / "notes.txt") << "Heights of the Alps, to be measured.\n";
+    Raster no_crs;
+    no_crs.crs = "";
+    Raster empty;
+    empty.value = [](int, int, int) { return std::numeric_limits<double>::quiet_NaN(); };
+    Raster one_post, one_row;
+    one_post.columns = one_post.rows = one_row.rows = 1;
+    Raster large;
+    large.columns = large.rows = 200;
+    const std::string cut = written("cut.tif", large);
+    std::filesystem::resize_file(cut, 60000);
+    struct Case {
+        std::string path, message;
+    };
+    for (const Case& c :
+         {Case{"/nowhere/alps.tif", "cannot be read, no such file"},
+          Case{(dir() / "notes.txt").string(), "not a raster in any format that GDAL reads"},
+          Case{written("no_crs.tif", no_crs), "no coordinate reference system; pass --crs EPSG:n"},
+          Case{written("empty.tif", empty),
+               "not one valid height, all 24 posts are holes"},
+          Case{written("one_post.tif", one_post), "size, expected at least 2 x 2 posts but got 1 x 1"},
+          Case{written("one_row.tif", one_row), "size, expected at least 2 x 2 posts but got 6 x 1"}}) {
+        expect_failure({"capture", c.path, "-o", out_png()}, 3, "dem::load: " + c.path + ": " + c.message);
+        expect_failure({"info", c.path}, 3, "dem::load: " + c.path + ": " + c.message);
+    }
+    const Result run = relevo({"capture", cut, "-o", out_png()});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_TRUE(run.err.ends_with("the file is damaged or incomplete\n")) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(out_png()));
+}
+
+TEST(BadTime, EachHasItsMessage) {
+    const auto capture_at = [](const std::vector<std::string>& time) {
+        std::vector<std::string> arguments{"capture", bundled_dem(), "-o", out_png()};
+        arguments.insert(arguments.end(), time.begin(), time.end());
+        return arguments;
+    };
+    expect_failure(capture_at({"--time", "2026-06-21T18:30"}), 3,
+                   "sun::parse_time: 2026-06-21T18:30: no time zone; write 2026-06-21T18:30Z for UTC or "
+                   "2026-06-21T18:30+02:00, or pass --tz Europe/Zurich");
+    expect_failure(capture_at({"--time", "2026-06-21T18:30", "--tz", "Europe/Zurick"}), 3,
+                   "sun::Zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
+}
+
+TEST(BadPlace, Latitude91) {
+    expect_failure({"sun", "position", "--at", "91,10", "--time", "2026-06-21T18:30Z"}, 2,
+                   "--at: 91,10: latitude, expected -90 to 90 degrees but got 91; latitude comes first, "
+                   "perhaps 10,91");
+}
+
+TEST(BadEffect, EachHasItsMessage) {
+    const std::vector<std::string> capture{"capture", bundled_dem(), "-o", out_png()};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), capture.begin(), capture.end());
+        return more;
+    };
+    const Result unknown = relevo(with({"--enable", "xyzzy"}));
+    EXPECT_EQ(unknown.status, 3);
+    EXPECT_TRUE(unknown.err.starts_with("relevo: error: effect::select: xyzzy: no such plugin; there are "))
+        << unknown.err;
+    expect_failure(with({"--set", "terrain.norm=vertex"}), 3,
+                   "shader::ParamStore: terrain.norm: no such parameter; did you mean terrain.normal?");
+    expect_failure(with({"--set", "terrain.normal=7"}), 3,
+                   "shader::parse_value: terrain.normal: expected one of fragment, vertex but got \"7\"");
+    expect_failure(with({"--set", "terrain.normal"}), 2,
+                   "--set: expected PLUGIN.PARAMETER=VALUE but got \"terrain.normal\"");
+}
+
+TEST(BadOutput, EachHasItsMessage) {
+    const std::string nowhere = (dir() / "none" / "a.png").string();
+    expect_failure({"capture", bundled_dem(), "-o", nowhere}, 3,
+                   "image: " + nowhere + ": the folder " + (dir() / "none").string() +
+                       " does not exist; make it first");
+    const std::string there = (dir() / "there.png").string();
+    std::ofstream(there) << "precious";
+    expect_failure({"capture", bundled_dem(), "-o", there}, 3,
+                   "image: " + there + ": exists; pass --overwrite to replace it");
+    std::string kept;
+    std::ifstream(there) >> kept;
+    EXPECT_EQ(kept, "precious");
+    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--size", "0x10"}, 2,
+                   "--size: expected WIDTHxHEIGHT, each 1 to 16384, but got \"0x10\"");
+}
+
+TEST(BadDevice, NoneIsExitFour) {
+    const Result run = relevo({"capture", bundled_dem(), "-o", out_png(), "--device", "voodoo"});
+    EXPECT_EQ(run.status, 4);
+    const std::string first = run.err.substr(0, run.err.find('\n'));
+    EXPECT_TRUE(first.starts_with("relevo: error: gl: no GL device: none of the ")) << first;
+    EXPECT_TRUE(first.ends_with(" found is \"voodoo\" and can draw with OpenGL 4.5 core")) << first;
+    EXPECT_FALSE(std::filesystem::exists(out_png()));
+}
+
+TEST(BadDevice, AMachineWithoutAnyDriverSaysWhatToInstall) {
+    const Result run = relevo({"capture", bundled_dem(), "-o", out_png()},
+                           {"__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere/none.json"});
+    EXPECT_EQ(run.status, 4);
+    EXPECT_EQ(run.err,
+              "relevo: error: gl: no GL device: EGL offers none; install Mesa's software renderer (libegl1, "
+              "libegl-mesa0, libgl1-mesa-dri)\n");
+}
+
+TEST(BadUsage, EachHasItsMessage) {
+    expect_failure({"captur"}, 2, "captur: no such command; did you mean capture?");
+    expect_failure({"capture"}, 2, "DEM is required; see relevo capture --help");
+    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--foo"}, 2,
+                   "The following argument was not expected: --foo; see relevo capture --help");
+    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--view", "az=10,tilt=3"}, 2,
+                   "--view: az=10,tilt=3: expected az=DEG, el=DEG or zoom=FACTOR but got \"tilt=3\"");
+    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--heading", "10"}, 2,
+                   "--look-at, --heading and --pitch need --eye");
+    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--eye", "36.3,-84.2", "--view", "az=3"}, 2,
+                   "--view and --eye exclude each other; give one of them");
+}
+
+}  // namespace
+}  // namespace relevo::test

@@ -1,0 +1,110 @@
+#include <cmath>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "cli/program.h"
+#include "image/image.h"
+#include "support/support.h"
+
+namespace relevo::test {
+namespace {
+
+class Capture : public testing::Test {
+  protected:
+    /// Takes a picture of the bundled DEM; the run must succeed.
+    std::filesystem::path take(const std::string& name, std::vector<std::string> more = {}) {
+        const std::filesystem::path path = dir_ / name;
+        more.insert(more.begin(), {"-q", "capture", bundled_dem(), "-o", path.string(), "--size", "320x256",
+                                   "--overwrite"});
+        const Result run = relevo(more);
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_EQ(run.err, "");
+        return path;
+    }
+
+    static double brightness(const image::Image8& picture) {
+        double sum = 0;
+        for (const std::uint8_t value : picture.values)
+            sum += value;
+        return sum / static_cast<double>(picture.values.size());
+    }
+
+    std::filesystem::path dir_ = scratch_dir("cli_capture");
+};
+
+TEST_F(Capture, WritesAPictureOfTheSizeAskedForWithItsSunInside) {
+    const auto path = take("a.png", {"--time", "2026-06-21T18:30", "--tz", "America/New_York"});
+    const image::Image8 picture = image::read(path);
+    EXPECT_EQ(picture.width, 320);
+    EXPECT_EQ(picture.height, 256);
+    EXPECT_EQ(image::read_metadata(path).at("Description"),
+              "36.30292 N 84.24583 W; 2026-06-21T22:30:00Z; sun at azimuth 280.33, elevation 27.03 (27.05 "
+              "with refraction)");
+}
+
+TEST_F(Capture, IsTheSamePictureEveryTime) {
+    EXPECT_EQ(read_text(take("a.png"), "test"), read_text(take("b.png"), "test"));
+}
+
+TEST_F(Capture, HasNeitherBlackDuskNorWhiteNoon) {
+    for (const char* time : {"2026-06-21T17:30Z", "2026-06-22T00:30Z", "2026-06-22T01:15Z"}) {
+        const double level = brightness(image::read(take("a.png", {"--time", time})));
+        EXPECT_GT(level, 25) << time;
+        EXPECT_LT(level, 200) << time;
+    }
+}
+
+TEST_F(Capture, NoEffectsIsNotLayering) {
+    const image::Image8 plain = image::read(take("plain.png", {"--only", ""}));
+    const image::Image8 layered = image::read(take("layered.png"));
+    const image::Image8 paper = image::read(take("paper.png", {"--preset", "paper"}));
+    EXPECT_LT(image::compare(plain, layered).psnr_db, 35);
+    EXPECT_LT(image::compare(paper, layered).psnr_db, 35);
+}
+
+TEST_F(Capture, OtherFormatsHoldTheSamePicture) {
+    const image::Image8 png = image::read(take("a.png"));
+    EXPECT_EQ(image::compare(png, image::read(take("a.tif"))).worst, 0);
+    EXPECT_GT(image::compare(png, image::read(take("a.jpg"))).psnr_db, 35);
+    const image::ImageF light = image::read_float(take("a.exr"));
+    EXPECT_EQ(light.width, 320);
+    for (const float value : light.values)
+        ASSERT_TRUE(std::isfinite(value));
+}
+
+TEST_F(Capture, TheGroundIsBelowTheHorizonForAnEyeInTheValley) {
+    const auto path = take("eye.png", {"--eye", "36.25,-84.25,1200", "--heading", "0", "--fov", "60"});
+    const image::Image8 picture = image::read(path);
+    // Sky on top is bluer than it is green; ground at the bottom is not.
+    const auto blue_minus_green = [&](int y) {
+        double sum = 0;
+        for (int x = 0; x < picture.width; ++x)
+            sum += picture.at(x, y, 2) - picture.at(x, y, 1);
+        return sum / picture.width;
+    };
+    EXPECT_GT(blue_minus_green(5), 5);
+    EXPECT_LT(blue_minus_green(picture.height - 5), -5);
+}
+
+TEST_F(Capture, TimingsNameEveryStage) {
+    const std::string file = (dir_ / "timings.json").string();
+    take("a.png", {"--timings", file, "--repeat", "3"});
+    const nlohmann::json json = nlohmann::json::parse(read_text(file, "test"));
+    for (const char* stage : {"load", "device", "compile", "upload", "passes", "readback", "write"})
+        EXPECT_GT(json["stages_ms"][stage].get<double>(), 0) << stage;
+    for (const char* pass : {"geometry", "terrain", "sky", "post", "antialias"})
+        EXPECT_GT(json["passes_ms"][pass].get<double>(), 0) << pass;
+    EXPECT_EQ(json["frames"]["count"], 3);
+    EXPECT_LE(json["frames"]["min_ms"], json["frames"]["median_ms"]);
+    EXPECT_LE(json["frames"]["median_ms"], json["frames"]["max_ms"]);
+}
+
+TEST_F(Capture, DumpsTheProgramsItCompiled) {
+    take("a.png", {"--dump-shaders", (dir_ / "shaders").string()});
+    EXPECT_TRUE(read_text(dir_ / "shaders/terrain.frag.glsl", "test").starts_with("#version 450 core\n"));
+}
+
+}  // namespace
+}  // namespace relevo::test

@@ -1,0 +1,61 @@
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "support/support.h"
+
+namespace relevo::test {
+namespace {
+
+TEST(InfoVerb, SpeaksJsonAsDocumented) {
+    const Result run = relevo({"info", bundled_dem(), "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["driver"], "GTiff");
+    EXPECT_EQ(json["size"], (nlohmann::json{403, 344}));
+    EXPECT_EQ(json["crs"], "EPSG:4326");
+    EXPECT_NEAR(json["center"]["lat_deg"].get<double>(), 36.30292, 1e-5);
+    EXPECT_NEAR(json["center"]["lon_deg"].get<double>(), -84.24583, 1e-5);
+    EXPECT_EQ(json["elevation_m"]["min"], 236);
+    EXPECT_EQ(json["elevation_m"]["max"], 1076);
+    EXPECT_EQ(json["nodata_share"], 0);
+    for (const char* key : {"extent_m", "post_spacing_m", "unit", "assumptions"})
+        EXPECT_TRUE(json.contains(key)) << key;
+}
+
+TEST(SunPositionVerb, TakesASouthernLatitudeWithoutAnEqualsSign) {
+    const Result run = relevo({"sun", "position", "--at", "-33.9,18.4", "--time", "2026-06-21T12:00Z", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["utc"], "2026-06-21T12:00:00.000Z");
+    // In Cape Town the midwinter sun stands in the north after noon, 90 - 33.9 - 23.4 degrees high at most.
+    EXPECT_GT(json["azimuth_deg"].get<double>(), 270);
+    EXPECT_LT(json["elevation_deg"].get<double>(), 32.7);
+    EXPECT_GT(json["elevation_deg"].get<double>(), 25);
+    EXPECT_GT(json["apparent_elevation_deg"], json["elevation_deg"]);
+    EXPECT_NEAR(json["declination_deg"].get<double>(), 23.43, 0.01);
+    EXPECT_NEAR(json["equation_of_time_min"].get<double>(), -1.9, 0.1);
+    EXPECT_NEAR(json["distance_au"].get<double>(), 1.0162, 1e-4);
+}
+
+TEST(SunPositionVerb, RefractionCanBeLeftOut) {
+    const Result run = relevo({"sun", "position", "--at", "47,11", "--time", "2026-06-21T04:00Z", "--no-refraction",
+                            "--json"});
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["apparent_elevation_deg"], json["elevation_deg"]);
+}
+
+TEST(PluginsVerb, ListsWhatIsThereWithItsParameters) {
+    const Result run = relevo({"plugins", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_TRUE(json["broken"].empty()) << json["broken"];
+    for (const nlohmann::json& plugin : json["plugins"]) {
+        const Result info = relevo({"plugins", "info", plugin["id"].get<std::string>()});
+        EXPECT_EQ(info.status, 0) << info.err;
+        for (const nlohmann::json& param : plugin["parameters"])
+            EXPECT_NE(info.out.find(param["address"].get<std::string>()), std::string::npos);
+    }
+}
+
+}  // namespace
+}  // namespace relevo::test

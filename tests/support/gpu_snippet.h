@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "gl/context.h"
+#include "render/frame_block.h"
+#include "shader/param_store.h"
+
+namespace relevo::test {
+
+/// Runs a plugin's functions on the device, once for each pixel of a float target, so that a test
+/// can hold them against a reference number by number.
+class GpuSnippet {
+  public:
+    /// @param plugin  the id of a plugin of this project, whose GLSL is read from its folder
+    explicit GpuSnippet(const std::string& plugin);
+
+    shader::ParamStore& values() { return values_; }
+    render::FrameBlock& frame() { return frame_; }
+
+    /// @param body  GLSL that assigns `result`, a vec4; `x` and `y` are the pixel's column and row
+    /// @returns the results, row by row
+    std::vector<glm::vec4> run(const std::string& body, int columns, int rows);
+
+  private:
+    std::string plugin_;
+    gl::Context context_{{.device = "software", .debug = true}};
+    shader::ParamStore values_;
+    render::FrameBlock frame_{};
+};
+
+}  // namespace relevo::test
