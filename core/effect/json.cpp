@@ -199,7 +199,7 @@ int ObjectReader::line_of(std::string_view key) const {
 }
 
 const Json* ObjectReader::take(const std::string& key) {
-    known_.push_back(key);
+    if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
     for (const auto& [name, value] : object_.members)
         if (name == key) return &value;
     return nullptr;

@@ -87,8 +87,11 @@ class ManifestReader {
         const std::string file = manifest_.file.string();
         const Json json = parse_json(kWho, file, read_text(manifest_.file, kWho));
         ObjectReader object(kWho, file, "", json);
-        object.number("format", kFormat, kFormat, kFormat, true);
-        object.need("format");
+        const Json& format = object.need("format");
+        if (format.kind != Json::Kind::Number || format.number != kFormat)
+            object.fail(format.line, "format",
+                        fmt::format("expected {}, the format that this program reads, but got {}",
+                                    kFormat, describe(format)));
         identity(object);
         manifest_.provides = words(object, "provides");
         manifest_.needs = words(object, "requires");

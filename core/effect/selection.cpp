@@ -91,6 +91,7 @@ class Selector {
         if (switches.only) {
             on_.clear();
             asked_.clear();
+            disabled_.clear();
             for (const std::string& id : *switches.only)
                 ask(id);
         }

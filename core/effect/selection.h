@@ -28,9 +28,8 @@ struct Selection {
 /// ties by id.
 ///
 /// What a preset names and is not there is a notice, so that deleting a plugin breaks no preset.
-/// @throws Error (BadInput) for an unknown id on the command line, an id both enabled and disabled,
-/// a
-///         circle of `after`, or two providers of an exclusive hook
+/// @throws Error (BadInput) for an id on the command line that is unknown, or both on and off; a
+///         circle of `after`; two providers of an exclusive hook
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
                  const Switches& command_line);
 
@@ -38,9 +37,8 @@ Selection select(const Registry& registry, const std::vector<Preset>& presets,
 /// @param store  has been told of all parameters there are
 /// @returns notices: what a preset sets of plugins that are not there, and what the command line
 ///          sets of effects that are off
-/// @throws Error (BadInput) for an unknown parameter of a plugin that is there, an unknown
-/// parameter
-///         on the command line, and values that a parameter cannot have
+/// @throws Error (BadInput) for values that a parameter cannot have, and for unknown parameters: on
+///         the command line all, in a preset those of plugins that are there
 std::vector<std::string> apply_settings(shader::ParamStore& store, const Registry& registry,
                                         const Selection& selection,
                                         const std::vector<Preset>& presets,

@@ -22,7 +22,7 @@ void ParamStore::declare(const std::vector<Param>& params) {
         if (kept == values_.end()) continue;
         const Entry& entry = kept->second;
         if (entry.type != param.type) {
-            log::warning(fmt::format("{}: was a {}, is a {} now; its value is {} again",
+            log::warning(fmt::format("{}: was of type {}, is of type {} now; its value is {} again",
                                      param.address, glsl_name(entry.type), glsl_name(param.type),
                                      format_value(param, param.initial)));
             values_.erase(kept);

@@ -247,7 +247,8 @@ TEST(ParamStore, AnotherTypeResetsWithAWarning) {
     store.declare(params(kInt));
     EXPECT_EQ(store.value("haze.a"), ParamValue{1});
     EXPECT_EQ(logged.lines,
-              std::vector<std::string>{"haze.a: was a float, is a int now; its value is 1 again"});
+              std::vector<std::string>{
+                  "haze.a: was of type float, is of type int now; its value is 1 again"});
 }
 
 TEST(ParamStore, ANarrowerRangeResetsWithAWarning) {

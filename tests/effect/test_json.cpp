@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include "effect/json.h"
+#include "support/support.h"
+
+namespace relevo::effect {
+namespace {
+
+using relevo::test::error_of;
+
+TEST(Json, KnowsTheLineOfEveryMember) {
+    const Json json =
+        parse_json("who", "a.json", "{\n  \"a\": 1,\n  \"b\": {\n\"c\": [\n1,\n\"x\"]}}");
+    ASSERT_EQ(json.members.size(), 2u);
+    EXPECT_EQ(json.members[0].second.line, 2);
+    EXPECT_EQ(json.members[1].second.line, 3);
+    const Json& list = json.members[1].second.members[0].second;
+    EXPECT_EQ(list.line, 4);
+    EXPECT_EQ(list.items[1].line, 6);
+    EXPECT_EQ(list.items[0].number, 1);
+}
+
+TEST(Json, AMembersLineIsItsKeys) {
+    EXPECT_EQ(parse_json("who", "a.json", "{\"a\":\n\n1}").members[0].second.line, 1);
+}
+
+struct Bad {
+    const char* name;
+    const char* text;
+    const char* message;
+};
+
+class JsonError : public testing::TestWithParam<Bad> {};
+
+TEST_P(JsonError, NamesFileAndLine) {
+    EXPECT_EQ(error_of([] { parse_json("who", "a.json", GetParam().text); }), GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, JsonError,
+    testing::Values(
+        Bad{"MissingComma", "{\n  \"a\": 1\n  \"b\": 2\n}",
+            "exit 3: who: a.json:3: syntax error while parsing object - unexpected string literal; "
+            "expected '}'"},
+        Bad{"TrailingComma", "{\n  \"a\": 1,\n}",
+            "exit 3: who: a.json:3: syntax error while parsing object key - unexpected '}'; "
+            "expected string literal"},
+        Bad{"Empty", "",
+            "exit 3: who: a.json:1: syntax error while parsing value - unexpected end of input; "
+            "expected '[', '{', or a literal"},
+        Bad{"KeyTwice", "{\"a\": 1,\n\n\"a\": 2}",
+            "exit 3: who: a.json:3: a: given already in line 1"},
+        Bad{"Comment", "{\n// no\n}",
+            "exit 3: who: a.json:2: syntax error while parsing object key - invalid literal; last "
+            "read: '{<U+000A>/'; expected string literal"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(Json, DeepNestingIsRefused) {
+    EXPECT_EQ(error_of([] { parse_json("who", "a.json", std::string(100000, '[')); }),
+              "exit 3: who: a.json:1: nested deeper than 64 levels");
+}
+
+}  // namespace
+}  // namespace relevo::effect

@@ -1,0 +1,270 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "effect/manifest.h"
+#include "effect/plugins.h"
+
+namespace relevo::effect::test {
+namespace {
+
+using relevo::test::error_of;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr const char* kHead = R"("format": 1, "id": "haze", "name": "Haze", "version": "1.0")";
+const std::string kHook = "void haze_on_albedo(inout Surface s) {}\n";
+
+TEST(Manifest, IsReadWhole) {
+    const Plugins plugins;
+    plugins.write("data/noise/perlin.png", "");
+    plugins.write("plugins/haze/day.png", "");
+    plugins.write("plugins/haze/air.glsl", "float haze_air() { return 1.0; }\n");
+    plugins.add("haze", R"(
+        "description": "Air that shows.",
+        "enabled_by_default": false,
+        "provides": ["air"], "requires": ["sky"], "wants": ["shadow_map"], "after": ["relief"],
+        "glsl": ["air.glsl", "haze.glsl"],
+        "textures": {
+            "day": {"kind": "2d", "file": "day.png", "encoding": "srgb", "wrap": "clamp",
+                    "mipmaps": false},
+            "layers": {"kind": "2d-array", "files": ["day.png", "data:noise/perlin.png"],
+                       "encoding": "linear"},
+            "noise": {"kind": "3d", "file": "data:noise/perlin.png", "slices": 32,
+                      "encoding": "linear"}},
+        "passes": [{"name": "blur", "target": "screen", "format": "rgba16f", "scale": 0.5,
+                    "reads": ["vsm.moments"], "writes": ["haze.blurred"]}])",
+                "uniform sampler2D haze_day;\nuniform sampler2DArray haze_layers;\n"
+                "uniform sampler3D haze_noise;\nuniform sampler2D haze_blurred;\n" +
+                    kHook);
+    const Effect effect = load_effect(plugins.plugins() / "haze", plugins.data());
+    const Manifest& manifest = effect.manifest;
+    EXPECT_EQ(manifest.id, "haze");
+    EXPECT_EQ(manifest.description, "Air that shows.");
+    EXPECT_FALSE(manifest.enabled_by_default);
+    EXPECT_THAT(manifest.provides, ElementsAre("air"));
+    EXPECT_THAT(manifest.needs, ElementsAre("sky"));
+    EXPECT_THAT(manifest.wants, ElementsAre("shadow_map"));
+    EXPECT_THAT(manifest.after, ElementsAre("relief"));
+    ASSERT_EQ(manifest.glsl.size(), 2u);
+    EXPECT_EQ(manifest.glsl[0].filename(), "air.glsl");
+    EXPECT_EQ(effect.snippets.size(), 2u);
+
+    ASSERT_EQ(manifest.textures.size(), 3u);
+    const TextureSpec& day = manifest.textures[0];
+    EXPECT_EQ(day.resource, "haze.day");
+    EXPECT_EQ(day.kind, TextureSpec::Kind::D2);
+    EXPECT_TRUE(day.srgb);
+    EXPECT_EQ(day.wrap, TextureSpec::Wrap::Clamp);
+    EXPECT_FALSE(day.mipmaps);
+    EXPECT_THAT(day.files, ElementsAre(plugins.plugins() / "haze" / "day.png"));
+    EXPECT_THAT(manifest.textures[1].files, ElementsAre(plugins.plugins() / "haze" / "day.png",
+                                                        plugins.data() / "noise" / "perlin.png"));
+    EXPECT_EQ(manifest.textures[2].slices, 32);
+    EXPECT_TRUE(manifest.textures[2].mipmaps);
+
+    ASSERT_EQ(manifest.passes.size(), 1u);
+    EXPECT_EQ(manifest.passes[0].scale, 0.5);
+    EXPECT_THAT(manifest.passes[0].writes, ElementsAre("haze.blurred"));
+}
+
+TEST(Manifest, NeedsLittle) {
+    const Plugins plugins;
+    plugins.add("haze");
+    const Manifest manifest = load_manifest(plugins.plugins() / "haze", plugins.data());
+    EXPECT_TRUE(manifest.enabled_by_default);
+    EXPECT_THAT(manifest.textures, IsEmpty());
+    ASSERT_EQ(manifest.glsl.size(), 1u);
+    EXPECT_EQ(manifest.glsl[0].filename(), "haze.glsl");
+}
+
+TEST(Manifest, ANativePluginNeedsNoGlsl) {
+    const Plugins plugins;
+    plugins.write("plugins/haze/plugin.json", std::string("{") + kHead + R"(, "module": "haze"})");
+    const Effect effect = load_effect(plugins.plugins() / "haze", plugins.data());
+    EXPECT_EQ(effect.manifest.module, "haze");
+    EXPECT_THAT(effect.snippets, IsEmpty());
+}
+
+struct Bad {
+    const char* name;
+    std::string json;
+    const char* message;  ///< behind "exit 3: effect::load: plugins/haze/plugin.json:"
+};
+
+class ManifestError : public testing::TestWithParam<Bad> {};
+
+TEST_P(ManifestError, NamesFileAndLine) {
+    const Plugins plugins;
+    plugins.write("plugins/haze/haze.glsl", kHook);
+    plugins.write("plugins/haze/a.png", "");
+    plugins.write("plugins/haze/plugin.json", GetParam().json);
+    EXPECT_EQ(plugins.relative(
+                  error_of([&] { load_effect(plugins.plugins() / "haze", plugins.data()); })),
+              std::string("exit 3: effect::load: plugins/haze/plugin.json:") + GetParam().message);
+}
+
+/// The head, and in the second line what is wrong.
+std::string with(const std::string& members) {
+    return std::string("{") + kHead + ",\n" + members + "}";
+}
+std::string texture(const std::string& members) {
+    return with(R"("textures": {"noise": {)" + members + "}}");
+}
+std::string pass(const std::string& members) {
+    return with(R"("passes": [{)" + members + "}]");
+}
+
+constexpr const char* kKeys =
+    "format, id, name, description, version, enabled_by_default, provides, requires, wants, after, "
+    "module, glsl, textures, passes";
+const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ManifestError,
+    testing::Values(
+        Bad{"Syntax", "{\n\"format\" 1}",
+            "2: syntax error while parsing object separator - unexpected number literal; expected "
+            "':'"},
+        Bad{"NoObject", "\n[]", "2: expected an object but got a list"},
+        Bad{"NoFormat", R"({"id": "haze"})", "1: expected a member \"format\""},
+        Bad{"NewerFormat", "{\n\"format\": 2}",
+            "2: format: expected 1, the format that this program reads, but got 2"},
+        Bad{"NoId", R"({"format": 1})", "1: expected a member \"id\""},
+        Bad{"BadId", "{\"format\": 1,\n\"id\": \"Haze\"}",
+            "2: id: expected a letter a-z and then letters and digits but got \"Haze\""},
+        Bad{"Underscore", "{\"format\": 1,\n\"id\": \"my_haze\"}",
+            "2: id: expected a letter a-z and then letters and digits but got \"my_haze\""},
+        Bad{"Reserved", "{\"format\": 1,\n\"id\": \"core\"}",
+            "2: id: core is a word of core's; choose another"},
+        Bad{"NoName", R"({"format": 1, "id": "haze"})", "1: expected a member \"name\""},
+        Bad{"NumberForText", "{\"format\": 1, \"id\": \"haze\",\n\"name\": 7}",
+            "2: name: expected a text but got 7"},
+        Bad{"NoVersion", R"({"format": 1, "id": "haze", "name": "Haze"})",
+            "1: expected a member \"version\""},
+        Bad{"Misspelt", with(R"("provide": ["air"])"),
+            "2: provide: no such key; did you mean \"provides\"?"},
+        Bad{"UnknownKey", with(R"("licence": "MIT")"), kUnknown.c_str()},
+        Bad{"NoList", with(R"("provides": "air")"),
+            "2: provides: expected a list of texts but got \"air\""},
+        Bad{"NumberInAList", with(R"("provides": [7])"),
+            "2: provides: expected a list of texts but got 7 in it"},
+        Bad{"BadWord", with(R"("wants": ["Shadow map"])"),
+            "2: wants: expected words of a-z, 0-9 and _ but got \"Shadow map\""},
+        Bad{"WordTwice", with(R"("after": ["a", "a"])"), "2: after: \"a\" is listed twice"},
+        Bad{"NoBool", with(R"("enabled_by_default": "yes")"),
+            "2: enabled_by_default: expected true or false but got \"yes\""},
+        Bad{"ModulePath", with(R"("module": "../haze.so")"),
+            "2: module: expected the bare name of a library but got \"../haze.so\""},
+        Bad{"NoGlsl", with(R"("glsl": ["fog.glsl"])"),
+            "2: glsl: plugins/haze/fog.glsl: no such file"},
+        Bad{"GlslOutside", with(R"("glsl": ["../fog.glsl"])"),
+            "2: glsl: expected a file of the plugin's own folder but got ../fog.glsl"},
+        Bad{"Textures", with(R"("textures": [])"),
+            "2: textures: expected an object of name and texture but got a list"},
+        Bad{"TextureName", with(R"("textures": {"No": {}})"),
+            "2: textures: expected words of a-z, 0-9 and _ but got \"No\""},
+        Bad{"Texture", with(R"("textures": {"noise": "a.png"})"),
+            "2: textures.noise: expected an object but got \"a.png\""},
+        Bad{"NoKind", texture(R"("file": "a.png")"),
+            "2: textures.noise: expected a member \"kind\""},
+        Bad{"BadKind", texture(R"("kind": "2darray")"),
+            "2: textures.noise.kind: expected one of 2d, 2d-array, 3d but got \"2darray\"; did you "
+            "mean 2d-array?"},
+        Bad{"NoFile", texture(R"("kind": "2d", "file": "b.png", "encoding": "srgb")"),
+            "2: textures.noise.file: plugins/haze/b.png: no such file"},
+        Bad{"NoDataFile", texture(R"("kind": "3d", "file": "data:b.png", "encoding": "linear")"),
+            "2: textures.noise.file: data/b.png: no such file"},
+        Bad{"DataOutside",
+            texture(R"("kind": "2d", "file": "data:../a.png", "encoding": "linear")"),
+            "2: textures.noise.file: expected a file of the plugin's own folder but got ../a.png"},
+        Bad{"Absolute", texture(R"("kind": "2d", "file": "/a.png", "encoding": "linear")"),
+            "2: textures.noise.file: expected a file of the plugin's own folder but got /a.png"},
+        Bad{"NoLayers", texture(R"("kind": "2d-array", "files": [], "encoding": "srgb")"),
+            "2: textures.noise.files: expected a list of files, one a layer"},
+        Bad{"NoEncoding", texture(R"("kind": "2d", "file": "a.png")"),
+            "2: textures.noise: expected a member \"encoding\""},
+        Bad{"Slices", texture(R"("kind": "3d", "file": "a.png", "slices": 1.5)"),
+            "2: textures.noise.slices: expected a whole number in [1, 2048] but got 1.5"},
+        Bad{"SlicesOfAPicture",
+            texture(R"("kind": "2d", "file": "a.png", "encoding": "srgb", "slices": 2)"),
+            "2: textures.noise.slices: no such key; there are kind, file, encoding, wrap, mipmaps"},
+        Bad{"Unread", texture(R"("kind": "2d", "file": "a.png", "encoding": "srgb")"),
+            "2: textures.noise: nothing reads it; expected uniform sampler2D haze_noise; in the "
+            "plugin's GLSL"},
+        Bad{"Passes", with(R"("passes": {})"),
+            "2: passes: expected a list of passes but got an object"},
+        Bad{"PassTarget", pass(R"("name": "blur", "target": "sea")"),
+            "2: passes.0.target: expected one of screen, sun but got \"sea\""},
+        Bad{"PassFormat", pass(R"("name": "blur", "target": "sun", "format": "rgb16f")"),
+            "2: passes.0.format: expected one of r8, rg8, rgba8, r16f, rg16f, rgba16f, r32f, "
+            "rg32f, "
+            "rgba32f, depth32f but got \"rgb16f\"; did you mean rg16f?"},
+        Bad{"PassScale", pass(R"("name": "blur", "target": "sun", "format": "rg16f", "scale": 2)"),
+            "2: passes.0.scale: expected a number in [0.015625, 1] but got 2"},
+        Bad{"PassReads",
+            pass(R"("name": "b", "target": "sun", "format": "r8", "reads": ["moments"])"),
+            "2: passes.0.reads: expected resources such as vsm.moments but got \"moments\""},
+        Bad{"PassWrites",
+            pass(R"("name": "b", "target": "sun", "format": "r8", "writes": ["vsm.moments"])"),
+            "2: passes.0.writes: expected resources that begin with haze. but got \"vsm.moments\""},
+        Bad{"PassWithoutResult", pass(R"("name": "b", "target": "sun", "format": "r8")"),
+            "2: passes.0.writes: expected at least one resource that the pass writes"}),
+    [](const auto& test) { return test.param.name; });
+
+// ---- manifest and GLSL together
+
+struct Mismatch {
+    const char* name;
+    const char* members;
+    std::string glsl;
+    const char* message;  ///< behind "exit 3: "
+};
+
+class EffectError : public testing::TestWithParam<Mismatch> {};
+
+TEST_P(EffectError, NamesFileAndLine) {
+    const Plugins plugins;
+    plugins.add("haze", GetParam().members, GetParam().glsl);
+    plugins.write("plugins/haze/a.png", "");
+    plugins.write("plugins/haze/more.glsl", kHook);
+    EXPECT_EQ(plugins.relative(
+                  error_of([&] { load_effect(plugins.plugins() / "haze", plugins.data()); })),
+              std::string("exit 3: ") + GetParam().message);
+}
+
+constexpr const char* kNoise =
+    R"("textures": {"noise": {"kind": "3d", "file": "a.png", "encoding": "linear"}})";
+
+INSTANTIATE_TEST_SUITE_P(
+    All, EffectError,
+    testing::Values(
+        Mismatch{
+            "Glsl", "", "\nvoid haze_on_albedo(Surface s) {}",
+            "shader::parse: plugins/haze/haze.glsl:2: haze_on_albedo: wrong signature, expected "
+            "void haze_on_albedo(inout Surface) but got void haze_on_albedo(in Surface)"},
+        Mismatch{"DoesNothing", "", "float haze_f() { return 1.0; }",
+                 "effect::load: plugins/haze/plugin.json: no hook and no module, so it does "
+                 "nothing; define a function such as haze_on_albedo"},
+        Mismatch{"NotWanted", R"("wants": ["shadow"])",
+                 "void haze_on_albedo(inout Surface s) {\n#if HAS_sky\n#endif\n}",
+                 "effect::load: plugins/haze/haze.glsl:2: HAS_sky: plugins/haze/plugin.json does "
+                 "not want it; add \"sky\" to its \"wants\""},
+        Mismatch{"NoTexture", kNoise, "uniform sampler3D haze_nois;\n" + kHook,
+                 "effect::load: plugins/haze/haze.glsl:1: haze_nois: plugins/haze/plugin.json has "
+                 "no texture nois; did you mean noise?"},
+        Mismatch{"WrongSampler", kNoise, "\nuniform sampler2D haze_noise;\n" + kHook,
+                 "effect::load: plugins/haze/haze.glsl:2: haze_noise: expected a sampler3D for the "
+                 "texture noise of plugins/haze/plugin.json:1 but got a sampler2D"},
+        Mismatch{"HookInTwoFiles", R"("glsl": ["more.glsl", "haze.glsl"])", "\n" + kHook,
+                 "effect::load: plugins/haze/haze.glsl:2: haze_on_albedo: defined already in "
+                 "plugins/haze/more.glsl:1"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(Effect, AnotherPluginsTextureNeedsNoEntry) {
+    const Plugins plugins;
+    plugins.add("haze", "", "uniform sampler2D haze_map; //@ from(vsm.moments)\n" + kHook);
+    EXPECT_EQ(load_effect(plugins.plugins() / "haze", plugins.data()).snippets.size(), 1u);
+}
+
+}  // namespace
+}  // namespace relevo::effect::test

@@ -1,0 +1,355 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "effect/plugins.h"
+#include "effect/selection.h"
+
+namespace relevo::effect::test {
+namespace {
+
+using relevo::test::error_of;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+using Words = std::vector<std::string>;
+
+Preset preset(Switches switches, std::vector<Setting> settings = {}) {
+    return {"winter", "winter.json", "", std::move(switches), std::move(settings)};
+}
+
+// layering gives materials that bump and gloss need; wet is off by default and needs gloss' shine.
+void add_ground(const Plugins& plugins) {
+    plugins.add("layering", R"("provides": ["materials"])");
+    plugins.add("bump", R"("requires": ["materials"], "after": ["materials"])");
+    plugins.add("gloss",
+                R"("provides": ["shine"], "requires": ["materials"], "after": ["materials"])");
+    plugins.add("wet", R"("requires": ["shine"], "enabled_by_default": false)");
+}
+
+// ---- what is on
+
+TEST(Selection, DefaultsAreOn) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    const Selection selection = select(registry, {}, {});
+    EXPECT_THAT(ids(selection), ElementsAre("layering", "bump", "gloss"));
+    EXPECT_THAT(selection.capabilities, ElementsAre("materials", "shine"));
+    EXPECT_THAT(selection.notices, IsEmpty());
+    EXPECT_TRUE(selection.has("bump"));
+    EXPECT_FALSE(selection.has("wet"));
+    EXPECT_EQ(selection.snippets().size(), 3u);
+}
+
+TEST(Selection, NothingIsOnWithoutPlugins) {
+    const Selection selection = select(Registry(), {}, {});
+    EXPECT_THAT(selection.effects, IsEmpty());
+    EXPECT_THAT(selection.capabilities, IsEmpty());
+}
+
+TEST(Selection, OnlyPullsRequirementsIn) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    const Selection selection = select(registry, {}, {.only = Words{"wet"}});
+    EXPECT_THAT(ids(selection), ElementsAre("layering", "gloss", "wet"));
+    EXPECT_THAT(selection.notices,
+                ElementsAre("wet requires shine: gloss is switched on too",
+                            "gloss requires materials: layering is switched on too"));
+}
+
+TEST(Selection, OnlyNothingIsNothing) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_THAT(select(registry, {}, {.only = Words{}}).effects, IsEmpty());
+}
+
+TEST(Selection, EnableAddsToTheDefaults) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(select(registry, {}, {.enable = {"wet"}})),
+                ElementsAre("layering", "bump", "gloss", "wet"));
+    EXPECT_THAT(ids(select(registry, {}, {.only = Words{"layering"}, .enable = {"bump"}})),
+                ElementsAre("layering", "bump"));
+}
+
+TEST(Selection, DisablingARequiredEffectTurnsItsDependantsOff) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    const Selection selection = select(registry, {}, {.disable = {"layering"}});
+    EXPECT_THAT(selection.effects, IsEmpty());
+    EXPECT_THAT(selection.notices,
+                ElementsAre("bump is off: it requires materials, layering is disabled",
+                            "gloss is off: it requires materials, layering is disabled"));
+}
+
+TEST(Selection, WhatIsDisabledIsNotPulledIn) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    const Selection selection =
+        select(registry, {}, {.only = Words{"wet"}, .disable = {"layering"}});
+    EXPECT_THAT(selection.effects, IsEmpty());
+    EXPECT_THAT(selection.notices,
+                ElementsAre("wet requires shine: gloss is switched on too",
+                            "gloss is off: it requires materials, layering is disabled",
+                            "wet is off: it requires shine, gloss is off"));
+}
+
+TEST(Selection, ARequirementThatNobodyMeetsTurnsAnEffectOff) {
+    const Plugins plugins;
+    plugins.add("bump", R"("requires": ["materials"])");
+    plugins.add("glow", R"("requires": ["heat"])");
+    plugins.add("lava", R"("provides": ["heat"], "enabled_by_default": false)");
+    const Registry registry = plugins.load();
+    const Selection selection = select(registry, {}, {});
+    EXPECT_THAT(selection.effects, IsEmpty());
+    EXPECT_THAT(selection.notices,
+                ElementsAre("bump is off: it requires materials, which no plugin here provides",
+                            "glow is off: it requires heat, lava is off, --enable lava changes "
+                            "that"));
+}
+
+TEST(Selection, OfTwoProvidersTheOneThatIsOnByDefaultIsPulledIn) {
+    const Plugins plugins;
+    plugins.add("ash", R"("provides": ["materials"], "enabled_by_default": false)");
+    plugins.add("layering", R"("provides": ["materials"])");
+    plugins.add("bump", R"("requires": ["materials"])");
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(select(registry, {}, {.only = Words{"bump"}})),
+                ElementsAre("bump", "layering"));
+    EXPECT_THAT(ids(select(registry, {}, {.only = Words{"bump"}, .disable = {"layering"}})),
+                ElementsAre("ash", "bump"));
+}
+
+TEST(Selection, AnEffectMayMeetItsOwnRequirement) {
+    const Plugins plugins;
+    plugins.add("ash", R"("provides": ["materials"], "requires": ["materials"])");
+    EXPECT_THAT(select(plugins.load(), {}, {}).notices, IsEmpty());
+}
+
+// ---- presets
+
+TEST(Selection, TheCommandLineHasTheLastWord) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    const Preset only_layering = preset({.only = Words{"layering"}, .disable = {"bump"}});
+    EXPECT_THAT(ids(select(registry, {only_layering}, {})), ElementsAre("layering"));
+    EXPECT_THAT(ids(select(registry, {only_layering}, {.enable = {"bump"}})),
+                ElementsAre("layering", "bump"));
+    EXPECT_THAT(ids(select(registry, {only_layering}, {.only = Words{"gloss"}})),
+                ElementsAre("layering", "gloss"));
+    EXPECT_THAT(ids(select(registry, {only_layering}, {.disable = {"layering"}})), IsEmpty());
+}
+
+TEST(Selection, OnlyForgetsWhatWasDisabledBefore) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_THAT(
+        ids(select(registry, {preset({.disable = {"layering"}})}, {.only = Words{"bump"}})),
+        ElementsAre("layering", "bump"));
+}
+
+TEST(Selection, WhatIsEnabledAgainIsNotCalledDisabled) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_THAT(select(registry, {preset({.disable = {"gloss", "bump"}})},
+                       {.enable = {"gloss", "wet"}, .disable = {"layering"}})
+                    .notices,
+                ElementsAre("gloss is off: it requires materials, layering is disabled",
+                            "wet is off: it requires shine, gloss is off"));
+}
+
+TEST(Selection, ALaterPresetChangesAnEarlierOne) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_THAT(
+        ids(select(registry, {preset({.only = Words{"layering"}}), preset({.enable = {"bump"}})},
+                   {})),
+        ElementsAre("layering", "bump"));
+}
+
+TEST(Selection, WhatAPresetDisablesIsNotPulledIn) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_THAT(select(registry, {preset({.disable = {"layering"}})}, {.enable = {"bump"}}).notices,
+                ElementsAre("bump is off: it requires materials, layering is disabled",
+                            "gloss is off: it requires materials, layering is disabled"));
+}
+
+TEST(Selection, APresetMayNamePluginsThatAreGone) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    const Selection selection =
+        select(registry, {preset({.only = Words{"layering", "snow"}, .disable = {"ice"}})}, {});
+    EXPECT_THAT(ids(selection), ElementsAre("layering"));
+    EXPECT_THAT(selection.notices,
+                ElementsAre("winter.json: snow is skipped, there is no such plugin",
+                            "winter.json: ice is skipped, there is no such plugin"));
+}
+
+// ---- order
+
+TEST(Selection, TiesAreBrokenById) {
+    const Plugins plugins;
+    for (const char* id : {"c", "a", "b"})
+        plugins.add(id);
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("a", "b", "c"));
+}
+
+TEST(Selection, AfterAWordIsBehindAllItsProviders) {
+    const Plugins plugins;
+    plugins.add("a", R"("after": ["mood"])");
+    plugins.add("b", R"("provides": ["mood"])");
+    plugins.add("c");
+    plugins.add("d", R"("provides": ["mood"], "after": ["mood", "nothing"])");
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("b", "c", "d", "a"));
+    EXPECT_THAT(ids(select(registry, {}, {.disable = {"b", "d"}})), ElementsAre("a", "c"));
+}
+
+// ---- what is refused
+
+TEST(SelectionError, ACircleNamesItsSides) {
+    const Plugins plugins;
+    plugins.add("bump", R"("provides": ["relief"], "after": ["air"])");
+    plugins.add("haze", R"("provides": ["air"], "after": ["relief"])");
+    plugins.add("aaa", R"("after": ["air"])");
+    const Registry registry = plugins.load();
+    EXPECT_EQ(plugins.relative(error_of([&] { select(registry, {}, {}); })),
+              "exit 3: effect::select: haze and bump: they wait for each other: haze after bump "
+              "(relief), bump after haze (air); change \"after\" in plugins/haze/plugin.json or "
+              "plugins/bump/plugin.json");
+    EXPECT_THAT(ids(select(registry, {}, {.disable = {"bump"}})), ElementsAre("haze", "aaa"));
+}
+
+TEST(SelectionError, TwoProvidersOfAnExclusiveHookAndTheMend) {
+    const Plugins plugins;
+    plugins.add("filmic", "", "void filmic_on_tonemap(inout vec3 c) {}");
+    plugins.add("neutral", "", "void neutral_on_tonemap(inout vec3 c) {}");
+    const Registry registry = plugins.load();
+    EXPECT_EQ(error_of([&] { select(registry, {}, {}); }),
+              "exit 3: effect::select: tonemap: expected one provider of this exclusive hook but "
+              "got filmic and neutral; add --disable filmic or --disable neutral");
+    EXPECT_THAT(ids(select(registry, {}, {.disable = {"neutral"}})), ElementsAre("filmic"));
+}
+
+TEST(SelectionError, TwoProvidersOfAService) {
+    const Plugins plugins;
+    for (const char* id : {"dome", "sky"})
+        plugins.add(id, "",
+                    std::string("vec3 ") + id +
+                        "_on_background_radiance(vec3 d, bool disc) { return vec3(1); }");
+    const Registry registry = plugins.load();
+    EXPECT_EQ(
+        error_of([&] { select(registry, {}, {}); }),
+        "exit 3: effect::select: background_radiance: expected one provider of this exclusive "
+        "hook but got dome and sky; add --disable dome or --disable sky");
+}
+
+TEST(SelectionError, UnknownNamesOnTheCommandLine) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    constexpr const char* kMessage =
+        "exit 3: effect::select: layerin: no such plugin; did you mean layering?";
+    EXPECT_EQ(error_of([&] { select(registry, {}, {.only = Words{"layerin"}}); }), kMessage);
+    EXPECT_EQ(error_of([&] { select(registry, {}, {.enable = {"layerin"}}); }), kMessage);
+    EXPECT_EQ(error_of([&] { select(registry, {}, {.disable = {"layerin"}}); }), kMessage);
+}
+
+TEST(SelectionError, BothOnAndOff) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    constexpr const char* kMessage =
+        "exit 3: effect::select: wet: expected it either on or off but got both";
+    EXPECT_EQ(error_of([&] { select(registry, {}, {.enable = {"wet"}, .disable = {"wet"}}); }),
+              kMessage);
+    EXPECT_EQ(error_of([&] { select(registry, {}, {.only = Words{"wet"}, .disable = {"wet"}}); }),
+              kMessage);
+}
+
+// ---- values
+
+class Settings : public testing::Test {
+  protected:
+    Settings() {
+        plugins_.add(
+            "haze", "",
+            "uniform float haze_density = 1.0; //@ range(0, 2) unit(1/km)\n"
+            "uniform vec3 haze_tint = vec3(1); //@ colour\n"
+            "void haze_on_albedo(inout Surface s) { s.diffuse *= haze_density * haze_tint; "
+            "}");
+        registry_ = plugins_.load();
+        store_.declare(registry_.params());
+        selection_ = select(registry_, {}, {});
+    }
+
+    std::vector<std::string> apply(const std::vector<Preset>& presets,
+                                   const std::vector<Setting>& command_line) {
+        return apply_settings(store_, registry_, selection_, presets, command_line);
+    }
+
+    Plugins plugins_;
+    Registry registry_;
+    shader::ParamStore store_;
+    Selection selection_;
+};
+
+TEST_F(Settings, TheCommandLineComesLast) {
+    EXPECT_THAT(apply({preset({}, {{"haze.density", "0.5", 3}, {"haze.tint", "0,0.5,1", 4}})},
+                      {{"haze.density", "0.25"}}),
+                IsEmpty());
+    EXPECT_EQ(store_.value("haze.density")[0], 0.25);
+    EXPECT_EQ(store_.value("haze.tint")[1], 0.5);
+}
+
+TEST_F(Settings, NeverSwitchAnEffectOn) {
+    selection_ = select(registry_, {}, {.disable = {"haze"}});
+    EXPECT_THAT(apply({}, {{"haze.density", "0.25"}}),
+                ElementsAre("haze.density is set, but haze is off; --enable haze switches it on"));
+    EXPECT_EQ(store_.value("haze.density")[0], 0.25);
+    EXPECT_THAT(selection_.effects, IsEmpty());
+}
+
+TEST_F(Settings, OfAPluginThatIsGoneAreSkippedInAPreset) {
+    EXPECT_THAT(apply({preset({}, {{"snow.line", "1800", 3}, {"haze.density", "0.5", 4}})}, {}),
+                ElementsAre("winter.json:3: snow.line is skipped, there is no plugin snow"));
+    EXPECT_EQ(store_.value("haze.density")[0], 0.5);
+}
+
+TEST_F(Settings, ErrorsNameParameterAndPlace) {
+    EXPECT_EQ(error_of([&] {
+                  apply({preset({}, {{"haze.densty", "1", 3}})}, {});
+              }),
+              "exit 3: effect::apply_settings: winter.json:3: haze.densty: no such parameter; did "
+              "you mean haze.density?");
+    EXPECT_EQ(error_of([&] {
+                  apply({preset({}, {{"haze.density", "7", 3}})}, {});
+              }),
+              "exit 3: effect::apply_settings: winter.json:3: haze.density: expected a number in "
+              "[0, 2] 1/km but got \"7\"");
+    EXPECT_EQ(error_of([&] {
+                  apply({}, {{"snow.line", "1800"}});
+              }),
+              "exit 3: shader::ParamStore: snow.line: no such parameter");
+    EXPECT_EQ(error_of([&] {
+                  apply({}, {{"haze.density", "much"}});
+              }),
+              "exit 3: shader::parse_value: haze.density: expected a number in [0, 2] 1/km but got "
+              "\"much\"");
+}
+
+}  // namespace
+}  // namespace relevo::effect::test
