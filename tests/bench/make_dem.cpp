@@ -30,12 +30,12 @@ int main(int argc, char** argv) {
     const relevo::dem::Heightfield source = relevo::dem::load(std::string(argv[1]));
     const int columns = std::atoi(argv[2]), rows = std::atoi(argv[3]);
     const relevo::dem::Affine& post = source.grid.affine();
-    double geotransform[6] = {post.x0 - 0.5 * post.x_column, post.x_column, 0,
-                              post.y0 - 0.5 * post.y_row,    0,             post.y_row};
+    double geotransform[6] = {
+        post.x0 - 0.5 * post.x_column, post.x_column, 0, post.y0 - 0.5 * post.y_row, 0, post.y_row};
     GDALAllRegister();
     const char* options[] = {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=2", nullptr};
-    GDALDatasetH out = GDALCreate(GDALGetDriverByName("GTiff"), argv[4], columns, rows, 1, GDT_Int16,
-                                  const_cast<char**>(options));
+    GDALDatasetH out = GDALCreate(GDALGetDriverByName("GTiff"), argv[4], columns, rows, 1,
+                                  GDT_Int16, const_cast<char**>(options));
     if (!out) return 1;
     GDALSetGeoTransform(out, geotransform);
     GDALSetProjection(out, source.grid.crs().wkt().c_str());
@@ -45,8 +45,8 @@ int main(int argc, char** argv) {
         for (int column = 0; column < columns; ++column)
             line[static_cast<std::size_t>(column)] = static_cast<short>(
                 source.height_m.at(mirrored(column, source.height_m.width()), from));
-        if (GDALRasterIO(GDALGetRasterBand(out, 1), GF_Write, 0, row, columns, 1, line.data(), columns, 1,
-                         GDT_Int16, 0, 0) != CE_None)
+        if (GDALRasterIO(GDALGetRasterBand(out, 1), GF_Write, 0, row, columns, 1, line.data(),
+                         columns, 1, GDT_Int16, 0, 0) != CE_None)
             return 1;
     }
     GDALClose(out);

@@ -150,9 +150,8 @@ TEST(Selection, OnlyForgetsWhatWasDisabledBefore) {
     const Plugins plugins;
     add_ground(plugins);
     const Registry registry = plugins.load();
-    EXPECT_THAT(
-        ids(select(registry, {preset({.disable = {"layering"}})}, {.only = Words{"bump"}})),
-        ElementsAre("layering", "bump"));
+    EXPECT_THAT(ids(select(registry, {preset({.disable = {"layering"}})}, {.only = Words{"bump"}})),
+                ElementsAre("layering", "bump"));
 }
 
 TEST(Selection, WhatIsEnabledAgainIsNotCalledDisabled) {
