@@ -36,7 +36,7 @@ uniform vec4 layering_diffuse = vec4(1.0, 1.0, 1.0, 1.0); //@ range(0, 2) label(
 uniform vec4 layering_ambient = vec4(1.0, 1.0, 1.0, 1.0); //@ range(0, 2) label("Ambient")
 uniform vec4 layering_specular = vec4(0.02, 0.015, 0.03, 0.10); //@ range(0, 1) label("Specular")
 uniform vec4 layering_emissive = vec4(0.0, 0.0, 0.0, 0.0); //@ range(0, 10) label("Emissive")
-uniform vec4 layering_shininess = vec4(8.0, 6.0, 18.0, 30.0); //@ range(1, 1000) label("Shininess")
+uniform vec4 layering_shininess = vec4(12.0, 10.0, 16.0, 24.0); //@ range(1, 1000) label("Shininess")
 
 /// Elevations at which materials change: where sand begins to turn into grass, and so on.
 struct layering_Limits {

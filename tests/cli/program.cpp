@@ -1,8 +1,8 @@
 #include "cli/program.h"
 
-#include <sys/wait.h>
-
 #include <cstdlib>
+
+#include <sys/wait.h>
 
 #include "base/text.h"
 #include "support/support.h"
@@ -19,7 +19,8 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-Result relevo(const std::vector<std::string>& arguments, const std::vector<std::string>& environment) {
+Result relevo(const std::vector<std::string>& arguments,
+              const std::vector<std::string>& environment) {
     static int count = 0;
     const std::filesystem::path dir = build_dir() / "scratch";
     std::filesystem::create_directories(dir);

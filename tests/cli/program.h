@@ -12,8 +12,10 @@ struct Result {
     std::string err;  ///< standard error
 };
 
-/// Runs `relevo` of the build under test. The device is the software renderer wherever one is drawn with.
-Result relevo(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {});
+/// Runs `relevo` of the build under test. The device is the software renderer wherever one is drawn
+/// with.
+Result relevo(const std::vector<std::string>& arguments,
+              const std::vector<std::string>& environment = {});
 
 /// The DEM that comes along.
 std::string bundled_dem();

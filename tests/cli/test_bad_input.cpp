@@ -19,7 +19,8 @@ std::string out_png() {
 }
 
 /// Status and whole message of a run that fails, and that nothing was written.
-void expect_failure(const std::vector<std::string>& arguments, int status, const std::string& message) {
+void expect_failure(const std::vector<std::string>& arguments, int status,
+                    const std::string& message) {
     const Result run = relevo(arguments);
     EXPECT_EQ(run.status, status) << run.err;
     EXPECT_EQ(run.err, "relevo: error: " + message + "\n");
@@ -50,11 +51,13 @@ TEST(BadDem, EachHasItsMessage) {
          {Case{"/nowhere/alps.tif", "cannot be read, no such file"},
           Case{(dir() / "notes.txt").string(), "not a raster in any format that GDAL reads"},
           Case{written("no_crs.tif", no_crs), "no coordinate reference system; pass --crs EPSG:n"},
-          Case{written("empty.tif", empty),
-               "not one valid height, all 24 posts are holes"},
-          Case{written("one_post.tif", one_post), "size, expected at least 2 x 2 posts but got 1 x 1"},
-          Case{written("one_row.tif", one_row), "size, expected at least 2 x 2 posts but got 6 x 1"}}) {
-        expect_failure({"capture", c.path, "-o", out_png()}, 3, "dem::load: " + c.path + ": " + c.message);
+          Case{written("empty.tif", empty), "not one valid height, all 24 posts are holes"},
+          Case{written("one_post.tif", one_post),
+               "size, expected at least 2 x 2 posts but got 1 x 1"},
+          Case{written("one_row.tif", one_row),
+               "size, expected at least 2 x 2 posts but got 6 x 1"}}) {
+        expect_failure({"capture", c.path, "-o", out_png()}, 3,
+                       "dem::load: " + c.path + ": " + c.message);
         expect_failure({"info", c.path}, 3, "dem::load: " + c.path + ": " + c.message);
     }
     const Result run = relevo({"capture", cut, "-o", out_png()});
@@ -69,17 +72,19 @@ TEST(BadTime, EachHasItsMessage) {
         arguments.insert(arguments.end(), time.begin(), time.end());
         return arguments;
     };
-    expect_failure(capture_at({"--time", "2026-06-21T18:30"}), 3,
-                   "sun::parse_time: 2026-06-21T18:30: no time zone; write 2026-06-21T18:30Z for UTC or "
-                   "2026-06-21T18:30+02:00, or pass --tz Europe/Zurich");
+    expect_failure(
+        capture_at({"--time", "2026-06-21T18:30"}), 3,
+        "sun::parse_time: 2026-06-21T18:30: no time zone; write 2026-06-21T18:30Z for UTC or "
+        "2026-06-21T18:30+02:00, or pass --tz Europe/Zurich");
     expect_failure(capture_at({"--time", "2026-06-21T18:30", "--tz", "Europe/Zurick"}), 3,
                    "sun::Zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
 }
 
 TEST(BadPlace, Latitude91) {
-    expect_failure({"sun", "position", "--at", "91,10", "--time", "2026-06-21T18:30Z"}, 2,
-                   "--at: 91,10: latitude, expected -90 to 90 degrees but got 91; latitude comes first, "
-                   "perhaps 10,91");
+    expect_failure(
+        {"sun", "position", "--at", "91,10", "--time", "2026-06-21T18:30Z"}, 2,
+        "--at: 91,10: latitude, expected -90 to 90 degrees but got 91; latitude comes first, "
+        "perhaps 10,91");
 }
 
 TEST(BadEffect, EachHasItsMessage) {
@@ -90,12 +95,15 @@ TEST(BadEffect, EachHasItsMessage) {
     };
     const Result unknown = relevo(with({"--enable", "xyzzy"}));
     EXPECT_EQ(unknown.status, 3);
-    EXPECT_TRUE(unknown.err.starts_with("relevo: error: effect::select: xyzzy: no such plugin; there are "))
+    EXPECT_TRUE(
+        unknown.err.starts_with("relevo: error: effect::select: xyzzy: no such plugin; there are "))
         << unknown.err;
-    expect_failure(with({"--set", "terrain.norm=vertex"}), 3,
-                   "shader::ParamStore: terrain.norm: no such parameter; did you mean terrain.normal?");
-    expect_failure(with({"--set", "terrain.normal=7"}), 3,
-                   "shader::parse_value: terrain.normal: expected one of fragment, vertex but got \"7\"");
+    expect_failure(
+        with({"--set", "terrain.norm=vertex"}), 3,
+        "shader::ParamStore: terrain.norm: no such parameter; did you mean terrain.normal?");
+    expect_failure(
+        with({"--set", "terrain.normal=7"}), 3,
+        "shader::parse_value: terrain.normal: expected one of fragment, vertex but got \"7\"");
     expect_failure(with({"--set", "terrain.normal"}), 2,
                    "--set: expected PLUGIN.PARAMETER=VALUE but got \"terrain.normal\"");
 }
@@ -127,10 +135,11 @@ TEST(BadDevice, NoneIsExitFour) {
 
 TEST(BadDevice, AMachineWithoutAnyDriverSaysWhatToInstall) {
     const Result run = relevo({"capture", bundled_dem(), "-o", out_png()},
-                           {"__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere/none.json"});
+                              {"__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere/none.json"});
     EXPECT_EQ(run.status, 4);
     EXPECT_EQ(run.err,
-              "relevo: error: gl: no GL device: EGL offers none; install Mesa's software renderer (libegl1, "
+              "relevo: error: gl: no GL device: EGL offers none; install Mesa's software renderer "
+              "(libegl1, "
               "libegl-mesa0, libgl1-mesa-dri)\n");
 }
 
@@ -139,12 +148,14 @@ TEST(BadUsage, EachHasItsMessage) {
     expect_failure({"capture"}, 2, "DEM is required; see relevo capture --help");
     expect_failure({"capture", bundled_dem(), "-o", out_png(), "--foo"}, 2,
                    "The following argument was not expected: --foo; see relevo capture --help");
-    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--view", "az=10,tilt=3"}, 2,
-                   "--view: az=10,tilt=3: expected az=DEG, el=DEG or zoom=FACTOR but got \"tilt=3\"");
+    expect_failure(
+        {"capture", bundled_dem(), "-o", out_png(), "--view", "az=10,tilt=3"}, 2,
+        "--view: az=10,tilt=3: expected az=DEG, el=DEG or zoom=FACTOR but got \"tilt=3\"");
     expect_failure({"capture", bundled_dem(), "-o", out_png(), "--heading", "10"}, 2,
                    "--look-at, --heading and --pitch need --eye");
-    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--eye", "36.3,-84.2", "--view", "az=3"}, 2,
-                   "--view and --eye exclude each other; give one of them");
+    expect_failure(
+        {"capture", bundled_dem(), "-o", out_png(), "--eye", "36.3,-84.2", "--view", "az=3"}, 2,
+        "--view and --eye exclude each other; give one of them");
 }
 
 }  // namespace

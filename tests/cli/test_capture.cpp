@@ -16,8 +16,8 @@ class Capture : public testing::Test {
     /// Takes a picture of the bundled DEM; the run must succeed.
     std::filesystem::path take(const std::string& name, std::vector<std::string> more = {}) {
         const std::filesystem::path path = dir_ / name;
-        more.insert(more.begin(), {"-q", "capture", bundled_dem(), "-o", path.string(), "--size", "320x256",
-                                   "--overwrite"});
+        more.insert(more.begin(), {"-q", "capture", bundled_dem(), "-o", path.string(), "--size",
+                                   "320x256", "--overwrite"});
         const Result run = relevo(more);
         EXPECT_EQ(run.status, 0) << run.err;
         EXPECT_EQ(run.err, "");
@@ -40,7 +40,8 @@ TEST_F(Capture, WritesAPictureOfTheSizeAskedForWithItsSunInside) {
     EXPECT_EQ(picture.width, 320);
     EXPECT_EQ(picture.height, 256);
     EXPECT_EQ(image::read_metadata(path).at("Description"),
-              "36.30292 N 84.24583 W; 2026-06-21T22:30:00Z; sun at azimuth 280.33, elevation 27.03 (27.05 "
+              "36.30292 N 84.24583 W; 2026-06-21T22:30:00Z; sun at azimuth 280.33, elevation 27.03 "
+              "(27.05 "
               "with refraction)");
 }
 
@@ -75,7 +76,8 @@ TEST_F(Capture, OtherFormatsHoldTheSamePicture) {
 }
 
 TEST_F(Capture, TheGroundIsBelowTheHorizonForAnEyeInTheValley) {
-    const auto path = take("eye.png", {"--eye", "36.25,-84.25,1200", "--heading", "0", "--fov", "60"});
+    const auto path =
+        take("eye.png", {"--eye", "36.25,-84.25,1200", "--heading", "0", "--fov", "60"});
     const image::Image8 picture = image::read(path);
     // Sky on top is bluer than it is green; ground at the bottom is not.
     const auto blue_minus_green = [&](int y) {
@@ -103,7 +105,8 @@ TEST_F(Capture, TimingsNameEveryStage) {
 
 TEST_F(Capture, DumpsTheProgramsItCompiled) {
     take("a.png", {"--dump-shaders", (dir_ / "shaders").string()});
-    EXPECT_TRUE(read_text(dir_ / "shaders/terrain.frag.glsl", "test").starts_with("#version 450 core\n"));
+    EXPECT_TRUE(
+        read_text(dir_ / "shaders/terrain.frag.glsl", "test").starts_with("#version 450 core\n"));
 }
 
 }  // namespace

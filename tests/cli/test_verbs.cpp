@@ -23,11 +23,13 @@ TEST(InfoVerb, SpeaksJsonAsDocumented) {
 }
 
 TEST(SunPositionVerb, TakesASouthernLatitudeWithoutAnEqualsSign) {
-    const Result run = relevo({"sun", "position", "--at", "-33.9,18.4", "--time", "2026-06-21T12:00Z", "--json"});
+    const Result run =
+        relevo({"sun", "position", "--at", "-33.9,18.4", "--time", "2026-06-21T12:00Z", "--json"});
     ASSERT_EQ(run.status, 0) << run.err;
     const nlohmann::json json = nlohmann::json::parse(run.out);
     EXPECT_EQ(json["utc"], "2026-06-21T12:00:00.000Z");
-    // In Cape Town the midwinter sun stands in the north after noon, 90 - 33.9 - 23.4 degrees high at most.
+    // In Cape Town the midwinter sun stands in the north after noon, 90 - 33.9 - 23.4 degrees high
+    // at most.
     EXPECT_GT(json["azimuth_deg"].get<double>(), 270);
     EXPECT_LT(json["elevation_deg"].get<double>(), 32.7);
     EXPECT_GT(json["elevation_deg"].get<double>(), 25);
@@ -38,8 +40,8 @@ TEST(SunPositionVerb, TakesASouthernLatitudeWithoutAnEqualsSign) {
 }
 
 TEST(SunPositionVerb, RefractionCanBeLeftOut) {
-    const Result run = relevo({"sun", "position", "--at", "47,11", "--time", "2026-06-21T04:00Z", "--no-refraction",
-                            "--json"});
+    const Result run = relevo({"sun", "position", "--at", "47,11", "--time", "2026-06-21T04:00Z",
+                               "--no-refraction", "--json"});
     const nlohmann::json json = nlohmann::json::parse(run.out);
     EXPECT_EQ(json["apparent_elevation_deg"], json["elevation_deg"]);
 }
