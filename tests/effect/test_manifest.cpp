@@ -1,3 +1,5 @@
+#include <random>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -210,6 +212,36 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"PassWithoutResult", pass(R"("name": "b", "target": "sun", "format": "r8")"),
             "2: passes.0.writes: expected at least one resource that the pass writes"}),
     [](const auto& test) { return test.param.name; });
+
+// Whatever stands in a file, it is read or refused, never crashed upon. Run with the sanitizers.
+TEST(Manifest, AMangledFileIsReadOrRefused) {
+    const Plugins plugins;
+    plugins.add("haze");
+    plugins.write("plugins/haze/a.png", "");
+    const std::string text = texture(R"("kind": "3d", "file": "a.png", "encoding": "srgb")");
+    constexpr std::string_view kPieces[] = {"{",     "}",    "[", "]",       "\"", ":",    ",",
+                                            "1e999", "null", "-", "\\u0000", "\n", "true", "\xFF"};
+    std::mt19937 random(20260621);
+    const auto below = [&](std::size_t n) { return random() % n; };
+    int refused = 0;
+    for (int round = 0; round < 400; ++round) {
+        std::string mangled = text;
+        for (std::size_t edits = 1 + below(3); edits > 0 && !mangled.empty(); --edits) {
+            const std::size_t at = below(mangled.size());
+            if (below(2) == 0)
+                mangled.erase(at, 1 + below(8));
+            else
+                mangled.insert(at, kPieces[below(std::size(kPieces))]);
+        }
+        plugins.write("plugins/haze/plugin.json", mangled);
+        try {
+            load_manifest(plugins.plugins() / "haze", plugins.data());
+        } catch (const Error&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 200);
+}
 
 // ---- manifest and GLSL together
 

@@ -3,6 +3,7 @@
 
 #include "effect/plugins.h"
 #include "effect/selection.h"
+#include "shader/stitch.h"
 
 namespace relevo::effect::test {
 namespace {
@@ -129,6 +130,25 @@ TEST(Selection, AnEffectMayMeetItsOwnRequirement) {
     const Plugins plugins;
     plugins.add("ash", R"("provides": ["materials"], "requires": ["materials"])");
     EXPECT_THAT(select(plugins.load(), {}, {}).notices, IsEmpty());
+}
+
+TEST(Selection, AllOffIsByteForByteCoreAlone) {
+    const Plugins plugins;
+    add_ground(plugins);
+    const Registry registry = plugins.load();
+    const auto text = [](const Selection& selection) {
+        shader::StitchInput input;
+        input.snippets = selection.snippets();
+        input.capabilities = selection.capabilities;
+        const shader::Stitched stitched = shader::stitch(
+            shader::FolderTexts(relevo::test::source_dir() / "tests/shader/fixtures/shaders"),
+            {.vertex_main = "terrain.vert.glsl", .fragment_main = "terrain.frag.glsl"}, input);
+        return stitched.vertex.text + stitched.fragment.text;
+    };
+    const std::string off =
+        text(select(registry, {}, {.disable = {"layering", "bump", "gloss", "wet"}}));
+    EXPECT_EQ(off, text(select(Registry(), {}, {})));
+    EXPECT_NE(off, text(select(registry, {}, {})));
 }
 
 // ---- presets

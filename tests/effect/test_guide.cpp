@@ -1,0 +1,81 @@
+// docs/plugin-guide.md is true: its example loads and stitches, and its tables are complete.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/text.h"
+#include "effect/plugins.h"
+#include "shader/stitch.h"
+
+namespace relevo::effect::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string guide() {
+    return read_text(relevo::test::source_dir() / "docs" / "plugin-guide.md", "test");
+}
+
+/// The text between "```language name" and "```".
+std::string block(const std::string& text, const std::string& fence) {
+    const std::size_t begin = text.find("```" + fence + '\n');
+    if (begin == std::string::npos) return "";
+    const std::size_t start = text.find('\n', begin) + 1;
+    return text.substr(start, text.find("```", start) - start);
+}
+
+TEST(PluginGuide, ItsExampleIsAPlugin) {
+    const Plugins plugins;
+    plugins.write("plugins/dust/plugin.json", block(guide(), "json plugin.json"));
+    plugins.write("plugins/dust/dust.glsl", block(guide(), "glsl dust.glsl"));
+    const Registry registry = plugins.load();
+    ASSERT_TRUE(registry.broken().empty()) << registry.broken()[0].error;
+    const Selection selection = select(registry, {}, {});
+    shader::StitchInput input;
+    input.snippets = selection.snippets();
+    const shader::Stitched stitched =
+        shader::stitch(shader::FolderTexts(relevo::test::source_dir() / "shaders"),
+                       {.vertex_main = "fullscreen.vert.glsl",
+                        .fragment_main = "terrain.frag.glsl",
+                        .geometry_of = "terrain.vert.glsl"},
+                       input);
+    EXPECT_THAT(stitched.fragment.text, HasSubstr("    dust_on_material(s);\n"));
+    EXPECT_EQ(stitched.params.members.size(), 3u);
+}
+
+TEST(PluginGuide, HasEveryHook) {
+    const std::string text = guide();
+    for (const shader::Hook& hook : shader::hooks())
+        EXPECT_THAT(text, HasSubstr('`' + std::string(hook.signature) + '`'));
+}
+
+TEST(PluginGuide, HasEveryKey) {
+    const std::string text = guide();
+    const Plugins plugins;
+    plugins.write("plugins/dust/dust.glsl", "void dust_on_albedo(inout Surface s) {}");
+    plugins.write("plugins/dust/plugin.json",
+                  R"({"format": 1, "id": "dust", "name": "D", "version": "1", "qqqqqqqqqqqq": 0})");
+    const std::string error =
+        relevo::test::error_of([&] { load_effect(plugins.plugins() / "dust", plugins.data()); });
+    const std::string list = error.substr(error.find("there are ") + 10);
+    const std::vector<std::string> keys = split(list, ',');
+    EXPECT_EQ(keys.size(), 14u);
+    for (const std::string& key : keys)
+        EXPECT_THAT(text, HasSubstr('`' + std::string(trimmed(key)) + '`'));
+}
+
+TEST(PluginGuide, HasEveryAnnotation) {
+    const std::string text = guide();
+    const std::string error = relevo::test::error_of([] {
+        shader::parse_snippet("dust", "dust.glsl", "uniform bool dust_a = true; //@ qqqqqqqqqqqq");
+    });
+    const std::string list = error.substr(error.find("there are ") + 10);
+    const std::vector<std::string> words = split(list, ',');
+    EXPECT_EQ(words.size(), 10u);
+    for (const std::string& word : words)
+        EXPECT_TRUE(text.find("| `" + std::string(trimmed(word)) + '`') != std::string::npos ||
+                    text.find("| `" + std::string(trimmed(word)) + '(') != std::string::npos)
+            << word;
+}
+
+}  // namespace
+}  // namespace relevo::effect::test
