@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "base/array2d.h"
+#include "dem/heightfield.h"
+
+namespace relevo::dem {
+
+/// The heights of a DEM at spacings that double from level to level.
+///
+/// Level 0 are the posts. The nodes of level k lie on every 2^k-th post, counted from the first,
+/// and on the last post of each row and column, so that all levels have the same rim. A node's
+/// height is the mean of the nodes of the next finer level around it with weights 1 2 1 both ways,
+/// over those that have a height; its coverage is the share of that weight that has one. Coverage
+/// averages like area: where holes are cut at a coverage of one half, they keep their size whatever
+/// the level, and heights next to them are those of their neighbours alone.
+class Pyramid {
+  public:
+    /// Takes over the heights, and makes all coarser levels down to one of at most 65 x 65 nodes.
+    explicit Pyramid(Array2d<float> height_m);
+
+    int levels() const { return static_cast<int>(levels_.size()); }
+    int columns() const { return levels_.front().height_m.width(); }  ///< of posts
+    int rows() const { return levels_.front().height_m.height(); }
+    bool has_holes() const { return has_holes_; }
+
+    /// Nodes of a level, columns and rows.
+    glm::ivec2 size(int level) const;
+    /// The post that a node lies on.
+    glm::ivec2 post(int level, glm::ivec2 node) const;
+
+    /// Height of a node [m], NaN where its coverage is 0. Indices beyond the rim repeat it.
+    float height(int level, int column, int row) const;
+    /// 0 to 1.
+    float coverage(int level, int column, int row) const;
+
+    const Array2d<float>& heights(int level) const {
+        return levels_[static_cast<std::size_t>(level)].height_m;
+    }
+
+    /// Lowest and highest post, and the largest distance [m] in height from the posts to the
+    /// surface of a level's triangles, over a tile.
+    struct Bounds {
+        float lowest_m = 0;
+        float highest_m = 0;  ///< below lowest_m: the tile is a hole
+        float error_m = 0;
+
+        bool empty() const { return highest_m < lowest_m; }
+    };
+
+    /// Quads along a side of a tile.
+    static constexpr int kTileQuads = 64;
+
+    /// Tiles of a level, columns and rows.
+    glm::ivec2 tiles(int level) const;
+    /// Of tile (x, y), which covers the nodes 64 x to 64 x + 64 and likewise y.
+    const Bounds& bounds(int level, glm::ivec2 tile) const;
+
+    /// The error that a share of a level's tiles does not exceed [m].
+    /// @param share  0 to 1
+    float error_m(int level, double share) const;
+
+  private:
+    struct Level {
+        Array2d<float> height_m;
+        Array2d<std::uint8_t> coverage;  // 0 to 255; empty where there are no holes
+        Array2d<Bounds> tiles;
+    };
+
+    void make_level();
+    void bound_tiles(int level);
+    float surface(int level, int column, int row) const;
+
+    std::vector<Level> levels_;
+    bool has_holes_ = false;
+};
+
+}  // namespace relevo::dem

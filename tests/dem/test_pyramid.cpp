@@ -1,0 +1,148 @@
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "dem/load.h"
+#include "dem/pyramid.h"
+#include "support/support.h"
+
+namespace relevo::dem {
+namespace {
+
+Array2d<float> field(int columns, int rows, const std::function<float(int, int)>& height) {
+    Array2d<float> h(columns, rows);
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x)
+            h.at(x, y) = height(x, y);
+    return h;
+}
+
+constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+
+TEST(Pyramid, NodesLieOnEverySecondPostAndOnTheRim) {
+    const Pyramid pyramid(field(200, 131, [](int x, int y) { return static_cast<float>(x + y); }));
+    EXPECT_EQ(pyramid.size(0), glm::ivec2(200, 131));
+    EXPECT_EQ(pyramid.size(1), glm::ivec2(101, 66));
+    EXPECT_EQ(pyramid.post(1, {100, 65}), glm::ivec2(199, 130));
+    EXPECT_EQ(pyramid.post(1, {7, 3}), glm::ivec2(14, 6));
+    EXPECT_EQ(pyramid.size(2), glm::ivec2(51, 34));
+    EXPECT_EQ(pyramid.levels(), 3);
+    EXPECT_EQ(pyramid.tiles(0), glm::ivec2(4, 3));
+    EXPECT_EQ(pyramid.tiles(2), glm::ivec2(1, 1));
+}
+
+TEST(Pyramid, APlaneIsTheSamePlaneOnEveryLevel) {
+    // Inside; next to the rim the mean is one-sided.
+    const Pyramid pyramid(field(257, 257, [](int x, int y) { return 3.0f * x - 2.0f * y + 100; }));
+    for (int level = 1; level < pyramid.levels(); ++level) {
+        const glm::ivec2 size = pyramid.size(level);
+        for (int y = 1; y < size.y - 1; ++y)
+            for (int x = 1; x < size.x - 1; ++x)
+                ASSERT_NEAR(pyramid.height(level, x, y),
+                            3.0f * (x << level) - 2.0f * (y << level) + 100, 2e-3)
+                    << level;
+    }
+}
+
+TEST(Pyramid, HolesAndCoastsKeepTheirSize) {
+    // Discs of ground in a hole, and of holes in the ground: the area at a coverage of one half or
+    // more stays what it is as long as a disc is a few nodes wide.
+    for (const bool island : {true, false}) {
+        const Pyramid pyramid(field(513, 513, [&](int x, int y) {
+            const bool inside = std::hypot(x - 250.0, y - 260.0) < 120;
+            return inside == island ? 500.0f : kHole;
+        }));
+        const double area = 3.14159265 * 120 * 120;
+        for (int level = 0; level <= 3; ++level) {
+            double covered = 0;
+            const glm::ivec2 size = pyramid.size(level);
+            for (int y = 0; y < size.y; ++y) {
+                for (int x = 0; x < size.x; ++x) {
+                    const bool ground = pyramid.coverage(level, x, y) >= 0.5f;
+                    covered += ground == island ? std::pow(4.0, level) : 0;
+                    if (pyramid.coverage(level, x, y) > 0) {
+                        ASSERT_EQ(pyramid.height(level, x, y), 500.0f);
+                    }
+                }
+            }
+            EXPECT_NEAR(covered / area, 1, 0.03)
+                << "level " << level << (island ? " island" : " lake");
+        }
+    }
+}
+
+TEST(Pyramid, BoundsHoldEveryPost) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> height(-100, 3000);
+    const Pyramid pyramid(field(300, 280, [&](int x, int y) {
+        return (x > 20 && x < 60 && y < 40) ? kHole : height(random);
+    }));
+    for (int level = 0; level < pyramid.levels(); ++level) {
+        const glm::ivec2 tiles = pyramid.tiles(level);
+        for (int ty = 0; ty < tiles.y; ++ty) {
+            for (int tx = 0; tx < tiles.x; ++tx) {
+                const Pyramid::Bounds& bounds = pyramid.bounds(level, {tx, ty});
+                const int span = Pyramid::kTileQuads << level;
+                for (int y = ty * span; y <= std::min((ty + 1) * span, 279); ++y) {
+                    for (int x = tx * span; x <= std::min((tx + 1) * span, 299); ++x) {
+                        const float h = pyramid.height(0, x, y);
+                        if (std::isnan(h)) continue;
+                        ASSERT_GE(h, bounds.lowest_m);
+                        ASSERT_LE(h, bounds.highest_m);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Height of a level's triangles at a post.
+float surface_at(const Pyramid& pyramid, int level, int column, int row) {
+    const int x = std::min(column >> level, pyramid.size(level).x - 2);
+    const int y = std::min(row >> level, pyramid.size(level).y - 2);
+    const glm::ivec2 from = pyramid.post(level, {x, y}), to = pyramid.post(level, {x + 1, y + 1});
+    const float tx = static_cast<float>(column - from.x) / static_cast<float>(to.x - from.x);
+    const float ty = static_cast<float>(row - from.y) / static_cast<float>(to.y - from.y);
+    const float b = pyramid.height(level, x + 1, y), c = pyramid.height(level, x, y + 1);
+    if (tx + ty <= 1) {
+        const float a = pyramid.height(level, x, y);
+        return a + tx * (b - a) + ty * (c - a);
+    }
+    const float d = pyramid.height(level, x + 1, y + 1);
+    return d + (1 - tx) * (c - d) + (1 - ty) * (b - d);
+}
+
+TEST(Pyramid, ErrorsAreUpperBoundsOfTheDistanceToThePosts) {
+    const Heightfield dem = load((test::source_dir() / "data/dem/jacksboro.tif").string());
+    const Pyramid pyramid(dem.height_m);
+    for (int level = 1; level < pyramid.levels(); ++level) {
+        const glm::ivec2 tiles = pyramid.tiles(level);
+        const int span = Pyramid::kTileQuads << level;
+        double tightest = 1e9;
+        for (int ty = 0; ty < tiles.y; ++ty) {
+            for (int tx = 0; tx < tiles.x; ++tx) {
+                float worst = 0;
+                for (int y = ty * span; y <= std::min((ty + 1) * span, dem.height_m.height() - 1);
+                     ++y)
+                    for (int x = tx * span;
+                         x <= std::min((tx + 1) * span, dem.height_m.width() - 1); ++x)
+                        worst = std::max(worst, std::abs(dem.height_m.at(x, y) -
+                                                         surface_at(pyramid, level, x, y)));
+                const float bound = pyramid.bounds(level, {tx, ty}).error_m;
+                ASSERT_GE(bound * 1.0001f, worst) << level;
+                if (worst > 0) tightest = std::min(tightest, static_cast<double>(bound / worst));
+            }
+        }
+        fmt::print(
+            "[ pyramid ] level {}: error bound of 98 % of tiles {:.1f} m, of all {:.1f} m; at "
+            "least "
+            "{:.2f} times the true one\n",
+            level, pyramid.error_m(level, 0.98), pyramid.error_m(level, 1), tightest);
+    }
+    EXPECT_EQ(pyramid.error_m(0, 1), 0);
+}
+
+}  // namespace
+}  // namespace relevo::dem
