@@ -10,9 +10,9 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "base/error.h"
+#include "base/output_file.h"
 #include "base/paths.h"
 #include "image/formats.h"
 #include "image/png.h"
@@ -53,44 +53,6 @@ const FormatsModule& formats_module() {
     return *module;
 }
 
-/// A name beside `path` that is removed again unless the file is moved to its place.
-class PartialFile {
-  public:
-    explicit PartialFile(const std::filesystem::path& path)
-        : path_(path.parent_path() /
-                fmt::format(".{}.{}.part", path.filename().string(), getpid())) {}
-    ~PartialFile() {
-        std::error_code ignored;
-        std::filesystem::remove(path_, ignored);
-    }
-    PartialFile(const PartialFile&) = delete;
-    PartialFile& operator=(const PartialFile&) = delete;
-
-    const std::filesystem::path& path() const { return path_; }
-
-    void become(const std::filesystem::path& target, bool overwrite) const {
-        std::error_code error;
-        if (overwrite) {
-            std::filesystem::rename(path_, target, error);
-        } else {
-            // A link fails where the name has been taken meanwhile; a rename would not.
-            std::filesystem::create_hard_link(path_, target, error);
-            if (error == std::errc::operation_not_permitted ||
-                error == std::errc::operation_not_supported ||
-                error == std::errc::function_not_supported) {
-                check_output(target, overwrite);
-                std::filesystem::rename(path_, target, error);
-            }
-        }
-        if (error)
-            failed(
-                fmt::format("image: {}: cannot be written, {}", target.string(), error.message()));
-    }
-
-  private:
-    std::filesystem::path path_;
-};
-
 template <typename T, typename WriteOther>
 void write_whole(const std::filesystem::path& path, const Pixels<T>& image,
                  const Metadata& metadata, bool overwrite, WriteOther write_other) {
@@ -101,7 +63,7 @@ void write_whole(const std::filesystem::path& path, const Pixels<T>& image,
                            format.linear ? "linear light" : "8-bit sRGB"));
     const PartialFile part(path);
     write_other(part.path(), format, image, metadata);
-    part.become(path, overwrite);
+    part.become(path, overwrite, "image");
 }
 
 }  // namespace
@@ -116,25 +78,12 @@ bool holds_linear_light(const std::filesystem::path& path) {
 }
 
 void check_output(const std::filesystem::path& path, bool overwrite) {
-    const std::string subject = path.string();
     if (!is_picture_name(path))
         bad_input(
             fmt::format("image: {}: not the name of a picture, expected an ending of png, jpg, "
                         "webp, tif or exr",
-                        subject));
-    const std::filesystem::path folder =
-        path.parent_path().empty() ? std::filesystem::path(".") : path.parent_path();
-    std::error_code ignored;
-    if (!std::filesystem::is_directory(folder, ignored))
-        bad_input(fmt::format("image: {}: the folder {} does not exist; make it first", subject,
-                              folder.string()));
-    if (access(folder.c_str(), W_OK) != 0)
-        bad_input(
-            fmt::format("image: {}: the folder {} cannot be written to", subject, folder.string()));
-    if (std::filesystem::is_directory(path, ignored))
-        bad_input(fmt::format("image: {}: is a folder", subject));
-    if (!overwrite && std::filesystem::exists(path, ignored))
-        bad_input(fmt::format("image: {}: exists; pass --overwrite to replace it", subject));
+                        path.string()));
+    check_output_file(path, overwrite, "image");
 }
 
 void write(const std::filesystem::path& path, const Image8& image, const Metadata& metadata,

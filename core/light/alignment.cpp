@@ -1,0 +1,113 @@
+#include "light/alignment.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "sun/position.h"
+#include "sun/position_table.h"
+
+namespace relevo::light {
+namespace {
+
+// The sky turns by 15.041 arcsec/s, the sun along the ecliptic by 0.04 more; refraction shortens
+// ways.
+constexpr double kFastest_rad_s = 15.1 * kArcsecond_rad;
+constexpr double kNear_s = 30;
+constexpr double kClosest_s = 0.05;
+
+glm::dvec3 direction(double azimuth_rad, double elevation_rad) {
+    return {std::sin(azimuth_rad) * std::cos(elevation_rad),
+            std::cos(azimuth_rad) * std::cos(elevation_rad), std::sin(elevation_rad)};
+}
+
+/// Angle between two unit vectors; good for small ones, too.
+double angle_rad(const glm::dvec3& a, const glm::dvec3& b) {
+    return 2 * std::atan2(glm::length(a - b), glm::length(a + b));
+}
+
+}  // namespace
+
+Alignments alignments(const TerrainHorizon& from, const geo::Geodetic& target, sun::Date first,
+                      sun::Date last, const sun::Zone& zone, const AlignmentOptions& options,
+                      const sun::EarthRotation& rotation) {
+    if (last < first)
+        bad_input(fmt::format("light::alignments: from {} to {}: ends before it begins",
+                              sun::to_string(first), sun::to_string(last)));
+    if (!(options.tolerance_rad > 0 && options.tolerance_rad <= radians(45)))
+        bad_input(
+            fmt::format("light::alignments: tolerance {:.10g} degrees: no use, expected more "
+                        "than 0 and up to 45",
+                        degrees(options.tolerance_rad)));
+    Alignments result;
+    result.target = target;
+    result.sight = from.sight(target);
+    const sun::Refraction refraction =
+        options.refraction ? *options.refraction : sun::Refraction::standard(from.place());
+    result.definition = fmt::format(
+        "closest approach of the sun's centre to the point, within {:.4g} degrees; {}; terrestrial "
+        "refraction k = {:.4g}",
+        degrees(options.tolerance_rad), refraction.description(), from.options().refraction);
+
+    const sun::Instant begin = zone.day(first).begin, end = zone.day(last).end;
+    const sun::PositionTable table(begin, end, rotation);
+    const sun::Observer observer(from.place());
+    const glm::dvec3 wanted = direction(result.sight.azimuth_rad, result.sight.elevation_rad);
+    const auto sun_at = [&](double t_s) {
+        const glm::dvec3 sun = table.vector_au(begin + t_s, observer);
+        return std::pair(sun::azimuth_of(sun), refraction.apparent_rad(sun::elevation_of(sun)));
+    };
+    const auto separation_at = [&](double t_s) {
+        const auto [azimuth_rad, elevation_rad] = sun_at(t_s);
+        return angle_rad(direction(azimuth_rad, elevation_rad), wanted);
+    };
+    const auto add = [&](double t_s) {
+        const auto [azimuth_rad, elevation_rad] = sun_at(t_s);
+        Alignment passage;
+        passage.utc = begin + t_s;
+        passage.date = zone.local(passage.utc).wall.date;
+        passage.separation_rad = separation_at(t_s);
+        passage.above_rad = elevation_rad - result.sight.elevation_rad;
+        passage.right_rad = std::remainder(azimuth_rad - result.sight.azimuth_rad, 2 * kPi) *
+                            std::cos(result.sight.elevation_rad);
+        passage.azimuth_rad = azimuth_rad;
+        passage.elevation_rad = elevation_rad;
+        passage.sun_visible = elevation_rad > from.elevation_rad(azimuth_rad);
+        result.passages.push_back(passage);
+    };
+    const auto closest = [&](double a, double b) {  // golden section
+        constexpr double kGolden = 0.6180339887498949;
+        while (b - a > kClosest_s) {
+            const double x = b - kGolden * (b - a), y = a + kGolden * (b - a);
+            separation_at(x) < separation_at(y) ? b = y : a = x;
+        }
+        return (a + b) / 2;
+    };
+
+    // Far from the target, the sun cannot come within the tolerance any sooner than this.
+    const double length_s = end - begin;
+    double before_s = 0, t_s = 0;
+    double before_rad = kPi, here_rad = separation_at(0);
+    while (t_s < length_s) {
+        const double step_s =
+            std::max(kNear_s, (here_rad - options.tolerance_rad) / kFastest_rad_s - kNear_s);
+        const double next_s = std::min(t_s + step_s, length_s);
+        const double next_rad = separation_at(next_s);
+        if (here_rad <= before_rad && here_rad < next_rad) {
+            const double at_s = closest(before_s, next_s);
+            if (separation_at(at_s) <= options.tolerance_rad) add(at_s);
+        }
+        before_s = t_s;
+        before_rad = here_rad;
+        t_s = next_s;
+        here_rad = next_rad;
+    }
+    return result;
+}
+
+}  // namespace relevo::light

@@ -1,0 +1,39 @@
+#include "light/event_time.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "light/direct_light.h"
+
+namespace relevo::light {
+
+sun::ParsedTime parse_time(std::string_view text, const std::optional<sun::Date>& date,
+                           const std::optional<sun::Zone>& zone,
+                           const std::function<const dem::Heightfield&()>& dem) {
+    if (!sun::is_event_time(text)) return sun::parse_time(text, zone);
+    const sun::EventTime time = sun::parse_event_time(text);
+    if (time.event || !dem) return sun::resolve(time, date, zone);
+
+    sun::day_of(time, date, zone);  // says what is missing before any work is done
+    HorizonOptions options;
+    options.eye_height_m = time.place.place.height_m;
+    options.eye_above_ground = time.place.above_ground || !time.place.has_height;
+    const TerrainHorizon horizon(dem(), time.place.place, options);
+    const sun::Date of = time.date ? *time.date : *date;
+    const LightDay day = DirectLight(horizon).day(of, *zone);
+    if (day.lit.empty())
+        bad_input(fmt::format("light::parse_time: {}: the sun does not reach that point on {}",
+                              time.text, sun::to_string(of)));
+    const LightEdge& edge = time.last ? day.lit.back().end : day.lit.front().begin;
+    if (edge.midnight)
+        bad_input(
+            fmt::format("light::parse_time: {}: no {} light on {}, the sun shines there at "
+                        "midnight",
+                        time.text, time.last ? "last" : "first", sun::to_string(of)));
+    sun::ParsedTime result;
+    result.utc = edge.utc + time.offset_s;
+    result.zone = *zone;
+    return result;
+}
+
+}  // namespace relevo::light

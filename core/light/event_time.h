@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string_view>
+
+#include "dem/heightfield.h"
+#include "sun/event_time.h"
+
+namespace relevo::light {
+
+/// Reads a moment in any form there is: a time of day (sun::parse_time), an event of the sun
+/// (sun::parse_event_time), or first or last direct light at a place on a DEM.
+/// @param date  the local day, for events that do not name theirs
+/// @param dem   called once where the terrain matters; empty: there is none
+/// @throws Error (BadInput) as those two, where first or last light is asked for without a DEM,
+///     and where the sun does not reach the place that day
+sun::ParsedTime parse_time(std::string_view text, const std::optional<sun::Date>& date,
+                           const std::optional<sun::Zone>& zone,
+                           const std::function<const dem::Heightfield&()>& dem = {});
+
+}  // namespace relevo::light

@@ -1,0 +1,591 @@
+#include "light/horizon.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "base/units.h"
+#include "light/fan.h"
+#include "light/relief.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSphere_m = 6'371'000;
+constexpr double kWgs84_a_m = 6'378'137;
+constexpr double kWgs84_f = 1 / 298.257223563;
+
+// A viewpoint that is meant to be on a post is there: coordinates of seven decimals, and the way to
+// the grid's CRS and back, are good to a centimetre.
+constexpr double kSnap_cells = 1e-3;
+constexpr double kChunk_cells = 32;
+constexpr double kNear_posts = 1.5;  // of a target, that do not hide it
+
+/// Where points stand in the sky of a viewpoint. `rise` over `run` is the tangent of the apparent
+/// elevation of a point of height h at the distance s; rise falls with s, run grows.
+struct RoundGround {
+    double radius_m, eye_m, refraction;
+
+    // The ellipsoid that way, as its osculating sphere; the next term, the change of the radius
+    // along the way, is 0.04 m at 100 km, 0.00003 degrees (tests/light/test_horizon.cpp). Lines of
+    // sight are arcs of a radius of radius_m / refraction.
+    double rise(double h, double s) const {
+        const double u = s * s / (radius_m * radius_m);
+        const double fallen = u * (0.5 - u / 24);  // 1 - cos
+        return (h - eye_m) - (radius_m + h) * fallen + 0.5 * refraction * radius_m * u;
+    }
+    double run(double h, double s) const {
+        const double u = s * s / (radius_m * radius_m);
+        return (1 + h / radius_m) * s * (1 - u * (1.0 / 6 - u / 120));
+    }
+};
+
+struct MapGround {
+    double radius_m, eye_m, refraction;  // radius infinite: a plane
+    double rise(double h, double s) const {
+        return (h - eye_m) - (1 - refraction) * s * s / (2 * radius_m);
+    }
+    double run(double, double s) const { return s; }
+};
+
+/// Where a smooth Earth of height h has its horizon, beyond `from`.
+template <typename G>
+double farthest_rise_m(const G& ground, double h, double from_m) {
+    const double above_m = ground.eye_m - h;
+    if (above_m <= 0) return from_m;
+    return std::max(from_m, std::sqrt(2 * ground.radius_m * above_m / (1 - ground.refraction)));
+}
+
+/// Tangent of the elevation of height h at s; level at infinity, where the plane's horizon is.
+template <typename G>
+double tangent(const G& ground, double h, double s) {
+    if (std::isinf(s)) return 0;
+    return ground.rise(h, s) / ground.run(h, s);
+}
+
+/// Radius of the ellipsoid's curvature in a direction: Euler's formula.
+double radius_m(double lat_rad, double azimuth_rad) {
+    const double e2 = kWgs84_f * (2 - kWgs84_f);
+    const double w2 = 1 - e2 * std::sin(lat_rad) * std::sin(lat_rad);
+    const double n = kWgs84_a_m / std::sqrt(w2);
+    const double m = n * (1 - e2) / w2;
+    const double c = std::cos(azimuth_rad), s = std::sin(azimuth_rad);
+    return 1 / (c * c / m + s * s / n);
+}
+
+double snapped(double index) {
+    const double nearest = std::round(index);
+    return std::abs(index - nearest) <= kSnap_cells ? nearest : index;
+}
+
+double turned(double azimuth_rad) {
+    const double turns = azimuth_rad / (2 * kPi);
+    const double result = (turns - std::floor(turns)) * 2 * kPi;
+    return result < 2 * kPi ? result : 0;
+}
+
+std::string place_text(const geo::Geodetic& place) {
+    return fmt::format("{:.7g},{:.7g}", degrees(place.lat_rad), degrees(place.lon_rad));
+}
+
+/// "47 to 48 north, 11 to 12 east", of the posts.
+std::string cover_text(const dem::Grid& grid) {
+    double south = kInfinity, north = -kInfinity, west = kInfinity, east = -kInfinity;
+    const geo::Geodetic center = grid.center();
+    constexpr int kSteps = 16;
+    for (int i = 0; i <= kSteps; ++i)
+        for (int k = 0; k <= kSteps; ++k) {
+            const geo::Geodetic p = grid.place((grid.columns() - 1) * i / double{kSteps},
+                                               (grid.rows() - 1) * k / double{kSteps});
+            if (!std::isfinite(p.lat_rad)) continue;
+            const double lon_deg =
+                degrees(center.lon_rad + std::remainder(p.lon_rad - center.lon_rad, 2 * kPi));
+            south = std::min(south, degrees(p.lat_rad));
+            north = std::max(north, degrees(p.lat_rad));
+            west = std::min(west, lon_deg);
+            east = std::max(east, lon_deg);
+        }
+    return fmt::format("latitudes {:.4f} to {:.4f} and longitudes {:.4f} to {:.4f}", south, north,
+                       west, east);
+}
+
+/// The nearest post with a height, as a remedy: ", the nearest height is at LAT,LON"; empty where
+/// there is none near.
+std::string nearest_height_text(const dem::Heightfield& field, const glm::dvec2& post) {
+    constexpr int kFarthest = 2000;
+    const int column = static_cast<int>(std::lround(post.x));
+    const int row = static_cast<int>(std::lround(post.y));
+    const auto valid = [&](int c, int r) {
+        return c >= 0 && r >= 0 && c < field.height_m.width() && r < field.height_m.height() &&
+               !std::isnan(field.height_m.at(c, r));
+    };
+    for (int ring = 0; ring <= kFarthest; ++ring)
+        for (int i = -ring; i <= ring; ++i)
+            for (const auto& [c, r] : {std::pair{column + i, row - ring},
+                                       {column + i, row + ring},
+                                       {column - ring, row + i},
+                                       {column + ring, row + i}})
+                if (valid(c, r))
+                    return fmt::format("; a post with a height is at {}",
+                                       place_text(field.grid.place(c, r)));
+    return {};
+}
+
+/// The column and row of a place, snapped, and its height.
+/// @throws Error (BadInput) `light::horizon: LAT,LON: what`
+std::pair<glm::dvec2, double> ground_at(const dem::Heightfield& field, const geo::Geodetic& place) {
+    glm::dvec2 post = field.grid.post(place);
+    post = {snapped(post.x), snapped(post.y)};
+    if (!(post.x >= 0 && post.y >= 0 && post.x <= field.grid.columns() - 1 &&
+          post.y <= field.grid.rows() - 1))
+        bad_input(fmt::format("light::horizon: {}: outside of the DEM, expected a point within {}",
+                              place_text(place), cover_text(field.grid)));
+    const double height_m = field.height_at(post.x, post.y);
+    if (std::isnan(height_m))
+        bad_input(
+            fmt::format("light::horizon: {}: no height there, the point lies in a hole of "
+                        "the DEM{}",
+                        place_text(place), nearest_height_text(field, post)));
+    return {post, height_m};
+}
+
+/// The farthest that a line of sight can matter: to the DEM's farthest edge, or to where terrain as
+/// high as its highest post sinks under the horizon of a smooth Earth as high as its lowest.
+double longest_m(const Relief& relief, const geo::Geodetic& place, double eye_m,
+                 double refraction) {
+    const dem::Grid& grid = relief.field().grid;
+    double edge_m = 0;
+    constexpr int kSteps = 32;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double column = (grid.columns() - 1) * i / double{kSteps};
+        const double row = (grid.rows() - 1) * i / double{kSteps};
+        for (const glm::dvec2& post : {glm::dvec2(column, 0), glm::dvec2(column, grid.rows() - 1),
+                                       glm::dvec2(0, row), glm::dvec2(grid.columns() - 1, row)}) {
+            const geo::Geodetic p = grid.place(post.x, post.y);
+            if (std::isfinite(p.lat_rad))
+                edge_m = std::max(edge_m, geo::geodesic(place, p).distance_m);
+        }
+    }
+    const double radius = kWgs84_a_m / (1 - refraction);
+    const double low_m = relief.lowest_m();
+    const double sight_m = std::sqrt(2 * radius * std::max(0.0, eye_m - low_m)) +
+                           std::sqrt(2 * radius * (relief.highest_m() - low_m));
+    // Edges between the samples, and the radius that way, are within 2 %.
+    return 1.02 * std::min(edge_m, sight_m) + 1;
+}
+
+}  // namespace
+
+struct TerrainHorizon::Scan {
+    double until_m = kInfinity;  // look no farther
+
+    double best = -kInfinity;  // tangent
+    double distance_m = kNaN;
+    glm::dvec2 post{kNaN};
+    double height_m = kNaN;
+    double reach_m = 0;
+    double first_hole_m = kInfinity, last_hole_m = -kInfinity;
+};
+
+namespace {
+
+/// One line of sight over the grid.
+template <typename G, typename Scan>
+class Line {
+  public:
+    Line(const Relief& relief, const G& ground, double spacing_m, Scan& scan)
+        : relief_(relief),
+          height_m_(relief.height_m()),
+          ground_(ground),
+          touching_m_(1e-6 * spacing_m),
+          scan_(scan) {}
+
+    void follow(const std::vector<TracePoint>& line) {
+        for (std::size_t i = 0; i + 1 < line.size(); ++i)
+            if (!segment(line[i], line[i + 1])) return;
+    }
+
+  private:
+    static TracePoint mix(const TracePoint& a, const TracePoint& b, double t) {
+        return {a.post + t * (b.post - a.post), a.distance_m + t * (b.distance_m - a.distance_m)};
+    }
+
+    /// How much of the way from a to b lies within the posts.
+    double inside(const TracePoint& a, const TracePoint& b) const {
+        double t = 1;
+        for (int axis = 0; axis < 2; ++axis) {
+            const double first = -kSnap_cells;
+            const double last =
+                (axis == 0 ? height_m_.width() : height_m_.height()) - 1 + kSnap_cells;
+            const double from = a.post[axis], to = b.post[axis];
+            if (to > last) t = std::min(t, (last - from) / (to - from));
+            if (to < first) t = std::min(t, (first - from) / (to - from));
+        }
+        return std::max(t, 0.0);
+    }
+
+    /// @returns whether the line goes on
+    bool segment(const TracePoint& from, const TracePoint& next) {
+        double t = inside(from, next);
+        const bool leaves = t < 1;
+        TracePoint to = mix(from, next, t);
+        scan_.reach_m = to.distance_m;
+        const bool ends = to.distance_m >= scan_.until_m;
+        if (ends) {
+            if (from.distance_m >= scan_.until_m) return false;
+            t = (scan_.until_m - from.distance_m) / (to.distance_m - from.distance_m);
+            to = mix(from, to, t);
+        }
+        if (!nothing_left_) {
+            const glm::dvec2 cells = glm::abs(to.post - from.post);
+            const int chunks =
+                std::max(1, static_cast<int>(std::ceil(std::max(cells.x, cells.y) / kChunk_cells)));
+            TracePoint a = from;
+            for (int i = 1; i <= chunks && !nothing_left_; ++i) {
+                const TracePoint b = i == chunks ? to : mix(from, to, i / double(chunks));
+                chunk(a, b);
+                a = b;
+            }
+        }
+        return !leaves && !ends;
+    }
+
+    /// The highest tangent that height h can have between two distances.
+    double bound(double h, double near_m, double far_m) const {
+        const double rise = ground_.rise(h, near_m);
+        return rise > 0 ? rise / ground_.run(relief_.lowest_m(), near_m)
+                        : rise / ground_.run(h, far_m);
+    }
+
+    void chunk(const TracePoint& a, const TracePoint& b) {
+        if (a.distance_m > touching_m_) {
+            if (bound(relief_.highest_m(), a.distance_m, kFarthest_m) <= scan_.best) {
+                nothing_left_ = true;
+                return;
+            }
+            const auto [c1, c2] = std::minmax(a.post.x, b.post.x);
+            const auto [r1, r2] = std::minmax(a.post.y, b.post.y);
+            const float h = relief_.bound_m(static_cast<int>(c1), static_cast<int>(c2),
+                                            static_cast<int>(r1), static_cast<int>(r2));
+            if (bound(h, a.distance_m, b.distance_m) <= scan_.best) return;
+        }
+        crossings<0>(a, b);
+        crossings<1>(a, b);
+    }
+
+    /// All crossings with columns (axis 0) or rows (axis 1).
+    template <int kAxis>
+    void crossings(const TracePoint& a, const TracePoint& b) {
+        constexpr int kOther = 1 - kAxis;
+        const double begin = a.post[kAxis], way = b.post[kAxis] - begin;
+        if (way == 0) return;
+        const int lines = kAxis == 0 ? height_m_.width() : height_m_.height();
+        const auto [low, high] = std::minmax(begin, b.post[kAxis]);
+        const int first = std::max(0, static_cast<int>(std::ceil(low)));
+        const int last = std::min(lines - 1, static_cast<int>(std::floor(high)));
+        const int posts = kOther == 0 ? height_m_.width() : height_m_.height();
+        const std::ptrdiff_t line = kAxis == 0 ? 1 : height_m_.width();
+        const std::ptrdiff_t step = kAxis == 0 ? height_m_.width() : 1;
+        const double other_way = b.post[kOther] - a.post[kOther];
+        const double distance = b.distance_m - a.distance_m;
+        for (int i = first; i <= last; ++i) {
+            const double t = (i - begin) / way;
+            const double s = a.distance_m + t * distance;
+            if (s <= touching_m_) continue;
+            const double other = a.post[kOther] + t * other_way;
+            const int k = std::clamp(static_cast<int>(other), 0, posts - 2);
+            const double f = other - k;
+            const float* h0 = height_m_.data() + i * line + k * step;
+            double h = h0[0] + f * (h0[step] - h0[0]);
+            if (h != h) {
+                // A hole at the far end of the edge does not spoil the post itself.
+                h = f <= kSnap_cells ? h0[0] : f >= 1 - kSnap_cells ? h0[step] : kNaN;
+                if (h != h) {
+                    scan_.first_hole_m = std::min(scan_.first_hole_m, s);
+                    scan_.last_hole_m = std::max(scan_.last_hole_m, s);
+                    continue;
+                }
+            }
+            const double rise = ground_.rise(h, s), run = ground_.run(h, s);
+            if (rise > scan_.best * run) {
+                scan_.best = rise / run;
+                scan_.distance_m = s;
+                scan_.height_m = h;
+                scan_.post[kAxis] = i;
+                scan_.post[kOther] = other;
+            }
+        }
+    }
+
+    // Half the way round: the longest geodesic.
+    static constexpr double kFarthest_m = 2.0e7;
+
+    const Relief& relief_;
+    const Array2d<float>& height_m_;
+    const G& ground_;
+    double touching_m_;
+    Scan& scan_;
+    bool nothing_left_ = false;
+};
+
+}  // namespace
+
+TerrainHorizon::TerrainHorizon(const dem::Heightfield& field, const geo::Geodetic& place,
+                               const HorizonOptions& options)
+    : relief_(std::make_unique<const Relief>(field)), options_(options) {
+    if (!(options.refraction >= -1 && options.refraction <= 0.9))
+        bad_input(
+            fmt::format("light::horizon: refraction {:.10g}: no air bends light so, expected "
+                        "-1 to 0.9 of the Earth's curvature; 0.13 is the mean",
+                        options.refraction));
+    std::tie(post_, ground_m_) = ground_at(field, place);
+    place_ = field.grid.place(post_.x, post_.y);
+    place_.height_m = ground_m_;
+    eye_m_ = options.eye_above_ground ? ground_m_ + options.eye_height_m : options.eye_height_m;
+    if (eye_m_ < ground_m_)
+        bad_input(
+            fmt::format("light::horizon: {}: the eye at {:.1f} m is under the ground, which "
+                        "is at {:.1f} m there; a height above the ground is written as 2agl",
+                        place_text(place_), eye_m_, ground_m_));
+    outside_m_ = options.outside_height_m.value_or(relief_->lowest_m());
+
+    const dem::Grid& grid = field.grid;
+    const auto map_point = [&](const geo::Geodetic& p) { return grid.crs().from_geodetic(p); };
+    const glm::dvec2 here = map_point(place_);
+    const glm::dvec2 northward = map_point(geo::destination(place_, 0, 1)) - here;
+    true_north_on_map_rad_ = std::atan2(northward.x, northward.y);
+    if (options.ground == Ground::Ellipsoid) {
+        fan_ = std::make_unique<const Fan>(grid, place_, post_,
+                                           longest_m(*relief_, place_, eye_m_, options.refraction));
+    } else {
+        if (grid.crs().is_geographic())
+            bad_input(
+                fmt::format("light::horizon: {}: a map in degrees cannot be taken as flat "
+                            "ground; expected a projected CRS",
+                            grid.crs().name()));
+        map_unit_m_ = grid.crs().unit_si();
+    }
+}
+
+TerrainHorizon::~TerrainHorizon() = default;
+
+const dem::Heightfield& TerrainHorizon::field() const {
+    return relief_->field();
+}
+
+/// Calls `body` with the shape of the ground that way.
+template <typename Body>
+void TerrainHorizon::with_ground(double azimuth_rad, const Body& body) const {
+    switch (options_.ground) {
+        case Ground::Ellipsoid:
+            return body(
+                RoundGround{radius_m(place_.lat_rad, azimuth_rad), eye_m_, options_.refraction});
+        case Ground::MapOnSphere:
+            return body(MapGround{kSphere_m, eye_m_, options_.refraction});
+        case Ground::MapOnPlane:
+            return body(MapGround{kInfinity, eye_m_, 0});
+    }
+}
+
+void TerrainHorizon::look(double azimuth_rad, Scan& scan) const {
+    thread_local std::vector<TracePoint> line;
+    const dem::Grid& grid = field().grid;
+    if (fan_) {
+        fan_->trace(azimuth_rad, line);
+    } else {
+        const double bearing = azimuth_rad + true_north_on_map_rad_;
+        dem::Affine linear = grid.affine();
+        linear.x0 = linear.y0 = 0;
+        const glm::dvec2 step = linear.inverse({std::sin(bearing), std::cos(bearing)});
+        const double long_enough =
+            (grid.columns() + grid.rows()) / std::max(std::abs(step.x), std::abs(step.y));
+        line.assign({{post_, 0}, {post_ + step * long_enough, long_enough * map_unit_m_}});
+    }
+    // Any length of the order of a cell serves: it says what is no crossing but the start itself.
+    const double spacing_m =
+        line.size() < 2 ? 1.0
+                        : line[1].distance_m / std::max(1e-9, glm::length(line[1].post - post_));
+    with_ground(azimuth_rad, [&](const auto& ground) {
+        Line<std::decay_t<decltype(ground)>, Scan>(*relief_, ground, spacing_m, scan).follow(line);
+    });
+}
+
+HorizonPoint TerrainHorizon::at(double azimuth_rad) const {
+    Scan scan;
+    look(azimuth_rad, scan);
+    HorizonPoint point;
+    point.azimuth_rad = turned(azimuth_rad);
+    point.distance_m = scan.distance_m;
+    point.post = scan.post;
+    point.height_m = scan.height_m;
+    point.reach_m = scan.reach_m;
+    point.elevation_rad = std::atan(scan.best);
+    with_ground(azimuth_rad, [&](const auto& ground) {
+        double least_rad = options_.least_elevation_rad;
+        if (outside_m_ > -kInfinity) {
+            const double from_m = std::max(scan.reach_m, 1.0);
+            const double far_m = farthest_rise_m(ground, outside_m_, from_m);
+            least_rad = std::max(least_rad, std::atan(tangent(ground, outside_m_, far_m)));
+        }
+        if (!(point.elevation_rad >= least_rad)) {
+            point.elevation_rad = least_rad;
+            point.distance_m = point.height_m = kNaN;
+            point.post = glm::dvec2(kNaN);
+        }
+        if (scan.first_hole_m < kInfinity) {
+            const double high_m = relief_->highest_m();
+            const double hole_m =
+                std::min(farthest_rise_m(ground, high_m, scan.first_hole_m), scan.last_hole_m);
+            point.hole = std::atan(tangent(ground, high_m, hole_m)) > point.elevation_rad;
+        }
+    });
+    return point;
+}
+
+std::vector<HorizonPoint> TerrainHorizon::profile(int count) const {
+    std::vector<HorizonPoint> points(static_cast<std::size_t>(count));
+    parallel_for(0, count, 256, [&](int first, int last) {
+        for (int i = first; i < last; ++i)
+            points[static_cast<std::size_t>(i)] = at(2 * kPi * i / count);
+    });
+    return points;
+}
+
+geo::Geodetic TerrainHorizon::place_of(const HorizonPoint& point) const {
+    if (std::isnan(point.distance_m)) return {kNaN, kNaN, kNaN};
+    geo::Geodetic place = field().grid.place(point.post.x, point.post.y);
+    place.height_m = point.height_m;
+    return place;
+}
+
+std::vector<OpenSector> TerrainHorizon::open_sectors(const std::vector<HorizonPoint>& profile,
+                                                     double highest_m) const {
+    // How far terrain of that height would stand over the horizon; 0 where the DEM reaches that
+    // far.
+    const auto needed_m = [&](const HorizonPoint& point) {
+        double needed = 0;
+        with_ground(point.azimuth_rad, [&](const auto& ground) {
+            const double level = std::tan(point.elevation_rad);
+            double low = farthest_rise_m(ground, highest_m, std::max(point.reach_m, 1.0));
+            if (tangent(ground, highest_m, low) <= level + 1e-9) return;
+            constexpr double kFarthest_m = 1e6;  // nothing on Earth is seen from 1000 km
+            double high = kFarthest_m;
+            while (high - low > 1) {
+                const double middle = (low + high) / 2;
+                (tangent(ground, highest_m, middle) > level ? low : high) = middle;
+            }
+            needed = high;
+        });
+        return needed;
+    };
+    std::vector<double> needed(profile.size());
+    std::transform(profile.begin(), profile.end(), needed.begin(), needed_m);
+
+    const std::size_t n = profile.size();
+    const auto closed =
+        std::find(needed.begin(), needed.end(), 0.0) - needed.begin();  // n: open all round
+    std::vector<OpenSector> sectors;
+    bool open = false;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t k = (static_cast<std::size_t>(closed) + i) % n;
+        if (needed[k] == 0) {
+            open = false;
+            continue;
+        }
+        if (!open)
+            sectors.push_back({profile[k].azimuth_rad, profile[k].azimuth_rad, kInfinity, 0});
+        open = true;
+        OpenSector& sector = sectors.back();
+        sector.to_azimuth_rad = profile[k].azimuth_rad;
+        sector.reach_m = std::min(sector.reach_m, profile[k].reach_m);
+        sector.needed_m = std::max(sector.needed_m, needed[k]);
+    }
+    std::sort(sectors.begin(), sectors.end(), [](const OpenSector& a, const OpenSector& b) {
+        return a.from_azimuth_rad < b.from_azimuth_rad;
+    });
+    return sectors;
+}
+
+Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
+    Sight sight;
+    if (fan_) {
+        const geo::Geodesic way = geo::geodesic(place_, target);
+        sight.azimuth_rad = way.azimuth_rad;
+        sight.distance_m = way.distance_m;
+    } else {
+        const geo::Crs& crs = field().grid.crs();
+        const glm::dvec2 way = crs.from_geodetic(target) - crs.from_geodetic(place_);
+        sight.azimuth_rad = turned(std::atan2(way.x, way.y) - true_north_on_map_rad_);
+        sight.distance_m = glm::length(way) * map_unit_m_;
+    }
+    const glm::dvec2 spacing_m = field().grid.post_spacing_m();
+    Scan scan;
+    scan.until_m = sight.distance_m - kNear_posts * std::max(spacing_m.x, spacing_m.y);
+    double level = 0;
+    with_ground(sight.azimuth_rad, [&](const auto& ground) {
+        level = tangent(ground, target.height_m, std::max(sight.distance_m, 1e-3));
+    });
+    sight.elevation_rad = std::atan(level);
+    if (scan.until_m > 0) look(sight.azimuth_rad, scan);
+    sight.visible = scan.best <= level;
+    if (!sight.visible) sight.hidden_by_rad = std::atan(scan.best) - sight.elevation_rad;
+    return sight;
+}
+
+std::string TerrainHorizon::description() const {
+    std::string ground;
+    switch (options_.ground) {
+        case Ground::Ellipsoid:
+            ground = fmt::format("on the WGS 84 ellipsoid with terrestrial refraction k = {:.4g}",
+                                 options_.refraction);
+            break;
+        case Ground::MapOnSphere:
+            ground = fmt::format("on the map, on a sphere with terrestrial refraction k = {:.4g}",
+                                 options_.refraction);
+            break;
+        case Ground::MapOnPlane:
+            ground = "on the map, without curvature";
+            break;
+    }
+    const double above_m = eye_m_ - ground_m_;
+    std::string text = fmt::format(
+        "terrain horizon: highest crossing with the rows and columns of the DEM, {}; {}, on ground "
+        "at {:.1f} m",
+        ground, above_m > 0 ? fmt::format("eye {:.4g} m up", above_m) : "eye at ground level",
+        ground_m_);
+    if (options_.least_elevation_rad > -kPi / 2)
+        text +=
+            fmt::format("; nowhere below {:.4g} degrees", degrees(options_.least_elevation_rad));
+    else if (outside_m_ > -kInfinity)
+        text += fmt::format("; beyond the DEM smooth ground at {:.0f} m", outside_m_);
+    return text;
+}
+
+geo::Geodetic summit_near(const dem::Heightfield& field, const geo::Geodetic& place,
+                          double radius_m) {
+    const auto [post, ground_m] = ground_at(field, place);
+    const glm::dvec2 spacing_m = field.grid.post_spacing_m();
+    const glm::ivec2 reach = glm::ivec2(radius_m / spacing_m);
+    geo::Geodetic summit = field.grid.place(post.x, post.y);
+    summit.height_m = ground_m;
+    const int column = static_cast<int>(std::lround(post.x));
+    const int row = static_cast<int>(std::lround(post.y));
+    for (int r = std::max(0, row - reach.y);
+         r <= std::min(field.height_m.height() - 1, row + reach.y); ++r)
+        for (int c = std::max(0, column - reach.x);
+             c <= std::min(field.height_m.width() - 1, column + reach.x); ++c)
+            if (field.height_m.at(c, r) > summit.height_m &&
+                glm::length((glm::dvec2(c, r) - post) * spacing_m) <= radius_m)
+                summit = field.place(c, r);
+    return summit;
+}
+
+}  // namespace relevo::light

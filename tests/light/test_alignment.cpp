@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+#include "light/alignment.h"
+#include "light/fields.h"
+#include "sun/position.h"
+#include "sun/position_table.h"
+
+namespace relevo::light {
+namespace {
+
+using sun::Date;
+using sun::Zone;
+using test::error_of;
+
+/// A plain near 47 N 9 E with a pole of 300 m, 60 posts to the west and 10 to the south, and a wall
+/// of 150 m in front of it where `wall` is set.
+dem::Heightfield pole(bool wall) {
+    return test::field_of(201, 201, {497000, 30, 0, 5208000, 0, -30}, "EPSG:32632",
+                          [wall](int column, int row) {
+                              if (column == 40 && row == 110) return 400.0;
+                              return wall && column == 60 ? 350.0 : 100.0;
+                          });
+}
+
+const Zone kZurich = Zone::named("Europe/Zurich");
+
+TEST(Alignments, AreTheMomentsOfLeastSeparation) {
+    const dem::Heightfield field = pole(false);
+    const TerrainHorizon here(field, field.grid.place(100, 100));
+    const geo::Geodetic target = field.place(40, 110);
+    AlignmentOptions options;
+    options.tolerance_rad = radians(1.5);
+    const Alignments found =
+        alignments(here, target, {2026, 1, 1}, {2026, 12, 31}, kZurich, options);
+    EXPECT_TRUE(found.sight.visible);
+    EXPECT_NEAR(degrees(found.sight.azimuth_rad), 270 - degrees(std::atan2(10, 60)), 0.05);
+    EXPECT_EQ(found.target, target);
+    // The evening sun passes there in spring and again in autumn, some days in a row.
+    ASSERT_GE(found.passages.size(), 8U);
+    const sun::Refraction air = sun::Refraction::standard(here.place());
+    const auto separation_deg = [&](sun::Instant t) {
+        const sun::Position p = sun::position(t, here.place());
+        const double a = p.azimuth_rad, b = found.sight.azimuth_rad;
+        const double e = air.apparent_rad(p.elevation_rad), f = found.sight.elevation_rad;
+        const double cosine =
+            std::sin(e) * std::sin(f) + std::cos(e) * std::cos(f) * std::cos(a - b);
+        return degrees(std::acos(std::min(1.0, cosine)));
+    };
+    int spring = 0;
+    for (const Alignment& passage : found.passages) {
+        EXPECT_NEAR(separation_deg(passage.utc), degrees(passage.separation_rad), 1e-4);
+        EXPECT_LE(degrees(passage.separation_rad), 1.5);
+        for (const double s : {-20.0, 20.0})
+            EXPECT_GT(separation_deg(passage.utc + s), degrees(passage.separation_rad));
+        // Across and up make the separation.
+        EXPECT_NEAR(std::hypot(passage.right_rad, passage.above_rad), passage.separation_rad,
+                    radians(0.01));
+        EXPECT_EQ(passage.date, kZurich.local(passage.utc).wall.date);
+        spring += passage.date.month < 6;
+    }
+    EXPECT_GE(spring, 4);
+    EXPECT_GE(static_cast<int>(found.passages.size()) - spring, 4);
+    EXPECT_EQ(found.definition,
+              "closest approach of the sun's centre to the point, within 1.5 degrees; " +
+                  air.description() + "; terrestrial refraction k = 0.13");
+}
+
+TEST(Alignments, MissNoDay) {
+    // Every day of the year whose sun, looked at every ten seconds, comes within the tolerance.
+    const dem::Heightfield field = pole(false);
+    const TerrainHorizon here(field, field.grid.place(100, 100));
+    AlignmentOptions options;
+    options.tolerance_rad = radians(3);
+    options.refraction = sun::Refraction::none();
+    const Alignments found =
+        alignments(here, field.place(40, 110), {2026, 1, 1}, {2026, 12, 31}, kZurich, options);
+    std::vector<Date> expected;
+    const sun::PositionTable table(sun::Instant::from_utc({{2025, 12, 31}}),
+                                   sun::Instant::from_utc({{2027, 1, 1}}));
+    const sun::Observer observer(here.place());
+    const double a = found.sight.azimuth_rad, e = found.sight.elevation_rad;
+    const glm::dvec3 wanted(std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e));
+    for (Date date{2026, 1, 1}; date.year == 2026; date = sun::add_days(date, 1)) {
+        const sun::TimeSpan day = kZurich.day(date);
+        double nearest = 0;
+        for (double t = 0; t < day.length_s(); t += 10)
+            nearest = std::max(nearest, glm::dot(wanted, table.direction(day.begin + t, observer)));
+        if (nearest >= std::cos(options.tolerance_rad)) expected.push_back(date);
+    }
+    std::vector<Date> dates;
+    for (const Alignment& passage : found.passages)
+        dates.push_back(passage.date);
+    EXPECT_EQ(dates, expected);
+    EXPECT_GE(dates.size(), 20U);
+}
+
+TEST(Alignments, SayWhetherTheTargetAndTheSunAreSeen) {
+    const dem::Heightfield open = pole(false), walled = pole(true);
+    AlignmentOptions options;
+    options.tolerance_rad = radians(1.5);
+    for (const dem::Heightfield* field : {&open, &walled}) {
+        const TerrainHorizon here(*field, field->grid.place(100, 100));
+        const Alignments found =
+            alignments(here, field->place(40, 110), {2026, 1, 1}, {2026, 12, 31}, kZurich, options);
+        EXPECT_EQ(found.sight.visible, field == &open);
+        ASSERT_FALSE(found.passages.empty());
+        for (const Alignment& passage : found.passages)
+            EXPECT_EQ(passage.sun_visible,
+                      passage.elevation_rad > here.elevation_rad(passage.azimuth_rad));
+        // The pole itself hides little of the sky beside it.
+        EXPECT_EQ(std::any_of(found.passages.begin(), found.passages.end(),
+                              [](const Alignment& p) { return p.sun_visible; }),
+                  field == &open);
+    }
+}
+
+TEST(Alignments, ErrorsSayWhatIsWrong) {
+    const dem::Heightfield field = pole(false);
+    const TerrainHorizon here(field, field.grid.place(100, 100));
+    const geo::Geodetic target = field.place(40, 110);
+    EXPECT_EQ(error_of([&] {
+                  alignments(here, target, {2026, 6, 22}, {2026, 6, 21}, kZurich);
+              }),
+              "exit 3: light::alignments: from 2026-06-22 to 2026-06-21: ends before it begins");
+    EXPECT_EQ(error_of([&] {
+                  alignments(here, target, {2150, 6, 22}, {2150, 6, 23}, kZurich);
+              }),
+              "exit 3: sun::position: 2150-06-21T23:00:00Z: the sun is computed for the years 1900 "
+              "to 2100");
+    AlignmentOptions options;
+    options.tolerance_rad = 0;
+    EXPECT_EQ(error_of([&] {
+                  alignments(here, target, {2026, 6, 21}, {2026, 6, 21}, kZurich, options);
+              }),
+              "exit 3: light::alignments: tolerance 0 degrees: no use, expected more than 0 and up "
+              "to 45");
+}
+
+}  // namespace
+}  // namespace relevo::light

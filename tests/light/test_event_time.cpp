@@ -1,0 +1,68 @@
+#include "light/direct_light.h"
+#include "light/event_time.h"
+#include "light/fields.h"
+
+namespace relevo::light {
+namespace {
+
+using test::error_of;
+
+TEST(EventTime, FirstAndLastLightAreThoseOfTheTerrain) {
+    const dem::Heightfield field = test::bundled("jacksboro.tif");
+    const auto dem = [&]() -> const dem::Heightfield& { return field; };
+    const sun::Zone zone = sun::Zone::named("America/New_York");
+    const geo::Geodetic place = geo::geodetic_deg(36.42, -84.25);
+    HorizonOptions standing;
+    standing.eye_height_m = 2;
+    const TerrainHorizon ground(field, place), eye(field, place, standing);
+    const LightDay on_ground = DirectLight(ground).day({2026, 1, 6}, zone);
+    const LightDay at_eye = DirectLight(eye).day({2026, 1, 6}, zone);
+    ASSERT_FALSE(on_ground.lit.empty());
+    const auto time = [&](const char* text) {
+        const sun::ParsedTime parsed = parse_time(text, sun::Date{2026, 1, 6}, zone, dem);
+        EXPECT_EQ(parsed.zone.name(), zone.name());
+        return parsed.utc;
+    };
+    EXPECT_EQ(time("first-light@36.42,-84.25"), on_ground.lit.front().begin.utc);
+    EXPECT_EQ(time("last-light-10min@36.42,-84.25"), on_ground.lit.back().end.utc - 600);
+    EXPECT_EQ(time("first-light@36.42,-84.25,2agl"), at_eye.lit.front().begin.utc);
+    // What needs no terrain does not ask for it.
+    EXPECT_NEAR(parse_time("sunrise@36.42,-84.25", sun::Date{2026, 1, 6}, zone).utc -
+                    *on_ground.flat.first(sun::EventKind::Sunrise),
+                0, 0.01);
+    EXPECT_EQ(parse_time("2026-01-06T08:00", std::nullopt, zone).utc,
+              sun::parse_time("2026-01-06T13:00Z").utc);
+}
+
+TEST(EventTime, FirstLightErrorsSayWhatIsWrong) {
+    const dem::Heightfield field = test::bundled("jacksboro.tif");
+    const sun::Zone zone = sun::Zone::named("America/New_York");
+    const sun::Date date{2026, 1, 6};
+    const auto dem = [&]() -> const dem::Heightfield& { return field; };
+    EXPECT_EQ(error_of([&] { parse_time("first-light@36.42,-84.25", date, zone); }),
+              "exit 3: sun::parse_event_time: first-light@36.42,-84.25: first and last light hang "
+              "on the terrain; expected a DEM");
+    EXPECT_EQ(error_of([&] { parse_time("first-light@36.42,-84.25", std::nullopt, zone, dem); }),
+              "exit 3: sun::parse_event_time: first-light@36.42,-84.25: no date; write 2026-06-21 "
+              "first-light@36.42,-84.25 or pass --date");
+    EXPECT_EQ(error_of([&] { parse_time("first-light@40,-84.25", date, zone, dem); }),
+              "exit 3: light::horizon: 40,-84.25: outside of the DEM, expected a point within "
+              "latitudes 36.1600 to 36.4458 and longitudes -84.4133 to -84.0783");
+    const dem::Heightfield arctic = test::field_of(101, 101, {15, 0.002, 0, 78.3, 0, -0.0005},
+                                                   "EPSG:4326", [](int, int) { return 10.0; });
+    const auto there = [&]() -> const dem::Heightfield& { return arctic; };
+    const sun::Zone oslo = sun::Zone::named("Europe/Oslo");
+    EXPECT_EQ(error_of([&] {
+                  parse_time("2026-12-21 first-light@78.275,15.1", std::nullopt, oslo, there);
+              }),
+              "exit 3: light::parse_time: 2026-12-21 first-light@78.275,15.1: the sun does not "
+              "reach that point on 2026-12-21");
+    EXPECT_EQ(error_of([&] {
+                  parse_time("2026-06-21 last-light@78.275,15.1", std::nullopt, oslo, there);
+              }),
+              "exit 3: light::parse_time: 2026-06-21 last-light@78.275,15.1: no last light on "
+              "2026-06-21, the sun shines there at midnight");
+}
+
+}  // namespace
+}  // namespace relevo::light
