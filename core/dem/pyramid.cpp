@@ -20,7 +20,8 @@ int coarser(int nodes) {
 
 }  // namespace
 
-Pyramid::Pyramid(Array2d<float> height_m) {
+Pyramid::Pyramid(const Array2d<float>& posts_m) : posts_m_(&posts_m) {
+    const Array2d<float>& height_m = posts_m;
     std::atomic<bool> holes = false;
     parallel_for(0, height_m.height(), 64, [&](int first, int last) {
         for (int row = first; row < last; ++row)
@@ -38,7 +39,6 @@ Pyramid::Pyramid(Array2d<float> height_m) {
             for (int column = 0; column < height_m.width(); ++column)
                 level.coverage.at(column, row) = std::isnan(height_m.at(column, row)) ? 0 : 255;
     }
-    level.height_m = std::move(height_m);
     levels_.push_back(std::move(level));
     bound_tiles(0);
     while (std::max(size(levels() - 1).x, size(levels() - 1).y) > kTileQuads + 1) {
@@ -71,7 +71,7 @@ float Pyramid::coverage(int level, int column, int row) const {
 
 void Pyramid::make_level() {
     const Level& fine = levels_.back();
-    const Array2d<float>& h = fine.height_m;
+    const Array2d<float>& h = heights(levels() - 1);
     const int columns = coarser(h.width()), rows = coarser(h.height());
     Level coarse;
     coarse.height_m = Array2d<float>(columns, rows);
@@ -108,24 +108,65 @@ void Pyramid::make_level() {
     levels_.push_back(std::move(coarse));
 }
 
+namespace {
+
+Pyramid::Place place_in_coarser(int level, int node, int posts, int coarse_nodes) {
+    const auto post = [&](int n, int l) { return std::min(n << l, posts - 1); };
+    const int from = std::min(node / 2, std::max(0, coarse_nodes - 2));
+    const int first = post(from, level + 1), last = post(from + 1, level + 1);
+    const int here = post(node, level);
+    return {from, last > first ? static_cast<float>(here - first) / static_cast<float>(last - first)
+                               : 0.0f};
+}
+
+}  // namespace
+
+Pyramid::Place Pyramid::column_in_coarser(int level, int column) const {
+    return place_in_coarser(level, column, columns(), coarser(size(level).x));
+}
+
+Pyramid::Place Pyramid::row_in_coarser(int level, int row) const {
+    return place_in_coarser(level, row, rows(), coarser(size(level).y));
+}
+
+Pyramid::Block Pyramid::block(int level, glm::ivec2 first, int columns, int rows) const {
+    Block block{Array2d<float>(columns, rows), Array2d<float>(columns, rows, 1.0f)};
+    const Array2d<float>& h = heights(level);
+    for (int y = 0; y < rows; ++y) {
+        const auto from = h.row(std::clamp(first.y + y, 0, h.height() - 1));
+        const auto to = block.height_m.row(y);
+        for (int x = 0; x < columns; ++x)
+            to[static_cast<std::size_t>(x)] =
+                from[static_cast<std::size_t>(std::clamp(first.x + x, 0, h.width() - 1))];
+    }
+    if (!has_holes_) return block;
+    for (int y = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x) {
+            const glm::ivec2 node = first + glm::ivec2(x, y);
+            block.coverage.at(x, y) = coverage(level, node.x, node.y);
+            if (!std::isnan(block.height_m.at(x, y))) continue;
+            float sum = 0;
+            int count = 0;
+            for (int dy = -1; dy <= 1; ++dy) {
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const float neighbour = height(level, node.x + dx, node.y + dy);
+                    if (std::isnan(neighbour)) continue;
+                    sum += neighbour;
+                    ++count;
+                }
+            }
+            block.height_m.at(x, y) = count ? sum / static_cast<float>(count) : 0.0f;
+        }
+    }
+    return block;
+}
+
 float Pyramid::surface(int level, int column, int row) const {
     // The point of the finer level's node (column, row) on this level's triangles, which are
     // divided from the upper right to the lower left corner of their quad, as core's terrain grid
     // is.
-    const glm::ivec2 fine = size(level - 1);
-    const auto position = [](int node, int spacing, int last) {
-        return std::min(node * spacing, last);
-    };
-    const auto locate = [&](int node, int count, int& a, float& t) {
-        const int last = (count - 1);
-        a = std::min(node / 2, std::max(0, coarser(count) - 2));
-        const int from = position(a, 2, last), to = position(a + 1, 2, last);
-        t = to > from ? static_cast<float>(node - from) / static_cast<float>(to - from) : 0.0f;
-    };
-    int x = 0, y = 0;
-    float tx = 0, ty = 0;
-    locate(column, fine.x, x, tx);
-    locate(row, fine.y, y, ty);
+    const auto [x, tx] = column_in_coarser(level - 1, column);
+    const auto [y, ty] = row_in_coarser(level - 1, row);
     const float upper_right = height(level, x + 1, y), lower_left = height(level, x, y + 1);
     if (tx + ty <= 1) {
         const float upper_left = height(level, x, y);
@@ -158,6 +199,8 @@ void Pyramid::bound_tiles(int level) {
                 Bounds bounds{.lowest_m = std::numeric_limits<float>::max(),
                               .highest_m = std::numeric_limits<float>::lowest()};
                 float children_error = 0, own_error = 0;
+                double children_squares = 0, own_squares = 0;
+                int children = 0, own = 0;
                 if (level > 0) {
                     const glm::ivec2 finer = tiles(level - 1);
                     for (int y = 2 * ty; y <= std::min(2 * ty + 1, finer.y - 1); ++y) {
@@ -167,6 +210,8 @@ void Pyramid::bound_tiles(int level) {
                             bounds.lowest_m = std::min(bounds.lowest_m, child.lowest_m);
                             bounds.highest_m = std::max(bounds.highest_m, child.highest_m);
                             children_error = std::max(children_error, child.error_m);
+                            children_squares += double{child.rms_m} * child.rms_m;
+                            ++children;
                         }
                     }
                 }
@@ -179,11 +224,16 @@ void Pyramid::bound_tiles(int level) {
                             bounds.highest_m = std::max(bounds.highest_m, h);
                         } else {
                             const float error = std::abs(h - surface(level, x, y));
-                            if (error > own_error) own_error = error;  // false beside holes: NaN
+                            if (std::isnan(error)) continue;  // beside holes
+                            own_error = std::max(own_error, error);
+                            own_squares += double{error} * error;
+                            ++own;
                         }
                     }
                 }
                 bounds.error_m = children_error + own_error;
+                bounds.rms_m = static_cast<float>(std::sqrt(
+                    children_squares / std::max(children, 1) + own_squares / std::max(own, 1)));
                 if (bounds.empty()) bounds = {.lowest_m = 1, .highest_m = 0};
                 here.tiles.at(tx, ty) = bounds;
             }
@@ -191,10 +241,10 @@ void Pyramid::bound_tiles(int level) {
     });
 }
 
-float Pyramid::error_m(int level, double share) const {
+float Pyramid::error_m(int level, float Bounds::*measure, double share) const {
     std::vector<float> errors;
     for (const Bounds& bounds : levels_[static_cast<std::size_t>(level)].tiles)
-        if (!bounds.empty()) errors.push_back(bounds.error_m);
+        if (!bounds.empty()) errors.push_back(bounds.*measure);
     if (errors.empty()) return 0;
     const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(errors.size() - 1));
     std::nth_element(errors.begin(), errors.begin() + at, errors.end());

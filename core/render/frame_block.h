@@ -30,7 +30,7 @@ struct FrameBlock {
     float exposure;
     float footprint_limit;
     float normal_texels_per_m;
-    float padding;
+    float normal_levels;
 };
 static_assert(sizeof(FrameBlock) == 26 * 16);
 
