@@ -115,8 +115,8 @@ void capture(const Arguments& arguments) {
     const geo::Geodetic place = ground.frame.origin();
     const sun::Instant utc = given_time ? given_time->utc : scene::default_moment(place);
     const sun::Position position = sun::position(utc, place);
-    const sun::Refraction air = arguments.refraction.at(
-        {place.lat_rad, place.lon_rad, 0.5 * (ground.lowest_m + ground.highest_m)});
+    const sun::Refraction air =
+        arguments.refraction.at({place.lat_rad, place.lon_rad, ground.air_height_m()});
     const std::string sun_text =
         fmt::format("sun at azimuth {:.2f}, elevation {:.2f} ({:.2f} with refraction)",
                     degrees(position.azimuth_rad), degrees(position.elevation_rad),

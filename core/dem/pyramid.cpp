@@ -72,36 +72,54 @@ float Pyramid::coverage(int level, int column, int row) const {
 void Pyramid::make_level() {
     const Level& fine = levels_.back();
     const Array2d<float>& h = heights(levels() - 1);
-    const int columns = coarser(h.width()), rows = coarser(h.height());
+    const int width = h.width(), height = h.height();
+    const int columns = coarser(width), rows = coarser(height);
     Level coarse;
     coarse.height_m = Array2d<float>(columns, rows);
     if (has_holes_) coarse.coverage = Array2d<std::uint8_t>(columns, rows);
     parallel_for(0, rows, 16, [&](int first, int last) {
+        // Weighted sums down the columns, then along them: of heights times coverage, and of
+        // coverage, which is a constant where there are no holes.
+        std::vector<float> sums(static_cast<std::size_t>(width)), shares(sums.size());
         for (int row = first; row < last; ++row) {
-            const int y = std::min(2 * row, h.height() - 1);
-            for (int column = 0; column < columns; ++column) {
-                const int x = std::min(2 * column, h.width() - 1);
-                float sum = 0, weight = 0, covered = 0, whole = 0;
-                for (int dy = -1; dy <= 1; ++dy) {
-                    if (y + dy < 0 || y + dy >= h.height()) continue;
-                    for (int dx = -1; dx <= 1; ++dx) {
-                        if (x + dx < 0 || x + dx >= h.width()) continue;
-                        const float w = static_cast<float>((2 - std::abs(dx)) * (2 - std::abs(dy)));
-                        const float c = has_holes_
-                                            ? static_cast<float>(fine.coverage.at(x + dx, y + dy))
-                                            : 255.0f;
-                        whole += w;
-                        covered += w * c;
-                        if (c > 0) {
-                            sum += w * c * h.at(x + dx, y + dy);
-                            weight += w * c;
-                        }
-                    }
+            const int y = std::min(2 * row, height - 1);
+            std::fill(sums.begin(), sums.end(), 0.0f);
+            std::fill(shares.begin(), shares.end(), 0.0f);
+            float whole_down = 0;
+            for (int dy = -1; dy <= 1; ++dy) {
+                if (y + dy < 0 || y + dy >= height) continue;
+                const auto w = static_cast<float>(2 - std::abs(dy));
+                whole_down += w;
+                const float* const from = h.row(y + dy).data();
+                if (!has_holes_) {
+                    for (std::size_t x = 0; x < sums.size(); ++x)
+                        sums[x] += w * from[x];
+                    continue;
                 }
-                coarse.height_m.at(column, row) = weight > 0 ? sum / weight : kHole;
-                if (has_holes_)
-                    coarse.coverage.at(column, row) =
-                        static_cast<std::uint8_t>(std::lrint(covered / whole));
+                const std::uint8_t* const covered = fine.coverage.row(y + dy).data();
+                for (std::size_t x = 0; x < sums.size(); ++x) {
+                    const float c = w * static_cast<float>(covered[x]);
+                    sums[x] += covered[x] ? c * from[x] : 0.0f;
+                    shares[x] += c;
+                }
+            }
+            for (int column = 0; column < columns; ++column) {
+                const int x = std::min(2 * column, width - 1);
+                float sum = 0, share = 0, whole = 0;
+                for (int dx = -1; dx <= 1; ++dx) {
+                    if (x + dx < 0 || x + dx >= width) continue;
+                    const auto w = static_cast<float>(2 - std::abs(dx));
+                    sum += w * sums[static_cast<std::size_t>(x + dx)];
+                    share += w * shares[static_cast<std::size_t>(x + dx)];
+                    whole += w * whole_down;
+                }
+                if (!has_holes_) {
+                    coarse.height_m.at(column, row) = sum / whole;
+                    continue;
+                }
+                coarse.height_m.at(column, row) = share > 0 ? sum / share : kHole;
+                coarse.coverage.at(column, row) =
+                    static_cast<std::uint8_t>(std::lrint(share / whole));
             }
         }
     });
@@ -161,22 +179,6 @@ Pyramid::Block Pyramid::block(int level, glm::ivec2 first, int columns, int rows
     return block;
 }
 
-float Pyramid::surface(int level, int column, int row) const {
-    // The point of the finer level's node (column, row) on this level's triangles, which are
-    // divided from the upper right to the lower left corner of their quad, as core's terrain grid
-    // is.
-    const auto [x, tx] = column_in_coarser(level - 1, column);
-    const auto [y, ty] = row_in_coarser(level - 1, row);
-    const float upper_right = height(level, x + 1, y), lower_left = height(level, x, y + 1);
-    if (tx + ty <= 1) {
-        const float upper_left = height(level, x, y);
-        return upper_left + tx * (upper_right - upper_left) + ty * (lower_left - upper_left);
-    }
-    const float lower_right = height(level, x + 1, y + 1);
-    return lower_right + (1 - tx) * (lower_left - lower_right) +
-           (1 - ty) * (upper_right - lower_right);
-}
-
 glm::ivec2 Pyramid::tiles(int level) const {
     const glm::ivec2 nodes = size(level);
     return {std::max(1, (nodes.x - 2) / kTileQuads + 1),
@@ -189,52 +191,95 @@ const Pyramid::Bounds& Pyramid::bounds(int level, glm::ivec2 tile) const {
 
 void Pyramid::bound_tiles(int level) {
     const glm::ivec2 count = tiles(level);
+    levels_[static_cast<std::size_t>(level)].tiles =
+        Array2d<Bounds>(count.x, count.y, {.lowest_m = 1, .highest_m = 0});
+    if (level > 0) {
+        measure_errors(level);
+        return;
+    }
+    const Array2d<float>& posts = heights(0);
+    parallel_for(0, count.y, 1, [&](int first, int last) {
+        for (int ty = first; ty < last; ++ty) {
+            for (int tx = 0; tx < count.x; ++tx) {
+                float low = std::numeric_limits<float>::max(), high = -low;
+                const int end = std::min((tx + 1) * kTileQuads + 1, posts.width());
+                for (int y = ty * kTileQuads;
+                     y < std::min((ty + 1) * kTileQuads + 1, posts.height()); ++y) {
+                    const float* const row = posts.row(y).data();
+                    for (int x = tx * kTileQuads; x < end; ++x) {
+                        low = row[x] < low ? row[x] : low;  // false for holes
+                        high = row[x] > high ? row[x] : high;
+                    }
+                }
+                if (low <= high)
+                    levels_.front().tiles.at(tx, ty) = {.lowest_m = low, .highest_m = high};
+            }
+        }
+    });
+}
+
+void Pyramid::measure_errors(int level) {
+    const glm::ivec2 count = tiles(level), finer = tiles(level - 1);
+    const Array2d<float>& fine = heights(level - 1);
+    const Array2d<float>& coarse = heights(level);
     Level& here = levels_[static_cast<std::size_t>(level)];
-    here.tiles = Array2d<Bounds>(count.x, count.y, {.lowest_m = 1, .highest_m = 0});
-    const int nodes = level == 0 ? kTileQuads : 2 * kTileQuads;  // of the level below, along a tile
-    const glm::ivec2 below = size(std::max(level - 1, 0));
+    std::vector<Place> columns;
+    for (int x = 0; x < fine.width(); ++x)
+        columns.push_back(column_in_coarser(level - 1, x));
+    const int nodes = 2 * kTileQuads;  // of the finer level, along a tile
     parallel_for(0, count.y, 1, [&](int first, int last) {
         for (int ty = first; ty < last; ++ty) {
             for (int tx = 0; tx < count.x; ++tx) {
                 Bounds bounds{.lowest_m = std::numeric_limits<float>::max(),
                               .highest_m = std::numeric_limits<float>::lowest()};
-                float children_error = 0, own_error = 0;
-                double children_squares = 0, own_squares = 0;
-                int children = 0, own = 0;
-                if (level > 0) {
-                    const glm::ivec2 finer = tiles(level - 1);
-                    for (int y = 2 * ty; y <= std::min(2 * ty + 1, finer.y - 1); ++y) {
-                        for (int x = 2 * tx; x <= std::min(2 * tx + 1, finer.x - 1); ++x) {
-                            const Bounds& child = this->bounds(level - 1, {x, y});
-                            if (child.empty()) continue;
-                            bounds.lowest_m = std::min(bounds.lowest_m, child.lowest_m);
-                            bounds.highest_m = std::max(bounds.highest_m, child.highest_m);
-                            children_error = std::max(children_error, child.error_m);
-                            children_squares += double{child.rms_m} * child.rms_m;
-                            ++children;
-                        }
+                float children_error = 0;
+                double children_squares = 0;
+                int children = 0;
+                for (int y = 2 * ty; y <= std::min(2 * ty + 1, finer.y - 1); ++y) {
+                    for (int x = 2 * tx; x <= std::min(2 * tx + 1, finer.x - 1); ++x) {
+                        const Bounds& child = this->bounds(level - 1, {x, y});
+                        if (child.empty()) continue;
+                        bounds.lowest_m = std::min(bounds.lowest_m, child.lowest_m);
+                        bounds.highest_m = std::max(bounds.highest_m, child.highest_m);
+                        children_error = std::max(children_error, child.error_m);
+                        children_squares += double{child.rms_m} * child.rms_m;
+                        ++children;
                     }
                 }
-                for (int y = ty * nodes; y <= std::min((ty + 1) * nodes, below.y - 1); ++y) {
-                    for (int x = tx * nodes; x <= std::min((tx + 1) * nodes, below.x - 1); ++x) {
-                        const float h = heights(std::max(level - 1, 0)).at(x, y);
-                        if (std::isnan(h)) continue;
-                        if (level == 0) {
-                            bounds.lowest_m = std::min(bounds.lowest_m, h);
-                            bounds.highest_m = std::max(bounds.highest_m, h);
-                        } else {
-                            const float error = std::abs(h - surface(level, x, y));
-                            if (std::isnan(error)) continue;  // beside holes
-                            own_error = std::max(own_error, error);
-                            own_squares += double{error} * error;
-                            ++own;
-                        }
+                if (children == 0) continue;
+                float error = 0;
+                double squares = 0;
+                int measured = 0;
+                const int end = std::min((tx + 1) * nodes + 1, fine.width());
+                for (int y = ty * nodes; y < std::min((ty + 1) * nodes + 1, fine.height()); ++y) {
+                    const Place row = row_in_coarser(level - 1, y);
+                    const float* const from = fine.row(y).data();
+                    const float* const upper = coarse.row(row.from).data();
+                    const float* const lower =
+                        coarse.row(std::min(row.from + 1, coarse.height() - 1)).data();
+                    float row_squares = 0;
+                    for (int x = tx * nodes; x < end; ++x) {
+                        // On the coarser level's triangles, which are divided from the upper right
+                        // to the lower left corner of their quad, as the terrain grid is.
+                        const Place& column = columns[static_cast<std::size_t>(x)];
+                        const int c = column.from, d = std::min(c + 1, coarse.width() - 1);
+                        const float u = column.share, v = row.share;
+                        const float surface =
+                            u + v <= 1
+                                ? upper[c] + u * (upper[d] - upper[c]) + v * (lower[c] - upper[c])
+                                : lower[d] + (1 - u) * (lower[c] - lower[d]) +
+                                      (1 - v) * (upper[d] - lower[d]);
+                        const float off = std::abs(from[x] - surface);
+                        if (!(off >= 0)) continue;  // in or beside a hole
+                        error = std::max(error, off);
+                        row_squares += off * off;
+                        ++measured;
                     }
+                    squares += double{row_squares};
                 }
-                bounds.error_m = children_error + own_error;
-                bounds.rms_m = static_cast<float>(std::sqrt(
-                    children_squares / std::max(children, 1) + own_squares / std::max(own, 1)));
-                if (bounds.empty()) bounds = {.lowest_m = 1, .highest_m = 0};
+                bounds.error_m = children_error + error;
+                bounds.rms_m = static_cast<float>(
+                    std::sqrt(children_squares / children + squares / std::max(measured, 1)));
                 here.tiles.at(tx, ty) = bounds;
             }
         }

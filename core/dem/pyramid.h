@@ -97,7 +97,7 @@ class Pyramid {
 
     void make_level();
     void bound_tiles(int level);
-    float surface(int level, int column, int row) const;
+    void measure_errors(int level);
 
     const Array2d<float>* posts_m_;
     std::vector<Level> levels_;  // the heights of the first are posts_m_

@@ -20,7 +20,7 @@ struct TerrainOptions {
     /// Largest error of the drawn surface in the picture [px]. 0 draws every post.
     double pixel_error = 2;
     /// Vertices in a frame above which the error is let grow.
-    int vertex_budget = 600000;
+    int vertex_budget = 250000;
     int max_array_layers = 2048;  ///< the device's
 };
 
