@@ -33,3 +33,16 @@ function(relevo_test name)
     add_test(NAME ${name} COMMAND test_${name})
     set_tests_properties(${name} PROPERTIES TIMEOUT 600)
 endfunction()
+
+# relevo_module(<plugin id> SOURCES ... [LINKS ...])
+#
+# The native module of a plugin: a shared library that knows nothing of Relevo but the interface.
+function(relevo_module id)
+    cmake_parse_arguments(MODULE "" "" "SOURCES;LINKS" ${ARGN})
+    add_library(relevo_plugin_${id} MODULE ${MODULE_SOURCES})
+    set_target_properties(relevo_plugin_${id} PROPERTIES PREFIX "" OUTPUT_NAME ${id}
+        LIBRARY_OUTPUT_DIRECTORY ${RELEVO_MODULE_DIR}/plugins CXX_VISIBILITY_PRESET hidden)
+    target_include_directories(relevo_plugin_${id} PRIVATE ${CMAKE_SOURCE_DIR}/core/effect/abi)
+    target_link_libraries(relevo_plugin_${id} PRIVATE relevo_options ${MODULE_LINKS})
+    install(TARGETS relevo_plugin_${id} LIBRARY DESTINATION lib/relevo/plugins)
+endfunction()

@@ -12,6 +12,8 @@ render::EffectInputs ActiveEffects::inputs() const {
     for (const effect::Effect* effect : selection.effects)
         inputs.textures.insert(inputs.textures.end(), effect->manifest.textures.begin(),
                                effect->manifest.textures.end());
+    for (const effect::NativeModule& module : modules)
+        inputs.modules.push_back(&module);
     return inputs;
 }
 
@@ -52,7 +54,9 @@ std::unique_ptr<ActiveEffects> EffectArguments::active() const {
     }
     switches.enable = enable;
     switches.disable = disable;
-    active->selection = effect::select(active->registry, loaded, switches);
+    effect::NativeSelection chosen = effect::select_and_load(active->registry, loaded, switches);
+    active->selection = std::move(chosen.selection);
+    active->modules = std::move(chosen.modules);
     std::vector<shader::Param> params = active->registry.params();
     for (const shader::Param& param : render::core_params())
         params.push_back(param);

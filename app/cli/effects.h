@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "effect/native_module.h"
 #include "effect/selection.h"
 #include "render/renderer.h"
 
@@ -15,6 +16,7 @@ namespace relevo::cli {
 struct ActiveEffects {
     effect::Registry registry;
     effect::Selection selection;  // points into registry
+    std::vector<effect::NativeModule> modules;
     shader::ParamStore values;
 
     /// For a renderer; valid as long as this is.

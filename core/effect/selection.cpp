@@ -22,7 +22,7 @@ bool contains(const std::vector<std::string>& words, std::string_view word) {
 class Selector {
   public:
     Selector(const Registry& registry, const std::vector<Preset>& presets,
-             const Switches& command_line)
+             const Switches& command_line, const Unusable& unusable)
         : registry_(registry) {
         for (const Effect& effect : registry.effects())
             if (effect.manifest.enabled_by_default) on_.insert(effect.id());
@@ -30,6 +30,11 @@ class Selector {
             apply(known_of(preset));
         check_command_line(command_line);
         apply(command_line);
+        for (const auto& [id, reason] : unusable) {
+            if (on_.erase(id) > 0) notices_.push_back(fmt::format("{} is off: {}", id, reason));
+            asked_.erase(id);
+            unmet_.insert(id);
+        }
     }
 
     Selection run() {
@@ -265,8 +270,8 @@ std::vector<const shader::Snippet*> Selection::snippets() const {
 }
 
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
-                 const Switches& command_line) {
-    return Selector(registry, presets, command_line).run();
+                 const Switches& command_line, const Unusable& unusable) {
+    return Selector(registry, presets, command_line, unusable).run();
 }
 
 std::vector<std::string> apply_settings(shader::ParamStore& store, const Registry& registry,

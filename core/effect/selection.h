@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct Selection {
     std::vector<const shader::Snippet*> snippets() const;  ///< for shader::StitchInput
 };
 
+/// Effects that cannot be on, by id, and why.
+using Unusable = std::map<std::string, std::string>;
+
 /// Decides which effects are on, and in which order they are called.
 ///
 /// On are those with `enabled_by_default`; each preset, and then the command line, changes that:
@@ -30,8 +34,9 @@ struct Selection {
 /// What a preset names and is not there is a notice, so that deleting a plugin breaks no preset.
 /// @throws Error (BadInput) for an id on the command line that is unknown, or both on and off; a
 ///         circle of `after`; two providers of an exclusive hook
+/// @param unusable  effects that cannot be on whatever is asked, each with the reason: a notice
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
-                 const Switches& command_line);
+                 const Switches& command_line, const Unusable& unusable = {});
 
 /// Sets the values of presets, then those of the command line. Never switches an effect on.
 /// @param store  has been told of all parameters there are

@@ -1,5 +1,6 @@
 #include "gl/framebuffer.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <epoxy/gl.h>
@@ -34,6 +35,23 @@ Framebuffer::Framebuffer(std::span<const Texture* const> colours, const Texture*
             depth->name(), 0);
         extent_ = depth->extent();
     }
+    const GLenum status = glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        failed(fmt::format("gl::Framebuffer: {}: this device cannot draw to it, status 0x{:04x}",
+                           label, status));
+}
+
+Framebuffer::Framebuffer(const Texture& colour, int level, int layer, std::string_view label) {
+    GLuint name = 0;
+    glCreateFramebuffers(1, &name);
+    handle_ = Handle<&Framebuffer::destroy>(name);
+    glObjectLabel(GL_FRAMEBUFFER, name, static_cast<GLsizei>(label.size()), label.data());
+    if (colour.kind() == TextureKind::D2)
+        glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, colour.name(), level);
+    else
+        glNamedFramebufferTextureLayer(name, GL_COLOR_ATTACHMENT0, colour.name(), level, layer);
+    extent_ = {std::max(colour.extent().width >> level, 1),
+               std::max(colour.extent().height >> level, 1), 1};
     const GLenum status = glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE)
         failed(fmt::format("gl::Framebuffer: {}: this device cannot draw to it, status 0x{:04x}",

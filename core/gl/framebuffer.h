@@ -24,6 +24,9 @@ class Framebuffer {
                 std::string_view label)
         : Framebuffer(std::span(colours.begin(), colours.size()), depth, label) {}
 
+    /// One layer of one level of a colour texture, alone.
+    Framebuffer(const Texture& colour, int level, int layer, std::string_view label);
+
     /// Draws go here from now on, to the whole of it.
     void bind() const;
     void clear_colour(int index, glm::vec4 value) const;

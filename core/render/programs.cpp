@@ -25,6 +25,11 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
     std::vector<ProgramText> programs;
     programs.push_back({"geometry", shader::stitch(core, geometry, input)});
     programs.push_back({"terrain", shader::stitch(core, terrain, input)});
+    if (options.depth)
+        programs.push_back({"depth", shader::stitch(core,
+                                                    {.vertex_main = "terrain.vert.glsl",
+                                                     .fragment_main = "depth.frag.glsl"},
+                                                    input)});
     for (const char* name : {"sky", "post", "edges", "antialias"}) {
         const shader::ProgramRecipe recipe{.vertex_main = "fullscreen.vert.glsl",
                                            .fragment_main = fmt::format("{}.frag.glsl", name)};

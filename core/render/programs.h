@@ -17,6 +17,7 @@ struct ProgramText {
 
 struct ProgramOptions {
     bool vertex_normals = false;  ///< per vertex instead of per fragment
+    bool depth = false;           ///< also "depth": the terrain as parallel light sees it
 };
 
 /// Stitches all programs of a frame. @throws Error as shader::stitch

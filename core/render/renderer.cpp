@@ -14,6 +14,7 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "render/native_host.h"
 #include "render/programs.h"
 
 namespace relevo::render {
@@ -48,9 +49,10 @@ struct Renderer::Impl {
     RendererOptions options;
     double anisotropy;
     std::vector<ProgramText> texts;
-    LinkedProgram geometry, terrain, sky, post, edges, antialias;
+    LinkedProgram geometry, terrain, sky, post, edges, antialias, depth_only;
     EffectTextures effect_textures;
     gl::Buffer frame_block;
+    shader::ParamStore values;  // as given; native modules write host parameters
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
     TileSelection tiles;  // of the last frame
@@ -58,13 +60,14 @@ struct Renderer::Impl {
     gl::Texture place, depth, radiance, tone_mapped, edge_marks, picture;
     std::vector<gl::Texture> varyings;
     gl::Framebuffer geometry_target, radiance_target, post_target, picture_target;
+    std::vector<NativeHost> natives;
 
     Impl(gl::Context& c, const EffectInputs& effects, const RendererOptions& o)
         : context(c),
           options(o),
           // A software renderer pays for every tap of an anisotropic filter (four times the frame).
           anisotropy(c.info().device.software ? 1 : std::min(kAnisotropy, c.info().max_anisotropy)),
-          texts(stitch(effects.stitch, c.info().max_texture_units)),
+          texts(stitch(effects, c.info().max_texture_units)),
           geometry(link("geometry")),
           terrain(link("terrain")),
           sky(link("sky")),
@@ -74,8 +77,9 @@ struct Renderer::Impl {
           effect_textures(effects.textures, anisotropy),
           frame_block(sizeof(FrameBlock), "frame block") {
         if (effects.stitch.values) {
+            values = *effects.stitch.values;
             const std::vector<std::byte> params =
-                shader::pack(texts.front().stitched.params, *effects.stitch.values);
+                shader::pack(texts.front().stitched.params, values);
             if (!params.empty()) params_block = gl::Buffer(params, "parameters");
         }
 
@@ -106,14 +110,22 @@ struct Renderer::Impl {
         radiance_target = gl::Framebuffer({&radiance}, &depth, "radiance");
         post_target = gl::Framebuffer({&tone_mapped}, nullptr, "post");
         picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
+
+        if (!effects.modules.empty()) depth_only = link("depth");
+        for (const effect::NativeModule* module : effects.modules)
+            natives.emplace_back(
+                *module, context, [this](const Terrain& ground) { bind(depth_only, ground); },
+                values, options.width_px, options.height_px);
     }
 
-    static std::vector<ProgramText> stitch(shader::StitchInput input, int max_texture_units) {
+    static std::vector<ProgramText> stitch(const EffectInputs& effects, int max_texture_units) {
+        shader::StitchInput input = effects.stitch;
         input.max_texture_units = max_texture_units;
         const shader::FolderTexts core(share_dir() / "shaders");
         const bool vertex_normals = input.values && input.values->find(kNormalAddress) &&
                                     input.values->value(kNormalAddress)[0] == 1;
-        return stitch_programs(core, input, {.vertex_normals = vertex_normals});
+        return stitch_programs(core, input, {.vertex_normals = vertex_normals,
+                                             .depth = !effects.modules.empty()});
     }
 
     const ProgramText& text(const std::string& name) const {
@@ -132,6 +144,8 @@ struct Renderer::Impl {
         for (const shader::TextureUnit& unit : program.textures) {
             const gl::Texture* texture = core_texture(unit.resource, ground);
             if (!texture) texture = effect_textures.find(unit.resource);
+            for (const NativeHost& native : natives)
+                if (!texture) texture = native.find(unit.resource);
             if (!texture)
                 failed(fmt::format("render: the texture {} of {} does not exist", unit.resource,
                                    unit.owner));
@@ -157,7 +171,8 @@ struct Renderer::Impl {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
-    void draw(Terrain& ground, const FrameInputs& inputs, FrameBlock block, PassTimes* times) {
+    void draw(Terrain& ground, const Ground& about, const FrameInputs& inputs, FrameBlock block,
+              PassTimes* times) {
         block.normal_levels = static_cast<float>(ground.normal_levels());
         frame_block.write(std::as_bytes(std::span(&block, 1)));
         frame_block.bind_uniform(kFrameBinding);
@@ -176,6 +191,16 @@ struct Renderer::Impl {
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
                                           inputs.exaggeration);
         passed("select");
+
+        if (!natives.empty()) {
+            for (NativeHost& native : natives) {
+                native.prepare(ground, about, inputs, block, tiles);
+                if (native.take_changes() && params_block.size() > 0)
+                    params_block.write(shader::pack(texts.front().stitched.params, values));
+                passed(native.id().c_str());
+            }
+            frame_block.bind_uniform(kFrameBinding);
+        }
 
         geometry_target.bind();
         glEnable(GL_DEPTH_TEST);
@@ -246,7 +271,7 @@ void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameI
         impl_->anisotropy > 1 ? impl_->anisotropy : kFootprintWithoutAnisotropy;
     const FrameBlock block = make_frame_block(inputs, ground, impl_->options.width_px,
                                               impl_->options.height_px, footprint);
-    impl_->draw(terrain, inputs, block, times);
+    impl_->draw(terrain, ground, inputs, block, times);
 }
 
 int Renderer::triangles() const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "effect/native_module.h"
 #include "gl/context.h"
 #include "image/image.h"
 #include "render/effect_textures.h"
@@ -25,13 +26,15 @@ struct RendererOptions {
 struct EffectInputs {
     shader::StitchInput stitch;  ///< its units are the device's, whatever is set
     std::vector<effect::TextureSpec> textures;
+    /// Of native effects; must outlive the renderer.
+    std::vector<const effect::NativeModule*> modules;
 };
 
 /// Core's own parameters, beside those of plugins: `terrain.normal`, fragment or vertex.
 std::vector<shader::Param> core_params();
 
-/// Milliseconds of the stages of one frame, by their names: "select", "geometry", "terrain", "sky",
-/// "post", "antialias".
+/// Milliseconds of the stages of one frame, by their names: "select", the id of each native effect,
+/// "geometry", "terrain", "sky", "post", "antialias".
 using PassTimes = std::vector<std::pair<std::string, double>>;
 
 /// Draws frames of one size with one selection of effects.

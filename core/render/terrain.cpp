@@ -5,9 +5,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <unordered_set>
 
 #include <epoxy/gl.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec4.hpp>
 
 #include "base/units.h"
@@ -131,21 +134,36 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
     vertex_array_->indices(grid_indices_);
 }
 
-TileSelection Terrain::select(const LodView& wanted) {
+int TileSelection::finest_level() const {
+    int finest = tiles_.empty() ? 0 : tiles_.front().draw.key.level;
+    for (const Tile& tile : tiles_)
+        finest = std::min(finest, tile.draw.key.level);
+    return finest;
+}
+
+TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) {
     LodView view = wanted;
     std::vector<TileDraw> draws;
+    std::vector<TileKey> keys;
     while (true) {
         draws = tree_.select(view);
-        const bool fits = static_cast<int>(draws.size()) <= height_pages_.layers();
+        keys.clear();
+        std::unordered_set<std::uint64_t> named;
+        const auto name = [&](const TileKey& key) {
+            if (named.insert(key.packed()).second) keys.push_back(key);
+        };
+        if (keep)
+            for (const TileSelection::Tile& tile : keep->tiles_)
+                name(tile.draw.key);
+        for (const TileDraw& draw : draws)
+            name(draw.key);
+        const bool fits = static_cast<int>(keys.size()) <= height_pages_.layers();
         const bool in_budget =
             wanted.tolerance <= 0 ||
             draws.size() * kGridVertices <= static_cast<std::size_t>(options_.vertex_budget);
         if (fits && (in_budget || !view.eye_m)) break;
         view.tolerance = view.tolerance > 0 ? view.tolerance * kCoarser : 1e-5;
     }
-    std::vector<TileKey> keys;
-    for (const TileDraw& draw : draws)
-        keys.push_back(draw.key);
     height_pages_.require(keys, [&](const TileKey& key) {
         return bytes_of(height_page(pyramid_, key.level, key.at));
     });
@@ -173,6 +191,35 @@ TileSelection Terrain::select_for_picture(const scene::Camera& camera, int width
         LodView::of_camera(camera, width_px, height_px, options_.pixel_error, exaggeration);
     prepare_normals(LodView::of_camera(camera, width_px, height_px, 1, exaggeration), width_px);
     return select(view);
+}
+
+std::optional<Terrain::Extent> Terrain::extent(const glm::dmat3& axes, double exaggeration,
+                                               const TileSelection* selection,
+                                               double nearer_than_m) {
+    Extent extent{glm::dvec3(1e300), glm::dvec3(-1e300)};
+    const auto add = [&](const TileKey& key) {
+        const Box box = tree_.box(key, exaggeration);
+        const glm::dvec3 middle = 0.5 * (box.low + box.high);
+        const glm::dvec3 half = 0.5 * (box.high - box.low);
+        for (int i = 0; i < 3; ++i) {
+            const double at = dot(middle, axes[i]);
+            const double reach = dot(half, abs(axes[i]));
+            extent.low[i] = std::min(extent.low[i], at - reach);
+            extent.high[i] = std::max(extent.high[i], at + reach);
+        }
+    };
+    if (selection) {
+        for (const TileSelection::Tile& tile : selection->tiles_)
+            if (tile.draw.distance_m < nearer_than_m) add(tile.draw.key);
+    } else {
+        const int level = std::max(0, tree_.root().level - 3);
+        const glm::ivec2 count = pyramid_.tiles(level);
+        for (int y = 0; y < count.y; ++y)
+            for (int x = 0; x < count.x; ++x)
+                if (!pyramid_.bounds(level, {x, y}).empty()) add({level, {x, y}});
+    }
+    if (extent.low.x > extent.high.x) return std::nullopt;
+    return extent;
 }
 
 void Terrain::prepare_normals(const LodView& view, int width_px) {

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "dem/heightfield.h"
@@ -29,6 +30,7 @@ class TileSelection {
   public:
     int triangles() const { return triangles_; }
     double tolerance() const { return tolerance_; }  ///< as LodView's, after the vertex budget
+    int finest_level() const;                        ///< 0: every post; 0 for none
 
   private:
     friend class Terrain;
@@ -52,15 +54,26 @@ class Terrain {
             const TerrainOptions& options);
 
     /// Chooses the tiles of a view and makes their height pages.
-    TileSelection select(const LodView& view);
+    /// @param keep  a selection that has to stay drawable beside the new one
+    TileSelection select(const LodView& view, const TileSelection* keep = nullptr);
     /// A camera's view with the option's pixel error, and the normals that its picture needs.
     TileSelection select_for_picture(const scene::Camera& camera, int width_px, int height_px,
                                      double exaggeration);
 
     /// Draws with the program and framebuffer that are bound. Texture unit 0 must hold
     /// height_pages(). Positions are handed to the program relative to `origin_m`. A selection
-    /// holds until the next one is made.
+    /// holds until the next one is made, save where that keeps it.
     void draw(const TileSelection& selection, const glm::dvec3& origin_m);
+
+    /// Least and greatest product of the ground's points with each of three axes [m]: of the tiles
+    /// of a selection that come nearer to its eye than a distance, or of the whole DEM without a
+    /// selection. Boxes around tiles: a little more than the ground. Empty where no tile is.
+    struct Extent {
+        glm::dvec3 low, high;
+    };
+    std::optional<Extent> extent(const glm::dmat3& axes, double exaggeration,
+                                 const TileSelection* selection = nullptr,
+                                 double nearer_than_m = 0);
 
     const gl::Texture& height_pages() const { return height_pages_.texture(); }
     const gl::Texture& normal_pages() const { return normal_pages_.texture(); }

@@ -1,0 +1,215 @@
+/* The interface between Relevo and native plugins, in C.
+ *
+ * A native plugin is a shared library that plugin.json names as its `module`. It exports two
+ * symbols: the word `relevo_plugin_abi`, which is read before anything of it is called, and the
+ * function `relevo_plugin_register`, which fills a table of the module's functions. The host calls
+ * those; the module calls the host through services, which it asks for by name and version.
+ *
+ * Rules, for both sides:
+ *   - The major version has to be equal. Within a major version, structs and enumerations only grow
+ *     at their end, and services are only added.
+ *   - Every struct begins with `size`, which whoever makes the struct sets to what it knows of it.
+ *     The other side reads and writes no member beyond.
+ *   - No exception leaves a function, and what one side has allocated the other does not free.
+ *   - Every function is called on the thread that draws. Texts are UTF-8, end with 0 and live only
+ *     as long as the call, save where said otherwise.
+ *   - Lengths are metres, positions are in the DEM's local frame: x east, y north, z up at its
+ *     centre. The Earth is round in it.
+ *
+ * relevo_plugin.hpp makes all this pleasant in C++. docs/plugin-guide.md has an example.
+ */
+#ifndef RELEVO_PLUGIN_H
+#define RELEVO_PLUGIN_H
+
+#include <stdint.h>
+
+#define RELEVO_ABI_MAJOR 1u
+#define RELEVO_ABI_MINOR 0u
+#define RELEVO_ABI_VERSION (RELEVO_ABI_MAJOR << 16 | RELEVO_ABI_MINOR)
+
+#if defined(_WIN32)
+#define RELEVO_PLUGIN_EXPORT __declspec(dllexport)
+#else
+#define RELEVO_PLUGIN_EXPORT __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Whether a function did what it was asked to. On anything but RELEVO_OK the reason has been given
+ * to `relevo_host::fail`, by whichever side failed. */
+typedef int32_t relevo_status;
+#define RELEVO_OK 0
+#define RELEVO_FAILED 1
+
+/* What the host offers a module. Lives as long as the module's instance. */
+typedef struct relevo_host relevo_host;
+struct relevo_host {
+    uint32_t size;
+    uint32_t abi_version; /* the host's RELEVO_ABI_VERSION */
+    /* A service's table, such as relevo_log_1 for "relevo.log", 1; null if this host has none of
+     * that name and version. Tables live as long as the host. */
+    const void* (*service)(const relevo_host* host, const char* name, uint32_t version);
+    /* Keeps the reason why something failed, which the user will read. */
+    void (*fail)(const relevo_host* host, const char* reason);
+};
+
+/* What a module offers the host. Texts and functions live as long as the library is loaded. */
+typedef struct relevo_module {
+    uint32_t size;  /* the host's; filled members are those below both sizes */
+    const char* id; /* of the plugin, as in plugin.json */
+    /* Makes an instance once a device is there; null `instance` is allowed. */
+    relevo_status (*create)(const relevo_host* host, void** instance);
+    void (*destroy)(void* instance);
+    /* Called for every frame, before its picture is drawn. May be null. */
+    relevo_status (*prepare)(void* instance);
+} relevo_module;
+
+/* What a module exports. relevo_plugin_register() is called in a process of its own first. There no
+ * service is offered but "relevo.log", and a crash harms nobody. */
+extern RELEVO_PLUGIN_EXPORT const uint32_t relevo_plugin_abi;
+RELEVO_PLUGIN_EXPORT relevo_status relevo_plugin_register(const relevo_host* host,
+                                                          relevo_module* module);
+
+/* ---- services ---- */
+
+/* "relevo.log", 1: messages for people. */
+#define RELEVO_LOG_DEBUG 0
+#define RELEVO_LOG_INFO 1
+#define RELEVO_LOG_WARNING 2
+typedef struct relevo_log_1 {
+    uint32_t size;
+    void* self; /* first argument of every function here; so for each service */
+    void (*write)(void* self, int32_t level, const char* text);
+} relevo_log_1;
+
+/* "relevo.params", 1: values of the parameters that the plugin's GLSL declares. Values are as
+ * people write them (angles in degrees), components that a type lacks are 0. */
+typedef struct relevo_params_1 {
+    uint32_t size;
+    void* self;
+    /* @param address  "haze.density" */
+    relevo_status (*get)(void* self, const char* address, double value[4]);
+    /* Writes one that is marked `host`, for this frame and those after it. */
+    relevo_status (*set)(void* self, const char* address, const double value[4]);
+} relevo_params_1;
+
+/* "relevo.frame", 1: what is drawn now. */
+typedef struct relevo_frame {
+    uint32_t size;
+    int32_t width_px, height_px; /* of the picture */
+    double eye_m[3];
+    double forward[3];      /* unit */
+    double pixel_rad;       /* angle of a pixel in the middle of the picture */
+    double sun[3];          /* towards the sun at the DEM's centre, without refraction, unit */
+    double sun_apparent[3]; /* with refraction */
+    double exaggeration;    /* factor on heights */
+    double lowest_m, highest_m; /* heights of the DEM, not exaggerated */
+    double post_spacing_m;      /* of the DEM at its centre */
+    uint64_t ground;            /* another number: other ground, or another shape of it */
+    int32_t software_device;    /* 1: drawn on the processor */
+} relevo_frame;
+typedef struct relevo_frame_1 {
+    uint32_t size;
+    void* self;
+    /* Only inside prepare(). */
+    relevo_status (*get)(void* self, relevo_frame* frame);
+} relevo_frame_1;
+
+/* "relevo.texture", 1: textures on the device. */
+typedef uint32_t relevo_texture; /* 0: none */
+#define RELEVO_FORMAT_R32F 1
+#define RELEVO_FORMAT_RG32F 2
+#define RELEVO_FORMAT_RGBA32F 3
+#define RELEVO_FORMAT_RG16F 4
+#define RELEVO_FORMAT_RGBA16F 5
+#define RELEVO_FORMAT_DEPTH32F 6
+#define RELEVO_FORMAT_R16F 7
+#define RELEVO_FORMAT_RGBA8 8
+#define RELEVO_FILTER_NEAREST 0
+#define RELEVO_FILTER_LINEAR 1
+#define RELEVO_FILTER_MIPMAP 2
+typedef struct relevo_texture_info {
+    uint32_t size;
+    /* The sampler `<id>_<name>` of the plugin's GLSL reads it, and others do with
+     * `//@ from(<id>.<name>)`. Null: it is the module's own. */
+    const char* name;
+    int32_t format, filter; /* one of those above */
+    int32_t width, height;  /* [px] */
+    int32_t layers;         /* 0: a sampler2D, else a sampler2DArray */
+    int32_t levels;         /* of the mip chain; 0: all of it */
+} relevo_texture_info;
+typedef struct relevo_texture_1 {
+    uint32_t size;
+    void* self;
+    /* A new texture of a name takes the place of the old one, which is to be destroyed by its
+     * maker. Coordinates beyond it repeat its rim. */
+    relevo_status (*create)(void* self, const relevo_texture_info* info, relevo_texture* texture);
+    void (*destroy)(void* self, relevo_texture texture);
+    relevo_status (*make_mipmaps)(void* self, relevo_texture texture);
+    /* Level 0 of a layer as floats, as many a texel as the format has, the row at t = 0 first.
+     * @param count  of floats that `values` has room for; waits for the device */
+    relevo_status (*read)(void* self, relevo_texture texture, int32_t layer, float* values,
+                          uint64_t count);
+} relevo_texture_1;
+
+/* "relevo.draw", 1: programs of the plugin's own that fill a texture, texel by texel. */
+typedef uint32_t relevo_program; /* 0: none */
+typedef struct relevo_draw {
+    uint32_t size;
+    relevo_program program;
+    relevo_texture target;
+    int32_t layer, level;
+    const relevo_texture* inputs; /* bound to units 0, 1, ... */
+    int32_t input_count;
+    const float* values; /* vec4s of the program's `values`, four floats each */
+    int32_t value_count;
+} relevo_draw;
+#define RELEVO_MOST_VALUES 16
+#define RELEVO_MOST_INPUTS 8
+typedef struct relevo_draw_1 {
+    uint32_t size;
+    void* self;
+    /* @param file  of the plugin's folder: the fragment side in GLSL 4.50 without `#version`. What
+     *              it reads is declared with its unit, `layout(binding = 0) uniform sampler2D t;`.
+     *              The host declares `uniform vec4 values[16]` in front of it. */
+    relevo_status (*program)(void* self, const char* file, relevo_program* program);
+    /* Runs the program for every texel of a layer's level; gl_FragCoord.xy is the texel's middle.
+     */
+    relevo_status (*draw)(void* self, const relevo_draw* draw);
+} relevo_draw_1;
+
+/* "relevo.terrain", 1: the ground as parallel light sees it. */
+typedef struct relevo_box {
+    uint32_t size;
+    /* Unit vectors, orthogonal: to the right, up, and towards the light. */
+    double right[3], up[3], towards[3];
+    /* Least and greatest of a point's products with those three [m]. */
+    double low[3], high[3];
+} relevo_box;
+typedef struct relevo_terrain_1 {
+    uint32_t size;
+    void* self;
+    /* The box along the given axes around all ground of the DEM. */
+    relevo_status (*bounds)(void* self, relevo_box* box);
+    /* The same around the ground that the picture shows nearer to the eye than a distance: a box
+     * around whole tiles, so that it holds a little more. RELEVO_FAILED without a reason where
+     * there is none. */
+    relevo_status (*visible_bounds)(void* self, double nearer_than_m, relevo_box* box);
+    /* Draws the ground inside the first two sides of a box, and all of it that lies towards the
+     * light or away from it, into a texture of RELEVO_FORMAT_DEPTH32F: 1 is box.high[2], 0 is
+     * box.low[2] and is also where there is none. The nearest to the light counts; holes are holes.
+     * Effects that displace the ground displace it here.
+     * @param tolerance_m  by how much the surface may be wrong
+     * @param level        filled with the level of detail that was drawn, 0 being every post; may
+     *                     be null */
+    relevo_status (*draw_depth)(void* self, const relevo_box* box, double tolerance_m,
+                                relevo_texture target, int32_t* level);
+} relevo_terrain_1;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "effect/native_module.h"
+#include "gl/context.h"
+#include "gl/texture.h"
+#include "render/frame_block.h"
+#include "render/terrain.h"
+#include "shader/param_store.h"
+
+namespace relevo::render {
+
+/// What a native module sees of the program: the services of core/effect/abi/relevo_plugin.h over
+/// one renderer, and the module's instance.
+class NativeHost {
+  public:
+    /// Makes the program current that draws the terrain in parallel light, with what it reads.
+    using UseDepth = std::function<void(const Terrain& terrain)>;
+
+    /// Makes the instance. The module, the context and the values must outlive this.
+    /// @param values  the renderer's own, whose host parameters the module writes
+    /// @throws Error (Failed) `render: LIBRARY: reason` if the module cannot
+    NativeHost(const effect::NativeModule& module, gl::Context& context, UseDepth use_depth,
+               shader::ParamStore& values, int width_px, int height_px);
+    NativeHost(NativeHost&&) noexcept;
+    NativeHost& operator=(NativeHost&&) noexcept;
+    ~NativeHost();
+
+    /// Has the module prepare a frame. The picture's tiles stay drawable.
+    /// @throws Error (Failed) as above
+    void prepare(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
+                 const FrameBlock& block, const TileSelection& picture);
+
+    /// A texture that the module has made under that name, "vsm.moments"; or null.
+    const gl::Texture* find(std::string_view resource) const;
+
+    const std::string& id() const;
+    /// Whether a host parameter was written since the last call.
+    bool take_changes();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relevo::render

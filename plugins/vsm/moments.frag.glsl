@@ -1,0 +1,23 @@
+// From depth to moments of height, blurred along rows.
+// values[0]: height = x * column + y * row + z * depth + w, column and row of the texel's middle
+// values[1]: x: the height where there is no ground [m]
+// values[2]: weights of the texel, its neighbours, and theirs; they add up to 1 over all five
+layout(binding = 0) uniform sampler2D depth;
+
+layout(location = 0) out vec2 moments;
+
+float height_at(ivec2 texel) {
+    texel.x = clamp(texel.x, 0, textureSize(depth, 0).x - 1);
+    float d = texelFetch(depth, texel, 0).r;
+    float height = dot(values[0], vec4(vec2(texel) + 0.5, d, 1.0));
+    return d > 0.0 ? height : values[1].x;
+}
+
+void main() {
+    ivec2 texel = ivec2(gl_FragCoord.xy);
+    moments = vec2(0.0);
+    for (int i = -2; i <= 2; ++i) {
+        float height = height_at(texel + ivec2(i, 0));
+        moments += values[2][abs(i)] * vec2(height, height * height);
+    }
+}
