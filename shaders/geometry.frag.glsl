@@ -8,7 +8,7 @@ in vec2 post;
 in float height_m;
 in vec3 vertex_normal;
 
-layout(location = 0) out uvec4 place;
+layout(location = 0) out uvec4 place_out;
 
 void main() {
 #ifdef TERRAIN_NORMAL_VERTEX
@@ -17,6 +17,6 @@ void main() {
 #else
     uvec2 normal_source = floatBitsToUint(post);
 #endif
-    place = uvec4(normal_source, floatBitsToUint(height_m), floatBitsToUint(1.0 / gl_FragCoord.w));
+    place_out = uvec4(normal_source, floatBitsToUint(height_m), floatBitsToUint(1.0 / gl_FragCoord.w));
     store_varyings();
 }

@@ -5,9 +5,7 @@
 //@ include lib/ground.glsl
 //@ include lib/pages.glsl
 
-uniform usampler2D place;
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
-uniform usampler2D page_table;  // r: layer of the finest normal page that covers this one; g: its level
 
 layout(location = 0) out vec4 radiance_out;
 

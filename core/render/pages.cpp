@@ -80,6 +80,17 @@ std::vector<float> height_page(const dem::Pyramid& pyramid, int level, glm::ivec
     return page;
 }
 
+std::vector<float> surface_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page) {
+    const auto block =
+        pyramid.block(level, page * kNormalNodes - 1, kNormalPage_px, kNormalPage_px);
+    std::vector<float> texels;
+    texels.reserve(std::size_t{kNormalPage_px} * kNormalPage_px);
+    for (int y = 0; y < kNormalPage_px; ++y)
+        for (int x = 0; x < kNormalPage_px; ++x)
+            texels.push_back(block.height_m.at(x, y));
+    return texels;
+}
+
 std::vector<std::int16_t> normal_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page,
                                       const PatchNet& net, const glm::dvec3& axis) {
     // Everything from here on is relative to the page's middle: floats hold it to micrometres.

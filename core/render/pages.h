@@ -33,6 +33,9 @@ std::vector<float> height_page(const dem::Pyramid& pyramid, int level, glm::ivec
 std::vector<std::int16_t> normal_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page,
                                       const PatchNet& net, const glm::dvec3& axis);
 
+/// Heights of the nodes of a normal page and its border [m], kNormalPage_px a side.
+std::vector<float> surface_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page);
+
 /// The posts between the first and the last of a square of posts that lie on the DEM.
 /// @param first  column and row
 /// @param side   posts along the whole square

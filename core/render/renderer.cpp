@@ -56,6 +56,7 @@ struct Renderer::Impl {
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
     TileSelection tiles;  // of the last frame
+    bool reads_surface = false;
 
     gl::Texture place, depth, radiance, tone_mapped, edge_marks, picture;
     std::vector<gl::Texture> varyings;
@@ -111,6 +112,9 @@ struct Renderer::Impl {
         post_target = gl::Framebuffer({&tone_mapped}, nullptr, "post");
         picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
 
+        reads_surface = std::any_of(
+            terrain.textures.begin(), terrain.textures.end(),
+            [](const shader::TextureUnit& unit) { return unit.resource == "surface_pages"; });
         if (!effects.modules.empty()) depth_only = link("depth");
         for (const effect::NativeModule* module : effects.modules)
             natives.emplace_back(
@@ -160,6 +164,7 @@ struct Renderer::Impl {
         if (name == "depth") return &depth;
         if (name == "height_pages") return &ground.height_pages();
         if (name == "normal_pages") return &ground.normal_pages();
+        if (name == "surface_pages") return &ground.surface_pages();
         if (name == "page_table") return &ground.page_table();
         for (std::size_t i = 0; i < varyings.size(); ++i)
             if (name == fmt::format("varyings_{}", i)) return &varyings[i];
@@ -188,6 +193,7 @@ struct Renderer::Impl {
             began = now;
         };
 
+        if (reads_surface) ground.keep_surface();
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
                                           inputs.exaggeration);
         passed("select");
@@ -272,6 +278,10 @@ void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameI
     const FrameBlock block = make_frame_block(inputs, ground, impl_->options.width_px,
                                               impl_->options.height_px, footprint);
     impl_->draw(terrain, ground, inputs, block, times);
+}
+
+const shader::ParamStore& Renderer::values() const {
+    return impl_->values;
 }
 
 int Renderer::triangles() const {

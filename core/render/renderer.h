@@ -57,6 +57,8 @@ class Renderer {
     void render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                       PassTimes* times = nullptr);
 
+    /// Of all parameters, as the last frame was drawn.
+    const shader::ParamStore& values() const;
     int triangles() const;  ///< of terrain in the last frame
     /// The last frame as RGB, rows from the top.
     image::Image8 read_picture() const;

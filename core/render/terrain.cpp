@@ -120,9 +120,8 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
     for (int level = 0; level < normal_levels_; ++level)
         normal_count +=
             pages_across(pyramid_.columns(), level) * pages_across(pyramid_.rows(), level);
-    normal_pages_ = PageCache(gl::Format::RG16Snorm, kNormalPage_px,
-                              std::min({normal_count, kMostNormalPages, most}), gl::Filter::Linear,
-                              "normal pages");
+    normal_layers_ = std::min({normal_count, kMostNormalPages, most});
+    clear_normals();
     const int across = power_of_two_from(
         std::max(pages_across(pyramid_.columns(), 0), pages_across(pyramid_.rows(), 0)));
     page_table_ =
@@ -139,6 +138,20 @@ int TileSelection::finest_level() const {
     for (const Tile& tile : tiles_)
         finest = std::min(finest, tile.draw.key.level);
     return finest;
+}
+
+void Terrain::clear_normals() {
+    normal_pages_ = PageCache(gl::Format::RG16Snorm, kNormalPage_px, normal_layers_,
+                              gl::Filter::Linear, "normal pages");
+    if (keeps_surface_)
+        surface_pages_ = PageCache(gl::Format::R32F, kNormalPage_px, normal_layers_,
+                                   gl::Filter::Nearest, "surface pages");
+}
+
+void Terrain::keep_surface() {
+    if (keeps_surface_) return;
+    keeps_surface_ = true;
+    clear_normals();
 }
 
 TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) {
@@ -247,6 +260,10 @@ void Terrain::prepare_normals(const LodView& view, int width_px) {
             glm::dvec2(first), glm::dvec2(span_on_dem(pyramid_, first, kNormalNodes << key.level)));
         return bytes_of(normal_page(pyramid_, key.level, key.at, net, polar_axis_));
     });
+    if (keeps_surface_)
+        surface_pages_.require(pages, [&](const TileKey& key) {
+            return bytes_of(surface_page(pyramid_, key.level, key.at));
+        });
     if (made) write_page_table();
 }
 

@@ -75,14 +75,19 @@ class Terrain {
                                  const TileSelection* selection = nullptr,
                                  double nearer_than_m = 0);
 
+    /// From now on pictures have surface pages beside the normal pages: for programs that read them.
+    void keep_surface();
+
     const gl::Texture& height_pages() const { return height_pages_.texture(); }
     const gl::Texture& normal_pages() const { return normal_pages_.texture(); }
+    const gl::Texture& surface_pages() const { return surface_pages_.texture(); }
     const gl::Texture& page_table() const { return page_table_; }
     bool has_holes() const { return pyramid_.has_holes(); }
     int normal_levels() const { return normal_levels_; }  ///< of normal pages
 
   private:
     void prepare_normals(const LodView& view, int width_px);
+    void clear_normals();
     void write_page_table();
 
     TerrainOptions options_;
@@ -93,8 +98,11 @@ class Terrain {
     glm::dvec3 polar_axis_;
     double normal_spacing_m_ = 0;
     int normal_levels_ = 1;
+    int normal_layers_ = 1;
 
     PageCache height_pages_, normal_pages_;
+    PageCache surface_pages_;  // asked for the same pages as normal_pages_: has them in like layers
+    bool keeps_surface_ = false;
     gl::Texture page_table_;
     gl::Buffer grid_vertices_, grid_indices_, instances_;
     std::optional<gl::VertexArray> vertex_array_;

@@ -131,6 +131,8 @@ class Vsm : public Instance {
         const glm::dvec3 along = axes.up / (box.high[1] - box.low[1]);
         set("vsm.across", across, (dot(axes.right, eye) - box.low[0]) / (box.high[0] - box.low[0]));
         set("vsm.along", along, (dot(axes.up, eye) - box.low[1]) / (box.high[1] - box.low[1]));
+        params_.set("vsm.texel_m", {(box.high[0] - box.low[0]) / width_,
+                                    (box.high[1] - box.low[1]) / height_, 0, 0});
         set("vsm.rise", axes.rise, dot(axes.rise, eye) - middle(frame));
     }
 

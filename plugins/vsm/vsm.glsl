@@ -5,12 +5,16 @@
 //! writes    factor
 //! source    W. Donnelly, A. Lauritzen, Variance Shadow Maps, I3D 2006
 
+//@ include lib/surface.glsl
+
 uniform float vsm_bleed = 0.2;    //@ range(0, 0.9) label("Light bleed cut") description("What Chebyshev's bound lets through where shadows overlap, and is taken as none.")
 uniform float vsm_deviation_m = 0.3;  //@ range(0, 100) unit(m) label("Least deviation") description("Of the heights in the map, so that rounding casts no shadow.")
 
 uniform vec4 vsm_across = vec4(0.0);  //@ host
 uniform vec4 vsm_along = vec4(0.0);  //@ host
 uniform vec4 vsm_rise = vec4(0.0);  //@ host
+
+uniform vec4 vsm_texel_m = vec4(0.0);  //@ host description("Across and up, of the finest map.")
 
 uniform sampler2DArray vsm_moments;
 
@@ -30,7 +34,7 @@ float vsm_cut(in float bound, in float bleed) {
 }
 
 void vsm_on_visibility(in Surface s, in vec3 to_sun, inout float factor) {
-    vec4 point = vec4(s.position_m, 1.0);
+    vec4 point = vec4(surface_point(s), 1.0);
     vec2 at = vec2(dot(vsm_across, point), dot(vsm_along, point));
     vec2 moments = textureLod(vsm_moments, vec3(at, 0.0), 0.0).rg;
     float bound = vsm_chebyshev(moments, dot(vsm_rise, point), vsm_deviation_m * vsm_deviation_m);

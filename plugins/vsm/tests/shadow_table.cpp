@@ -1,0 +1,66 @@
+// Shadows that are drawn against shadows that are marched: shadow_table [--elevations 1,2,5]
+// [--azimuths 0,45] [--set vsm.bleed=0.1] DEM...
+#include <chrono>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "truth.h"
+
+int main(int argc, char** argv) {
+    using namespace relevo;
+    using namespace relevo::shadow;
+    std::vector<double> elevations{1, 2, 5, 10, 20, 40},
+        azimuths{0, 45, 90, 135, 180, 225, 270, 315};
+    std::vector<std::string> dems, settings;
+    double pixel_error = 2;
+    const auto numbers = [](const std::string& text) {
+        std::vector<double> result;
+        for (const std::string& part : split(text, ','))
+            result.push_back(std::stod(part));
+        return result;
+    };
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word == "--elevations")
+            elevations = numbers(argv[++i]);
+        else if (word == "--azimuths")
+            azimuths = numbers(argv[++i]);
+        else if (word == "--set")
+            settings.emplace_back(argv[++i]);
+        else if (word == "--pixel-error")
+            pixel_error = std::stod(argv[++i]);
+        else
+            dems.push_back(word);
+    }
+    try {
+        for (const std::string& path : dems) {
+            const dem::Heightfield dem = dem::load(path);
+            Drawn drawn(dem, std::filesystem::temp_directory_path() / "relevo_shadow_table", settings,
+                        pixel_error);
+            const Truth truth(dem, drawn.ground().frame);
+            fmt::print("\n{}: {} x {} posts\n\n", std::filesystem::path(path).filename().string(),
+                       dem.grid.columns(), dem.grid.rows());
+            fmt::print("| sun | azimuth | shaded | balanced accuracy | beyond two texels | lit right | shaded right | texel |\n");
+            fmt::print("|---|---|---|---|---|---|---|---|\n");
+            for (const double elevation : elevations) {
+                for (const double azimuth : azimuths) {
+                    const glm::dvec3 to_sun = direction(azimuth, elevation);
+                    const Truth::Mask mask = truth.cast(to_sun);
+                    const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
+                    const Score s = score(mask, lit, drawn.texel_m(), to_sun.z,
+                                          drawn.ground().normal_spacing_m);
+                    fmt::print("| {} | {} | {:.1f} % | {:.2f} % | {:.2f} % | {:.2f} | {:.2f} | {:.1f} x {:.2f} m |\n", elevation,
+                               azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond,
+                               100 * s.lit_right, 100 * s.shaded_right, s.texel_m.x, s.texel_m.y);
+                    std::fflush(stdout);
+                }
+            }
+        }
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 1;
+    }
+    return 0;
+}

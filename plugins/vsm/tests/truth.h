@@ -1,0 +1,326 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "base/array2d.h"
+#include "base/parallel_for.h"
+#include "base/units.h"
+#include "dem/load.h"
+#include "effect/native_module.h"
+#include "gl/context.h"
+#include "render/ground.h"
+#include "render/renderer.h"
+#include "support/support.h"
+
+/// Shadows computed twice: by marching along rays in double precision, and by drawing pictures.
+namespace relevo::shadow {
+
+/// Cast shadows of a sun at every post, from the posts alone.
+///
+/// The plane through a post that holds the sun's rays and is upright at the DEM's centre cuts the
+/// grid's lines, on which heights are linear, in points; the post is in shadow if one of them lies
+/// sunward of it and above its ray. No projection and no flat Earth is in this: the posts are
+/// placed by the grid and GeographicLib.
+class Truth {
+  public:
+    Truth(const dem::Heightfield& dem, const geo::LocalFrame& frame) : dem_(dem) {
+        const int columns = dem.grid.columns(), rows = dem.grid.rows();
+        posts_ = Array2d<glm::dvec3>(columns, rows);
+        parallel_for(0, rows, 1, [&](int first, int last) {
+            for (int y = first; y < last; ++y)
+                for (int x = 0; x < columns; ++x)
+                    posts_.at(x, y) = frame.to_local(dem.place(x, y));
+        });
+        for (int y = 0; y < rows; ++y)
+            for (int x = 0; x < columns; ++x)
+                if (!std::isnan(posts_.at(x, y).z)) highest_m_ = std::max(highest_m_, posts_.at(x, y).z);
+    }
+
+    const Array2d<glm::dvec3>& posts() const { return posts_; }
+
+    /// In the light's space: x across, y up, z towards the sun.
+    static glm::dmat3 axes(const glm::dvec3& to_sun) {
+        const glm::dvec3 right = normalize(cross(glm::dvec3(0, 0, 1), to_sun));
+        return {right, cross(to_sun, right), to_sun};
+    }
+
+    struct Mask {
+        Array2d<std::uint8_t> shaded;  ///< 1 in cast shadow
+        Array2d<std::uint8_t> facing;  ///< 1 where the ground is turned to the sun; 0 on the rim
+        Array2d<glm::dvec3> light_m;   ///< the posts in the light's space
+    };
+
+    Mask cast(const glm::dvec3& to_sun) const {
+        const int columns = posts_.width(), rows = posts_.height();
+        const glm::dmat3 to_light = transpose(axes(to_sun));
+        Mask mask{Array2d<std::uint8_t>(columns, rows), Array2d<std::uint8_t>(columns, rows),
+                  Array2d<glm::dvec3>(columns, rows)};
+        for (int y = 0; y < rows; ++y)
+            for (int x = 0; x < columns; ++x)
+                mask.light_m.at(x, y) = to_light * posts_.at(x, y);
+        const double rise = axes(to_sun)[1].z, sine = to_sun.z;
+        parallel_for(0, rows, 4, [&](int first, int last) {
+            for (int y = first; y < last; ++y) {
+                for (int x = 0; x < columns; ++x) {
+                    mask.shaded.at(x, y) = is_shaded(mask.light_m, {x, y}, rise, sine);
+                    mask.facing.at(x, y) = faces(to_sun, x, y);
+                }
+            }
+        });
+        return mask;
+    }
+
+  private:
+    bool faces(const glm::dvec3& to_sun, int x, int y) const {
+        if (x < 1 || y < 1 || x + 1 >= posts_.width() || y + 1 >= posts_.height()) return false;
+        const glm::dvec3 n = cross(posts_.at(x + 1, y) - posts_.at(x - 1, y),
+                                   posts_.at(x, y - 1) - posts_.at(x, y + 1));
+        return (n.z < 0 ? -1 : 1) * dot(n, to_sun) > 0;
+    }
+
+    bool is_shaded(const Array2d<glm::dvec3>& light, glm::ivec2 post, double rise,
+                   double sine) const {
+        const glm::dvec3 from = light.at(post.x, post.y);
+        if (std::isnan(from.x)) return false;
+        return walk<0>(light, post, from, rise, sine) || walk<1>(light, post, from, rise, sine);
+    }
+
+    /// Goes from grid line to grid line of one family (Along 0: column by column) sunward.
+    template <int Along>
+    bool walk(const Array2d<glm::dvec3>& light, glm::ivec2 post, const glm::dvec3& from,
+              double rise, double sine) const {
+        constexpr int Across = 1 - Along;
+        const glm::ivec2 size(light.width(), light.height());
+        const auto at = [&](int line, int place) -> const glm::dvec3& {
+            return Along == 0 ? light.at(line, place) : light.at(place, line);
+        };
+        for (const int step : {1, -1}) {
+            int place = std::min(post[Across], size[Across] - 2);
+            for (int line = post[Along] + step; line >= 0 && line < size[Along]; line += step) {
+                // The segment of this line that the plane cuts.
+                const bool grows = at(line, size[Across] - 1).x > at(line, 0).x;
+                while (place > 0 && (at(line, place).x > from.x) == grows)
+                    --place;
+                while (place < size[Across] - 2 && (at(line, place + 1).x < from.x) == grows)
+                    ++place;
+                const glm::dvec3 a = at(line, place), b = at(line, place + 1);
+                const double f = (from.x - a.x) / (b.x - a.x);
+                if (!(f >= 0 && f <= 1)) break;  // left the DEM, or this family never meets the plane
+                const glm::dvec3 cut = a + f * (b - a);
+                if (cut.z < from.z - 1e-6) break;  // away from the sun
+                if (std::isnan(cut.y)) continue;
+                if (cut.y > from.y && cut.z > from.z + 1e-6) return true;
+                // Where the ray is above all ground there is nothing left to meet.
+                if (rise * from.y + sine * cut.z > highest_m_ + 1) break;
+            }
+        }
+        return false;
+    }
+
+    const dem::Heightfield& dem_;
+    Array2d<glm::dvec3> posts_;
+    double highest_m_ = -1e9;
+};
+
+/// How much of the sun the program draws at every post, 0 to 1: a picture from high above, two
+/// pixels a post, with the shadows and without, read as radiance.
+class Drawn {
+  public:
+    /// @param settings  "vsm.bleed=0.1"
+    Drawn(const dem::Heightfield& dem, const std::filesystem::path& scratch,
+          const std::vector<std::string>& settings = {}, double pixel_error = 2)
+        : dem_(dem), ground_(render::make_ground(dem)), context_({.device = "software"}) {
+        // A surface that sends the sun's light on as it comes, and none of the sky's.
+        std::filesystem::create_directories(scratch / "probe");
+        std::ofstream(scratch / "probe/plugin.json")
+            << R"({"format": 1, "id": "probe", "name": "Probe", "version": "1"})";
+        std::ofstream(scratch / "probe/probe.glsl")
+            << "vec3 probe_on_brdf(in Surface s, in vec3 to_sun, in vec3 to_eye) { return vec3(1.0); }\n"
+               "void probe_on_ambient(in Surface s, inout vec3 irradiance) { irradiance = vec3(0.0); }\n";
+        registry_ = effect::Registry::load({test::source_dir() / "plugins/vsm", scratch}, {});
+        values_.declare([&] {
+            std::vector<shader::Param> params = registry_.params();
+            for (const shader::Param& param : render::core_params())
+                params.push_back(param);
+            return params;
+        }());
+        for (const std::string& setting : settings) {
+            const auto equals = setting.find('=');
+            values_.set(setting.substr(0, equals), setting.substr(equals + 1));
+        }
+        const double pixels = 2;
+        size_ = {static_cast<int>(pixels * dem.grid.columns()) + 8,
+                 static_cast<int>(pixels * dem.grid.rows()) + 8};
+        terrain_.emplace(dem_, ground_.frame,
+                         render::TerrainOptions{.pixel_error = pixel_error,
+                                                .max_array_layers = context_.info().max_array_layers});
+        inputs_.camera = scene::orbit_camera({180, 90, 1}, render::points_to_show(dem, ground_, 1),
+                                             radians(8), double(size_.x) / size_.y);
+        shadowed_ = select({"probe", "vsm"});
+        plain_ = select({"probe"});
+    }
+
+    const render::Ground& ground() const { return ground_; }
+    glm::ivec2 size() const { return size_; }
+    render::FrameInputs& inputs() { return inputs_; }
+
+    Array2d<float> at_posts(const glm::dvec3& to_sun, const Array2d<glm::dvec3>& posts) {
+        sun::Position position{};
+        position.direction = to_sun;
+        inputs_.sun = render::make_sun_light(position, sun::Refraction::none(), ground_, dem_.grid);
+        const image::ImageF with = draw(shadowed_);
+        const image::ImageF without = draw(plain_);
+        Array2d<float> lit(posts.width(), posts.height());
+        for (int y = 0; y < posts.height(); ++y) {
+            for (int x = 0; x < posts.width(); ++x) {
+                const glm::ivec2 pixel(floor(project(posts.at(x, y))));
+                const bool inside = pixel.x >= 0 && pixel.y >= 0 && pixel.x < size_.x &&
+                                    pixel.y < size_.y && !std::isnan(posts.at(x, y).z);
+                lit.at(x, y) = inside ? with.at(pixel.x, pixel.y, 1) /
+                                            std::max(without.at(pixel.x, pixel.y, 1), 1e-6f)
+                                      : 1;
+            }
+        }
+        return lit;
+    }
+
+    /// Across and up [m]: a texel of the map that the last picture was drawn with.
+    glm::dvec2 texel_m() const {
+        const auto value = shadowed_.renderer->values().value("vsm.texel_m");
+        return {value[0], value[1]};
+    }
+
+  private:
+    struct Chosen {
+        effect::NativeSelection native;
+        std::unique_ptr<render::Renderer> renderer;
+    };
+
+    Chosen select(const std::vector<std::string>& only) {
+        effect::Switches switches;
+        switches.only = only;
+        Chosen chosen{effect::select_and_load(registry_, {}, switches), nullptr};
+        render::EffectInputs inputs;
+        inputs.stitch.snippets = chosen.native.selection.snippets();
+        inputs.stitch.capabilities = chosen.native.selection.capabilities;
+        inputs.stitch.values = &values_;
+        for (const effect::NativeModule& module : chosen.native.modules)
+            inputs.modules.push_back(&module);
+        if (chosen.native.selection.effects.size() != only.size()) failed(chosen.native.selection.notices.at(0));
+        chosen.renderer = std::make_unique<render::Renderer>(
+            context_, inputs, render::RendererOptions{.width_px = size_.x, .height_px = size_.y, .antialias = false});
+        return chosen;
+    }
+
+    image::ImageF draw(Chosen& chosen) {
+        chosen.renderer->render_frame(*terrain_, ground_, inputs_);
+        return chosen.renderer->read_radiance();
+    }
+
+    glm::dvec2 project(const glm::dvec3& point) const {
+        const scene::Camera& camera = inputs_.camera;
+        const glm::dvec3 to = point - camera.eye_m;
+        const double depth = dot(to, camera.forward);
+        const double scale = size_.y / 2.0 / std::tan(camera.fov_y_rad / 2);
+        return {size_.x / 2.0 + scale * dot(to, cross(camera.forward, camera.up)) / depth,
+                size_.y / 2.0 - scale * dot(to, camera.up) / depth};
+    }
+
+    const dem::Heightfield& dem_;
+    render::Ground ground_;
+    gl::Context context_;
+    effect::Registry registry_;
+    shader::ParamStore values_;
+    glm::ivec2 size_{};
+    render::FrameInputs inputs_;
+    std::optional<render::Terrain> terrain_;
+    Chosen shadowed_, plain_;
+};
+
+/// One sun over one DEM.
+struct Score {
+    double shaded_share = 0;  ///< of the cells that face the sun
+    double balanced = 0;      ///< mean of the shares of lit and of shaded cells that are right
+    double beyond = 0;        ///< the same over cells more than two texels from the true line
+    double lit_right = 0, shaded_right = 0;
+    glm::dvec2 texel_m{};
+};
+
+inline glm::dvec3 direction(double azimuth_deg, double elevation_deg) {
+    const double a = radians(azimuth_deg), e = radians(elevation_deg);
+    return {std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e)};
+}
+
+/// Posts within two texels of a change from light to shadow, in the light's space.
+inline Array2d<std::uint8_t> near_line(const Truth::Mask& mask, const glm::dvec2& texel_m,
+                                       double sine, double spacing_m) {
+    const int columns = mask.shaded.width(), rows = mask.shaded.height();
+    Array2d<std::uint8_t> result(columns, rows);
+    const double reach_m = 2 * std::max(texel_m.x, texel_m.y / std::max(sine, 0.01));
+    const int window = static_cast<int>(std::ceil(reach_m / spacing_m));
+    parallel_for(0, rows, 4, [&](int first, int last) {
+        for (int y = first; y < last; ++y) {
+            for (int x = 0; x < columns; ++x) {
+                const glm::dvec3 here = mask.light_m.at(x, y);
+                const auto own = mask.shaded.at(x, y);
+                for (int j = std::max(0, y - window); j <= std::min(rows - 1, y + window); ++j)
+                    for (int i = std::max(0, x - window); i <= std::min(columns - 1, x + window); ++i) {
+                        if (mask.shaded.at(i, j) == own) continue;
+                        const glm::dvec3 other = mask.light_m.at(i, j) - here;
+                        if (std::abs(other.x) <= 2 * texel_m.x && std::abs(other.y) <= 2 * texel_m.y) {
+                            result.at(x, y) = 1;
+                            j = rows;
+                            break;
+                        }
+                    }
+            }
+        }
+    });
+    return result;
+}
+
+inline double balanced(std::int64_t lit_right, std::int64_t lit, std::int64_t shaded_right,
+                       std::int64_t shaded) {
+    if (lit == 0 || shaded == 0) return 1;
+    return 0.5 * (static_cast<double>(lit_right) / static_cast<double>(lit) +
+                  static_cast<double>(shaded_right) / static_cast<double>(shaded));
+}
+
+inline Score score(const Truth::Mask& mask, const Array2d<float>& drawn, const glm::dvec2& texel_m,
+                   double sine, double spacing_m) {
+    const Array2d<std::uint8_t> near = near_line(mask, texel_m, sine, spacing_m);
+    std::array<std::array<std::int64_t, 2>, 2> all{}, right{};  // [beyond][shaded]
+    for (int y = 0; y < drawn.height(); ++y) {
+        for (int x = 0; x < drawn.width(); ++x) {
+            if (!mask.facing.at(x, y)) continue;
+            const std::size_t truly = mask.shaded.at(x, y);
+            const std::size_t said = drawn.at(x, y) < 0.5f;
+            for (std::size_t beyond = 0; beyond < 2; ++beyond) {
+                if (beyond && near.at(x, y)) continue;
+                ++all[beyond][truly];
+                right[beyond][truly] += truly == said;
+            }
+        }
+    }
+    Score s;
+    s.shaded_share = static_cast<double>(all[0][1]) / static_cast<double>(all[0][0] + all[0][1]);
+    s.balanced = balanced(right[0][0], all[0][0], right[0][1], all[0][1]);
+    s.beyond = balanced(right[1][0], all[1][0], right[1][1], all[1][1]);
+    s.lit_right = static_cast<double>(right[0][0]) / static_cast<double>(std::max<std::int64_t>(all[0][0], 1));
+    s.shaded_right = static_cast<double>(right[0][1]) / static_cast<double>(std::max<std::int64_t>(all[0][1], 1));
+    s.texel_m = texel_m;
+    return s;
+}
+
+}  // namespace relevo::shadow

@@ -1,0 +1,28 @@
+//! provides  surface_point: where the DEM itself has the point that a pixel shows
+//! reads     place, surface pages: heights at full resolution, in the layers of the normal pages
+
+//@ include lib/pages.glsl
+
+uniform sampler2DArray surface_pages;  // r: height [m]
+
+/// Relative to the eye [m]. The ground is drawn as coarsely as the picture allows, by up to two
+/// pixels off; what asks whether a ray meets the ground has to start from the ground. On the finest
+/// pages that are there, on the same two triangles a quad as the terrain's.
+vec3 surface_point(in Surface s) {
+#ifdef TERRAIN_NORMAL_VERTEX
+    return s.position_m;
+#else
+    vec2 post = uintBitsToFloat(texelFetch(place, ivec2(gl_FragCoord.xy), 0).xy);
+    uvec2 page = texelFetch(page_table, ivec2(post) >> kNormalNodesLog2, 0).rg;
+    int shift = kNormalNodesLog2 + int(page.g);
+    vec2 first = vec2((ivec2(post) >> shift) << shift);
+    vec2 node = (post - first) * exp2(-float(page.g)) + 1.0;
+    vec2 quad = floor(node);
+    vec2 t = node - quad;
+    vec4 h = textureGather(surface_pages, vec3((quad + 1.0) / kNormalPage_px, float(page.r)));
+    float before = h.w + t.x * (h.z - h.w) + t.y * (h.x - h.w);
+    float behind = h.y + (1.0 - t.x) * (h.x - h.y) + (1.0 - t.y) * (h.z - h.y);
+    float height = t.x + t.y <= 1.0 ? before : behind;
+    return s.position_m + (height - s.height_m) * frame.height_range.z * s.up;
+#endif
+}
