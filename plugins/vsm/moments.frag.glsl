@@ -15,9 +15,10 @@ float height_at(ivec2 texel) {
 
 void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy);
-    moments = vec2(0.0);
-    for (int i = -2; i <= 2; ++i) {
-        float height = height_at(texel + ivec2(i, 0));
-        moments += values[2][abs(i)] * vec2(height, height * height);
-    }
+    float before = height_at(texel - ivec2(1, 0)), here = height_at(texel);
+    float behind = height_at(texel + ivec2(1, 0));
+    float mean = values[2].x * here + values[2].y * (before + behind);
+    float slope = 0.5 * (behind - before);
+    vec3 off = vec3(before + slope, here, behind - slope) - mean;
+    moments = vec2(mean, dot(values[2].yxy, off * off));
 }

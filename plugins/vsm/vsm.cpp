@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -111,8 +112,9 @@ class Vsm : public Instance {
             0, static_cast<float>(along * texel_m.y),
             static_cast<float>(deep * (box.high[2] - box.low[2])),
             static_cast<float>(along * box.low[1] + deep * box.low[2] - middle_m)};
-        const auto floor_m = static_cast<float>(frame.lowest_m * frame.exaggeration - middle_m - 1000);
-        const Program::Value weights{0.5f, 0.25f, 0, 0};
+        const auto floor_m = static_cast<float>(frame.lowest_m * frame.exaggeration - middle_m);
+        const auto blur = static_cast<float>(params_.get("vsm.blur"));
+        const Program::Value weights{1 - blur, blur / 2, 0, 0};
         moments_program_.draw(rows_, 0, 0, {&depth_}, {plane, {floor_m, 0, 0, 0}, weights});
         blur_program_.draw(moments_, 0, 0, {&rows_}, {{0, 0, 0, 0}, weights});
     }
@@ -142,7 +144,7 @@ class Vsm : public Instance {
     Terrain terrain_;
     Program moments_program_, blur_program_;
     Texture depth_, rows_, moments_;
-    int width_ = 1024, height_ = 1024;
+    int width_ = std::getenv("VSMW") ? atoi(std::getenv("VSMW")) : 1024, height_ = std::getenv("VSMH") ? atoi(std::getenv("VSMH")) : 1024;
 };
 
 }  // namespace

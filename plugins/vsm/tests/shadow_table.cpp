@@ -6,7 +6,31 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "image/image.h"
 #include "truth.h"
+
+namespace {
+
+/// A pixel a post: red where light is drawn and shadow is true, blue the other way round.
+void write_errors(const std::filesystem::path& folder, double elevation, double azimuth,
+                  const relevo::shadow::Truth::Mask& mask, const relevo::Array2d<float>& lit) {
+    relevo::image::Image8 picture(lit.width(), lit.height(), 3);
+    for (int y = 0; y < lit.height(); ++y) {
+        for (int x = 0; x < lit.width(); ++x) {
+            const bool shaded = mask.shaded.at(x, y), said = lit.at(x, y) < 0.5f;
+            std::uint8_t* pixel = picture.row(y) + 3 * x;
+            const auto grey = static_cast<std::uint8_t>((mask.facing.at(x, y) ? 255 : 128) * (shaded ? 0.4 : 1));
+            pixel[0] = pixel[1] = pixel[2] = grey;
+            if (!mask.facing.at(x, y) || shaded == said) continue;
+            pixel[0] = shaded ? 255 : 0;
+            pixel[1] = 0;
+            pixel[2] = shaded ? 0 : 255;
+        }
+    }
+    relevo::image::write(folder / fmt::format("errors_{}_{}.png", elevation, azimuth), picture, {}, true);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     using namespace relevo;
@@ -14,6 +38,7 @@ int main(int argc, char** argv) {
     std::vector<double> elevations{1, 2, 5, 10, 20, 40},
         azimuths{0, 45, 90, 135, 180, 225, 270, 315};
     std::vector<std::string> dems, settings;
+    std::filesystem::path pictures;
     double pixel_error = 2;
     const auto numbers = [](const std::string& text) {
         std::vector<double> result;
@@ -29,6 +54,8 @@ int main(int argc, char** argv) {
             azimuths = numbers(argv[++i]);
         else if (word == "--set")
             settings.emplace_back(argv[++i]);
+        else if (word == "--pictures")
+            pictures = argv[++i];
         else if (word == "--pixel-error")
             pixel_error = std::stod(argv[++i]);
         else
@@ -55,6 +82,7 @@ int main(int argc, char** argv) {
                                azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond,
                                100 * s.lit_right, 100 * s.shaded_right, s.texel_m.x, s.texel_m.y);
                     std::fflush(stdout);
+                    if (!pictures.empty()) write_errors(pictures, elevation, azimuth, mask, lit);
                 }
             }
         }

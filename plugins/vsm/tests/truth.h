@@ -159,7 +159,7 @@ class Drawn {
             const auto equals = setting.find('=');
             values_.set(setting.substr(0, equals), setting.substr(equals + 1));
         }
-        const double pixels = 2;
+        const double pixels = std::getenv("VSMPX") ? atof(std::getenv("VSMPX")) : 2;
         size_ = {static_cast<int>(pixels * dem.grid.columns()) + 8,
                  static_cast<int>(pixels * dem.grid.rows()) + 8};
         terrain_.emplace(dem_, ground_.frame,
@@ -184,12 +184,21 @@ class Drawn {
         Array2d<float> lit(posts.width(), posts.height());
         for (int y = 0; y < posts.height(); ++y) {
             for (int x = 0; x < posts.width(); ++x) {
-                const glm::ivec2 pixel(floor(project(posts.at(x, y))));
-                const bool inside = pixel.x >= 0 && pixel.y >= 0 && pixel.x < size_.x &&
-                                    pixel.y < size_.y && !std::isnan(posts.at(x, y).z);
-                lit.at(x, y) = inside ? with.at(pixel.x, pixel.y, 1) /
-                                            std::max(without.at(pixel.x, pixel.y, 1), 1e-6f)
-                                      : 1;
+                lit.at(x, y) = 1;
+                if (std::isnan(posts.at(x, y).z)) continue;
+                // Between the middles of the four pixels around.
+                const glm::dvec2 at = project(posts.at(x, y)) - 0.5;
+                const glm::ivec2 pixel(floor(at));
+                const glm::vec2 share(at - glm::dvec2(pixel));
+                if (pixel.x < 0 || pixel.y < 0 || pixel.x + 1 >= size_.x || pixel.y + 1 >= size_.y)
+                    continue;
+                const auto ratio = [&](int i, int j) {
+                    return with.at(pixel.x + i, pixel.y + j, 1) /
+                           std::max(without.at(pixel.x + i, pixel.y + j, 1), 1e-6f);
+                };
+                const float above = ratio(0, 0) + share.x * (ratio(1, 0) - ratio(0, 0));
+                const float below = ratio(0, 1) + share.x * (ratio(1, 1) - ratio(0, 1));
+                lit.at(x, y) = above + share.y * (below - above);
             }
         }
         return lit;
