@@ -274,8 +274,7 @@ struct NativeHost::Impl {
         full.lowest_m = state.ground.lowest_m;
         full.highest_m = state.ground.highest_m;
         full.post_spacing_m = state.ground.normal_spacing_m;
-        // Two terrains at one address one after the other have other heights or another eye.
-        full.ground = reinterpret_cast<std::uintptr_t>(&state.terrain);
+        full.ground = state.terrain.serial();
         full.software_device = context.info().device.software ? 1 : 0;
         copy_out(full, out);
     }

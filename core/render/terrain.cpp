@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -38,6 +39,11 @@ constexpr double kCoarser = 1.2;
 
 /// A page table entry for pages that are not there.
 constexpr std::uint16_t kNoLayer = 0xffff;
+
+std::uint64_t next_serial() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
 
 std::vector<float> grid_vertices() {
     std::vector<float> vertices;
@@ -100,7 +106,8 @@ std::vector<std::byte> bytes_of(const std::vector<T>& values) {
 
 Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
                  const TerrainOptions& options)
-    : options_(options),
+    : serial_(next_serial()),
+      options_(options),
       pyramid_(heightfield.height_m),
       grid_(heightfield.grid),
       frame_(frame),

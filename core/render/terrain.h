@@ -82,6 +82,8 @@ class Terrain {
     const gl::Texture& normal_pages() const { return normal_pages_.texture(); }
     const gl::Texture& surface_pages() const { return surface_pages_.texture(); }
     const gl::Texture& page_table() const { return page_table_; }
+    /// No two terrains of a process have the same.
+    std::uint64_t serial() const { return serial_; }
     bool has_holes() const { return pyramid_.has_holes(); }
     int normal_levels() const { return normal_levels_; }  ///< of normal pages
 
@@ -90,6 +92,7 @@ class Terrain {
     void clear_normals();
     void write_page_table();
 
+    std::uint64_t serial_;
     TerrainOptions options_;
     dem::Pyramid pyramid_;
     const dem::Grid& grid_;

@@ -1,7 +1,12 @@
-// From depth to moments of height, blurred along rows.
+// From depth to mean and variance of height, blurred along rows.
+//
+// The variance is about the line through a texel's neighbours: a slope has none, an edge and a crease
+// do. Variance about the mean would take every slope for an edge and hide shadows as shallow as a
+// texel is tall.
+//
 // values[0]: height = x * column + y * row + z * depth + w, column and row of the texel's middle
 // values[1]: x: the height where there is no ground [m]
-// values[2]: weights of the texel, its neighbours, and theirs; they add up to 1 over all five
+// values[2]: x: weight of the texel, y: of each neighbour; they add up to 1
 layout(binding = 0) uniform sampler2D depth;
 
 layout(location = 0) out vec2 moments;

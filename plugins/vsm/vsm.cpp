@@ -1,13 +1,14 @@
+// Draws the ground from the sun, makes moments of its height, and says where in the map a point is.
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <optional>
+#include <cstdint>
+#include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 
 #include "relevo_plugin.hpp"
 
@@ -19,6 +20,25 @@ using namespace relevo::plugin;
 /// ray hardly falls, and points along it hardly differ in height; there the axis leans to the sun.
 constexpr double kLeastSine = 0.02;
 
+/// Maps: one of all ground that is seen, and up to two of the ground that is nearer.
+constexpr int kMostLayers = 3;
+/// A texel of a map is fine enough where it covers so many pixels, or so many posts.
+constexpr double kEnough_px = 2, kEnoughPosts = 0.75;
+/// A nearer map is worth its while if it has at most this share of the other's area.
+constexpr double kWorthwhileShare = 0.25;
+/// How far a map reaches beyond what is seen, as a share of that, so that it is kept for a while
+/// when the camera moves.
+constexpr double kMargin = 0.06;
+/// A map is drawn anew once it is so many times as large as need be.
+constexpr double kTooLarge = 4;
+/// Sizes of texels are powers of two to so many a doubling: the same ground has the same texels
+/// when a map is drawn anew.
+constexpr double kSizesADoubling = 8;
+/// The drawn ground may be off by this share of a texel's height.
+constexpr double kTolerance_texels = 0.5;
+/// Deviation that rounding makes in heights of thousands of metres.
+constexpr double kRounding_m = 0.3;
+
 glm::dvec3 vector_of(const double (&v)[3]) {
     return {v[0], v[1], v[2]};
 }
@@ -28,11 +48,13 @@ void write(const glm::dvec3& from, double (&to)[3]) {
         to[i] = from[i];
 }
 
-/// Directions in the light's own space.
+/// Directions in the light's own space. Its vertical lies in the upright plane of the sun: a low
+/// sun sees the ground edgeways, and rows that are this close resolve it.
 struct Axes {
-    glm::dvec3 right, up, towards;
-    glm::dvec3 rise;  ///< heights are products with this one; none across the light
+    glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, towards{0, 0, 1};
+    glm::dvec3 rise{0, 0, 1};  ///< heights are products with this one; none to the right
 
+    Axes() = default;
     explicit Axes(const glm::dvec3& to_sun) : towards(to_sun) {
         const glm::dvec3 level = cross(glm::dvec3(0, 0, 1), to_sun);
         right = length(level) > 1e-6 ? normalize(level) : glm::dvec3(1, 0, 0);
@@ -41,54 +63,118 @@ struct Axes {
     }
 };
 
-/// What a map was drawn for.
-struct Map {
-    relevo_box box;
-    glm::dvec3 to_sun;
-    double exaggeration;
-    std::uint64_t ground;
+/// A rectangle across the light, in texels of some size.
+struct Rectangle {
+    glm::dvec2 low{0}, high{0};
+    glm::dvec2 size() const { return high - low; }
+    double area() const { return size().x * size().y; }
+    bool holds(const Rectangle& other) const {
+        return low.x <= other.low.x && low.y <= other.low.y && high.x >= other.high.x &&
+               high.y >= other.high.y;
+    }
 };
+
+Rectangle rectangle_of(const relevo_box& box) {
+    return {{box.low[0], box.low[1]}, {box.high[0], box.high[1]}};
+}
 
 class Vsm : public Instance {
   public:
     explicit Vsm(const Host& host)
         : host_(host),
+          log_(host),
           params_(host),
           frame_(host),
           terrain_(host),
           moments_program_(host, "moments.frag.glsl"),
-          blur_program_(host, "blur.frag.glsl") {
-        make_textures();
-    }
+          blur_program_(host, "blur.frag.glsl") {}
 
     void prepare() override {
         const relevo_frame frame = frame_.get();
-        const Axes axes(vector_of(frame.sun_apparent));
-        relevo_box whole = box_along(axes);
-        terrain_.bounds(whole);
-        relevo_box seen = box_along(axes);
-        if (!terrain_.visible_bounds(1e300, seen)) seen = whole;
-        seen.low[2] = whole.low[2];
-        seen.high[2] = whole.high[2];
-        const Map map{seen, axes.towards, frame.exaggeration, frame.ground};
-        draw(map, axes, frame);
-        write_params(map, axes, frame);
+        const auto size = static_cast<int>(params_.get("vsm.size"));
+        const double blur = params_.get("vsm.blur");
+        const glm::dvec3 to_sun = vector_of(frame.sun_apparent);
+        if (size != size_ || blur != blur_ || to_sun != axes_.towards || frame.ground != ground_ ||
+            frame.exaggeration != exaggeration_) {
+            blur_ = blur;
+            ground_ = frame.ground;
+            exaggeration_ = frame.exaggeration;
+            axes_ = Axes(to_sun);
+            whole_ = box();
+            terrain_.bounds(whole_);
+            middle_m_ = 0.5 * (frame.lowest_m + frame.highest_m) * frame.exaggeration;
+            layers_.clear();
+            if (size != size_) {
+                size_ = size;
+                make_textures(1);
+            }
+        }
+        const std::vector<Rectangle> needed = needed_rectangles(frame);
+        if (static_cast<int>(needed.size()) > texture_layers_) {
+            make_textures(kMostLayers);
+            layers_.clear();
+        }
+        layers_.resize(needed.size());
+        for (std::size_t i = 0; i < needed.size(); ++i)
+            if (!layers_[i].holds(needed[i]) ||
+                layers_[i].area() > kTooLarge * fitted(needed[i]).area())
+                draw(i, fitted(needed[i]), frame);
+        write_params(frame);
     }
 
   private:
-    static relevo_box box_along(const Axes& axes) {
+    relevo_box box() const {
         relevo_box box{};
-        box.size = sizeof box;
-        write(axes.right, box.right);
-        write(axes.up, box.up);
-        write(axes.towards, box.towards);
+        write(axes_.right, box.right);
+        write(axes_.up, box.up);
+        write(axes_.towards, box.towards);
         return box;
     }
 
-    void make_textures() {
+    /// Of a texel, on level ground [m].
+    double ground_texel_m(const Rectangle& rectangle) const {
+        const glm::dvec2 texel = rectangle.size() / double(size_);
+        return std::max(texel.x, texel.y / std::max(axes_.towards.z, 5 * kLeastSine));
+    }
+
+    /// What has to be in each map: first of all that is seen, then of what is near enough to need
+    /// finer texels.
+    std::vector<Rectangle> needed_rectangles(const relevo_frame& frame) const {
+        relevo_box seen = box();
+        if (!terrain_.visible_bounds(1e300, seen)) seen = whole_;
+        std::vector<Rectangle> result{rectangle_of(seen)};
+        while (static_cast<int>(result.size()) < kMostLayers) {
+            const double texel_m = ground_texel_m(fitted(result.back()));
+            if (texel_m <= kEnoughPosts * frame.post_spacing_m) break;
+            relevo_box near = box();
+            if (!terrain_.visible_bounds(texel_m / (kEnough_px * frame.pixel_rad), near)) break;
+            const Rectangle rectangle = rectangle_of(near);
+            if (rectangle.area() > kWorthwhileShare * result.back().area()) break;
+            result.push_back(rectangle);
+        }
+        return result;
+    }
+
+    /// With a margin where there is ground, on a grid of texels that stays where it is.
+    Rectangle fitted(const Rectangle& needed) const {
+        const Rectangle whole = rectangle_of(whole_);
+        const glm::dvec2 margin = kMargin * needed.size();
+        Rectangle wanted{glm::max(needed.low - margin, whole.low),
+                         glm::min(needed.high + margin, whole.high)};
+        Rectangle result;
+        for (int i = 0; i < 2; ++i) {
+            const double least_m = std::max(wanted.size()[i], 1.0) / (size_ - 1);
+            const double texel_m =
+                std::exp2(std::ceil(std::log2(least_m) * kSizesADoubling) / kSizesADoubling);
+            result.low[i] = std::floor(wanted.low[i] / texel_m) * texel_m;
+            result.high[i] = result.low[i] + size_ * texel_m;
+        }
+        return result;
+    }
+
+    void make_textures(int layers) {
         relevo_texture_info info{};
-        info.width = width_;
-        info.height = height_;
+        info.width = info.height = size_;
         info.levels = 1;
         info.format = RELEVO_FORMAT_DEPTH32F;
         info.filter = RELEVO_FILTER_NEAREST;
@@ -96,55 +182,85 @@ class Vsm : public Instance {
         info.format = RELEVO_FORMAT_RG32F;
         rows_ = Texture(host_, info);
         info.name = "moments";
-        info.layers = 1;
+        info.layers = layers;
         info.filter = RELEVO_FILTER_LINEAR;
         moments_ = Texture(host_, info);
+        texture_layers_ = layers;
     }
 
-    void draw(const Map& map, const Axes& axes, const relevo_frame& frame) {
-        const relevo_box& box = map.box;
-        const glm::dvec2 texel_m((box.high[0] - box.low[0]) / width_,
-                                 (box.high[1] - box.low[1]) / height_);
-        terrain_.draw_depth(box, 0.5 * texel_m.y, depth_);
-        const double middle_m = middle(frame);
-        const double along = dot(axes.rise, axes.up), deep = dot(axes.rise, axes.towards);
-        const Program::Value plane{
-            0, static_cast<float>(along * texel_m.y),
-            static_cast<float>(deep * (box.high[2] - box.low[2])),
-            static_cast<float>(along * box.low[1] + deep * box.low[2] - middle_m)};
-        const auto floor_m = static_cast<float>(frame.lowest_m * frame.exaggeration - middle_m);
-        const auto blur = static_cast<float>(params_.get("vsm.blur"));
-        const Program::Value weights{1 - blur, blur / 2, 0, 0};
-        moments_program_.draw(rows_, 0, 0, {&depth_}, {plane, {floor_m, 0, 0, 0}, weights});
-        blur_program_.draw(moments_, 0, 0, {&rows_}, {{0, 0, 0, 0}, weights});
+    void draw(std::size_t layer, const Rectangle& rectangle, const relevo_frame& frame) {
+        layers_[layer] = rectangle;
+        relevo_box view = whole_;
+        for (int i = 0; i < 2; ++i) {
+            view.low[i] = rectangle.low[i];
+            view.high[i] = rectangle.high[i];
+        }
+        const glm::dvec2 texel_m = rectangle.size() / double(size_);
+        terrain_.draw_depth(view, kTolerance_texels * texel_m.y, depth_);
+
+        const double along = dot(axes_.rise, axes_.up), deep = dot(axes_.rise, axes_.towards);
+        const auto value = [](double a, double b, double c, double d) {
+            return Program::Value{static_cast<float>(a), static_cast<float>(b),
+                                  static_cast<float>(c), static_cast<float>(d)};
+        };
+        const Program::Value plane =
+            value(0, along * texel_m.y, deep * (view.high[2] - view.low[2]),
+                  along * view.low[1] + deep * view.low[2] - middle_m_);
+        const double lowest_m = frame.lowest_m * frame.exaggeration - middle_m_;
+        const Program::Value weights = value(1 - blur_, blur_ / 2, 0, 0);
+        moments_program_.draw(rows_, 0, 0, {&depth_}, {plane, value(lowest_m, 0, 0, 0), weights});
+        blur_program_.draw(moments_, static_cast<int>(layer), 0, {&rows_}, {weights});
+        log_.debug("vsm: map " + std::to_string(layer) + " drawn, texels of " +
+                   std::to_string(texel_m.x) + " x " + std::to_string(texel_m.y) + " m");
     }
 
-    static double middle(const relevo_frame& frame) {
-        return 0.5 * (frame.lowest_m + frame.highest_m) * frame.exaggeration;
-    }
-
-    void write_params(const Map& map, const Axes& axes, const relevo_frame& frame) const {
-        const relevo_box& box = map.box;
+    void write_params(const relevo_frame& frame) const {
+        const Rectangle& all = layers_[0];
         const glm::dvec3 eye = vector_of(frame.eye_m);
         const auto set = [&](const char* address, const glm::dvec3& axis, double offset) {
             params_.set(address, {axis.x, axis.y, axis.z, offset});
         };
-        const glm::dvec3 across = axes.right / (box.high[0] - box.low[0]);
-        const glm::dvec3 along = axes.up / (box.high[1] - box.low[1]);
-        set("vsm.across", across, (dot(axes.right, eye) - box.low[0]) / (box.high[0] - box.low[0]));
-        set("vsm.along", along, (dot(axes.up, eye) - box.low[1]) / (box.high[1] - box.low[1]));
-        params_.set("vsm.texel_m", {(box.high[0] - box.low[0]) / width_,
-                                    (box.high[1] - box.low[1]) / height_, 0, 0});
-        set("vsm.rise", axes.rise, dot(axes.rise, eye) - middle(frame));
+        set("vsm.across", axes_.right / all.size().x,
+            (dot(axes_.right, eye) - all.low.x) / all.size().x);
+        set("vsm.along", axes_.up / all.size().y, (dot(axes_.up, eye) - all.low.y) / all.size().y);
+        set("vsm.rise", axes_.rise, dot(axes_.rise, eye) - middle_m_);
+        std::array<double, 4> rounding{};
+        constexpr std::array<const char*, kMostLayers> kNames = {nullptr, "vsm.nearer",
+                                                                 "vsm.nearest"};
+        for (std::size_t i = 0; i < kMostLayers; ++i) {
+            const bool there = i < layers_.size();
+            const Rectangle& own = layers_[there ? i : 0];
+            rounding[i] = own.size().y / size_;
+            if (i == 0) continue;
+            // Of the coordinates in the first map; without a map all lie outside.
+            const glm::dvec2 scale = all.size() / own.size();
+            const glm::dvec2 offset = (all.low - own.low) / own.size();
+            params_.set(kNames[i], there ? std::array{scale.x, scale.y, offset.x, offset.y}
+                                         : std::array{0.0, 0.0, -1.0, -1.0});
+        }
+        params_.set("vsm.row_m", rounding);
+        params_.set("vsm.texel_m", {all.size().x / size_, all.size().y / size_, 0, 0});
+        const double sine = std::max(axes_.towards.z, kLeastSine);
+        params_.set("vsm.reach", {1 / sine / all.size().x, 1 / sine / all.size().y,
+                                  frame.highest_m * frame.exaggeration - middle_m_, 0});
     }
 
     Host host_;
+    Log log_;
     Params params_;
     Frame frame_;
     Terrain terrain_;
     Program moments_program_, blur_program_;
     Texture depth_, rows_, moments_;
-    int width_ = std::getenv("VSMW") ? atoi(std::getenv("VSMW")) : 1024, height_ = std::getenv("VSMH") ? atoi(std::getenv("VSMH")) : 1024;
+    int texture_layers_ = 0;
+
+    // What the maps were drawn with.
+    int size_ = 0;
+    double blur_ = -1, exaggeration_ = 0, middle_m_ = 0;
+    std::uint64_t ground_ = 0;
+    Axes axes_;
+    relevo_box whole_{};
+    std::vector<Rectangle> layers_;
 };
 
 }  // namespace

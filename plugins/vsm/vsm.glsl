@@ -1,33 +1,40 @@
 //! provides  shadow: how much of the sun a point of the ground sees past the ground sunward of it
 //! hook      visibility
-//! reads     vsm.moments (vsm.cpp draws it): mean [m] and mean square [m^2] of the height, above
-//!           vsm_rise's zero, of the ground that the sun's rays meet first
+//! reads     vsm.moments (vsm.cpp draws it): mean [m], above vsm_rise's zero, and variance [m^2] of the
+//!           height of the ground that the sun's rays meet first
 //! writes    factor
 //! source    W. Donnelly, A. Lauritzen, Variance Shadow Maps, I3D 2006
 
 //@ include lib/surface.glsl
 
+uniform int vsm_size = 2048;      //@ range(256, 8192) unit(px) label("Size of a map") description("Texels along each side.")
+uniform float vsm_blur = 0.2;     //@ range(0, 0.6) label("Blur") description("Share of a texel's neighbours in it, each way.")
 uniform float vsm_bleed = 0.2;    //@ range(0, 0.9) label("Light bleed cut") description("What Chebyshev's bound lets through where shadows overlap, and is taken as none.")
-uniform float vsm_deviation_m = 0.3;  //@ range(0, 100) unit(m) label("Least deviation") description("Of the heights in the map, so that rounding casts no shadow.")
+uniform float vsm_bias = 0.5;     //@ range(0, 4) label("Bias") description("How far ground may lie below the map without a shadow, in standard deviations.")
+uniform float vsm_softness = 0.5; //@ range(0, 8) label("Softness") description("Least standard deviation of the heights in a texel, in the height of its row.")
+uniform bool vsm_penumbra = false; //@ static label("Penumbra") description("Shadows grow softer with the distance of what casts them, as the sun's half degree makes them.")
+uniform float vsm_sun_diameter = 0.533;  //@ range(0, 10) angle unit(deg) label("Sun's diameter")
 
-uniform float vsm_crease = 0.5;  //@ range(0, 3) label("Crease") description("Deviations.")
-uniform float vsm_blur = 0.5;  //@ range(0, 1) label("Blur")
-
-uniform vec4 vsm_across = vec4(0.0);  //@ host
-uniform vec4 vsm_along = vec4(0.0);  //@ host
-uniform vec4 vsm_rise = vec4(0.0);  //@ host
-
-uniform vec4 vsm_texel_m = vec4(0.0);  //@ host description("Across and up, of the finest map.")
+uniform vec4 vsm_across = vec4(0.0);   //@ host
+uniform vec4 vsm_along = vec4(0.0);    //@ host
+uniform vec4 vsm_rise = vec4(0.0);     //@ host
+uniform vec4 vsm_nearer = vec4(0.0);   //@ host
+uniform vec4 vsm_nearest = vec4(0.0);  //@ host
+uniform vec4 vsm_row_m = vec4(0.0);    //@ host description("Height of a row of each map.")
+uniform vec4 vsm_reach = vec4(0.0);    //@ host
+uniform vec4 vsm_texel_m = vec4(0.0);  //@ host description("Across and up, of the map of all that is seen.")
 
 uniform sampler2DArray vsm_moments;
 
-/// Upper bound on the share of what is in a texel that does not lie above a height.
-/// @param moments  mean and mean square of the heights
+const float vsm_rounding_m = 0.3;  // deviation that floats make of heights of thousands of metres
+const int vsm_taps = 16;
+
+/// Upper bound on the share of the ground in a texel that is no higher than a height.
+/// @param moments  mean and variance of the heights
 /// source: Chebyshev's one-sided inequality, Donnelly and Lauritzen, equation 5
-float vsm_chebyshev(in vec2 moments, in float height, in float least_variance) {
-    float variance = max(moments.y, least_variance);
-    float above = max(moments.x - height - vsm_crease * sqrt(variance), 0.0);
-    return variance / (variance + above * above);
+float vsm_chebyshev(in vec2 moments, in float height) {
+    float above = max(moments.x - height, 0.0);
+    return moments.y / (moments.y + above * above);
 }
 
 /// Cuts off the lower end of the bound, where light bleeds through, and stretches the rest.
@@ -36,10 +43,57 @@ float vsm_cut(in float bound, in float bleed) {
     return clamp((bound - bleed) / (1.0 - bleed), 0.0, 1.0);
 }
 
+/// The finest map that a point is in.
+/// @param first  its place in the first map
+/// @returns place in that map, and its number
+vec3 vsm_place(in vec2 first) {
+    vec3 place = vec3(first, 0.0);
+    vec2 at = first * vsm_nearer.xy + vsm_nearer.zw;
+    place = at == clamp(at, vec2(0.004), vec2(0.996)) ? vec3(at, 1.0) : place;
+    at = first * vsm_nearest.xy + vsm_nearest.zw;
+    return at == clamp(at, vec2(0.004), vec2(0.996)) ? vec3(at, 2.0) : place;
+}
+
+/// Share of the sun that is seen from a height above a place of a map.
+float vsm_lit(in vec3 place, in float height) {
+    vec2 moments = textureLod(vsm_moments, place, 0.0).rg;
+    float row_m = place.z < 0.5 ? vsm_row_m.x : place.z < 1.5 ? vsm_row_m.y : vsm_row_m.z;
+    float least = vsm_softness * row_m + vsm_rounding_m;
+    moments.y = max(moments.y, least * least);
+    return vsm_cut(vsm_chebyshev(moments, height + vsm_bias * sqrt(moments.y)), vsm_bleed);
+}
+
+/// Points evenly over the unit disc, after H. Vogel, Mathematical Biosciences 44, 1979.
+vec2 vsm_disc(in int tap) {
+    float angle = 2.39996323 * float(tap);
+    return sqrt((float(tap) + 0.5) / float(vsm_taps)) * vec2(cos(angle), sin(angle));
+}
+
+/// The same over the sun's disc: how much higher the ground in its way lies tells how far it is.
+/// source: R. Fernando, Percentage-Closer Soft Shadows, SIGGRAPH 2005 sketches
+float vsm_lit_by_disc(in vec2 first, in float height) {
+    float half_sun = tan(0.5 * vsm_sun_diameter);
+    // Nothing in the way is farther than where the ray leaves the highest ground behind.
+    vec2 search = half_sun * vsm_reach.xy * max(vsm_reach.z - height, 0.0);
+    float above = 0.0, found = 0.0;
+    for (int tap = 0; tap < vsm_taps; ++tap) {
+        float here = textureLod(vsm_moments, vsm_place(first + search * vsm_disc(tap)), 0.0).r - height;
+        above += max(here, 0.0);
+        found += here > 0.0 ? 1.0 : 0.0;
+    }
+    vec2 spread = half_sun * vsm_reach.xy * above / max(found, 1.0);
+    float lit = 0.0;
+    for (int tap = 0; tap < vsm_taps; ++tap)
+        lit += vsm_lit(vsm_place(first + spread * vsm_disc(tap)), height);
+    return lit / float(vsm_taps);
+}
+
 void vsm_on_visibility(in Surface s, in vec3 to_sun, inout float factor) {
     vec4 point = vec4(surface_point(s), 1.0);
-    vec2 at = vec2(dot(vsm_across, point), dot(vsm_along, point));
-    vec2 moments = textureLod(vsm_moments, vec3(at, 0.0), 0.0).rg;
-    float bound = vsm_chebyshev(moments, dot(vsm_rise, point), vsm_deviation_m * vsm_deviation_m + 0.0 * vsm_blur);
-    factor *= vsm_cut(bound, vsm_bleed);
+    vec2 first = vec2(dot(vsm_across, point), dot(vsm_along, point));
+    float height = dot(vsm_rise, point);
+    if (vsm_penumbra)
+        factor *= vsm_lit_by_disc(first, height);
+    else
+        factor *= vsm_lit(vsm_place(first), height);
 }

@@ -73,12 +73,26 @@ class Truth {
         parallel_for(0, rows, 4, [&](int first, int last) {
             for (int y = first; y < last; ++y) {
                 for (int x = 0; x < columns; ++x) {
-                    mask.shaded.at(x, y) = is_shaded(mask.light_m, {x, y}, rise, sine);
+                    mask.shaded.at(x, y) = is_shaded(mask.light_m, glm::dvec2(x, y), rise, sine);
                     mask.facing.at(x, y) = faces(to_sun, x, y);
                 }
             }
         });
         return mask;
+    }
+
+    /// Whether a point of a grid line is in shadow.
+    /// @param light  the posts in the light's space
+    /// @param at     its column and row, one of them whole
+    bool is_shaded(const Array2d<glm::dvec3>& light, const glm::dvec2& at, double rise,
+                   double sine) const {
+        const glm::ivec2 low(floor(at)), high(ceil(at));
+        const glm::dvec2 share = at - glm::dvec2(low);
+        const glm::dvec3 a = light.at(low.x, low.y), b = light.at(high.x, high.y);
+        const glm::dvec3 from = a + (share.x + share.y) * (b - a);
+        if (std::isnan(from.x)) return false;
+        return walk<0>(light, low, high, from, rise, sine) ||
+               walk<1>(light, low, high, from, rise, sine);
     }
 
   private:
@@ -89,25 +103,20 @@ class Truth {
         return (n.z < 0 ? -1 : 1) * dot(n, to_sun) > 0;
     }
 
-    bool is_shaded(const Array2d<glm::dvec3>& light, glm::ivec2 post, double rise,
-                   double sine) const {
-        const glm::dvec3 from = light.at(post.x, post.y);
-        if (std::isnan(from.x)) return false;
-        return walk<0>(light, post, from, rise, sine) || walk<1>(light, post, from, rise, sine);
-    }
-
     /// Goes from grid line to grid line of one family (Along 0: column by column) sunward.
     template <int Along>
-    bool walk(const Array2d<glm::dvec3>& light, glm::ivec2 post, const glm::dvec3& from,
-              double rise, double sine) const {
+    bool walk(const Array2d<glm::dvec3>& light, glm::ivec2 low, glm::ivec2 high,
+              const glm::dvec3& from, double rise, double sine) const {
         constexpr int Across = 1 - Along;
         const glm::ivec2 size(light.width(), light.height());
         const auto at = [&](int line, int place) -> const glm::dvec3& {
             return Along == 0 ? light.at(line, place) : light.at(place, line);
         };
         for (const int step : {1, -1}) {
-            int place = std::min(post[Across], size[Across] - 2);
-            for (int line = post[Along] + step; line >= 0 && line < size[Along]; line += step) {
+            int place = std::min(low[Across], size[Across] - 2);
+            // From the first line beyond the point.
+            for (int line = (step > 0 ? low : high)[Along] + step; line >= 0 && line < size[Along];
+                 line += step) {
                 // The segment of this line that the plane cuts.
                 const bool grows = at(line, size[Across] - 1).x > at(line, 0).x;
                 while (place > 0 && (at(line, place).x > from.x) == grows)
@@ -116,7 +125,7 @@ class Truth {
                     ++place;
                 const glm::dvec3 a = at(line, place), b = at(line, place + 1);
                 const double f = (from.x - a.x) / (b.x - a.x);
-                if (!(f >= 0 && f <= 1)) break;  // left the DEM, or this family never meets the plane
+                if (!(f >= 0 && f <= 1)) break;  // left the DEM, or never meets the plane
                 const glm::dvec3 cut = a + f * (b - a);
                 if (cut.z < from.z - 1e-6) break;  // away from the sun
                 if (std::isnan(cut.y)) continue;
@@ -159,7 +168,8 @@ class Drawn {
             const auto equals = setting.find('=');
             values_.set(setting.substr(0, equals), setting.substr(equals + 1));
         }
-        const double pixels = std::getenv("VSMPX") ? atof(std::getenv("VSMPX")) : 2;
+        // A post is a corner of the ground: between pixels far apart its light is blurred.
+        const double pixels = std::clamp(2600.0 / dem.grid.columns(), 2.0, 8.0);
         size_ = {static_cast<int>(pixels * dem.grid.columns()) + 8,
                  static_cast<int>(pixels * dem.grid.rows()) + 8};
         terrain_.emplace(dem_, ground_.frame,
@@ -272,27 +282,43 @@ inline glm::dvec3 direction(double azimuth_deg, double elevation_deg) {
 }
 
 /// Posts within two texels of a change from light to shadow, in the light's space.
-inline Array2d<std::uint8_t> near_line(const Truth::Mask& mask, const glm::dvec2& texel_m,
-                                       double sine, double spacing_m) {
+inline Array2d<std::uint8_t> near_line(const Truth& truth, const Truth::Mask& mask,
+                                       const glm::dvec2& texel_m, const glm::dvec3& to_sun,
+                                       double spacing_m) {
     const int columns = mask.shaded.width(), rows = mask.shaded.height();
     Array2d<std::uint8_t> result(columns, rows);
+    const double sine = to_sun.z, rise = Truth::axes(to_sun)[1].z;
     const double reach_m = 2 * std::max(texel_m.x, texel_m.y / std::max(sine, 0.01));
-    const int window = static_cast<int>(std::ceil(reach_m / spacing_m));
+    const int window = std::min(20, static_cast<int>(std::ceil(reach_m / spacing_m)));
+    const auto is_near = [&](const glm::dvec3& from, const glm::dvec3& to) {
+        return std::abs(to.x - from.x) <= 2 * texel_m.x && std::abs(to.y - from.y) <= 2 * texel_m.y;
+    };
     parallel_for(0, rows, 4, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
             for (int x = 0; x < columns; ++x) {
                 const glm::dvec3 here = mask.light_m.at(x, y);
-                const auto own = mask.shaded.at(x, y);
+                const bool own = mask.shaded.at(x, y) != 0;
+                bool near = false;
                 for (int j = std::max(0, y - window); j <= std::min(rows - 1, y + window); ++j)
-                    for (int i = std::max(0, x - window); i <= std::min(columns - 1, x + window); ++i) {
-                        if (mask.shaded.at(i, j) == own) continue;
-                        const glm::dvec3 other = mask.light_m.at(i, j) - here;
-                        if (std::abs(other.x) <= 2 * texel_m.x && std::abs(other.y) <= 2 * texel_m.y) {
-                            result.at(x, y) = 1;
-                            j = rows;
-                            break;
-                        }
+                    for (int i = std::max(0, x - window); i <= std::min(columns - 1, x + window); ++i)
+                        near = near || ((mask.shaded.at(i, j) != 0) != own &&
+                                        is_near(here, mask.light_m.at(i, j)));
+                // Where on the four grid lines the change is.
+                for (const glm::ivec2 step : {glm::ivec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+                    const glm::ivec2 next = glm::ivec2(x, y) + step;
+                    if (near || next.x < 0 || next.y < 0 || next.x >= columns || next.y >= rows ||
+                        (mask.shaded.at(next.x, next.y) != 0) == own)
+                        continue;
+                    double same = 0, other = 1;
+                    for (int i = 0; i < 8; ++i) {
+                        const double middle = 0.5 * (same + other);
+                        const bool shaded = truth.is_shaded(
+                            mask.light_m, glm::dvec2(x, y) + middle * glm::dvec2(step), rise, sine);
+                        (shaded == own ? same : other) = middle;
                     }
+                    near = is_near(here, glm::mix(here, mask.light_m.at(next.x, next.y), same));
+                }
+                result.at(x, y) = near;
             }
         }
     });
@@ -306,9 +332,9 @@ inline double balanced(std::int64_t lit_right, std::int64_t lit, std::int64_t sh
                   static_cast<double>(shaded_right) / static_cast<double>(shaded));
 }
 
-inline Score score(const Truth::Mask& mask, const Array2d<float>& drawn, const glm::dvec2& texel_m,
-                   double sine, double spacing_m) {
-    const Array2d<std::uint8_t> near = near_line(mask, texel_m, sine, spacing_m);
+inline Score score(const Truth& truth, const Truth::Mask& mask, const Array2d<float>& drawn,
+                   const glm::dvec2& texel_m, const glm::dvec3& to_sun, double spacing_m) {
+    const Array2d<std::uint8_t> near = near_line(truth, mask, texel_m, to_sun, spacing_m);
     std::array<std::array<std::int64_t, 2>, 2> all{}, right{};  // [beyond][shaded]
     for (int y = 0; y < drawn.height(); ++y) {
         for (int x = 0; x < drawn.width(); ++x) {
