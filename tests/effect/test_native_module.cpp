@@ -1,0 +1,139 @@
+// A native module that is wrong takes nothing down but itself and what requires it.
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/paths.h"
+#include "effect/native_module.h"
+#include "effect/plugins.h"
+
+namespace relevo::effect::test {
+namespace {
+
+using ::testing::ElementsAre;
+
+/// A plugin `native` whose module is the one built for a case.
+class Native : public Plugins {
+  public:
+    explicit Native(const std::string& name, const std::string& members = "") {
+        add("native", R"("module": "native")" + (members.empty() ? "" : ", " + members));
+        if (!name.empty())
+            std::filesystem::copy(relevo::test::build_dir() / "tests/modules" / (name + ".so"),
+                                  plugins() / "native/native.so");
+    }
+
+    std::string error() const {
+        const Registry registry = load();
+        return relative(relevo::test::error_of(
+            [&] { NativeModule::load(registry.effect("native", "test").manifest); }));
+    }
+};
+
+TEST(NativeModule, AGoodOneIsLoaded) {
+    const Native plugins("good");
+    const Registry registry = plugins.load();
+    const NativeModule module = NativeModule::load(registry.effect("native", "test").manifest);
+    EXPECT_EQ(module.id(), "native");
+    EXPECT_EQ(module.library(), plugins.plugins() / "native/native.so");
+    void* instance = &instance;
+    EXPECT_EQ(module.functions().create(nullptr, &instance), RELEVO_OK);
+    EXPECT_EQ(instance, nullptr);
+}
+
+TEST(NativeModule, TheGuidesExampleIsOne) {
+    const Plugins plugins;
+    plugins.add("tide", R"("module": "tide")");
+    std::filesystem::copy(relevo::test::build_dir() / "tests/modules/tide.so",
+                          plugins.plugins() / "tide/tide.so");
+    const Registry registry = plugins.load();
+    EXPECT_EQ(NativeModule::load(registry.effect("tide", "test").manifest).id(), "tide");
+}
+
+TEST(NativeModule, EveryFaultIsAMessageThatNamesTheFile) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"newer",
+         "expected version 1 of the plugin interface but got 2.3; build it with this program's "
+         "relevo_plugin.h"},
+        {"nameless", "it has no symbol relevo_plugin_abi; see RELEVO_PLUGIN"},
+        {"unregistered", "it has no symbol relevo_plugin_register; see RELEVO_PLUGIN"},
+        {"throws", "its registration threw an exception: no good today"},
+        {"throwsint", "its registration threw an exception"},
+        {"crashes", "its registration ended in a segmentation fault"},
+        {"aborts", "its registration ended in an abort"},
+        {"exits", "its registration ended the process"},
+        {"fails", "its registration failed: the moon is not full"},
+        {"asks", "its registration failed: it needs relevo.weather/1"},
+        {"stranger", "expected the module of native but got that of somebody"},
+        {"helpless", "its table lacks create or destroy"},
+    };
+    for (const auto& [name, message] : cases) {
+        const Native plugins(name);
+        EXPECT_EQ(plugins.error(),
+                  fmt::format("exit 3: effect::load: plugins/native/native.so: {}", message))
+            << name;
+    }
+}
+
+TEST(NativeModule, OneThatIsNotThereIsSaidToBeMissing) {
+    const Native plugins("");
+    EXPECT_EQ(plugins.error(),
+              fmt::format("exit 3: effect::load: plugins/native/plugin.json: module native is in "
+                          "neither plugins/native/native.so nor {}; build it",
+                          (module_dir() / "plugins/native.so").string()));
+}
+
+TEST(NativeModule, WhatIsNoLibraryIsNotLoaded) {
+    const Native plugins("");
+    plugins.write("plugins/native/native.so", "not a library\n");
+    EXPECT_EQ(plugins.error(),
+              "exit 3: effect::load: plugins/native/native.so: it cannot be loaded: "
+              "plugins/native/native.so: file too short");
+}
+
+TEST(NativeModule, ListingPluginsLoadsNone) {
+    const Native plugins("crashes");
+    const Registry registry = plugins.load();
+    EXPECT_TRUE(registry.broken().empty());
+    EXPECT_EQ(registry.effects().size(), 1u);
+}
+
+TEST(NativeModule, ABadOneIsOffAndSoIsWhatRequiresIt) {
+    const Native plugins("crashes", R"("provides": ["magic"])");
+    plugins.add("glow", R"("requires": ["magic"])");
+    plugins.add("plain");
+    const Registry registry = plugins.load();
+    const NativeSelection chosen = select_and_load(registry, {}, {});
+    EXPECT_THAT(ids(chosen.selection), ElementsAre("plain"));
+    EXPECT_TRUE(chosen.modules.empty());
+    ASSERT_EQ(chosen.selection.notices.size(), 2u);
+    EXPECT_EQ(plugins.relative(chosen.selection.notices[0]),
+              "native is off: effect::load: plugins/native/native.so: its registration ended in a "
+              "segmentation fault");
+    EXPECT_EQ(chosen.selection.notices[1],
+              "glow is off: it requires magic, native is off");
+}
+
+TEST(NativeModule, ABadOneThatIsAskedForIsANoticeToo) {
+    const Native plugins("throws");
+    plugins.add("plain");
+    const Registry registry = plugins.load();
+    Switches switches;
+    switches.only = {"native", "plain"};
+    const NativeSelection chosen = select_and_load(registry, {}, switches);
+    EXPECT_THAT(ids(chosen.selection), ElementsAre("plain"));
+    EXPECT_EQ(chosen.selection.notices.size(), 1u);
+}
+
+TEST(NativeModule, OneThatIsOffIsNotTried) {
+    const Native plugins("crashes");
+    plugins.add("plain");
+    const Registry registry = plugins.load();
+    Switches switches;
+    switches.disable = {"native"};
+    EXPECT_TRUE(select_and_load(registry, {}, switches).selection.notices.empty());
+}
+
+}  // namespace
+}  // namespace relevo::effect::test
