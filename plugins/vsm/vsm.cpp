@@ -36,8 +36,6 @@ constexpr double kTooLarge = 4;
 constexpr double kSizesADoubling = 8;
 /// The drawn ground may be off by this share of a texel's height.
 constexpr double kTolerance_texels = 0.5;
-/// Deviation that rounding makes in heights of thousands of metres.
-constexpr double kRounding_m = 0.3;
 
 glm::dvec3 vector_of(const double (&v)[3]) {
     return {v[0], v[1], v[2]};
