@@ -13,6 +13,7 @@ namespace relevo::light {
 /// a year and the hours on them.
 struct SunPathDiagram {
     geo::Geodetic place;
+    std::string place_name;  ///< for the title, where there is one
     sun::Zone zone;
     int year = 0;
     sun::Refraction refraction = sun::Refraction::none();
