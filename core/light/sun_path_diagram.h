@@ -21,6 +21,8 @@ struct SunPathDiagram {
     std::optional<sun::Day> day;
     const Skyline* terrain = nullptr;  ///< stands in the sky where there is one
     std::string terrain_definition;
+    std::optional<LightDay> light;  ///< of `day`, where there is terrain
+    std::string light_definition;
 
     /// 900 units wide. The sky is projected stereographically, so that the sun's daily circles
     /// remain circles.
