@@ -1,5 +1,6 @@
 #include <cmath>
 #include <memory>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -246,7 +247,9 @@ void print_day(const Result& result) {
     const sun::Zone& zone = result.asked.zone;
     print_head(result);
     for (const sun::Event& event : day.events) {
-        const double azimuth_deg = degrees(event.azimuth_rad);
+        // 359.996 is 0.00 to two decimals.
+        const double azimuth_deg =
+            std::fmod(std::round(degrees(event.azimuth_rad) * 100) / 100, 360.0);
         fmt::print("{:<20}{}  azimuth {:6.2f} {:<4}", word_of(event.kind),
                    sun::to_iso(event.utc, zone), azimuth_deg, compass_point(azimuth_deg));
         if (event.kind == EventKind::Transit || event.kind == EventKind::LowerTransit)
@@ -256,13 +259,17 @@ void print_day(const Result& result) {
     if (const char* polar = polar_of(day))
         fmt::print("polar {:<14}the sun {} all day\n", polar,
                    day.sun == sun::Crossing::AboveAllDay ? "stays up" : "stays down");
-    for (const auto& [name, crossing] :
-         {std::pair{"civil twilight", day.civil}, std::pair{"nautical twilight", day.nautical},
-          std::pair{"astronomical twilight", day.astronomical}})
-        if (crossing != sun::Crossing::Crosses)
-            fmt::print("{:<22}{}\n", name,
-                       crossing == sun::Crossing::AboveAllDay ? "the sun stays above it all day"
-                                                              : "the sun stays below it all day");
+    for (const auto& [name, down_deg, crossing] :
+         {std::tuple{"civil twilight", 6, day.civil},
+          std::tuple{"nautical twilight", 12, day.nautical},
+          std::tuple{"astron. twilight", 18, day.astronomical}}) {
+        if (crossing == sun::Crossing::BelowAllDay)
+            fmt::print("{:<20}none, the sun's centre stays more than {} degrees down all day\n",
+                       name, down_deg);
+        else if (crossing == sun::Crossing::AboveAllDay && day.sun != crossing)
+            fmt::print("{:<20}the sun's centre stays less than {} degrees down all day\n", name,
+                       down_deg);
+    }
     fmt::print("day length          {}\n", hours_text(day.day_length_s));
     fmt::print("golden hour         {}\n", spans_text(day.golden_hour, zone));
     fmt::print("blue hour           {}\n", spans_text(day.blue_hour, zone));

@@ -115,6 +115,18 @@ std::string place_text(const geo::Geodetic& place) {
     return fmt::format("{}, {:.0f} m", geo::degrees_text(place), place.height_m);
 }
 
+std::string light_text(const LightDay& day, const SunPaths& paths) {
+    std::string text;
+    for (const LitInterval& lit : day.lit)
+        text += fmt::format("{}{} to {}", text.empty() ? "Direct sun " : ", ",
+                            lit.begin.midnight ? "midnight" : paths.clock(lit.begin.utc),
+                            lit.end.midnight ? "midnight" : paths.clock(lit.end.utc));
+    if (day.lit.size() == 1 && day.lit[0].begin.midnight && day.lit[0].end.midnight)
+        text = "Direct sun all day";
+    text += text.empty() ? "No direct sun" : " (" + duration_text(day.lit_s) + ")";
+    return text + "; over a level horizon " + duration_text(day.flat.day_length_s);
+}
+
 void add_title(Drawing& drawing, double margin, const std::string& title,
                const std::vector<std::string>& lines) {
     drawing.text({margin, margin + 16}, title, {.size = 21, .color = kInk, .bold = true});

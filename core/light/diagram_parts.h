@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "light/direct_light.h"
 #include "light/drawing.h"
 #include "sun/observer.h"
 #include "sun/position_table.h"
@@ -79,6 +80,9 @@ std::string month_name(int month);
 std::string duration_text(double seconds);
 /// "47.2692 N 11.4041 E, 574 m".
 std::string place_text(const geo::Geodetic& place);
+
+/// "Direct sun 08:33 to 16:55 (8 h 21 min); over a level horizon 10 h 03 min".
+std::string light_text(const LightDay& day, const SunPaths& paths);
 
 /// Title and lines under it, at the top left; the lines of small print at the foot.
 void add_title(Drawing& drawing, double margin, const std::string& title,

@@ -35,12 +35,18 @@ bool LabelPlacer::add(const glm::dvec2& at, const std::string& words, Lettering 
                                                     : at.y + gap + ascent + step * (height + 2);
             const Rect box{middle - width / 2 - 2, base - ascent - 1, width + 4, height + 2};
             if (!is_free(box)) continue;
+            const glm::dvec2 from(at.x, at.y + up * 2);
+            const glm::dvec2 to(std::clamp(at.x, box.x + 4, box.x + box.width - 4),
+                                side == Side::Above ? base + 3 : base - ascent - 2);
+            const Rect way{std::min(from.x, to.x) - 1, std::min(from.y, to.y),
+                           std::abs(to.x - from.x) + 2, std::abs(to.y - from.y)};
+            const bool led = leader || step > 0;
+            if (led && step > 0 && !is_free(way)) continue;
             taken_.push_back(box);
-            if (leader || step > 0)
-                drawing_.line({at.x, at.y + up * 2},
-                              {std::clamp(at.x, box.x + 4, box.x + box.width - 4),
-                               side == Side::Above ? base + 3 : base - ascent - 2},
-                              {.stroke = kSoft, .width = 0.7});
+            if (led) {
+                taken_.push_back(way);
+                drawing_.line(from, to, {.stroke = kSoft, .width = 0.7});
+            }
             lettering.anchor = Anchor::Middle;
             if (!lettering.halo) lettering.halo = Color{kPaper.rgb, 0.85};
             drawing_.text({middle, base}, words, lettering);

@@ -58,7 +58,8 @@ class Panorama {
 
     Drawing draw() {
         const double keys_y = kTop + kPlotHeight + 62;
-        Drawing drawing(kWidth, keys_y + 30 + foot_height(kWidth, kMargin, foot_) + kMargin);
+        Drawing drawing(
+            kWidth, keys_y + (paths_ ? 50 : 30) + foot_height(kWidth, kMargin, foot_) + kMargin);
         drawing_ = &drawing;
         add_head();
         drawing.clip(plot());
@@ -125,16 +126,7 @@ class Panorama {
         std::string where = place_text(of_.horizon->place());
         if (of_.year != 0) where += ", " + of_.zone.name();
         std::vector<std::string> lines{where};
-        if (of_.day) {
-            std::string light;
-            for (const LitInterval& lit : of_.day->lit)
-                light += fmt::format("{}{} to {}", light.empty() ? "Direct sun " : ", ",
-                                     lit.begin.midnight ? "midnight" : paths_->clock(lit.begin.utc),
-                                     lit.end.midnight ? "midnight" : paths_->clock(lit.end.utc));
-            light += light.empty() ? "No direct sun" : " (" + duration_text(of_.day->lit_s) + ")";
-            lines.push_back(light + "; over a level horizon " +
-                            duration_text(of_.day->flat.day_length_s));
-        }
+        if (of_.day) lines.push_back(light_text(*of_.day, *paths_));
         drawing_->describe(title, lines.back());
         add_title(*drawing_, kMargin, title, lines);
     }
@@ -149,11 +141,27 @@ class Panorama {
     }
 
     void path(const std::vector<PathPoint>& points, const Pen& pen) const {
+        const double left = plot().x, width = plot().width;
         std::vector<glm::dvec2> line;
         for (const PathPoint& p : points) {
             const glm::dvec2 at = point(p);
-            if (!line.empty() && std::abs(at.x - line.back().x) > plot().width / 2)
-                line.emplace_back(std::nan(""));  // over the picture's edge
+            if (!line.empty() && std::abs(at.x - line.back().x) > width / 2) {
+                // Out at one edge and in at the other; by the zenith it may only seem so.
+                const glm::dvec2 from = line.back();
+                const double turn = from.x > at.x ? width : -width;
+                const glm::dvec2 way = at + glm::dvec2(turn, 0) - from;
+                const double edge = turn > 0 ? left + width : left;
+                if (p.elevation_rad < radians(85) && way.x != 0) {
+                    const double y = from.y + way.y * (edge - from.x) / way.x;
+                    line.emplace_back(edge, y);
+                    line.emplace_back(std::nan(""));
+                    line.emplace_back(edge - turn, y);
+                } else {
+                    line.emplace_back(std::nan(""));
+                }
+            } else if (!line.empty() && p.elevation_rad > radians(88.5)) {
+                line.emplace_back(std::nan(""));
+            }
             line.push_back(at);
         }
         drawing_->path(std::move(line), pen);
@@ -167,7 +175,7 @@ class Panorama {
             path({half, line.end()}, {.stroke = kFaint, .width = 1.1, .dash = {0.1, 3.2}});
         }
         for (const SeasonPath& season : season_paths())
-            path(paths_->day({of_.year, season.month, 21}),
+            path(paths_->day({of_.year, season.month, 21}, 120),
                  {.stroke = Color{season.color.rgb, of_.day ? 0.75 : 1.0},
                   .width = season.month % 3 == 0 ? 2.0 : 1.2});
         if (of_.day) path(paths_->day(of_.day->date, 120), {.stroke = kDay, .width = 3.2});
@@ -175,16 +183,17 @@ class Panorama {
 
     /// Ridges before ridges: what stands within growing distances, the farthest first.
     void add_ridges() {
-        double reach_m = 0, farthest_m = 0;
-        for (const HorizonPoint& p : *of_.profile) {
-            reach_m = std::max(reach_m, p.reach_m);
+        double farthest_m = 0;
+        for (const HorizonPoint& p : *of_.profile)
             if (p.distance_m > farthest_m) farthest_m = p.distance_m;
-        }
         farthest_m = std::max(farthest_m, 1000.0);
+        // Nearer than some posts there is no ridge yet.
+        const glm::dvec2 spacing_m = of_.horizon->field().grid.post_spacing_m();
+        const double nearest_m = 5 * std::max(spacing_m.x, spacing_m.y);
         constexpr std::array kRound{100.,  200., 500., 1e3, 2e3, 3e3, 5e3, 7e3, 1e4,
                                     1.5e4, 2e4,  3e4,  5e4, 7e4, 1e5, 2e5, 5e5};
         for (const double d : kRound)
-            if (d < farthest_m) bands_m_.push_back(d);
+            if (d >= nearest_m && d < 0.95 * farthest_m) bands_m_.push_back(d);
         if (bands_m_.size() > 9) bands_m_.erase(bands_m_.begin(), bands_m_.end() - 9);
         bands_m_.push_back(farthest_m);
 
@@ -290,12 +299,12 @@ class Panorama {
                     drawing_->circle(at, 4.6, {.fill = kDay, .stroke = kPaper, .width = 1.2});
                     labels.keep_clear(at, 6);
                     labels.add(at, paths_->clock(edge.utc),
-                               {.size = 13.5, .color = Color{0xa64f00}, .bold = true}, 9);
+                               {.size = 13.5, .color = Color{0xa64f00}, .bold = true}, 11);
                 }
             for (const PathPoint& p : paths_->full_hours(of_.day->date)) {
                 if (p.elevation_rad <= of_.horizon->elevation_rad(p.azimuth_rad)) continue;
                 labels.add(point(p), fmt::format("{}", of_.zone.local(p.utc).wall.hour),
-                           {.size = 12, .color = kInk, .bold = true}, 7);
+                           {.size = 12, .color = kInk, .bold = true}, 10);
             }
             for (const sun::Event& event : of_.day->flat.events) {
                 const bool rises = event.kind == sun::EventKind::Sunrise;
@@ -305,7 +314,8 @@ class Panorama {
                 labels.add(
                     at,
                     fmt::format("{} {}", rises ? "sunrise" : "sunset", paths_->clock(event.utc)),
-                    {.size = 11.5, .color = kInk}, 7, LabelPlacer::Side::Below);
+                    {.size = 11.5, .color = kPaper, .halo = Color{kRidge.rgb, 0.8}}, 7,
+                    LabelPlacer::Side::Below);
             }
         } else if (paths_) {
             for (int hour = 0; hour < 24; ++hour) {
@@ -334,7 +344,7 @@ class Panorama {
         };
         std::vector<Summit> summits;
         for (std::size_t i = 0; i < n; ++i) {
-            if (std::isnan(p[i].distance_m) || p[i].distance_m < 300) continue;
+            if (std::isnan(p[i].distance_m) || p[i].distance_m < 500) continue;
             bool top = true;
             double left = kPi, right = kPi;
             for (std::size_t k = 1; k <= around && top; ++k) {
@@ -343,7 +353,8 @@ class Panorama {
                 left = std::min(left, a);
                 right = std::min(right, b);
             }
-            if (top) summits.push_back({i, p[i].elevation_rad - std::max(left, right)});
+            const double rises_rad = p[i].elevation_rad - std::max(left, right);
+            if (top && rises_rad > radians(0.4)) summits.push_back({i, rises_rad});
         }
         std::sort(summits.begin(), summits.end(),
                   [](const Summit& a, const Summit& b) { return a.rises_rad > b.rises_rad; });
@@ -367,7 +378,15 @@ class Panorama {
                 at = add_key(*drawing_, at, y,
                              {.stroke = season.color, .width = season.month % 3 == 0 ? 2.0 : 1.2},
                              season.label);
-        at = paths_ ? at + 14 : at;
+        if (paths_) {
+            at = add_key(*drawing_, at, y, {.stroke = kFaint, .width = 0.9},
+                         fmt::format("full hour (UTC{}), 21 Dec to 21 Jun",
+                                     sun::offset_text(paths_->standard_offset_s())));
+            add_key(*drawing_, at, y, {.stroke = kFaint, .width = 1.1, .dash = {0.1, 3.2}},
+                    "21 Jun to 21 Dec");
+            at = kMargin;
+            y += 20;
+        }
         drawing_->text({at, y}, "ground within", {.size = 11.5, .color = kSoft});
         at += text_width("ground within", 11.5) + 10;
         for (std::size_t b = 0; b < bands_m_.size(); ++b) {

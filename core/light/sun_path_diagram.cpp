@@ -15,6 +15,8 @@ namespace {
 constexpr double kMargin = 28;
 constexpr double kWidth = 900;
 constexpr double kRadius = 350;
+constexpr Color kTerrain{0xd9d1c2, 0.8};
+constexpr Color kRidge{0x7d7464};
 
 class Disc {
   public:
@@ -72,7 +74,8 @@ class Disc {
     void elevations(double azimuth_rad) const {
         for (int el = 10; el < 90; el += 10)
             drawing_.text(point(azimuth_rad, radians(el)) + glm::dvec2(3, -2),
-                          fmt::format("{}°", el), {.size = 10, .color = kFaint, .halo = kSky});
+                          fmt::format("{}°", el),
+                          {.size = 10, .color = kSoft, .halo = Color{kPaper.rgb, 0.7}});
     }
 
   private:
@@ -89,17 +92,19 @@ Drawing SunPathDiagram::draw() const {
                     "centre of the sun, {}. {}.",
                     refraction.description(), "H" + paths.hours_text().substr(1))};
     if (day) foot.push_back("S" + day->definition.substr(1) + ".");
+    if (light) foot.push_back("D" + light_definition.substr(1) + ".");
     if (terrain) foot.push_back("T" + terrain_definition.substr(1) + ".");
 
-    const double top = day ? 118 : 100;
+    const double top = 82 + 18.0 * (day.has_value() + light.has_value());
     const glm::dvec2 center(kWidth / 2, top + 40 + kRadius);
     const double keys_y = center.y + kRadius + 66;
     Drawing drawing(kWidth, keys_y + 34 + foot_height(kWidth, kMargin, foot) + kMargin);
 
     std::vector<std::string> lines{fmt::format("{}, {}", place_text(place), zone.name())};
-    std::string title = fmt::format("Paths of the sun, {}", year);
+    std::string title = place_name.empty() ? "P" : place_name + ": p";
+    title +=
+        day ? "ath of the sun, " + long_date(day->date) : fmt::format("aths of the sun, {}", year);
     if (day) {
-        title = fmt::format("Path of the sun, {}", long_date(day->date));
         const auto time = [&](const char* name, sun::EventKind kind) {
             const auto utc = day->first(kind);
             return utc ? fmt::format("{} {}", name, paths.clock(*utc)) : std::string();
@@ -117,6 +122,7 @@ Drawing SunPathDiagram::draw() const {
                       : "day of " + duration_text(day->day_length_s);
         lines.push_back(events);
     }
+    if (light) lines.push_back(light_text(*light, paths));
     drawing.describe(title, lines.front());
     add_title(drawing, kMargin, title, lines);
 
@@ -124,23 +130,6 @@ Drawing SunPathDiagram::draw() const {
     disc.grid();
     const bool south_of_sun = place.lat_rad < 0;
     drawing.clip_circle(center, kRadius);
-    if (terrain) {
-        std::vector<glm::dvec2> ring;
-        constexpr int kSteps = 1440;
-        for (int i = 0; i <= kSteps; ++i) {
-            const double azimuth_rad = 2 * kPi * i / kSteps;
-            ring.push_back(
-                disc.point(azimuth_rad, std::max(0.0, terrain->elevation_rad(azimuth_rad))));
-        }
-        std::vector<glm::dvec2> area = ring;
-        for (int i = kSteps; i >= 0; --i)
-            area.push_back(disc.outside(2 * kPi * i / kSteps, 2));
-        drawing.path(area, {.fill = Color{0xe3ddd2}}, true);
-        drawing.path(ring, {.stroke = Color{0x8d8475}, .width = 1.2});
-    }
-
-    disc.elevations(south_of_sun ? kPi : 0);
-
     // Hours of the year: half of each line for growing days, half, dashed, for shrinking ones.
     for (int hour = 0; hour < 24; ++hour) {
         const std::vector<PathPoint> line = paths.hour_line(hour);
@@ -153,6 +142,22 @@ Drawing SunPathDiagram::draw() const {
                   {.stroke = Color{season.color.rgb, day ? 0.75 : 1.0},
                    .width = season.month % 3 == 0 ? 2.0 : 1.2});
     if (day) disc.path(paths.day(day->date, 120), {.stroke = kDay, .width = 3.4});
+    // Paths behind terrain shine through.
+    if (terrain) {
+        std::vector<glm::dvec2> ring;
+        constexpr int kSteps = 1440;
+        for (int i = 0; i <= kSteps; ++i) {
+            const double azimuth_rad = 2 * kPi * i / kSteps;
+            ring.push_back(
+                disc.point(azimuth_rad, std::max(0.0, terrain->elevation_rad(azimuth_rad))));
+        }
+        std::vector<glm::dvec2> area = ring;
+        for (int i = kSteps; i >= 0; --i)
+            area.push_back(disc.outside(2 * kPi * i / kSteps, 2));
+        drawing.path(area, {.fill = kTerrain}, true);
+        drawing.path(ring, {.stroke = kRidge, .width = 1.2});
+    }
+    disc.elevations(south_of_sun ? kPi : 0);
     drawing.end_clip();
     disc.rim();
 
@@ -179,7 +184,8 @@ Drawing SunPathDiagram::draw() const {
             drawing.circle(at, 3.6, {.fill = kPaper, .stroke = kDay, .width = 1.8});
             const glm::dvec2 outward = at - center;
             const double length = glm::length(outward);
-            const glm::dvec2 aside = length > 1 ? outward / length : glm::dvec2(0, 1);
+            glm::dvec2 aside = length > 1 ? outward / length : glm::dvec2(0, 1);
+            if (length > 0.86 * kRadius) aside = -aside;  // the rim has words of its own
             drawing.text(
                 at + 15.0 * aside + glm::dvec2(0, 4),
                 fmt::format("{}", zone.local(p.utc).wall.hour),
@@ -188,7 +194,8 @@ Drawing SunPathDiagram::draw() const {
         for (const sun::Event& event : day->events) {
             const bool rises = event.kind == sun::EventKind::Sunrise;
             if (!rises && event.kind != sun::EventKind::Sunset) continue;
-            drawing.circle(disc.outside(event.azimuth_rad, 0), 4.5, {.fill = kDay});
+            drawing.circle(disc.outside(event.azimuth_rad, 0), 4.5,
+                           {.fill = light ? kPaper : kDay, .stroke = kDay, .width = 1.5});
             const glm::dvec2 at = disc.outside(event.azimuth_rad, 34);
             drawing.text(at + glm::dvec2(0, 4), paths.clock(event.utc),
                          {.size = 13,
@@ -198,6 +205,13 @@ Drawing SunPathDiagram::draw() const {
         }
     }
 
+    if (light)
+        for (const LitInterval& lit : light->lit)
+            for (const LightEdge& edge : {lit.begin, lit.end})
+                if (!edge.midnight)
+                    drawing.circle(disc.point(edge.azimuth_rad, edge.elevation_rad), 5,
+                                   {.fill = kDay, .stroke = kPaper, .width = 1.2});
+
     double x = kMargin;
     if (day) x = add_key(drawing, x, keys_y, {.stroke = kDay, .width = 3.4}, long_date(day->date));
     for (const SeasonPath& season : season_paths())
@@ -205,12 +219,13 @@ Drawing SunPathDiagram::draw() const {
                     {.stroke = season.color, .width = season.month % 3 == 0 ? 2.0 : 1.2},
                     season.label);
     x = add_key(drawing, kMargin, keys_y + 20, {.stroke = kFaint, .width = 0.9},
-                "full hour" + paths.hours_text().substr(5) + ", 21 Dec to 21 Jun");
+                fmt::format("full hour (UTC{}), 21 Dec to 21 Jun",
+                            sun::offset_text(paths.standard_offset_s())));
     x = add_key(drawing, x, keys_y + 20, {.stroke = kFaint, .width = 1.2, .dash = {0.1, 3.2}},
                 "21 Jun to 21 Dec");
     if (terrain)
-        add_key(drawing, x, keys_y + 20,
-                {.fill = Color{0xe3ddd2}, .stroke = Color{0x8d8475}, .width = 1}, "terrain");
+        add_key(drawing, x, keys_y + 20, {.fill = kTerrain, .stroke = kRidge, .width = 1},
+                "terrain");
     add_foot(drawing, kMargin, foot);
     return drawing;
 }
