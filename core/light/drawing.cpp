@@ -30,10 +30,14 @@ void Drawing::describe(std::string title, std::string description) {
     description_ = std::move(description);
 }
 
+// Items are made in place: of a variant's temporaries GCC 12 says at -O3 that they may not be
+// whole.
+
 void Drawing::path(std::vector<glm::dvec2> points, const Pen& pen, bool closed) {
     std::vector<glm::dvec2> piece;
     const auto flush = [&] {
-        if (piece.size() >= 2) items_.push_back(Path{std::move(piece), closed, pen});
+        if (piece.size() >= 2)
+            items_.emplace_back(std::in_place_type<Path>, Path{std::move(piece), closed, pen});
         piece.clear();
     };
     for (const glm::dvec2& p : points) {
@@ -55,11 +59,11 @@ void Drawing::rect(const Rect& r, const Pen& pen) {
 }
 
 void Drawing::circle(const glm::dvec2& center, double radius, const Pen& pen) {
-    items_.push_back(Circle{center, radius, pen});
+    items_.emplace_back(std::in_place_type<Circle>, Circle{center, radius, pen});
 }
 
 void Drawing::text(const glm::dvec2& at, std::string words, const Lettering& lettering) {
-    items_.push_back(Text{at, std::move(words), lettering});
+    items_.emplace_back(std::in_place_type<Text>, Text{at, std::move(words), lettering});
 }
 
 void Drawing::clip(const Rect& rect) {
