@@ -18,6 +18,8 @@ class LabelPlacer {
     /// No words over this spot.
     void keep_clear(const glm::dvec2& center, double radius);
 
+    void keep_clear(const Rect& area) { taken_.push_back(area); }
+
     /// Writes words as near as there is room, with a halo; leaves them out where there is none.
     /// @param gap     between the point and the words
     /// @param leader  a thin line from the point to words that are not right beside it

@@ -219,12 +219,16 @@ class Panorama {
                                    std::min(all.y + all.height + 2,
                                             y(elevation_rad[static_cast<std::size_t>(b)]
                                                            [static_cast<std::size_t>(i)])));
-            std::vector<glm::dvec2> area = ridge;
-            area.emplace_back(all.x + all.width, all.y + all.height + 4);
-            area.emplace_back(all.x, all.y + all.height + 4);
-            drawing_->path(std::move(area), {.fill = ground_color(nearness(b))}, true);
-            drawing_->path(std::move(ridge), {.stroke = Color{kRidge.rgb, b == n - 1 ? 1.0 : 0.35},
-                                              .width = b == n - 1 ? 1.3 : 0.7});
+            // Its sides and its foot lie outside of the picture.
+            ridge.emplace_back(all.x + all.width + 4, ridge.back().y);
+            ridge.emplace_back(all.x + all.width + 4, all.y + all.height + 4);
+            ridge.emplace_back(all.x - 4, all.y + all.height + 4);
+            ridge.emplace_back(all.x - 4, ridge.front().y);
+            drawing_->path(std::move(ridge),
+                           {.fill = ground_color(nearness(b)),
+                            .stroke = Color{kRidge.rgb, b == n - 1 ? 1.0 : 0.35},
+                            .width = b == n - 1 ? 1.3 : 0.7},
+                           true);
         }
     }
 
@@ -358,6 +362,13 @@ class Panorama {
         }
         std::sort(summits.begin(), summits.end(),
                   [](const Summit& a, const Summit& b) { return a.rises_rad > b.rises_rad; });
+        // In the sky, not on ground that stands higher beside.
+        const Rect all = plot();
+        const double column = all.width / static_cast<double>(n);
+        for (const HorizonPoint& h : p) {
+            const double top = y(h.elevation_rad);
+            labels.keep_clear(Rect{x(h.azimuth_rad), top, column, all.y + all.height - top});
+        }
         constexpr std::size_t kMost = 14;
         if (summits.size() > kMost) summits.resize(kMost);
         for (const Summit& summit : summits) {

@@ -80,6 +80,19 @@ TEST(Drawing, SvgSaysWhatWasDrawn) {
         "</svg>\n");
 }
 
+TEST(Drawing, SvgLeavesOutPointsThatNobodySees) {
+    Drawing drawing(400, 400);
+    std::vector<glm::dvec2> circle;
+    for (int i = 0; i <= 2000; ++i)
+        circle.emplace_back(200 + 150 * std::cos(i / 1000.0 * 3.14159265358979),
+                            200 + 150 * std::sin(i / 1000.0 * 3.14159265358979));
+    drawing.path(circle, {.stroke = Color{0}});
+    const std::string svg = to_svg(drawing);
+    // 120 chords of this circle leave it by at most 150 (1 - cos(1.5 degrees)) = 0.05.
+    EXPECT_LT(svg.size(), 2500U);
+    EXPECT_GT(svg.size(), 900U);
+}
+
 TEST(Drawing, PixelsHaveTheColoursThatWereGiven) {
     Drawing drawing(40, 30);
     drawing.rect({5, 5, 20, 10}, {.fill = Color{0x1e90ff}});
