@@ -89,7 +89,7 @@ void capture(const Arguments& arguments) {
     const glm::ivec2 size = parse_size(arguments.size);
     const scene::View view = arguments.view.view_of();
     std::optional<sun::ParsedTime> given_time;
-    if (arguments.time.given()) given_time = arguments.time.parse();
+    if (arguments.time.given() && !arguments.time.needs_dem()) given_time = arguments.time.parse();
 
     // The DEM is read on a thread of its own while the device starts and the programs are compiled.
     auto loading = std::async(std::launch::async, [&] {
@@ -109,6 +109,8 @@ void capture(const Arguments& arguments) {
         render::dump_programs(renderer.texts(), arguments.dump_shaders);
     timings.add("compile", compile_began);
     const dem::Heightfield dem = loading.get();
+    if (arguments.time.given() && !given_time)
+        given_time = arguments.time.parse([&]() -> const dem::Heightfield& { return dem; });
 
     const auto upload_began = Clock::now();
     const render::Ground ground = render::make_ground(dem);
