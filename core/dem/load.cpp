@@ -10,7 +10,11 @@
 namespace relevo::dem {
 
 Heightfield load(const std::string& path, const LoadOptions& options) {
-    const Source source = Source::open(path, options);
+    return load(std::span(&path, 1), options);
+}
+
+Heightfield load(std::span<const std::string> paths, const LoadOptions& options) {
+    const Source source = Source::open(paths, options);
     const Grid& full = source.grid();
     const Window all{0, 0, full.columns(), full.rows()};
     Description about = source.description();
@@ -33,7 +37,7 @@ Heightfield load(const std::string& path, const LoadOptions& options) {
     const Statistics& s = about.statistics;
     if (s.valid == 0)
         bad_input(fmt::format(
-            "dem::load: {}: not one valid height, all {} posts are holes{}", path, s.holes,
+            "dem::load: {}: not one valid height, all {} posts are holes{}", about.path, s.holes,
             about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
     if (s.outliers > 0)
         about.assumptions.push_back(fmt::format(
@@ -42,15 +46,6 @@ Heightfield load(const std::string& path, const LoadOptions& options) {
             s.outliers));
     Grid grid = columns == all.columns && rows == all.rows ? full : full.part(all, columns, rows);
     return {std::move(height_m), std::move(grid), std::move(about)};
-}
-
-Heightfield load(std::span<const std::string> paths, const LoadOptions& options) {
-    if (paths.size() != 1)
-        bad_input(
-            fmt::format("dem::load: {}: the DEM, expected one raster but got {}; join several "
-                        "with gdalbuildvrt",
-                        paths.empty() ? std::string("nothing") : paths.front(), paths.size()));
-    return load(paths.front(), options);
 }
 
 }  // namespace relevo::dem

@@ -19,6 +19,8 @@ const char* name_of(UnitSource source) {
             return "band";
         case UnitSource::VerticalCrs:
             return "vertical crs";
+        case UnitSource::Encoding:
+            return "encoding";
         default:
             return "assumed";
     }
