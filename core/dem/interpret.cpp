@@ -329,9 +329,9 @@ Georeference georeference(const std::string& path, GDALDatasetH dataset, const L
                    "gdalwarp");
         const std::optional<WebTile> tile = web_tile(path);
         if (tile && options.crs.empty() && options.encoding != Encoding::None) {
-            guess(about, fmt::format("the place is that of the web map tile {}/{}/{} (zoom/x/y, y "
-                                     "from the north), by its path; --bounds sets another",
-                                     tile->zoom, tile->x, tile->y));
+            guess(about,
+                  "the place is that of the web map tile that the path names, zoom/x/y with y from "
+                  "the north");
             return {affine_of(*tile, columns, rows), geo::Crs::parse("EPSG:3857", who)};
         }
         refuse(path,

@@ -294,8 +294,9 @@ Source Source::open(std::span<const std::string> paths, const LoadOptions& optio
     for (const Piece& piece : impl->pieces)
         impl->threads_pay = impl->threads_pay || piece.threads_pay;
     if (impl->pieces.size() == 1) impl->block_rows = impl->pieces.front().block_rows;
+    // Of several files, what holds for one alone begins with its name.
     for (const std::string& sentence : impl->about.guesses)
-        log::info(fmt::format("{}: {}", impl->about.path, sentence));
+        log::info(paths.size() == 1 ? fmt::format("{}: {}", paths.front(), sentence) : sentence);
     return Source(std::move(impl));
 }
 
