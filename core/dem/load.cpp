@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/log.h"
+#include "dem/frame.h"
 
 namespace relevo::dem {
 
@@ -39,11 +41,25 @@ Heightfield load(std::span<const std::string> paths, const LoadOptions& options)
         bad_input(fmt::format(
             "dem::load: {}: not one valid height, all {} posts are holes{}", about.path, s.holes,
             about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
+    const auto guess = [&](const std::string& sentence) {
+        about.assumptions.push_back(sentence);
+        about.guesses.push_back(sentence);
+        log::info(fmt::format("{}: {}", about.path, sentence));
+    };
     if (s.outliers > 0)
-        about.assumptions.push_back(fmt::format(
-            "{} heights are below -11500 m or above 9000 m, which the Earth has not, "
-            "and are drawn as they are; --nodata V makes V a hole, --unit sets the unit",
-            s.outliers));
+        guess(
+            fmt::format("{} heights are below -11500 m or above 9000 m, which the Earth has not, "
+                        "and are drawn as they are; --nodata V makes V a hole, --unit sets the "
+                        "unit",
+                        s.outliers));
+    if (const std::optional<Frame> frame = find_frame(height_m))
+        guess(
+            fmt::format("the edge is {:g} m all around and the ground beside it {:.0f} m off, "
+                        "perhaps what is left around a turned raster; --nodata {:g} makes it a "
+                        "hole",
+                        frame->height_m, frame->step_m,
+                        (static_cast<double>(frame->height_m) - about.offset) / about.scale /
+                            about.unit.metres));
     Grid grid = columns == all.columns && rows == all.rows ? full : full.part(all, columns, rows);
     return {std::move(height_m), std::move(grid), std::move(about)};
 }
