@@ -288,18 +288,45 @@ std::optional<Affine> affine_in(const std::string& path, GDALDatasetH dataset) {
     return Affine{g[0] + (g[1] + g[2]) / 2, g[1], g[2], g[3] + (g[4] + g[5]) / 2, g[4], g[5]};
 }
 
-/// WKT of the file's CRS; empty where it has none, with GDAL's reason for that, if it has one.
-std::string crs_in(const std::string& path, GDALDatasetH dataset, std::string& reason) {
-    std::string text;
+/// What a file says of its CRS.
+struct FileCrs {
+    std::string wkt;     // empty: nothing
+    std::string reason;  // why GDAL could make nothing of it, where it says so
+    std::string name;    // of one that is not bound to the Earth
+};
+
+FileCrs crs_in(const std::string& path, GDALDatasetH dataset) {
+    FileCrs found;
     GdalMessages messages;  // of keys that make no CRS; what counts is whether one comes out
     if (OGRSpatialReferenceH srs = GDALGetSpatialRef(dataset)) {
         char* wkt = nullptr;
         constexpr std::array<const char*, 2> kForm = {"FORMAT=WKT2_2019", nullptr};
-        if (OSRExportToWktEx(srs, &wkt, kForm.data()) == OGRERR_NONE && wkt) text = wkt;
+        if (OSRExportToWktEx(srs, &wkt, kForm.data()) == OGRERR_NONE && wkt) found.wkt = wkt;
         CPLFree(wkt);
+        const char* name = OSRIsLocal(srs) ? OSRGetName(srs) : nullptr;
+        found.name = name ? name : "";
     }
-    reason = messages.failure(path);
-    return text;
+    found.reason = messages.failure(path);
+    return found;
+}
+
+/// The CRS that a file defines. GeoTIFF keys that GDAL cannot resolve leave only their name, which
+/// often is that of a known CRS.
+geo::Crs defined_crs(const FileCrs& in_file, const std::string& who, Description& about) {
+    try {
+        return geo::Crs::parse(in_file.wkt, who);
+    } catch (const Error&) {
+        if (in_file.name.empty()) throw;
+        try {
+            geo::Crs crs = geo::Crs::parse(in_file.name, who);
+            guess(about, fmt::format("the CRS is {}, by its name: the file does not define it; "
+                                     "--crs sets another",
+                                     crs.name()));
+            return crs;
+        } catch (const Error&) {
+        }
+        throw;
+    }
 }
 
 /// Whether cells like these are counted in degrees and not in metres: small, and all on the globe.
@@ -339,23 +366,23 @@ Georeference georeference(const std::string& path, GDALDatasetH dataset, const L
                "with --bounds W,S,E,N");
     }
 
-    std::string reason;
-    const std::string in_file = crs_in(path, dataset, reason);
+    const FileCrs in_file = crs_in(path, dataset);
     geo::Crs crs;
     if (!options.crs.empty()) {
         crs = geo::Crs::parse(options.crs, who);
         about.assumptions.push_back(fmt::format("the CRS is {}, as given{}", crs.name(),
-                                                in_file.empty() ? "" : ", not the file's own"));
-    } else if (!in_file.empty()) {
-        crs = geo::Crs::parse(in_file, who);
+                                                in_file.wkt.empty() ? "" : ", not the file's own"));
+    } else if (!in_file.wkt.empty()) {
+        crs = defined_crs(in_file, who, about);
     } else if (has_cf_lat_lon(dataset)) {
         about.assumptions.push_back(
             "the CRS is WGS 84: the file has latitude and longitude but names no datum; --crs sets "
             "another");
     } else if (!options.bounds) {
         if (!like_degrees(*affine, columns, rows))
-            refuse(path, fmt::format("no coordinate reference system{}; pass --crs EPSG:n",
-                                     reason.empty() ? "" : fmt::format(" ({})", reason)));
+            refuse(path,
+                   fmt::format("no coordinate reference system{}; pass --crs EPSG:n",
+                               in_file.reason.empty() ? "" : fmt::format(" ({})", in_file.reason)));
         guess(about,
               "the CRS is WGS 84: the file names none, and its coordinates are like degrees; --crs "
               "sets another");

@@ -57,7 +57,7 @@ std::optional<Encoding> guessed(const Picture& p) {
 
 TEST(PlausibleEncoding, TellsHeightsFromPhotographs) {
     const auto rough_m = [](int x, int y) {
-        return 2000 + 900 * std::sin(x * 0.3) * std::cos(y * 0.21) + 30 * ((x * 7 + y * 13) % 3);
+        return 2000 + 200 * std::sin(x * 0.3) * std::cos(y * 0.21) + 10 * ((x * 7 + y * 13) % 3);
     };
     EXPECT_EQ(guessed(picture(
                   [&](int x, int y) { return static_cast<int>((rough_m(x, y) + 10000) * 10); })),

@@ -222,12 +222,14 @@ TEST(LoadError, Picture) {
     raster.bands = 3;
     raster.columns = raster.rows = 64;
     raster.value = photograph;
+    raster.options = {"PHOTOMETRIC=MINISBLACK"};
     constexpr const char* kRemedy =
         ", expected heights; if its colours encode heights pass --encoding terrain-rgb or "
         "terrarium, if one band holds them --band N";
     // Colours that nobody noted are colours all the same.
     EXPECT_EQ(refusal("bands.tif", raster), "a picture (3 bands of 8 bits)" + std::string(kRemedy));
     raster.pictures = true;
+    raster.options = {};
     EXPECT_EQ(refusal("picture.tif", raster),
               "a picture (red, green and blue bands of 8 bits)" + std::string(kRemedy));
     raster.bands = 4;
@@ -271,9 +273,9 @@ TEST(LoadError, BoundsOutsideOfTheCrs) {
     Raster raster;
     raster.geotransform.reset();
     EXPECT_EQ(
-        refusal("bounds.tif", raster, {.crs = "EPSG:3857", .bounds = Bounds{10, -90, 20, 50}}),
-        "--bounds 10,-90,20,50 are not within WGS 84 / Pseudo-Mercator; pass the right CRS "
-        "with --crs EPSG:n");
+        refusal("bounds.tif", raster, {.crs = "EPSG:32632", .bounds = Bounds{100, 0, 101, 1}}),
+        "--bounds 100,0,101,1 are not within WGS 84 / UTM zone 32N; pass the right CRS with "
+        "--crs EPSG:n");
 }
 
 TEST(LoadError, DegreesInACrsOfMetres) {
@@ -285,21 +287,37 @@ TEST(LoadError, DegreesInACrsOfMetres) {
     EXPECT_NO_THROW(load((folder() / "degrees.tif").string(), {.crs = "EPSG:4326"}));
 }
 
-TEST(LoadError, GeoKeysThatNameNoCrs) {
-    const std::string path = write_raster(folder() / "keys.tif", {});
-    // The key of the projected CRS (3072, short, one of them, EPSG:32632) becomes a code that EPSG
-    // does not have.
+/// Replaces bytes of a file by as many others.
+void replace_bytes(const std::string& path, const std::string& from, const std::string& to) {
     std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
-    std::string bytes((std::istreambuf_iterator<char>(file)), {});
-    const std::uint16_t key[] = {3072, 0, 1, 32632};
-    const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(key), sizeof key));
+    const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+    const std::size_t at = bytes.find(from);
     ASSERT_NE(at, std::string::npos);
-    const std::uint16_t unknown = 31999;
+    ASSERT_EQ(from.size(), to.size());
     file.clear();
-    file.seekp(static_cast<std::streamoff>(at + 6));
-    file.write(reinterpret_cast<const char*>(&unknown), sizeof unknown);
-    file.close();
-    EXPECT_EQ(refusal(path), "");
+    file.seekp(static_cast<std::streamoff>(at));
+    file << to;
+}
+
+TEST(LoadError, GeoKeysOfAnUnknownCode) {
+    const std::string path = write_raster(folder() / "keys.tif", {});
+    // The key of the projected CRS (3072, one short number) gets a code that EPSG does not have.
+    const auto key = [](std::uint16_t code) {
+        const std::uint16_t numbers[] = {3072, 0, 1, code};
+        return std::string(reinterpret_cast<const char*>(numbers), sizeof numbers);
+    };
+    replace_bytes(path, key(32632), key(29999));
+    // The name is left.
+    const Heightfield f = load(path);
+    EXPECT_EQ(f.grid.crs().code(), "EPSG:32632");
+    EXPECT_EQ(f.about.guesses,
+              (std::vector<std::string>{"the CRS is WGS 84 / UTM zone 32N, by its name: the file "
+                                        "does not define it; --crs sets another"}));
+    replace_bytes(path, "WGS 84 / UTM zone 32N", "WGS 84 / UTM zone 92N");
+    EXPECT_EQ(refusal(path),
+              "WGS 84 / UTM zone 92N: a local (engineering) coordinate reference system, which "
+              "cannot place a raster; give a geographic or projected one of the Earth with --crs "
+              "EPSG:n");
     EXPECT_EQ(load(path, {.crs = "EPSG:32632"}).grid.crs().code(), "EPSG:32632");
 }
 
