@@ -27,7 +27,8 @@ struct Sun {
 Sun sun_over(const dem::Summary& summary, sun::Instant utc) {
     const geo::Geodetic& place = summary.center;
     const sun::Position position = sun::position(utc, place);
-    const double middle_m = 0.5 * (summary.min_m + summary.max_m);
+    // The air over a sea floor begins at the sea; outliers have none.
+    const double middle_m = std::clamp(0.5 * (summary.min_m + summary.max_m), 0.0, 9000.0);
     const sun::Refraction air = sun::Refraction::standard({place.lat_rad, place.lon_rad, middle_m});
     return {utc, degrees(position.azimuth_rad), degrees(position.elevation_rad),
             degrees(air.apparent_rad(position.elevation_rad))};
