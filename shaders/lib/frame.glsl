@@ -22,5 +22,6 @@ layout(std140, binding = 0) uniform Frame {
     vec4 ground_extent;       // xy: the DEM's south-west corner, zw: 1/its width and 1/its height, in ground_m
     float exposure;           // factor on radiance before tone mapping
     float footprint_limit;    // longest to shortest side of a pixel's footprint that textures resolve
-    float normal_texels_per_m;  // of the normal pages
+    float normal_texels_per_m;  // of the finest normal pages
+    float normal_levels;      // of normal pages
 } frame;
