@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/shared.h"
+#include "dem/pyramid.h"
 #include "dem/summary.h"
 #include "geo/local_frame.h"
 #include "render/patch_net.h"
@@ -40,9 +41,11 @@ struct NetError {
     double worst_m = 0;
 };
 
-/// Over pieces all over the DEM, at the height of its highest post.
+/// Over pieces all over the DEM, at the height of its highest post. The pieces are those of ground
+/// that is drawn post by post; what is drawn coarser counts its larger error as part of
+/// --pixel-error.
 NetError net_error(const dem::Heightfield& field) {
-    constexpr int kPosts = 256, kPieces = 4, kPoints = 16;
+    constexpr int kPosts = dem::Pyramid::kTileQuads, kPieces = 4, kPoints = 16;
     const geo::Geodetic center = field.grid.center();
     const geo::LocalFrame frame(center);
     const auto place = [&](double column, double row) { return field.grid.place(column, row); };
@@ -55,7 +58,8 @@ NetError net_error(const dem::Heightfield& field) {
         };
         const glm::dvec2 corner(first(k % kPieces, field.grid.columns()),
                                 first(k / kPieces, field.grid.rows()));
-        const render::PatchNet net = render::fit_patch_net(place, frame, corner, error.posts);
+        const render::PatchNet net =
+            render::fit_patch_net(place, frame, corner, glm::dvec2(error.posts));
         for (int i = 0; i <= kPoints * kPoints; ++i) {
             const glm::dvec2 at = glm::dvec2(i % kPoints, i / kPoints) / double{kPoints};
             geo::Geodetic exact =

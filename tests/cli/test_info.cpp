@@ -35,8 +35,8 @@ TEST(InfoVerb, SaysEverythingInLines) {
                   "they are above\n"
                   "sun        azimuth 114.27, elevation 65.12 (65.13 with refraction) at "
                   "2026-06-21T16:00:00Z\n"
-                  "net        pieces of 256 posts are drawn within 0.0042 m of where they are, "
-                  "5.6e-05 of the post spacing\n");
+                  "net        pieces of 64 posts are drawn within 0.00024 m of where they are, "
+                  "3.2e-06 of the post spacing\n");
 }
 
 TEST(InfoVerb, JsonHasTheSunAndTheNet) {
@@ -53,7 +53,7 @@ TEST(InfoVerb, JsonHasTheSunAndTheNet) {
     for (const char* key : {"azimuth_deg", "elevation_deg"})
         EXPECT_NEAR(json["sun"][key].get<double>(), position[key].get<double>(), 1e-4) << key;
     EXPECT_GT(json["sun"]["apparent_elevation_deg"], json["sun"]["elevation_deg"]);
-    EXPECT_EQ(json["position_net"]["piece_posts"], 256);
+    EXPECT_EQ(json["position_net"]["piece_posts"], 64);
     EXPECT_LT(json["position_net"]["error_m"].get<double>(), 0.75);
     EXPECT_EQ(json["spikes"]["count"], 0);
     EXPECT_EQ(json["spikes"]["limit_m"], 449.088);

@@ -164,7 +164,8 @@ TEST(PatchNet, ADemOf200KmShowsTheCurveOfTheEarthWithinAMetre) {
     double worst_m = 0, lowest_m = 0;
     for (int first_row = 0; first_row < 2160; first_row += 240)
         for (int first_column = 0; first_column < 2400; first_column += 240) {
-            const PatchNet net = fit_patch_net(place, frame, {first_column, first_row}, 240);
+            const PatchNet net =
+                fit_patch_net(place, frame, {first_column, first_row}, glm::dvec2(240));
             for (const glm::dvec2 at : {glm::dvec2(0, 0), glm::dvec2(0.3, 0.8), glm::dvec2(1, 1)}) {
                 const geo::Geodetic post =
                     grid.place(first_column + 240 * at.x, first_row + 240 * at.y);
