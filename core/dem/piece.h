@@ -60,8 +60,10 @@ struct Piece {
 
 /// Opens one file and settles what it means.
 /// @param options  of all files
+/// @param files    how many there are: of many, each is looked at less closely
 /// @param opened   becomes the handle that was used for it, as by Piece::open()
-Piece open_piece(const std::string& path, const LoadOptions& options, Dataset& opened);
+Piece open_piece(const std::string& path, const LoadOptions& options, std::size_t files,
+                 Dataset& opened);
 
 /// Gives each piece its place on one grid, which is returned, and says in `about` what was done.
 /// @throws Error (BadInput) where they cannot be joined

@@ -104,7 +104,7 @@ struct Source::Impl {
     Array2d<float> read_stored(const Window& window) const;
     Array2d<float> read_means(const Window& window, int columns, int rows) const;
     struct Sums;
-    void add_means(const Piece& piece, const Window& window, int columns, int rows,
+    void add_means(const Piece& piece, const Window& window, int columns, int rows, int first_row,
                    Sums& sums) const;
 };
 
@@ -177,16 +177,15 @@ Array2d<float> Source::Impl::read_stored(const Window& window) const {
     return height_m;
 }
 
-/// Sums over the parts of a window, in posts of the DEM.
+/// Sums over the parts of a window, in posts of the DEM; of some rows of parts.
 struct Source::Impl::Sums {
     Array2d<double> height;  // of valid posts, times area
     Array2d<double> area;    // of them
 };
 
+/// @param first_row  of the parts that are summed
 void Source::Impl::add_means(const Piece& piece, const Window& window, int columns, int rows,
-                             Sums& sums) const {
-    const Window shared = overlap(window, piece.place);
-    if (is_empty(shared)) return;
+                             int first_row, Sums& sums) const {
     const double columns_each = window.columns / double(columns);
     const double rows_each = window.rows / double(rows);
     const Level& level = coarsest_level(piece, columns_each, rows_each);
@@ -195,8 +194,9 @@ void Source::Impl::add_means(const Piece& piece, const Window& window, int colum
     const double per_row = level.rows / double(piece.place.rows);
     const auto across = parts_within(window.column - piece.place.column, columns_each, columns,
                                      per_column, level.columns);
-    const auto down =
-        parts_within(window.row - piece.place.row, rows_each, rows, per_row, level.rows);
+    const auto down = parts_within(window.row + first_row * rows_each - piece.place.row, rows_each,
+                                   sums.height.height(), per_row, level.rows);
+    if (across.parts.empty() || down.parts.empty()) return;
     const std::size_t first_column = across.parts.front().first;
     const std::size_t width = across.parts.back().end() - first_column;
     // A part of a huge raster without overviews does not fit into memory at once.
@@ -252,17 +252,22 @@ void Source::Impl::add_means(const Piece& piece, const Window& window, int colum
 }
 
 Array2d<float> Source::Impl::read_means(const Window& window, int columns, int rows) const {
-    Sums sums{Array2d<double>(columns, rows), Array2d<double>(columns, rows)};
-    for (const Piece& piece : pieces)
-        add_means(piece, window, columns, rows, sums);
     const double area =
         window.columns / double(columns) * (window.rows / double(rows)) * (1 - 1e-9);
     Array2d<float> result(columns, rows, kHole);
-    for (int row = 0; row < rows; ++row)
-        for (int column = 0; column < columns; ++column)
-            if (sums.area.at(column, row) >= 0.5 * area)
-                result.at(column, row) =
-                    static_cast<float>(sums.height.at(column, row) / sums.area.at(column, row));
+    // Sums take four times the memory of what they become.
+    const int band_rows = std::max(1, (1 << 22) / columns);
+    for (int first_row = 0; first_row < rows; first_row += band_rows) {
+        const int count = std::min(band_rows, rows - first_row);
+        Sums sums{Array2d<double>(columns, count), Array2d<double>(columns, count)};
+        for (const Piece& piece : pieces)
+            add_means(piece, window, columns, rows, first_row, sums);
+        for (int row = 0; row < count; ++row)
+            for (int column = 0; column < columns; ++column)
+                if (sums.area.at(column, row) >= 0.5 * area)
+                    result.at(column, first_row + row) =
+                        static_cast<float>(sums.height.at(column, row) / sums.area.at(column, row));
+    }
     return result;
 }
 
@@ -284,7 +289,7 @@ Source Source::open(std::span<const std::string> paths, const LoadOptions& optio
     std::vector<Dataset> opened(std::min(paths.size(), kMostIdle));
     for (std::size_t i = 0; i < paths.size(); ++i) {
         Dataset dataset;
-        impl->pieces.push_back(open_piece(paths[i], options, dataset));
+        impl->pieces.push_back(open_piece(paths[i], options, paths.size(), dataset));
         if (i < kMostIdle) opened[i] = std::move(dataset);
     }
     impl->grid = join(impl->pieces, impl->about);
