@@ -124,7 +124,8 @@ std::string to_text(const Summary& s) {
     line("posts", fmt::format("{} x {}", s.columns, s.rows));
     line("crs", s.crs.size() < 40 && s.crs != s.crs_name ? fmt::format("{} ({})", s.crs, s.crs_name)
                                                          : s.crs_name);
-    line("center", fmt::format("{} (UTM {}, MGRS {})", geo::degrees_text(s.center), s.utm, s.mgrs));
+    line("center", fmt::format("{} ({}{}, MGRS {})", geo::degrees_text(s.center),
+                               s.utm.starts_with("UPS") ? "" : "UTM ", s.utm, s.mgrs));
     line("extent", fmt::format("{} east, {} north", distance_text(s.extent_m.x),
                                distance_text(s.extent_m.y)));
     line("spacing", fmt::format("{} x {}", distance_text(s.post_spacing_m.x),
