@@ -9,6 +9,8 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "geo/geodetic.h"
+#include "light/event_time.h"
+#include "sun/event_time.h"
 
 namespace relevo::cli {
 
@@ -53,14 +55,28 @@ void DemArguments::add_to(CLI::App& verb) {
 
 void TimeArguments::add_to(CLI::App& verb) {
     verb.add_option("--time", time,
-                    "Moment: 2026-06-21T18:30+02:00, or without offset together with --tz");
+                    "Moment: 2026-06-21T18:30+02:00, or without offset together with --tz; or an "
+                    "event at a place, sunset-30min@46.55,8.56, together with --date and --tz");
+    verb.add_option("--date", date, "Day of the event in --time: 2026-06-21");
     verb.add_option("--tz", zone, "Time zone: Europe/Zurich, +05:30");
 }
 
-sun::ParsedTime TimeArguments::parse() const {
+bool TimeArguments::needs_dem() const {
+    return sun::is_event_time(time) && !sun::parse_event_time(time).event;
+}
+
+sun::ParsedTime TimeArguments::parse(const std::function<const dem::Heightfield&()>& dem) const {
     std::optional<sun::Zone> in_zone;
     if (!zone.empty()) in_zone = sun::Zone::named(zone);
-    sun::ParsedTime parsed = sun::parse_time(time, in_zone);
+    std::optional<sun::Date> on_date;
+    if (!date.empty()) {
+        if (!sun::is_event_time(time))
+            bad_usage(
+                "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
+                "day is written 2026-06-21T18:30");
+        on_date = sun::parse_date(date);
+    }
+    sun::ParsedTime parsed = light::parse_time(time, on_date, in_zone, dem);
     if (!parsed.note.empty()) log::info(parsed.note);
     return parsed;
 }
