@@ -221,16 +221,19 @@ Pyramid::Level Pyramid::nodes_of_means(const Array2d<float>& means, glm::ivec2 f
     const int side = 1 << (level - 1);  // of a mean [posts]
     const float before = 0.5f * static_cast<float>(side - 1) / static_cast<float>(side);
     const std::array<float, 2> weight{before, 1 - before};
+    // The last nodes may lie beyond what the means cover: the last of these stand for it.
+    const glm::ivec2 last_mean = size(0) / side - 1;
     Level nodes{Array2d<float>(count.x, count.y), Array2d<std::uint8_t>(count.x, count.y), {}};
     parallel_for(0, count.y, 64, [&](int begin, int end) {
         for (int y = begin; y < end; ++y) {
             for (int x = 0; x < count.x; ++x) {
                 float sum = 0, covered = 0, whole = 0;
                 for (int j = 0; j < 2; ++j) {
-                    const int row = 2 * (first.y + y) - 1 + j - first_mean.y;
+                    const int row = std::min(2 * (first.y + y) - 1 + j, last_mean.y) - first_mean.y;
                     if (row < 0 || row >= means.height()) continue;
                     for (int i = 0; i < 2; ++i) {
-                        const int column = 2 * (first.x + x) - 1 + i - first_mean.x;
+                        const int column =
+                            std::min(2 * (first.x + x) - 1 + i, last_mean.x) - first_mean.x;
                         if (column < 0 || column >= means.width()) continue;
                         const float w = weight[static_cast<std::size_t>(i)] *
                                         weight[static_cast<std::size_t>(j)];
