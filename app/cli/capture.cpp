@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -50,8 +51,10 @@ class Timings {
         stages_[stage] = milliseconds(began, Clock::now());
     }
 
+    /// @param processor_ms  of all threads, for all frames
     void write(const std::filesystem::path& path, const render::PassTimes& passes,
-               std::vector<double> frames_ms, int triangles, const gl::DeviceInfo& device) {
+               std::vector<double> frames_ms, double processor_ms, int triangles,
+               const gl::DeviceInfo& device) {
         nlohmann::ordered_json json;
         json["device"] = device.renderer;
         json["triangles"] = triangles;
@@ -62,10 +65,12 @@ class Timings {
             pass_json[name] = ms;
         if (!frames_ms.empty()) {
             std::sort(frames_ms.begin(), frames_ms.end());
-            json["frames"] = {{"count", frames_ms.size()},
-                              {"min_ms", frames_ms.front()},
-                              {"median_ms", frames_ms[frames_ms.size() / 2]},
-                              {"max_ms", frames_ms.back()}};
+            json["frames"] = {
+                {"count", frames_ms.size()},
+                {"min_ms", frames_ms.front()},
+                {"median_ms", frames_ms[frames_ms.size() / 2]},
+                {"max_ms", frames_ms.back()},
+                {"processor_ms", processor_ms / static_cast<double>(frames_ms.size())}};
         }
         std::ofstream file(path);
         file << json.dump(2) << '\n';
@@ -161,13 +166,17 @@ void capture(const Arguments& arguments) {
 
     if (timed) {
         std::vector<double> frames_ms;
+        const std::clock_t processor_began = std::clock();
         for (int i = 0; i < arguments.repeat; ++i) {
             const auto began = Clock::now();
             renderer.render_frame(terrain, ground, inputs);
             context.finish();
             frames_ms.push_back(milliseconds(began, Clock::now()));
         }
-        timings.write(arguments.timings, passes, frames_ms, renderer.triangles(), context.info());
+        const double processor_ms =
+            1e3 * static_cast<double>(std::clock() - processor_began) / CLOCKS_PER_SEC;
+        timings.write(arguments.timings, passes, frames_ms, processor_ms, renderer.triangles(),
+                      context.info());
     }
 }
 

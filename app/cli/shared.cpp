@@ -15,7 +15,8 @@
 namespace relevo::cli {
 
 void DemArguments::add_to(CLI::App& verb) {
-    verb.add_option("DEM", paths, "Elevation raster: anything GDAL opens")->required();
+    verb.add_option("DEM", paths, "Elevation rasters: anything GDAL opens; several are one DEM")
+        ->required();
     verb.add_option("--crs", options.crs,
                     "Coordinate reference system instead of the file's (EPSG:n, WKT)")
         ->group("DEM");
@@ -24,7 +25,32 @@ void DemArguments::add_to(CLI::App& verb) {
         ->group("DEM");
     verb.add_option("--unit", options.unit, "Unit of the heights: m, ft, us-ft, cm, km")
         ->group("DEM");
-    verb.add_option("--nodata", options.nodata, "Stored value that marks a hole")->group("DEM");
+    verb.add_option_function<std::string>(
+            "--nodata",
+            [this](const std::string& text) {
+                const std::optional<double> value = parse_number(text);
+                options.no_nodata = text == "none" || text == "nan";  // NaN is a hole always
+                if (!value && !options.no_nodata)
+                    bad_usage(
+                        fmt::format("--nodata: expected a number or none but got \"{}\"", text));
+                options.nodata = value;
+            },
+            "Stored value that marks a hole; none: no value does")
+        ->group("DEM");
+    verb.add_option_function<std::string>(
+            "--encoding",
+            [this](const std::string& text) {
+                options.encoding = dem::parse_encoding(text, "--encoding");
+            },
+            "Heights in the colours of a picture: terrain-rgb, terrarium")
+        ->group("DEM");
+    verb.add_option_function<std::string>(
+            "--bounds",
+            [this](const std::string& text) {
+                options.bounds = dem::parse_bounds(text, "--bounds");
+            },
+            "Edges of the raster instead of its georeference: W,S,E,N in degrees")
+        ->group("DEM");
 }
 
 void TimeArguments::add_to(CLI::App& verb) {

@@ -22,7 +22,7 @@ namespace relevo::cli {
 /// DEM... and how to read it.
 struct DemArguments {
     std::vector<std::string> paths;
-    dem::LoadOptions options;
+    dem::LoadOptions options;  ///< valid once the line has been parsed
 
     void add_to(CLI::App& verb);
 };
