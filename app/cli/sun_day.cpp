@@ -78,19 +78,20 @@ ordered_json day_json(const Result& result, std::size_t i) {
         events.push_back({{"kind", sun::name_of(event.kind)},
                           {"utc", utc_json(event.utc)},
                           {"local", sun::to_iso(event.utc, result.asked.zone)},
-                          {"azimuth_deg", degrees(event.azimuth_rad)},
-                          {"elevation_deg", degrees(event.elevation_rad)}});
+                          {"azimuth_deg", angle_deg(event.azimuth_rad)},
+                          {"elevation_deg", angle_deg(event.elevation_rad)}});
     if (!result.light.empty()) {
         ordered_json& lit = json["direct_sun"] = ordered_json::array();
         for (const light::LitInterval& interval : result.light[i].lit)
-            lit.push_back({{"first_utc", utc_json(interval.begin.utc)},
-                           {"last_utc", utc_json(interval.end.utc)},
-                           {"first_azimuth_deg", degrees(interval.begin.azimuth_rad)},
-                           {"last_azimuth_deg", degrees(interval.end.azimuth_rad)},
-                           {"first_apparent_elevation_deg", degrees(interval.begin.elevation_rad)},
-                           {"last_apparent_elevation_deg", degrees(interval.end.elevation_rad)},
-                           {"from_midnight", interval.begin.midnight},
-                           {"to_midnight", interval.end.midnight}});
+            lit.push_back(
+                {{"first_utc", utc_json(interval.begin.utc)},
+                 {"last_utc", utc_json(interval.end.utc)},
+                 {"first_azimuth_deg", angle_deg(interval.begin.azimuth_rad)},
+                 {"last_azimuth_deg", angle_deg(interval.end.azimuth_rad)},
+                 {"first_apparent_elevation_deg", angle_deg(interval.begin.elevation_rad)},
+                 {"last_apparent_elevation_deg", angle_deg(interval.end.elevation_rad)},
+                 {"from_midnight", interval.begin.midnight},
+                 {"to_midnight", interval.end.midnight}});
         json["direct_sun_h"] = result.light[i].lit_s / 3600;
     }
     return json;

@@ -41,18 +41,18 @@ ordered_json json_of(const light::TerrainHorizon& horizon,
     ordered_json& points = json["horizon"] = ordered_json::array();
     for (const light::HorizonPoint& p : profile) {
         const geo::Geodetic at = horizon.place_of(p);
-        points.push_back({{"azimuth_deg", degrees(p.azimuth_rad)},
-                          {"horizon_deg", degrees(p.elevation_rad)},
+        points.push_back({{"azimuth_deg", angle_deg(p.azimuth_rad)},
+                          {"horizon_deg", angle_deg(p.elevation_rad)},
                           {"distance_m", number_or_null(p.distance_m)},
-                          {"lat_deg", number_or_null(degrees(at.lat_rad))},
-                          {"lon_deg", number_or_null(degrees(at.lon_rad))},
+                          {"lat_deg", number_or_null(angle_deg(at.lat_rad))},
+                          {"lon_deg", number_or_null(angle_deg(at.lon_rad))},
                           {"height_m", number_or_null(p.height_m)},
                           {"hole", p.hole}});
     }
     ordered_json& open = json["open_sectors"] = ordered_json::array();
     for (const light::OpenSector& s : sectors)
-        open.push_back({{"from_azimuth_deg", degrees(s.from_azimuth_rad)},
-                        {"to_azimuth_deg", degrees(s.to_azimuth_rad)},
+        open.push_back({{"from_azimuth_deg", angle_deg(s.from_azimuth_rad)},
+                        {"to_azimuth_deg", angle_deg(s.to_azimuth_rad)},
                         {"reach_m", s.reach_m},
                         {"needed_m", s.needed_m}});
     return json;

@@ -220,9 +220,13 @@ void OutputArguments::write(const nlohmann::ordered_json& object) const {
 }
 
 nlohmann::ordered_json place_json(const geo::Geodetic& place) {
-    return {{"lat_deg", degrees(place.lat_rad)},
-            {"lon_deg", degrees(place.lon_rad)},
+    return {{"lat_deg", angle_deg(place.lat_rad)},
+            {"lon_deg", angle_deg(place.lon_rad)},
             {"height_m", place.height_m}};
+}
+
+double angle_deg(double angle_rad) {
+    return std::round(degrees(angle_rad) * 1e8) / 1e8;
 }
 
 nlohmann::ordered_json utc_json(const std::optional<sun::Instant>& utc) {

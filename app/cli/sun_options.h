@@ -96,6 +96,9 @@ struct OutputArguments {
 /// "46.55,8.56" as --at takes it, whole.
 nlohmann::ordered_json place_json(const geo::Geodetic& place);
 
+/// An angle in degrees, rounded to 0.04 milliarcseconds: 236.9, not 236.89999999999998.
+double angle_deg(double angle_rad);
+
 /// The moment in UTC with milliseconds, or null.
 nlohmann::ordered_json utc_json(const std::optional<sun::Instant>& utc);
 

@@ -34,11 +34,11 @@ ordered_json json_of(const light::Alignments& found, const light::TerrainHorizon
     json["place"] = place_json(horizon.place());
     json["eye_m"] = horizon.eye_m();
     json["target"] = place_json(found.target);
-    json["sight"] = {{"azimuth_deg", degrees(found.sight.azimuth_rad)},
-                     {"elevation_deg", degrees(found.sight.elevation_rad)},
+    json["sight"] = {{"azimuth_deg", angle_deg(found.sight.azimuth_rad)},
+                     {"elevation_deg", angle_deg(found.sight.elevation_rad)},
                      {"distance_m", found.sight.distance_m},
                      {"visible", found.sight.visible},
-                     {"hidden_by_deg", degrees(found.sight.hidden_by_rad)}};
+                     {"hidden_by_deg", angle_deg(found.sight.hidden_by_rad)}};
     json["zone"] = zone.name();
     json["definition"] = found.definition;
     ordered_json& passages = json["passages"] = ordered_json::array();
@@ -46,11 +46,11 @@ ordered_json json_of(const light::Alignments& found, const light::TerrainHorizon
         passages.push_back({{"utc", utc_json(p.utc)},
                             {"local", sun::to_iso(p.utc, zone)},
                             {"date", sun::to_string(p.date)},
-                            {"separation_deg", degrees(p.separation_rad)},
-                            {"right_deg", degrees(p.right_rad)},
-                            {"above_deg", degrees(p.above_rad)},
-                            {"azimuth_deg", degrees(p.azimuth_rad)},
-                            {"apparent_elevation_deg", degrees(p.elevation_rad)},
+                            {"separation_deg", angle_deg(p.separation_rad)},
+                            {"right_deg", angle_deg(p.right_rad)},
+                            {"above_deg", angle_deg(p.above_rad)},
+                            {"azimuth_deg", angle_deg(p.azimuth_rad)},
+                            {"apparent_elevation_deg", angle_deg(p.elevation_rad)},
                             {"sun_visible", p.sun_visible}});
     return json;
 }

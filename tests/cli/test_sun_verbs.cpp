@@ -211,6 +211,11 @@ TEST(SunHorizonVerb, WarnsWhereTheRidgeMayLieBeyondTheDem) {
         << near_edge.err;
     EXPECT_NE(near_edge.err.find("terrain of 1076 m would stand over this horizon as far as"),
               std::string::npos);
+    // Directions less than two degrees apart are one for a reader, not for a program.
+    const Result broken =
+        relevo({"sun", "horizon", bundled_dem(), "--at", "36.30,-84.30", "--json"});
+    EXPECT_EQ(json::parse(broken.out)["open_sectors"].size(), 4U);
+    EXPECT_EQ(split(broken.err, '\n').size(), 2U + 1);
     const Result low = relevo(
         {"sun", "horizon", bundled_dem(), "--at", "36.30,-84.40", "--csv", "--highest", "200"});
     EXPECT_EQ(low.err, "");
