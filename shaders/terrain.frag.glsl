@@ -1,9 +1,11 @@
 //! provides  the light that a visible point of the terrain sends to the eye
 //! reads     place (geometry.frag.glsl), normal pages
-//! writes    radiance, linear; overlay, premultiplied sRGB
+//! writes    radiance, linear, exposed; overlay, premultiplied sRGB
 
+//@ include lib/exposed.glsl
 //@ include lib/ground.glsl
 //@ include lib/pages.glsl
+//@ include lib/tangent.glsl
 
 uniform usampler2D place;
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
@@ -48,7 +50,7 @@ void main() {
     slope *= frame.height_range.z;
     s.geometric_normal = normalize(slope.x * east + slope.y * north + rise * s.up);
 #endif
-    s.tangent = normalize(vec3(1.0, 0.0, 0.0) - s.geometric_normal.x * s.geometric_normal);
+    s.tangent = tangent_of(s.geometric_normal);
     s.bitangent = cross(s.geometric_normal, s.tangent);
     s.normal = s.geometric_normal;
 
@@ -60,6 +62,10 @@ void main() {
     s.ground_dx_m = dx * min(1.0, most / length(dx));
     s.ground_dy_m = dy * min(1.0, most / length(dy));
 
+    s.texture_at = s.ground_m.xy;
+    s.texture_dx = s.ground_dx_m.xy;
+    s.texture_dy = s.ground_dy_m.xy;
+    s.gloss = 1.0;
     s.material = ivec2(0);
     s.material_weight = vec2(1.0, 0.0);
     s.diffuse = vec3(0.3);
@@ -85,5 +91,5 @@ void main() {
     vec3 radiance = s.emissive + irradiance * lit * hook_brdf(s, to_sun, -view) + s.ambient * sky;
     hook_lit(s, radiance);
     hook_atmosphere(s, view, radiance);
-    radiance_out = vec4(radiance, 1.0);
+    radiance_out = vec4(exposed(radiance), 1.0);
 }

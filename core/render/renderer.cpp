@@ -51,6 +51,7 @@ struct Renderer::Impl {
     LinkedProgram geometry, terrain, sky, post, edges, antialias;
     EffectTextures effect_textures;
     gl::Buffer frame_block;
+    double exposure = 1;  // of the last frame
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
 
@@ -239,6 +240,7 @@ void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameI
         impl_->anisotropy > 1 ? impl_->anisotropy : kFootprintWithoutAnisotropy;
     const FrameBlock block = make_frame_block(inputs, ground, impl_->options.width_px,
                                               impl_->options.height_px, footprint);
+    impl_->exposure = block.exposure;
     impl_->draw(terrain, block, inputs.camera.eye_m, times);
 }
 
@@ -264,13 +266,15 @@ image::ImageF Renderer::read_radiance() const {
     std::vector<float> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
                               4);
     impl_->radiance.read_floats(texels);
+    // The passes store exposed light.
+    const auto scale = static_cast<float>(1 / impl_->exposure);
     image::ImageF picture(width, height, 3);
     for (int y = 0; y < height; ++y) {
         const float* from = texels.data() + static_cast<std::size_t>(height - 1 - y) *
                                                 static_cast<std::size_t>(width) * 4;
         float* to = picture.row(y);
         for (int x = 0; x < width; ++x, from += 4, to += 3)
-            std::copy_n(from, 3, to);
+            std::transform(from, from + 3, to, [&](float value) { return value * scale; });
     }
     return picture;
 }

@@ -1,7 +1,7 @@
 //! provides  materials: sand, grass, rock, snow by elevation and slope, two at most at a point
 //! hook      albedo
 //! reads     height [m and 0..1], slope, latitude, ground coordinates [m]
-//! writes    material, material_weight, diffuse, ambient, specular, emissive, shininess
+//! writes    material, material_weight, texture_at, gloss, diffuse, ambient, specular, emissive, shininess
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section 3.1 and table 1
 
@@ -129,10 +129,13 @@ void layering_on_albedo(inout Surface s) {
 
     vec2 at = s.ground_m.xy * texture_scale.xy;
     vec2 dx = s.ground_dx_m.xy * texture_scale.xy, dy = s.ground_dy_m.xy * texture_scale.xy;
-    vec3 albedo = most * layering_read(at, dx, dy, first).rgb +
-                  next * layering_read(at, dx, dy, second).rgb;
-    albedo *= 1.0 + layering_variation * noise;
+    vec4 read = most * layering_read(at, dx, dy, first) + next * layering_read(at, dx, dy, second);
+    vec3 albedo = read.rgb * (1.0 + layering_variation * noise);
 
+    s.texture_at = at;
+    s.texture_dx = dx;
+    s.texture_dy = dy;
+    s.gloss = read.a;
     s.diffuse = albedo * dot(layering_diffuse, weights);
     s.ambient = albedo * dot(layering_ambient, weights);
     s.specular = vec3(dot(layering_specular, weights));
