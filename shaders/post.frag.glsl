@@ -8,8 +8,16 @@ uniform sampler2D radiance;
 
 layout(location = 0) out vec4 colour_out;
 
+/// Rounds to 8 bits up or down by where the pixel is, so that a sky's gradient does not end in steps.
+/// source: J. Jimenez, Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014
+/// course, slide 123: interleaved gradient noise
+vec3 dithered(in vec3 colour) {
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    return colour + (noise - 0.5) / 255.0;
+}
+
 void main() {
     vec3 colour = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
     hook_tonemap(colour);
-    colour_out = vec4(srgb_encoded(colour), 1.0);
+    colour_out = vec4(dithered(srgb_encoded(colour)), 1.0);
 }

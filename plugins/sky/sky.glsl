@@ -18,9 +18,9 @@ uniform float sky_horizon = 0.5; //@ range(0.05, 2) label("Horizon") description
 uniform float sky_day_deg = 25.0; //@ angle range(1, 90) unit(deg) label("Day from") description("Height of the sun from which on the day's texture is shown alone; of the three")
 uniform float sky_night_deg = -12.0; //@ angle range(-90, -1) unit(deg) label("Night from") description("Height of the sun below which the night's texture is shown alone; of the three")
 
-uniform vec3 sky_powers = vec3(16.0, 50.0, 150.0); //@ range(1, 100000) label("Powers") description("Exponents of equation 1: the broadest and brightest glow first")
-uniform vec3 sky_weights = vec3(0.133, 0.620, 0.246); //@ range(0, 1) label("Weights") description("Of those powers; all 1 in the paper")
-uniform float sky_aureole = 0.98; //@ range(0, 100) label("Aureole") description("Brightness of the glow, as a multiple of the sun's light at the eye")
+uniform vec3 sky_powers = vec3(9.0, 36.0, 120.0); //@ range(1, 100000) label("Powers") description("Exponents of equation 1: the broadest and brightest glow first")
+uniform vec3 sky_weights = vec3(0.119, 0.527, 0.354); //@ range(0, 1) label("Weights") description("Of those powers; all 1 in the paper")
+uniform float sky_aureole = 0.5; //@ range(0, 100) label("Aureole") description("Brightness of the glow, as a multiple of the sun's light at the eye")
 uniform bool sky_air_mass = true; //@ static label("Aureole by air mass") description("A low sun shines through more haze; off in the paper")
 uniform float sky_disc_power = 65000.0; //@ range(100, 1000000) label("Power of the disc") description("65000 falls to one half at 0.265 degrees: the sun's true size")
 uniform float sky_disc = 30.0; //@ range(0, 10000) label("Disc") description("Brightness of the sun's disc, as a multiple of its light at the eye")
@@ -31,7 +31,7 @@ uniform bool sky_slopes = true; //@ static label("Light by direction") descripti
 const float sky_fold = 0.14;       // tools/sky/textures.h: how heights of the sun are spread ...
 const float sky_lowest = 0.68822;  // ... over the slices: folded(sin 18 deg)
 const float sky_span = 1.56541;    // folded(1) + folded(sin 18 deg)
-const vec3 sky_size = vec3(32.0, 64.0, 40.0);        // texels of the radiance
+const vec3 sky_size = vec3(48.0, 64.0, 40.0);        // texels of the radiance
 const vec3 sky_light_size = vec3(12.0, 12.0, 40.0);  // and of the light
 
 /// The horizontal part of a direction, unit length; 0 at the zenith, which has none.

@@ -15,7 +15,7 @@ constexpr double kRayleighScale_m = 8000;
 constexpr double kAerosolScale_m = 1200;
 constexpr double kAerosolAlbedo = 0.93;  // what it scatters of what it takes
 constexpr double kForward = 0.8;         // Henyey and Greenstein's g
-constexpr double kAureole_rad = radians(25.0);
+constexpr double kAureole_rad = radians(45.0);
 constexpr double kGround = 0.12;  // reflectance of the Earth
 constexpr double kSunRadius_rad = radians(0.2666);
 
@@ -232,7 +232,7 @@ Spectrum Atmosphere::many(double height_m, double sun_sine) const {
 }
 
 Atmosphere::Radiance Atmosphere::radiance(double sine, double sun_sine, double azimuth_cos) const {
-    constexpr int kSteps = 64;
+    constexpr int kSteps = 40;
     const double cosine =
         sine * sun_sine +
         azimuth_cos * std::sqrt(std::max(0.0, (1 - sine * sine) * (1 - sun_sine * sun_sine)));

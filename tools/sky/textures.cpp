@@ -27,7 +27,7 @@ glm::dvec3 night_radiance(double sine) {
     // The true colour of the night sky is a dull white, which eyes do not see as one: rods have no
     // colours, and pictures of nights are blue by convention.
     const glm::dvec3 kTint{0.66, 0.98, 1.95};
-    return kNight * 0.72 * kTint * (glow * glm::exp(-0.8 * kDepth * air) + 0.35);
+    return kNight * 0.72 * kTint * (glow * glm::exp(-0.2 * kDepth * air) + 0.35);
 }
 
 void write_texel(std::span<std::byte> texels, std::size_t index, const glm::dvec3& colour) {
@@ -53,10 +53,11 @@ Skies make_skies(const Atmosphere& air, double sun_sine) {
     parallel_for(0, Layout::kUp, 1, [&](int first, int last) {
         for (int y = first; y < last; ++y) {
             for (int x = 0; x < Layout::kAround; ++x) {
-                const double t = y / (Layout::kUp - 1.0), s = x / (Layout::kAround - 1.0);
+                const double sine = Layout::sine_of(y / (Layout::kUp - 1.0));
+                const double s = x / (Layout::kAround - 1.0);
                 const auto at = static_cast<std::size_t>(y * Layout::kAround + x);
-                const Atmosphere::Radiance lit = air.radiance(t * t, sun_sine, 2 * s - 1);
-                const glm::dvec3 night = night_radiance(t * t);
+                const Atmosphere::Radiance lit = air.radiance(sine, sun_sine, 2 * s - 1);
+                const glm::dvec3 night = night_radiance(sine);
                 // Interpolated texels must not reach below black where a colour is outside of sRGB.
                 skies.bare[at] = glm::max(colour_of(lit.sky), glm::dvec3(0)) + night;
                 skies.whole[at] = skies.bare[at] + glm::max(colour_of(lit.aureole), glm::dvec3(0));
@@ -109,6 +110,11 @@ image::TextureData texture(int width, int height, int depth) {
 }
 
 }  // namespace
+
+double Layout::sine_of(double t) {
+    constexpr double kEnd = 0.0192;  // sin 1.1 deg
+    return std::min(1.0, std::sqrt(t * t * t * t + kEnd * kEnd));
+}
 
 double Layout::slice_of(double sun_sine) {
     const auto folded = [](double y) { return y / (kFold + std::abs(y)); };
