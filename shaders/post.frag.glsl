@@ -5,6 +5,7 @@
 //@ include lib/srgb.glsl
 
 uniform sampler2D radiance;
+uniform sampler2D overlay;  // premultiplied sRGB, where an effect has the hook display
 
 layout(location = 0) out vec4 colour_out;
 
@@ -19,5 +20,10 @@ vec3 dithered(in vec3 colour) {
 void main() {
     vec3 colour = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb;
     hook_tonemap(colour);
-    colour_out = vec4(dithered(srgb_encoded(colour)), 1.0);
+    colour = srgb_encoded(colour);
+#ifdef DISPLAY_OVERLAY
+    vec4 over = texelFetch(overlay, ivec2(gl_FragCoord.xy), 0);
+    colour = colour * (1.0 - over.a) + over.rgb;
+#endif
+    colour_out = vec4(dithered(colour), 1.0);
 }

@@ -11,6 +11,9 @@ uniform usampler2D place;
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
 
 layout(location = 0) out vec4 radiance_out;
+#ifdef DISPLAY_OVERLAY
+layout(location = 1) out vec4 overlay_out;
+#endif
 
 /// Where the ray of the neighbouring pixel meets the plane of this point, from this point.
 vec3 footprint(in vec3 position, in vec3 normal, in vec3 ray, in vec3 ray_step) {
@@ -92,4 +95,8 @@ void main() {
     hook_lit(s, radiance);
     hook_atmosphere(s, view, radiance);
     radiance_out = vec4(exposed(radiance), 1.0);
+#ifdef DISPLAY_OVERLAY
+    overlay_out = vec4(0.0);
+    hook_display(s, overlay_out);
+#endif
 }

@@ -17,7 +17,11 @@ struct ProgramText {
 
 struct ProgramOptions {
     bool vertex_normals = false;  ///< per vertex instead of per fragment
+    bool overlay = false;         ///< the hook `display` has providers
 };
+
+/// Whether any of the effects draws over the finished picture.
+bool has_overlay(const shader::StitchInput& input);
 
 /// Stitches all programs of a frame. @throws Error as shader::stitch
 std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,

@@ -55,9 +55,9 @@ struct Renderer::Impl {
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
 
-    gl::Texture place, depth, radiance, tone_mapped, edge_marks, picture;
+    gl::Texture place, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     std::vector<gl::Texture> varyings;
-    gl::Framebuffer geometry_target, radiance_target, post_target, picture_target;
+    gl::Framebuffer geometry_target, terrain_target, radiance_target, post_target, picture_target;
 
     Impl(gl::Context& c, const EffectInputs& effects, const RendererOptions& o)
         : context(c),
@@ -104,6 +104,10 @@ struct Renderer::Impl {
             outputs.push_back(&texture);
         geometry_target = gl::Framebuffer(outputs, &depth, "geometry");
         radiance_target = gl::Framebuffer({&radiance}, &depth, "radiance");
+        if (has_overlay(effects.stitch)) {
+            overlay = target(gl::Format::RGBA8, "overlay");
+            terrain_target = gl::Framebuffer({&radiance, &overlay}, &depth, "terrain");
+        }
         post_target = gl::Framebuffer({&tone_mapped}, nullptr, "post");
         picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
     }
@@ -113,7 +117,8 @@ struct Renderer::Impl {
         const shader::FolderTexts core(share_dir() / "shaders");
         const bool vertex_normals = input.values && input.values->find(kNormalAddress) &&
                                     input.values->value(kNormalAddress)[0] == 1;
-        return stitch_programs(core, input, {.vertex_normals = vertex_normals});
+        return stitch_programs(core, input,
+                               {.vertex_normals = vertex_normals, .overlay = has_overlay(input)});
     }
 
     const ProgramText& text(const std::string& name) const {
@@ -142,6 +147,7 @@ struct Renderer::Impl {
     const gl::Texture* core_texture(const std::string& name, const Terrain& ground) const {
         if (name == "place") return &place;
         if (name == "radiance") return &radiance;
+        if (name == "overlay") return &overlay;
         if (name == "colour") return &tone_mapped;
         if (name == "depth") return &depth;
         if (name == "height_pages") return &ground.height_pages();
@@ -185,12 +191,15 @@ struct Renderer::Impl {
 
         // The full-screen triangle lies at depth 0, the far end: "less" lets it through where
         // something nearer was drawn, "equal" where nothing was.
-        radiance_target.bind();
+        const bool overlaid = overlay.name() != 0;
+        (overlaid ? terrain_target : radiance_target).bind();
+        if (overlaid) terrain_target.clear_colour(1, glm::vec4(0));
         glDepthMask(GL_FALSE);
         glDepthFunc(GL_LESS);
         bind(terrain, ground);
         draw_fullscreen();
         passed("terrain");
+        radiance_target.bind();
         glDepthFunc(GL_EQUAL);
         bind(sky, ground);
         draw_fullscreen();

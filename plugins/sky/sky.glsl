@@ -18,8 +18,8 @@ uniform float sky_horizon = 0.5; //@ range(0.05, 2) label("Horizon") description
 uniform float sky_day_deg = 25.0; //@ angle range(1, 90) unit(deg) label("Day from") description("Height of the sun from which on the day's texture is shown alone; of the three")
 uniform float sky_night_deg = -12.0; //@ angle range(-90, -1) unit(deg) label("Night from") description("Height of the sun below which the night's texture is shown alone; of the three")
 
-uniform vec3 sky_powers = vec3(9.0, 36.0, 120.0); //@ range(1, 100000) label("Powers") description("Exponents of equation 1: the broadest and brightest glow first")
-uniform vec3 sky_weights = vec3(0.119, 0.527, 0.354); //@ range(0, 1) label("Weights") description("Of those powers; all 1 in the paper")
+uniform float sky_power = 9.0; //@ range(1, 4000) label("Power") description("Least exponent of equation 1; the next two are 4 and 16 times it")
+uniform vec3 sky_weights = vec3(0.133, 0.532, 0.346); //@ range(0, 1) label("Weights") description("Of those three powers; all 1 in the paper")
 uniform float sky_aureole = 0.5; //@ range(0, 100) label("Aureole") description("Brightness of the glow, as a multiple of the sun's light at the eye")
 uniform bool sky_air_mass = true; //@ static label("Aureole by air mass") description("A low sun shines through more haze; off in the paper")
 uniform float sky_disc_power = 65000.0; //@ range(100, 1000000) label("Power of the disc") description("65000 falls to one half at 0.265 degrees: the sun's true size")
@@ -56,22 +56,23 @@ float sky_t(in vec3 direction, in vec3 up, in float exponent) {
     return pow(clamp(dot(direction, up), 0.0, 1.0), exponent);
 }
 
-/// A power of a cosine, as equation 1 has it: (L . V)^k. The cosine of a small angle has lost the
-/// angle by the time it is a float: with k = 65000 the power itself is off by 9e-3, this by 1e-5.
+/// Equation 1 without its narrowest term. @param cosine  L . V
+float sky_glow(in float cosine) {
+    float broad = pow(max(cosine, 0.0), sky_power);
+    float middle = broad * broad * broad * broad;
+    return dot(sky_weights, vec3(broad, middle, middle * middle * middle * middle));
+}
+
+/// The narrowest term, (L . V)^k. The cosine of so small an angle has lost it by the time that it is
+/// a float: with k = 65000 the power itself is off by 9e-3, this by 1e-5.
 /// @param distance2  |L - V|^2
-float sky_power(in float distance2, in float k) {
-    return exp(-0.5 * k * distance2);
+float sky_narrow(in float distance2) {
+    return exp(-0.5 * sky_disc_power * distance2);
 }
 
-/// Equation 1 without its narrowest term.
-float sky_glow(in float distance2) {
-    return dot(sky_weights, vec3(sky_power(distance2, sky_powers.x), sky_power(distance2, sky_powers.y),
-                                 sky_power(distance2, sky_powers.z)));
-}
-
-/// The narrowest term: one half where the sun's limb is, whatever the sharpness of the edge.
+/// The disc: one half where the sun's limb is, whatever the sharpness of the edge.
 float sky_sun(in float distance2) {
-    return clamp(0.5 + sky_disc_edge * (sky_power(distance2, sky_disc_power) - 0.5), 0.0, 1.0);
+    return clamp(0.5 + sky_disc_edge * (sky_narrow(distance2) - 0.5), 0.0, 1.0);
 }
 
 /// Relative air mass. source: G. V. Rozenberg, Twilight, 1966: at most 40, on the horizon
@@ -117,12 +118,13 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
                  blend.z * textureLod(sky_night, texel, 0.0).rgb;
     }
     vec3 radiance = sky_brightness * sky_luminance() * colour;
-    vec3 apart = to_sun - direction;
-    float distance2 = dot(apart, apart);
     float haze = sky_air_mass ? sky_air_mass_of(sun_sine) : 1.0;
-    float sun = sky_aureole * haze * sky_glow(distance2);
+    float sun = sky_aureole * haze * sky_glow(dot(to_sun, direction));
     // What has set is behind the Earth, whose edge lies lower the higher the eye.
-    if (with_disc && dot(direction, up) > frame.eye_up.w) sun += sky_disc * sky_sun(distance2);
+    if (with_disc && dot(direction, up) > frame.eye_up.w) {
+        vec3 apart = to_sun - direction;
+        sun += sky_disc * sky_sun(dot(apart, apart));
+    }
     return radiance + sun * frame.eye_sun_light.rgb;
 }
 
