@@ -34,10 +34,11 @@ const float sky_span = 1.56541;    // folded(1) + folded(sin 18 deg)
 const vec3 sky_size = vec3(48.0, 64.0, 40.0);        // texels of the radiance
 const vec3 sky_light_size = vec3(12.0, 12.0, 40.0);  // and of the light
 
-/// The horizontal part of a direction, unit length; 0 at the zenith, which has none.
+/// The horizontal part of a direction, unit length; shrinks to 0 over the last 0.6 degrees before the
+/// zenith, which has none.
 vec3 sky_level(in vec3 direction, in vec3 up) {
     vec3 level = direction - dot(direction, up) * up;
-    return level * inversesqrt(max(dot(level, level), 1e-10));
+    return level * inversesqrt(max(dot(level, level), 1e-4));
 }
 
 /// Equation 2: 0 away from the sun, 1 towards it, one half where one of the two is the zenith.

@@ -112,7 +112,7 @@ image::TextureData texture(int width, int height, int depth) {
 }  // namespace
 
 double Layout::sine_of(double t) {
-    constexpr double kEnd = 0.0192;  // sin 1.1 deg
+    constexpr double kEnd = 0.0314;  // sin 1.8 deg
     return std::min(1.0, std::sqrt(t * t * t * t + kEnd * kEnd));
 }
 

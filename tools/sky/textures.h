@@ -19,7 +19,7 @@ struct Layout {
     static constexpr double kFold = 0.14;
     static constexpr double kLowestSun_deg = -18;
 
-    /// Sine of the elevation at t: its square, bent to end 1.1 degrees above the horizon, so that
+    /// Sine of the elevation at t: its square, bent to end 1.8 degrees above the horizon, so that
     /// what lies below takes the colour over the horizon's haze and not of the dark line in it.
     static double sine_of(double t);
     /// Place among the slices, 0..1, of a sun's sine.
