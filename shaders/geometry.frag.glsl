@@ -1,13 +1,10 @@
 //! provides  the geometry pass: what is where, for terrain.frag.glsl to shade each visible pixel once
-//! writes    place: texel in the normal pages (2 x 16 bits), layer, height [m], view depth [m]
+//! writes    place: column and row of the post, height [m], view depth [m]
 //!
 //! Shading is deferred because small triangles cost a software renderer a whole block of 4 x 4
 //! pixels each, and a GPU a block of 2 x 2: this way that block runs these few lines only.
 
-//@ include lib/pages.glsl
-
-in vec2 page_texel;
-flat in float page_layer;
+in vec2 post;
 in float height_m;
 in vec3 vertex_normal;
 
@@ -18,7 +15,7 @@ void main() {
     vec3 n = normalize(vertex_normal);
     uvec2 normal_source = uvec2(packSnorm2x16(n.xy), packSnorm2x16(n.zz));
 #else
-    uvec2 normal_source = uvec2(packUnorm2x16(page_texel / kNormalPage_px), uint(page_layer));
+    uvec2 normal_source = floatBitsToUint(post);
 #endif
     place = uvec4(normal_source, floatBitsToUint(height_m), floatBitsToUint(1.0 / gl_FragCoord.w));
     store_varyings();

@@ -9,6 +9,7 @@
 
 uniform usampler2D place;
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
+uniform usampler2D page_table;  // r: layer of the finest normal page that covers this one; g: its level
 
 layout(location = 0) out vec4 radiance_out;
 #ifdef DISPLAY_OVERLAY
@@ -21,6 +22,15 @@ vec3 footprint(in vec3 position, in vec3 normal, in vec3 ray, in vec3 ray_step) 
     // A ray never meets its plane at less than about one degree: textures would fade for nothing.
     float slant = min(dot(beside, normal), -0.02 * length(ray));
     return beside * (min(dot(position, normal), -0.02 * length(position)) / slant) - position;
+}
+
+/// East and north part of the normal at a post, as a level of the pyramid has it.
+vec2 slope_at(in vec2 post, in int level) {
+    uvec2 page = texelFetch(page_table, ivec2(post) >> (kNormalNodesLog2 + level), level).rg;
+    int shift = kNormalNodesLog2 + int(page.g);
+    vec2 first = vec2((ivec2(post) >> shift) << shift);
+    vec2 texel = (post - first) * exp2(-float(page.g)) + 1.5;
+    return textureLod(normal_pages, vec3(texel / kNormalPage_px, float(page.r)), 0.0).rg;
 }
 
 void main() {
@@ -44,11 +54,12 @@ void main() {
     s.geometric_normal =
         normalize(vec3(unpackSnorm2x16(what.x), unpackSnorm2x16(what.y).x));
 #else
-    vec2 texel = unpackUnorm2x16(what.x) * kNormalPage_px;
     // A pixel's size on the ground, across the view, decides how fine the normals are read.
-    float size = length(frame.pixel_ray_dx.xyz) * depth * frame.normal_texels_per_m / kNormalPage_px;
-    vec2 slope = textureGrad(normal_pages, vec3(texel / kNormalPage_px, float(what.y)),
-                             vec2(size, 0.0), vec2(0.0, size)).rg;
+    float size = length(frame.pixel_ray_dx.xyz) * depth * frame.normal_texels_per_m;
+    float level = clamp(log2(size), 0.0, frame.normal_levels - 1.0);
+    vec2 post = uintBitsToFloat(what.xy);
+    vec2 slope = mix(slope_at(post, int(level)),
+                     slope_at(post, min(int(level) + 1, int(frame.normal_levels) - 1)), fract(level));
     float rise = sqrt(max(1.0 - dot(slope, slope), 0.0025));
     slope *= frame.height_range.z;
     s.geometric_normal = normalize(slope.x * east + slope.y * north + rise * s.up);

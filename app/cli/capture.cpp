@@ -32,6 +32,7 @@ struct Arguments {
     std::string output, size = "1280x1024", device = "auto", timings, dump_shaders;
     std::vector<std::string> ab;
     double exposure_ev = 0;
+    double pixel_error = render::TerrainOptions{}.pixel_error;
     int repeat = 0;
     bool overwrite = false;
 };
@@ -51,11 +52,10 @@ class Timings {
     }
 
     void write(const std::filesystem::path& path, const render::PassTimes& passes,
-               std::vector<double> frames_ms, const render::Terrain& terrain,
-               const gl::DeviceInfo& device) {
+               std::vector<double> frames_ms, int triangles, const gl::DeviceInfo& device) {
         nlohmann::ordered_json json;
         json["device"] = device.renderer;
-        json["triangles"] = terrain.triangles();
+        json["triangles"] = triangles;
         json["stages_ms"] = stages_;
         json["whole_ms"] = milliseconds(began_, Clock::now());
         nlohmann::ordered_json& pass_json = json["passes_ms"] = nlohmann::ordered_json::object();
@@ -129,14 +129,16 @@ void capture(const Arguments& arguments) {
 
     const auto upload_began = Clock::now();
     const render::Ground ground = render::make_ground(dem);
-    render::Terrain terrain(dem, ground.frame, {}, context.info().max_array_layers);
+    render::Terrain terrain(dem, ground.frame,
+                            {.pixel_error = arguments.pixel_error,
+                             .max_array_layers = context.info().max_array_layers});
     timings.add("upload", upload_began);
 
     const geo::Geodetic place = ground.frame.origin();
     const sun::Instant utc = given_time ? given_time->utc : scene::default_moment(place);
     const sun::Position position = sun::position(utc, place);
-    const sun::Refraction air = arguments.refraction.at(
-        {place.lat_rad, place.lon_rad, 0.5 * (ground.lowest_m + ground.highest_m)});
+    const sun::Refraction air =
+        arguments.refraction.at({place.lat_rad, place.lon_rad, ground.air_height_m()});
     const std::string sun_text =
         fmt::format("sun at azimuth {:.2f}, elevation {:.2f} ({:.2f} with refraction)",
                     degrees(position.azimuth_rad), degrees(position.elevation_rad),
@@ -188,7 +190,7 @@ void capture(const Arguments& arguments) {
             context.finish();
             frames_ms.push_back(milliseconds(began, Clock::now()));
         }
-        timings.write(arguments.timings, passes, frames_ms, terrain, context.info());
+        timings.write(arguments.timings, passes, frames_ms, renderer.triangles(), context.info());
     }
 }
 
@@ -213,6 +215,10 @@ void add_capture(CLI::App& app) {
         ->group("Effects");
     verb.add_option("--exposure", arguments->exposure_ev, "Stops brighter than natural, EV")
         ->check(CLI::Range(-20.0, 20.0));
+    verb.add_option("--pixel-error", arguments->pixel_error,
+                    "Largest error of the ground's shape in the picture, pixels; 0 draws every "
+                    "post")
+        ->check(CLI::Range(0.0, 100.0));
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
     CLI::Option* timings =

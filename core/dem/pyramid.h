@@ -21,12 +21,13 @@ namespace relevo::dem {
 /// the level, and heights next to them are those of their neighbours alone.
 class Pyramid {
   public:
-    /// Takes over the heights, and makes all coarser levels down to one of at most 65 x 65 nodes.
-    explicit Pyramid(Array2d<float> height_m);
+    /// Makes all coarser levels down to one of at most 65 x 65 nodes.
+    /// @param posts_m  level 0, NaN for holes; it must outlive this
+    explicit Pyramid(const Array2d<float>& posts_m);
 
     int levels() const { return static_cast<int>(levels_.size()); }
-    int columns() const { return levels_.front().height_m.width(); }  ///< of posts
-    int rows() const { return levels_.front().height_m.height(); }
+    int columns() const { return posts_m_->width(); }  ///< of posts
+    int rows() const { return posts_m_->height(); }
     bool has_holes() const { return has_holes_; }
 
     /// Nodes of a level, columns and rows.
@@ -40,15 +41,36 @@ class Pyramid {
     float coverage(int level, int column, int row) const;
 
     const Array2d<float>& heights(int level) const {
-        return levels_[static_cast<std::size_t>(level)].height_m;
+        return level == 0 ? *posts_m_ : levels_[static_cast<std::size_t>(level)].height_m;
     }
 
-    /// Lowest and highest post, and the largest distance [m] in height from the posts to the
-    /// surface of a level's triangles, over a tile.
+    /// Nodes of a rectangle. Where the coverage is 0, the height is the mean of the eight nodes
+    /// around, so that a surface meets the cut half way without a jump; 0 where those have none.
+    struct Block {
+        Array2d<float> height_m;
+        Array2d<float> coverage;  ///< 0 to 1
+    };
+    /// @param first  its first node; nodes beyond the rim repeat it
+    Block block(int level, glm::ivec2 first, int columns, int rows) const;
+
+    /// Where a node lies among those of the next coarser level: `share` of the way from node `from`
+    /// to the one after.
+    struct Place {
+        int from = 0;
+        float share = 0;
+    };
+    Place column_in_coarser(int level, int column) const;
+    Place row_in_coarser(int level, int row) const;
+
+    /// Lowest and highest post of a tile, and the distance [m] in height from its posts to the
+    /// surface of the level's triangles: a bound of the largest, and the root mean square as the
+    /// levels' own distances give it if they are independent (within a third of the true one on the
+    /// bundled DEM, tests/dem/test_pyramid.cpp).
     struct Bounds {
         float lowest_m = 0;
         float highest_m = 0;  ///< below lowest_m: the tile is a hole
         float error_m = 0;
+        float rms_m = 0;
 
         bool empty() const { return highest_m < lowest_m; }
     };
@@ -62,8 +84,9 @@ class Pyramid {
     const Bounds& bounds(int level, glm::ivec2 tile) const;
 
     /// The error that a share of a level's tiles does not exceed [m].
-    /// @param share  0 to 1
-    float error_m(int level, double share) const;
+    /// @param measure  &Bounds::error_m or &Bounds::rms_m
+    /// @param share    0 to 1
+    float error_m(int level, float Bounds::*measure, double share) const;
 
   private:
     struct Level {
@@ -74,9 +97,10 @@ class Pyramid {
 
     void make_level();
     void bound_tiles(int level);
-    float surface(int level, int column, int row) const;
+    void measure_errors(int level);
 
-    std::vector<Level> levels_;
+    const Array2d<float>* posts_m_;
+    std::vector<Level> levels_;  // the heights of the first are posts_m_
     bool has_holes_ = false;
 };
 

@@ -28,6 +28,8 @@ FormatInfo info(Format format) {
             return {GL_R16, GL_RED, GL_UNSIGNED_SHORT, 2};
         case Format::RG16Snorm:
             return {GL_RG16_SNORM, GL_RG, GL_SHORT, 4};
+        case Format::RG16UI:
+            return {GL_RG16UI, GL_RG_INTEGER, GL_UNSIGNED_SHORT, 4};
         case Format::R16F:
             return {GL_R16F, GL_RED, GL_HALF_FLOAT, 2};
         case Format::RG16F:

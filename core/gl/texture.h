@@ -15,6 +15,7 @@ enum class Format {
     Srgb8A8,  ///< read as linear, alpha linear
     R16,
     RG16Snorm,
+    RG16UI,
     R16F,
     RG16F,
     RGBA16F,

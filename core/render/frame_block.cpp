@@ -137,8 +137,11 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
         glm::vec4(eye_up, -std::sqrt(1 - std::pow(curvature_m / (curvature_m + above_sea_m), 2)));
     const double eye_elevation =
         std::asin(std::clamp(dot(inputs.sun.direction, eye_up), -1.0, 1.0));
+    // Refraction goes with the density of the air around the eye, which falls by e over 10 km.
+    const double thinned =
+        std::exp(std::clamp((inputs.sun.ground_height_m - above_sea_m) / 10000, -10.0, 1.0));
     const double eye_lift =
-        inputs.sun.refraction_rad ? inputs.sun.refraction_rad(eye_elevation) : 0;
+        inputs.sun.refraction_rad ? thinned * inputs.sun.refraction_rad(eye_elevation) : 0;
     const double apparent_cosine = std::cos(eye_elevation + eye_lift);
     const double raise = apparent_cosine > 1e-6 ? std::sin(eye_lift) / apparent_cosine : 0;
     block.eye_sun =

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 
@@ -30,7 +31,7 @@ struct FrameBlock {
     float exposure;
     float footprint_limit;
     float normal_texels_per_m;
-    float padding;
+    float normal_levels;
     glm::vec4 eye_up, eye_sun, eye_sun_light;
 };
 static_assert(sizeof(FrameBlock) == 29 * 16);
@@ -68,9 +69,14 @@ struct FrameInputs {
 struct Ground {
     geo::LocalFrame frame;
     double lowest_m = 0, highest_m = 1;  ///< of the DEM's posts
-    glm::dvec2 south_west_m{-1, -1};     ///< corner of the DEM's posts in the local frame
-    glm::dvec2 north_east_m{1, 1};       ///< likewise
-    double normal_spacing_m = 30;        ///< from texel to texel of the normal pages
+
+    /// Where the air that the light passes through is taken: the middle of the range, no lower than
+    /// the sea.
+    double air_height_m() const { return std::max(0.0, 0.5 * (lowest_m + highest_m)); }
+
+    glm::dvec2 south_west_m{-1, -1};  ///< corner of the DEM's posts in the local frame
+    glm::dvec2 north_east_m{1, 1};    ///< likewise
+    double normal_spacing_m = 30;     ///< from texel to texel of the normal pages
 };
 
 /// @param footprint_limit  see frame.glsl

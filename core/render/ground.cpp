@@ -69,7 +69,7 @@ SunLight make_sun_light(const sun::Position& position, const sun::Refraction& re
     light.refraction_rad = [refraction](double elevation_rad) {
         return refraction.apparent_rad(elevation_rad) - elevation_rad;
     };
-    light.ground_height_m = 0.5 * (ground.lowest_m + ground.highest_m);
+    light.ground_height_m = ground.air_height_m();
     light.lowest_sine = 1;
     light.highest_sine = -1;
     constexpr int kSamples = 8;

@@ -5,36 +5,32 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace relevo::render {
 namespace {
 
-float clamped(const Array2d<float>& height_m, int column, int row) {
-    return height_m.at(std::clamp(column, 0, height_m.width() - 1),
-                       std::clamp(row, 0, height_m.height() - 1));
-}
-
-float mean_of_neighbours(const Array2d<float>& height_m, int column, int row, int stride) {
-    float sum = 0;
-    int count = 0;
-    for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-            const float h = clamped(height_m, column + dx * stride, row + dy * stride);
-            if (std::isnan(h)) continue;
-            sum += h;
-            ++count;
-        }
+/// A value of a level's triangles, which are divided from the upper right to the lower left corner
+/// of their quad, as the terrain grid is.
+float on_triangles(const Array2d<float>& values, int x, int y, float tx, float ty) {
+    const float upper_right = values.at(x + 1, y), lower_left = values.at(x, y + 1);
+    if (tx + ty <= 1) {
+        const float upper_left = values.at(x, y);
+        return upper_left + tx * (upper_right - upper_left) + ty * (lower_left - upper_left);
     }
-    return count ? sum / static_cast<float>(count) : 0.0f;
+    const float lower_right = values.at(x + 1, y + 1);
+    return lower_right + (1 - tx) * (lower_left - lower_right) +
+           (1 - ty) * (upper_right - lower_right);
 }
 
-/// Rise between neighbours, both sides where both are there, else the one that is.
-float slope_of(float before, float here, float after) {
+/// Rise a post between neighbours, from both sides where both are there, else from the one that is.
+float slope_of(float before, float here, float after, int posts_before, int posts_after) {
     const bool has_before = !std::isnan(before), has_after = !std::isnan(after);
-    if (has_before && has_after) return 0.5f * (after - before);
-    if (has_after) return after - here;
-    if (has_before) return here - before;
+    if (has_before && has_after)
+        return (after - before) / static_cast<float>(posts_before + posts_after);
+    if (has_after) return (after - here) / static_cast<float>(posts_after);
+    if (has_before) return (here - before) / static_cast<float>(posts_before);
     return 0.0f;
 }
 
@@ -44,27 +40,54 @@ std::int16_t snorm16(float value) {
 
 }  // namespace
 
-std::vector<float> height_page(const Array2d<float>& height_m, glm::ivec2 first, int stride) {
+glm::ivec2 span_on_dem(const dem::Pyramid& pyramid, glm::ivec2 first, int side) {
+    const glm::ivec2 last(pyramid.columns() - 1, pyramid.rows() - 1);
+    return glm::max(glm::min(glm::ivec2(side), last - first), glm::ivec2(1));
+}
+
+std::vector<float> height_page(const dem::Pyramid& pyramid, int level, glm::ivec2 tile) {
+    const glm::ivec2 first = tile * kTileQuads - 1;
+    const auto fine = pyramid.block(level, first, kHeightPage_px, kHeightPage_px);
+    const bool top = level + 1 == pyramid.levels();
     std::vector<float> page;
-    page.reserve(std::size_t{2} * kHeightPage_px * kHeightPage_px);
-    for (int y = -1; y < kHeightPage_px - 1; ++y) {
-        const int row = std::clamp(first.y + y * stride, 0, height_m.height() - 1);
-        for (int x = -1; x < kHeightPage_px - 1; ++x) {
-            const int column = std::clamp(first.x + x * stride, 0, height_m.width() - 1);
-            const float h = height_m.at(column, row);
-            const bool hole = std::isnan(h);
-            page.push_back(hole ? mean_of_neighbours(height_m, column, row, stride) : h);
-            page.push_back(hole ? 0.0f : 1.0f);
+    page.reserve(std::size_t{4} * kHeightPage_px * kHeightPage_px);
+    if (top) {
+        for (int y = 0; y < kHeightPage_px; ++y)
+            for (int x = 0; x < kHeightPage_px; ++x)
+                for (int twice = 0; twice < 2; ++twice)
+                    page.insert(page.end(), {fine.height_m.at(x, y), fine.coverage.at(x, y)});
+        return page;
+    }
+    const glm::ivec2 last = pyramid.size(level) - 1;
+    const auto on_level = [&](int i, int n) { return std::clamp(i, 0, n); };
+    // The part of the coarser level that the page lies on.
+    const int left = pyramid.column_in_coarser(level, on_level(first.x, last.x)).from;
+    const int above = pyramid.row_in_coarser(level, on_level(first.y, last.y)).from;
+    constexpr int kCoarse = kHeightPage_px / 2 + 3;
+    const auto coarse = pyramid.block(level + 1, {left, above}, kCoarse, kCoarse);
+    for (int y = 0; y < kHeightPage_px; ++y) {
+        const auto row = pyramid.row_in_coarser(level, on_level(first.y + y, last.y));
+        for (int x = 0; x < kHeightPage_px; ++x) {
+            const auto column = pyramid.column_in_coarser(level, on_level(first.x + x, last.x));
+            const auto parent = [&](const Array2d<float>& values) {
+                return on_triangles(values, column.from - left, row.from - above, column.share,
+                                    row.share);
+            };
+            page.insert(page.end(), {fine.height_m.at(x, y), fine.coverage.at(x, y),
+                                     parent(coarse.height_m), parent(coarse.coverage)});
         }
     }
     return page;
 }
 
-std::vector<std::int16_t> normal_page(const Array2d<float>& height_m, const PatchNet& net,
-                                      const glm::dvec3& axis, glm::ivec2 first) {
+std::vector<std::int16_t> normal_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page,
+                                      const PatchNet& net, const glm::dvec3& axis) {
     // Everything from here on is relative to the page's middle: floats hold it to micrometres.
     using vec3 = glm::vec3;
-    const float step = 1.0f / kNormalPosts;
+    const glm::ivec2 first_node = page * kNormalNodes;
+    const glm::ivec2 first = first_node << level;
+    const glm::vec2 step = 1.0f / glm::vec2(span_on_dem(pyramid, first, kNormalNodes << level));
+    const glm::ivec2 last = pyramid.size(level) - 1;
     std::array<vec3, 9> p;
     for (std::size_t i = 0; i < 9; ++i)
         p[i] = vec3(net.position_m[i]);
@@ -72,14 +95,23 @@ std::vector<std::int16_t> normal_page(const Array2d<float>& height_m, const Patc
     const vec3 pole = vec3(axis);
     const vec3 east_middle = normalize(cross(pole, n0));
 
-    std::vector<std::int16_t> page;
-    page.reserve(std::size_t{2} * kNormalPage_px * kNormalPage_px * 4 / 3 + 64);
-    std::vector<float> finest(std::size_t{2} * kNormalPage_px * kNormalPage_px);
-    float* out = finest.data();
+    // One more node on each side than the page has.
+    const auto block = pyramid.block(level, first_node - 2, kNormalPage_px + 2, kNormalPage_px + 2);
+    const auto height = [&](int column, int row) {
+        const glm::ivec2 at = glm::ivec2(column, row) - first_node + 2;
+        return block.coverage.at(at.x, at.y) > 0 ? block.height_m.at(at.x, at.y)
+                                                 : std::numeric_limits<float>::quiet_NaN();
+    };
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+    std::vector<std::int16_t> texels;
+    texels.reserve(std::size_t{2} * kNormalPage_px * kNormalPage_px);
     for (int y = 0; y < kNormalPage_px; ++y) {
-        const int row = std::clamp(first.y + y - kNormalBorder_px, 0, height_m.height() - 1);
-        const int above = std::max(row - 1, 0), below = std::min(row + 1, height_m.height() - 1);
-        const float v = static_cast<float>(row - first.y) * step;
+        const int row = std::clamp(first_node.y + y - 1, 0, last.y);
+        const int row_post = pyramid.post(level, {0, row}).y;
+        const int to_north = row_post - pyramid.post(level, {0, std::max(row - 1, 0)}).y;
+        const int to_south = pyramid.post(level, {0, std::min(row + 1, last.y)}).y - row_post;
+        const float v = static_cast<float>(row_post - first.y) * step.y;
         // Derivatives of the net along this row: of u at v, and of v as a parabola of u.
         const vec3 row_u = p[1] + v * (p[4] + v * p[7]);
         const vec3 row_uu = p[2] + v * (p[5] + v * p[8]);
@@ -87,56 +119,36 @@ std::vector<std::int16_t> normal_page(const Array2d<float>& height_m, const Patc
         const vec3 slope_v1 = p[4] + 2.0f * v * p[7];
         const vec3 slope_v2 = p[5] + 2.0f * v * p[8];
         for (int x = 0; x < kNormalPage_px; ++x) {
-            const int column = std::clamp(first.x + x - kNormalBorder_px, 0, height_m.width() - 1);
-            const int left = std::max(column - 1, 0),
-                      right = std::min(column + 1, height_m.width() - 1);
-            const float u = static_cast<float>(column - first.x) * step;
-            float h = height_m.at(column, row);
-            float west = height_m.at(left, row), east = height_m.at(right, row);
-            float north = height_m.at(column, above), south = height_m.at(column, below);
-            if (std::isnan(h)) h = mean_of_neighbours(height_m, column, row, 1);
-            if (left == column) west = std::numeric_limits<float>::quiet_NaN();
-            if (right == column) east = std::numeric_limits<float>::quiet_NaN();
-            if (above == row) north = std::numeric_limits<float>::quiet_NaN();
-            if (below == row) south = std::numeric_limits<float>::quiet_NaN();
-            const float dh_column = slope_of(west, h, east);
-            const float dh_row = slope_of(north, h, south);
+            const int column = std::clamp(first_node.x + x - 1, 0, last.x);
+            const int column_post = pyramid.post(level, {column, 0}).x;
+            const int to_west = column_post - pyramid.post(level, {std::max(column - 1, 0), 0}).x;
+            const int to_east =
+                pyramid.post(level, {std::min(column + 1, last.x), 0}).x - column_post;
+            const float u = static_cast<float>(column_post - first.x) * step.x;
+            const glm::ivec2 at = glm::ivec2(column, row) - first_node + 2;
+            const float h = block.height_m.at(at.x, at.y);
+            const float west = to_west > 0 ? height(column - 1, row) : kNone;
+            const float east = to_east > 0 ? height(column + 1, row) : kNone;
+            const float north = to_north > 0 ? height(column, row - 1) : kNone;
+            const float south = to_south > 0 ? height(column, row + 1) : kNone;
+            const float dh_column = slope_of(west, h, east, to_west, to_east);
+            const float dh_row = slope_of(north, h, south, to_north, to_south);
 
             const vec3 up = n0 + u * nu + v * nv;
             const vec3 base_u = row_u + 2.0f * u * row_uu;
             const vec3 base_v = slope_v0 + u * (slope_v1 + u * slope_v2);
-            const vec3 along_column = step * (base_u + h * nu) + dh_column * up;
-            const vec3 along_row = step * (base_v + h * nv) + dh_row * up;
+            const vec3 along_column = step.x * (base_u + h * nu) + dh_column * up;
+            const vec3 along_row = step.y * (base_v + h * nv) + dh_row * up;
             vec3 normal = cross(along_column, along_row);
             normal *= (dot(normal, up) < 0 ? -1.0f : 1.0f) / length(normal);
-            vec3 to_east = cross(pole, up);
-            const float reach = dot(to_east, to_east);
-            to_east = reach > 1e-12f ? to_east / std::sqrt(reach) : east_middle;
-            *out++ = dot(normal, to_east);
-            *out++ = dot(normal, cross(up, to_east));
+            vec3 eastwards = cross(pole, up);
+            const float reach = dot(eastwards, eastwards);
+            eastwards = reach > 1e-12f ? eastwards / std::sqrt(reach) : east_middle;
+            texels.push_back(snorm16(dot(normal, eastwards)));
+            texels.push_back(snorm16(dot(normal, cross(up, eastwards))));
         }
     }
-    int size = kNormalPage_px;
-    std::vector<float> level = std::move(finest);
-    for (int mip = 0; mip < kNormalPageLevels; ++mip) {
-        for (const float value : level)
-            page.push_back(snorm16(value));
-        const int half = size / 2;
-        std::vector<float> next(std::size_t{2} * static_cast<std::size_t>(half * half));
-        for (int y = 0; y < half; ++y)
-            for (int x = 0; x < half; ++x)
-                for (int c = 0; c < 2; ++c) {
-                    const auto at = [&](int i, int j) {
-                        return level[static_cast<std::size_t>(2 * ((2 * y + j) * size + 2 * x + i) +
-                                                              c)];
-                    };
-                    next[static_cast<std::size_t>(2 * (y * half + x) + c)] =
-                        0.25f * (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1));
-                }
-        level = std::move(next);
-        size = half;
-    }
-    return page;
+    return texels;
 }
 
 }  // namespace relevo::render

@@ -41,12 +41,12 @@ glm::dvec3 PatchNet::place(double u, double v, double height_m) const {
 }
 
 PatchNet fit_patch_net(const PostPlace& place, const geo::LocalFrame& frame, glm::dvec2 first,
-                       double side) {
+                       glm::dvec2 sides) {
     std::array<glm::dvec3, 9> positions;
     std::array<glm::dvec3, 9> verticals;
     for (std::size_t node = 0; node < 9; ++node) {
-        const geo::Geodetic at = place(first.x + side * static_cast<double>(node % 3) / 2,
-                                       first.y + side * static_cast<double>(node / 3) / 2);
+        const geo::Geodetic at = place(first.x + sides.x * static_cast<double>(node % 3) / 2,
+                                       first.y + sides.y * static_cast<double>(node / 3) / 2);
         positions[node] = frame.to_local({at.lat_rad, at.lon_rad, 0});
         verticals[node] = frame.up(at.lat_rad, at.lon_rad);
     }

@@ -10,10 +10,10 @@
 
 namespace relevo::render {
 
-/// Where the posts of a square piece of a raster lie on the round Earth: position of height 0 and
-/// local vertical as polynomials over the piece, so that the vertex program needs no projection.
-/// With u along the columns and v along the rows, both 0..1 over the piece, a post of height h lies
-/// at
+/// Where the posts of a rectangular piece of a raster lie on the round Earth: position of height 0
+/// and local vertical as polynomials over the piece, so that the vertex program needs no
+/// projection. With u along the columns and v along the rows, both 0..1 over the piece, a post of
+/// height h lies at
 ///
 ///     centre + sum over i, j of position[3 j + i] u^i v^j + h (n0 + u nu + v nv),  i, j = 0..2
 ///
@@ -33,8 +33,8 @@ struct PatchNet {
 using PostPlace = std::function<geo::Geodetic(double column, double row)>;
 
 /// @param first  column and row of the piece's first post
-/// @param side   columns and rows from its first to its last post
+/// @param sides  columns and rows from its first to its last post
 PatchNet fit_patch_net(const PostPlace& place, const geo::LocalFrame& frame, glm::dvec2 first,
-                       double side);
+                       glm::dvec2 sides);
 
 }  // namespace relevo::render

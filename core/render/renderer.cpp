@@ -54,6 +54,7 @@ struct Renderer::Impl {
     double exposure = 1;  // of the last frame
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
+    TileSelection tiles;  // of the last frame
 
     gl::Texture place, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     std::vector<gl::Texture> varyings;
@@ -152,6 +153,7 @@ struct Renderer::Impl {
         if (name == "depth") return &depth;
         if (name == "height_pages") return &ground.height_pages();
         if (name == "normal_pages") return &ground.normal_pages();
+        if (name == "page_table") return &ground.page_table();
         for (std::size_t i = 0; i < varyings.size(); ++i)
             if (name == fmt::format("varyings_{}", i)) return &varyings[i];
         return nullptr;
@@ -162,7 +164,8 @@ struct Renderer::Impl {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
-    void draw(Terrain& ground, const FrameBlock& block, const glm::dvec3& eye_m, PassTimes* times) {
+    void draw(Terrain& ground, const FrameInputs& inputs, FrameBlock block, PassTimes* times) {
+        block.normal_levels = static_cast<float>(ground.normal_levels());
         frame_block.write(std::as_bytes(std::span(&block, 1)));
         frame_block.bind_uniform(kFrameBinding);
         if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
@@ -177,6 +180,10 @@ struct Renderer::Impl {
             began = now;
         };
 
+        tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
+                                          inputs.exaggeration);
+        passed("select");
+
         geometry_target.bind();
         glEnable(GL_DEPTH_TEST);
         glDepthMask(GL_TRUE);  // clearing obeys it too
@@ -185,7 +192,7 @@ struct Renderer::Impl {
         glDepthFunc(GL_GREATER);
         if (ground.has_holes()) glEnable(GL_CLIP_DISTANCE0);
         bind(geometry, ground);
-        ground.draw(eye_m);
+        ground.draw(tiles, inputs.camera.eye_m);
         glDisable(GL_CLIP_DISTANCE0);
         passed("geometry");
 
@@ -250,7 +257,11 @@ void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameI
     const FrameBlock block = make_frame_block(inputs, ground, impl_->options.width_px,
                                               impl_->options.height_px, footprint);
     impl_->exposure = block.exposure;
-    impl_->draw(terrain, block, inputs.camera.eye_m, times);
+    impl_->draw(terrain, inputs, block, times);
+}
+
+int Renderer::triangles() const {
+    return impl_->tiles.triangles();
 }
 
 image::Image8 Renderer::read_picture() const {

@@ -30,8 +30,8 @@ struct EffectInputs {
 /// Core's own parameters, beside those of plugins: `terrain.normal`, fragment or vertex.
 std::vector<shader::Param> core_params();
 
-/// Milliseconds of the stages of one frame, by their names: "geometry", "terrain", "sky", "post",
-/// "antialias".
+/// Milliseconds of the stages of one frame, by their names: "select", "geometry", "terrain", "sky",
+/// "post", "antialias".
 using PassTimes = std::vector<std::pair<std::string, double>>;
 
 /// Draws frames of one size with one selection of effects.
@@ -54,6 +54,7 @@ class Renderer {
     void render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                       PassTimes* times = nullptr);
 
+    int triangles() const;  ///< of terrain in the last frame
     /// The last frame as RGB, rows from the top.
     image::Image8 read_picture() const;
     /// The last frame before exposure and tone mapping: linear radiance, RGB.

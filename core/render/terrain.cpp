@@ -1,175 +1,286 @@
 #include "render/terrain.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include <epoxy/gl.h>
-#include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
-#include "base/error.h"
-#include "base/parallel_for.h"
 #include "base/units.h"
 #include "render/pages.h"
 
 namespace relevo::render {
 namespace {
 
-constexpr int kGridVertices = (kPatchQuads + 1) * (kPatchQuads + 1);
-constexpr int kGridIndices = kPatchQuads * kPatchQuads * 6;
+/// Vertices along a side: those of the tile and a rim that hangs down from it.
+constexpr int kGridSide = kTileQuads + 3;
+constexpr int kGridVertices = kGridSide * kGridSide;
+constexpr int kQuadrantQuads = (kGridSide - 1) / 2;
+constexpr int kQuadrantIndices = kQuadrantQuads * kQuadrantQuads * 6;
 constexpr int kInstanceVectors = 12;  // inputs net_0 ... up_v of terrain.vert.glsl
 
-/// Rounding leaves the rims of two patches up to a step of the rasteriser apart, so each reaches
-/// this far [quads] over its neighbour.
-constexpr float kOverlap = 1.0f / 128.0f;
+/// Rounding leaves up to a step of the rasteriser between the sides of two tiles. The rim of each
+/// reaches this far [quads] under its neighbour.
+constexpr float kRim = 1.0f / 128.0f;
+
+constexpr int kMostHeightPages = 1024;  // 73 MB
+constexpr int kMostNormalPages = 384;   // 102 MB
+
+/// By how much the tolerance grows from one try to the next where a view needs too much.
+constexpr double kCoarser = 1.2;
+
+/// A page table entry for pages that are not there.
+constexpr std::uint16_t kNoLayer = 0xffff;
 
 std::vector<float> grid_vertices() {
     std::vector<float> vertices;
     const auto coordinate = [](int i) {
-        if (i == 0) return -kOverlap;
-        return static_cast<float>(i) + (i == kPatchQuads ? kOverlap : 0.0f);
+        if (i == 0) return -kRim;
+        if (i == kGridSide - 1) return kTileQuads + kRim;
+        return static_cast<float>(i - 1);
     };
-    for (int y = 0; y <= kPatchQuads; ++y)
-        for (int x = 0; x <= kPatchQuads; ++x) {
+    for (int y = 0; y < kGridSide; ++y)
+        for (int x = 0; x < kGridSide; ++x) {
             vertices.push_back(coordinate(x));
             vertices.push_back(coordinate(y));
         }
     return vertices;
 }
 
+/// Quadrant after quadrant, so that any of them can be drawn alone.
 std::vector<std::uint16_t> grid_indices() {
     std::vector<std::uint16_t> indices;
-    for (int y = 0; y < kPatchQuads; ++y)
-        for (int x = 0; x < kPatchQuads; ++x) {
-            const int a = y * (kPatchQuads + 1) + x, b = a + 1, c = a + kPatchQuads + 1, d = c + 1;
-            for (const int i : {a, c, b, b, c, d})
-                indices.push_back(static_cast<std::uint16_t>(i));
-        }
+    for (int q = 0; q < 4; ++q)
+        for (int j = 0; j < kQuadrantQuads; ++j)
+            for (int i = 0; i < kQuadrantQuads; ++i) {
+                const int x = (q & 1) * kQuadrantQuads + i, y = (q >> 1) * kQuadrantQuads + j;
+                const int a = y * kGridSide + x, b = a + 1, c = a + kGridSide, d = c + 1;
+                for (const int index : {a, c, b, b, c, d})
+                    indices.push_back(static_cast<std::uint16_t>(index));
+            }
     return indices;
 }
 
-int pieces(int posts, int posts_per_piece) {
-    return std::max(1, (posts - 1 + posts_per_piece - 1) / posts_per_piece);
+int tiles_of_all_levels(const dem::Pyramid& pyramid) {
+    int sum = 0;
+    for (int level = 0; level < pyramid.levels(); ++level) {
+        const glm::ivec2 count = pyramid.tiles(level);
+        sum += count.x * count.y;
+    }
+    return sum;
+}
+
+int pages_across(int posts, int level) {
+    const int posts_a_page = kNormalNodes << level;
+    return std::max(1, (posts - 1 + posts_a_page - 1) / posts_a_page);
+}
+
+int power_of_two_from(int n) {
+    int power = 1;
+    while (power < n)
+        power *= 2;
+    return power;
+}
+
+template <typename T>
+std::vector<std::byte> bytes_of(const std::vector<T>& values) {
+    std::vector<std::byte> bytes(values.size() * sizeof(T));
+    std::memcpy(bytes.data(), values.data(), bytes.size());
+    return bytes;
 }
 
 }  // namespace
 
 Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
-                 const TerrainOptions& options, int max_array_layers)
-    : grid_(gl::Buffer::of<float>(grid_vertices(), "terrain grid")),
+                 const TerrainOptions& options)
+    : options_(options),
+      pyramid_(heightfield.height_m),
+      grid_(heightfield.grid),
+      frame_(frame),
+      tree_(pyramid_, grid_, frame_),
+      polar_axis_(frame.up(kPi / 2, 0)),
+      grid_vertices_(gl::Buffer::of<float>(grid_vertices(), "terrain grid")),
       grid_indices_(gl::Buffer::of<std::uint16_t>(grid_indices(), "terrain grid indices")) {
-    const Array2d<float>& height_m = heightfield.height_m;
-    const int columns = height_m.width(), rows = height_m.height();
-    const auto patches_at = [&](int stride) {
-        return static_cast<long>(pieces(columns, kPatchQuads * stride)) *
-               pieces(rows, kPatchQuads * stride);
-    };
-    // A patch reads its normals from one page, so at most four posts lie between its vertices.
-    while (patches_at(stride_) * kGridVertices > options.vertex_budget &&
-           stride_ * 2 * kPatchQuads <= kNormalPosts)
-        stride_ *= 2;
+    const glm::dvec2 spacing_m = grid_.post_spacing_m();
+    normal_spacing_m_ = std::sqrt(spacing_m.x * spacing_m.y);
+    normal_levels_ = std::max(1, pyramid_.levels() - kNormalPageLevels);
 
-    const glm::ivec2 normal_pages{pieces(columns, kNormalPosts), pieces(rows, kNormalPosts)};
-    const int normal_count = normal_pages.x * normal_pages.y;
-    const int span = kPatchQuads * stride_;
-    const glm::ivec2 patch_counts{pieces(columns, span), pieces(rows, span)};
-    const int patch_count = patch_counts.x * patch_counts.y;
-    if (std::max(normal_count, patch_count) > max_array_layers)
-        bad_input(
-            fmt::format("render: a DEM of {} x {} posts needs {} pages, expected at most {} on "
-                        "this device; use a "
-                        "part of it or fewer posts",
-                        columns, rows, std::max(normal_count, patch_count), max_array_layers));
+    const int most = options.max_array_layers;
+    height_pages_ = PageCache(gl::Format::RGBA32F, kHeightPage_px,
+                              std::min({tiles_of_all_levels(pyramid_), kMostHeightPages, most}),
+                              gl::Filter::Nearest, "height pages");
+    int normal_count = 0;
+    for (int level = 0; level < normal_levels_; ++level)
+        normal_count +=
+            pages_across(pyramid_.columns(), level) * pages_across(pyramid_.rows(), level);
+    normal_pages_ = PageCache(gl::Format::RG16Snorm, kNormalPage_px,
+                              std::min({normal_count, kMostNormalPages, most}), gl::Filter::Linear,
+                              "normal pages");
+    const int across = power_of_two_from(
+        std::max(pages_across(pyramid_.columns(), 0), pages_across(pyramid_.rows(), 0)));
+    page_table_ =
+        gl::Texture(gl::TextureKind::D2, gl::Format::RG16UI, {across, across, 1}, 0, "page table");
+    page_table_.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
 
-    const PostPlace place = [&](double column, double row) {
-        return heightfield.grid.place(column, row);
-    };
-    const glm::dvec3 axis = frame.up(kPi / 2, 0);
-
-    normal_pages_ = gl::Texture(gl::TextureKind::D2Array, gl::Format::RG16Snorm,
-                                {kNormalPage_px, kNormalPage_px, normal_count}, kNormalPageLevels,
-                                "normal pages");
-    std::vector<std::vector<std::int16_t>> normals(static_cast<std::size_t>(normal_count));
-    parallel_for(0, normal_count, 1, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) {
-            const glm::ivec2 first =
-                kNormalPosts * glm::ivec2(i % normal_pages.x, i / normal_pages.x);
-            const PatchNet net = fit_patch_net(place, frame, glm::dvec2(first), kNormalPosts);
-            normals[static_cast<std::size_t>(i)] = normal_page(height_m, net, axis, first);
-        }
-    });
-    for (int i = 0; i < normal_count; ++i) {
-        std::span<const std::int16_t> texels = normals[static_cast<std::size_t>(i)];
-        int size = kNormalPage_px;
-        for (int level = 0; level < kNormalPageLevels; ++level, size /= 2) {
-            const auto count = static_cast<std::size_t>(2 * size * size);
-            normal_pages_.write(level, {0, 0, i}, {size, size, 1},
-                                std::as_bytes(texels.first(count)));
-            texels = texels.subspan(count);
-        }
-    }
-    normal_pages_.set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
-
-    height_pages_ = gl::Texture(gl::TextureKind::D2Array, gl::Format::RG32F,
-                                {kHeightPage_px, kHeightPage_px, patch_count}, 1, "height pages");
-    std::vector<std::vector<float>> heights(static_cast<std::size_t>(patch_count));
-    patches_.resize(static_cast<std::size_t>(patch_count));
-    parallel_for(0, patch_count, 4, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) {
-            const glm::ivec2 first = span * glm::ivec2(i % patch_counts.x, i / patch_counts.x);
-            heights[static_cast<std::size_t>(i)] = height_page(height_m, first, stride_);
-            Patch& patch = patches_[static_cast<std::size_t>(i)];
-            patch.net = fit_patch_net(place, frame, glm::dvec2(first), span);
-            patch.quads = glm::min(
-                glm::vec2(kPatchQuads),
-                glm::vec2(columns - 1 - first.x, rows - 1 - first.y) / static_cast<float>(stride_));
-            patch.height_layer = static_cast<float>(i);
-            const glm::ivec2 page = first / kNormalPosts;
-            patch.normal_layer = static_cast<float>(page.y * normal_pages.x + page.x);
-            patch.first_texel = glm::vec2(first - page * kNormalPosts) +
-                                static_cast<float>(kNormalBorder_px) + 0.5f;
-            patch.texels_per_quad = static_cast<float>(stride_);
-        }
-    });
-    for (int i = 0; i < patch_count; ++i)
-        height_pages_.write(0, {0, 0, i}, {kHeightPage_px, kHeightPage_px, 1},
-                            std::as_bytes(std::span(heights[static_cast<std::size_t>(i)])));
-    height_pages_.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
-
-    for (const float h : height_m)
-        has_holes_ |= std::isnan(h);
-
-    instances_ =
-        gl::Buffer(patches_.size() * kInstanceVectors * sizeof(glm::vec4), "terrain patches");
     vertex_array_.emplace();
-    vertex_array_->attributes(0, grid_, 0, 1, 2, false);
-    vertex_array_->attributes(1, instances_, 1, kInstanceVectors, 4, true);
+    vertex_array_->attributes(0, grid_vertices_, 0, 1, 2, false);
     vertex_array_->indices(grid_indices_);
 }
 
-int Terrain::triangles() const {
-    return static_cast<int>(patches_.size()) * kGridIndices / 3;
+TileSelection Terrain::select(const LodView& wanted) {
+    LodView view = wanted;
+    std::vector<TileDraw> draws;
+    while (true) {
+        draws = tree_.select(view);
+        const bool fits = static_cast<int>(draws.size()) <= height_pages_.layers();
+        const bool in_budget =
+            wanted.tolerance <= 0 ||
+            draws.size() * kGridVertices <= static_cast<std::size_t>(options_.vertex_budget);
+        if (fits && (in_budget || !view.eye_m)) break;
+        view.tolerance = view.tolerance > 0 ? view.tolerance * kCoarser : 1e-5;
+    }
+    std::vector<TileKey> keys;
+    for (const TileDraw& draw : draws)
+        keys.push_back(draw.key);
+    height_pages_.require(keys, [&](const TileKey& key) {
+        return bytes_of(height_page(pyramid_, key.level, key.at));
+    });
+
+    const LodRanges ranges = tree_.ranges(view);
+    TileSelection selection;
+    selection.tolerance_ = view.tolerance;
+    for (const TileDraw& draw : draws) {
+        const LodRanges::Level& level = ranges.levels[static_cast<std::size_t>(draw.key.level)];
+        TileSelection::Tile tile{draw, static_cast<float>(height_pages_.layer(draw.key))};
+        if (view.eye_m && std::isfinite(level.range_m)) {
+            tile.morph_start_m = static_cast<float>(level.morph_start_m);
+            tile.per_morph_m = static_cast<float>(1 / (level.range_m - level.morph_start_m));
+        }
+        selection.tiles_.push_back(tile);
+        for (int q = 0; q < 4; ++q)
+            selection.triangles_ += (draw.quadrants >> q & 1) * kQuadrantIndices / 3;
+    }
+    return selection;
 }
 
-void Terrain::draw(const glm::dvec3& eye_m) {
-    std::vector<std::array<glm::vec4, kInstanceVectors>> instances;
-    instances.reserve(patches_.size());
-    for (const Patch& patch : patches_) {
-        const PatchNet& net = patch.net;
-        const auto& p = net.position_m;
-        const auto with = [](const glm::dvec3& v, float w) { return glm::vec4(glm::vec3(v), w); };
-        instances.push_back({with(net.centre_m - eye_m + p[0], patch.quads.x),
-                             with(p[1], patch.quads.y), with(p[2], patch.height_layer),
-                             with(p[3], patch.normal_layer), with(p[4], patch.first_texel.x),
-                             with(p[5], patch.first_texel.y), with(p[6], patch.texels_per_quad),
-                             with(p[7], 0), with(p[8], 0), with(net.vertical[0], 0),
-                             with(net.vertical[1], 0), with(net.vertical[2], 0)});
+TileSelection Terrain::select_for_picture(const scene::Camera& camera, int width_px, int height_px,
+                                          double exaggeration) {
+    const LodView view =
+        LodView::of_camera(camera, width_px, height_px, options_.pixel_error, exaggeration);
+    prepare_normals(LodView::of_camera(camera, width_px, height_px, 1, exaggeration), width_px);
+    return select(view);
+}
+
+void Terrain::prepare_normals(const LodView& view, int width_px) {
+    // A page is wanted where a pixel is no larger than its texels. Pixels are measured by view
+    // depth, which in the corners of the picture is less than the distance.
+    constexpr double kCorner = 0.7;
+    (void)width_px;
+    std::vector<TileKey> pages;
+    for (double coarser = 1;; coarser *= kCoarser) {
+        pages.clear();
+        const auto wanted = [&](int tile_level, double distance_m) {
+            const int level = std::max(tile_level - kNormalPageLevels, 0);
+            return kCorner * distance_m * view.tolerance * coarser <
+                   normal_spacing_m_ * std::exp2(level);
+        };
+        tree_.visit(view, tree_.root(), kNormalPageLevels, wanted, [&](const TileKey& key) {
+            pages.push_back({std::max(key.level - kNormalPageLevels, 0), key.at});
+        });
+        if (static_cast<int>(pages.size()) <= normal_pages_.layers()) break;
     }
-    instances_.write(std::as_bytes(std::span(instances)));
+    const bool made = normal_pages_.require(pages, [&](const TileKey& key) {
+        const glm::ivec2 first = key.at * (kNormalNodes << key.level);
+        const PatchNet net = fit_patch_net(
+            [&](double column, double row) { return grid_.place(column, row); }, frame_,
+            glm::dvec2(first), glm::dvec2(span_on_dem(pyramid_, first, kNormalNodes << key.level)));
+        return bytes_of(normal_page(pyramid_, key.level, key.at, net, polar_axis_));
+    });
+    if (made) write_page_table();
+}
+
+void Terrain::write_page_table() {
+    std::vector<std::uint16_t> coarser;
+    int coarser_side = 0;
+    for (int level = page_table_.levels() - 1; level >= 0; --level) {
+        const int side = std::max(1, page_table_.extent().width >> level);
+        std::vector<std::uint16_t> entries(std::size_t{2} * static_cast<std::size_t>(side * side),
+                                           kNoLayer);
+        for (int y = 0; y < side; ++y) {
+            for (int x = 0; x < side; ++x) {
+                std::uint16_t* const entry = &entries[static_cast<std::size_t>(2 * (y * side + x))];
+                const int layer = normal_pages_.layer({level, {x, y}});
+                if (layer >= 0) {
+                    entry[0] = static_cast<std::uint16_t>(layer);
+                    entry[1] = static_cast<std::uint16_t>(level);
+                } else if (coarser_side > 0) {
+                    std::copy_n(
+                        &coarser[static_cast<std::size_t>(2 * ((y / 2) * coarser_side + x / 2))], 2,
+                        entry);
+                }
+            }
+        }
+        page_table_.write(level, {0, 0, 0}, {side, side, 1}, std::as_bytes(std::span(entries)));
+        coarser = std::move(entries);
+        coarser_side = side;
+    }
+}
+
+void Terrain::draw(const TileSelection& selection, const glm::dvec3& origin_m) {
+    if (selection.tiles_.empty()) return;
+    // Whole tiles first, then each quadrant of those that are drawn in part.
+    std::vector<std::array<glm::vec4, kInstanceVectors>> instances;
+    struct Batch {
+        int quadrant;  // -1: all
+        unsigned first, count;
+    };
+    std::vector<Batch> batches;
+    const auto with = [](const glm::dvec3& v, double w) { return glm::vec4(glm::vec3(v), w); };
+    for (int quadrant = -1; quadrant < 4; ++quadrant) {
+        const auto first = static_cast<unsigned>(instances.size());
+        for (const TileSelection::Tile& tile : selection.tiles_) {
+            const bool whole = tile.draw.quadrants == 0xf;
+            if (whole != (quadrant < 0)) continue;
+            if (quadrant >= 0 && !(tile.draw.quadrants >> quadrant & 1)) continue;
+            const TileKey& key = tile.draw.key;
+            const PatchNet& net = tree_.net(key);
+            const auto& p = net.position_m;
+            const glm::ivec2 first_post = key.at * (kTileQuads << key.level);
+            const double posts_a_quad = 1 << key.level;
+            const glm::dvec2 quads =
+                glm::dvec2(span_on_dem(pyramid_, first_post, kTileQuads << key.level)) /
+                posts_a_quad;
+            instances.push_back({with(net.centre_m - origin_m + p[0], quads.x), with(p[1], quads.y),
+                                 with(p[2], tile.height_layer), with(p[3], first_post.x),
+                                 with(p[4], first_post.y), with(p[5], posts_a_quad),
+                                 with(p[6], tile.morph_start_m), with(p[7], tile.per_morph_m),
+                                 with(p[8], 0), with(net.vertical[0], 0), with(net.vertical[1], 0),
+                                 with(net.vertical[2], 0)});
+        }
+        const auto count = static_cast<unsigned>(instances.size()) - first;
+        if (count > 0) batches.push_back({quadrant, first, count});
+    }
+    const auto bytes = std::as_bytes(std::span(instances));
+    if (instances_.size() < bytes.size()) {
+        instances_ = gl::Buffer(2 * bytes.size(), "terrain tiles");
+        vertex_array_->attributes(1, instances_, 1, kInstanceVectors, 4, true);
+    }
+    instances_.write(bytes);
     vertex_array_->bind();
-    glDrawElementsInstanced(GL_TRIANGLES, kGridIndices, GL_UNSIGNED_SHORT, nullptr,
-                            static_cast<GLsizei>(patches_.size()));
+    for (const Batch& batch : batches) {
+        const int indices = batch.quadrant < 0 ? 4 * kQuadrantIndices : kQuadrantIndices;
+        const std::size_t offset = batch.quadrant < 0
+                                       ? 0
+                                       : sizeof(std::uint16_t) * kQuadrantIndices *
+                                             static_cast<std::size_t>(batch.quadrant);
+        glDrawElementsInstancedBaseInstance(GL_TRIANGLES, indices, GL_UNSIGNED_SHORT,
+                                            reinterpret_cast<const void*>(offset),
+                                            static_cast<GLsizei>(batch.count), batch.first);
+    }
 }
 
 }  // namespace relevo::render

@@ -6,53 +6,84 @@
 #include <glm/vec3.hpp>
 
 #include "dem/heightfield.h"
+#include "dem/pyramid.h"
 #include "geo/local_frame.h"
 #include "gl/buffer.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
-#include "render/patch_net.h"
+#include "render/lod.h"
+#include "render/page_cache.h"
 
 namespace relevo::render {
 
 struct TerrainOptions {
-    /// Vertices that may be drawn in a frame: posts are left out evenly until they fit.
-    int vertex_budget = 600000;
+    /// Largest error of the drawn surface in the picture [px]. 0 draws every post.
+    double pixel_error = 2;
+    /// Vertices in a frame above which the error is let grow.
+    int vertex_budget = 250000;
+    int max_array_layers = 2048;  ///< the device's
 };
 
-/// A heightfield on the device: one 65 x 65 grid of vertices, drawn once for every patch and
-/// displaced there by the elevation pages.
-class Terrain {
+/// The tiles of a view with their pages on the device, ready to draw any number of times.
+class TileSelection {
   public:
-    /// @param frame  the DEM's local frame; every position below is in it
-    /// @throws Error (BadInput) where the DEM has more pages than the device can hold
-    Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
-            const TerrainOptions& options, int max_array_layers);
-
-    /// Draws all patches with the program and framebuffer that are bound. Texture unit 0 must hold
-    /// height_pages().
-    void draw(const glm::dvec3& eye_m);
-
-    const gl::Texture& height_pages() const { return height_pages_; }
-    const gl::Texture& normal_pages() const { return normal_pages_; }
-    bool has_holes() const { return has_holes_; }
-    int stride() const { return stride_; }  ///< posts from vertex to vertex
-    int triangles() const;                  ///< drawn in a frame
+    int triangles() const { return triangles_; }
+    double tolerance() const { return tolerance_; }  ///< as LodView's, after the vertex budget
 
   private:
-    struct Patch {
-        PatchNet net;
-        glm::vec2 quads;  ///< of the patch that lie on the DEM
-        float height_layer;
-        float normal_layer;
-        glm::vec2 first_texel;  ///< in the normal page
-        float texels_per_quad;
+    friend class Terrain;
+    struct Tile {
+        TileDraw draw;
+        float height_layer = 0;
+        float morph_start_m = 0, per_morph_m = 0;
     };
+    std::vector<Tile> tiles_;
+    int triangles_ = 0;
+    double tolerance_ = 0;
+};
 
-    std::vector<Patch> patches_;
-    int stride_ = 1;
-    bool has_holes_ = false;
-    gl::Texture height_pages_, normal_pages_;
-    gl::Buffer grid_, grid_indices_, instances_;
+/// A heightfield on the device: one 65 x 65 grid of vertices, drawn once for every tile that a view
+/// needs and displaced there by the elevation pages, which are made when first seen.
+class Terrain {
+  public:
+    /// @param heightfield  must outlive this
+    /// @param frame        the DEM's local frame; every position below is in it; must outlive this
+    Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
+            const TerrainOptions& options);
+
+    /// Chooses the tiles of a view and makes their height pages.
+    TileSelection select(const LodView& view);
+    /// A camera's view with the option's pixel error, and the normals that its picture needs.
+    TileSelection select_for_picture(const scene::Camera& camera, int width_px, int height_px,
+                                     double exaggeration);
+
+    /// Draws with the program and framebuffer that are bound. Texture unit 0 must hold
+    /// height_pages(). Positions are handed to the program relative to `origin_m`. A selection
+    /// holds until the next one is made.
+    void draw(const TileSelection& selection, const glm::dvec3& origin_m);
+
+    const gl::Texture& height_pages() const { return height_pages_.texture(); }
+    const gl::Texture& normal_pages() const { return normal_pages_.texture(); }
+    const gl::Texture& page_table() const { return page_table_; }
+    bool has_holes() const { return pyramid_.has_holes(); }
+    int normal_levels() const { return normal_levels_; }  ///< of normal pages
+
+  private:
+    void prepare_normals(const LodView& view, int width_px);
+    void write_page_table();
+
+    TerrainOptions options_;
+    dem::Pyramid pyramid_;
+    const dem::Grid& grid_;
+    const geo::LocalFrame& frame_;
+    TileTree tree_;
+    glm::dvec3 polar_axis_;
+    double normal_spacing_m_ = 0;
+    int normal_levels_ = 1;
+
+    PageCache height_pages_, normal_pages_;
+    gl::Texture page_table_;
+    gl::Buffer grid_vertices_, grid_indices_, instances_;
     std::optional<gl::VertexArray> vertex_array_;
 };
 

@@ -1,3 +1,4 @@
 //! provides  sizes of the elevation's pages on the device; render/pages.h is their mirror
 
-const float kNormalPage_px = 272.0;  // side of a normal page: 256 and a border of 8 on each side
+const int kNormalNodesLog2 = 8;  // nodes that a normal page covers along a side: 256
+const float kNormalPage_px = 258.0;  // they and a border of one

@@ -1,9 +1,12 @@
-// make_dem IN COLUMNS ROWS OUT.tif
+// make_dem IN COLUMNS ROWS OUT.tif|OUT.raw
 //
 // A DEM of any size from a small real one: mirrored copies side by side, so that the ground goes on
-// without a step and is as rough as the original everywhere. Benches are run on these.
+// without a step and is as rough as the original everywhere. Benches are run on these. A .raw file
+// holds the bare heights as 32-bit floats, first row first, for programs that read no GeoTIFF.
 
 #include <cstdlib>
+#include <fstream>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -24,11 +27,24 @@ int mirrored(int index, int count) {
 
 int main(int argc, char** argv) {
     if (argc != 5) {
-        fmt::print(stderr, "usage: make_dem IN COLUMNS ROWS OUT.tif\n");
+        fmt::print(stderr, "usage: make_dem IN COLUMNS ROWS OUT.tif|OUT.raw\n");
         return 2;
     }
     const relevo::dem::Heightfield source = relevo::dem::load(std::string(argv[1]));
     const int columns = std::atoi(argv[2]), rows = std::atoi(argv[3]);
+    if (std::string_view(argv[4]).ends_with(".raw")) {
+        std::ofstream raw(argv[4], std::ios::binary);
+        std::vector<float> line(static_cast<std::size_t>(columns));
+        for (int row = 0; row < rows; ++row) {
+            const int from = mirrored(row, source.height_m.height());
+            for (int column = 0; column < columns; ++column)
+                line[static_cast<std::size_t>(column)] =
+                    source.height_m.at(mirrored(column, source.height_m.width()), from);
+            raw.write(reinterpret_cast<const char*>(line.data()),
+                      static_cast<std::streamsize>(line.size() * sizeof(float)));
+        }
+        return raw.flush() ? 0 : 1;
+    }
     const relevo::dem::Affine& post = source.grid.affine();
     double geotransform[6] = {
         post.x0 - 0.5 * post.x_column, post.x_column, 0, post.y0 - 0.5 * post.y_row, 0, post.y_row};

@@ -22,7 +22,9 @@ Array2d<float> field(int columns, int rows, const std::function<float(int, int)>
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
 TEST(Pyramid, NodesLieOnEverySecondPostAndOnTheRim) {
-    const Pyramid pyramid(field(200, 131, [](int x, int y) { return static_cast<float>(x + y); }));
+    const Array2d<float> posts =
+        field(200, 131, [](int x, int y) { return static_cast<float>(x + y); });
+    const Pyramid pyramid(posts);
     EXPECT_EQ(pyramid.size(0), glm::ivec2(200, 131));
     EXPECT_EQ(pyramid.size(1), glm::ivec2(101, 66));
     EXPECT_EQ(pyramid.post(1, {100, 65}), glm::ivec2(199, 130));
@@ -35,7 +37,9 @@ TEST(Pyramid, NodesLieOnEverySecondPostAndOnTheRim) {
 
 TEST(Pyramid, APlaneIsTheSamePlaneOnEveryLevel) {
     // Inside; next to the rim the mean is one-sided.
-    const Pyramid pyramid(field(257, 257, [](int x, int y) { return 3.0f * x - 2.0f * y + 100; }));
+    const Array2d<float> posts =
+        field(257, 257, [](int x, int y) { return 3.0f * x - 2.0f * y + 100; });
+    const Pyramid pyramid(posts);
     for (int level = 1; level < pyramid.levels(); ++level) {
         const glm::ivec2 size = pyramid.size(level);
         for (int y = 1; y < size.y - 1; ++y)
@@ -50,10 +54,11 @@ TEST(Pyramid, HolesAndCoastsKeepTheirSize) {
     // Discs of ground in a hole, and of holes in the ground: the area at a coverage of one half or
     // more stays what it is as long as a disc is a few nodes wide.
     for (const bool island : {true, false}) {
-        const Pyramid pyramid(field(513, 513, [&](int x, int y) {
+        const Array2d<float> posts = field(513, 513, [&](int x, int y) {
             const bool inside = std::hypot(x - 250.0, y - 260.0) < 120;
             return inside == island ? 500.0f : kHole;
-        }));
+        });
+        const Pyramid pyramid(posts);
         const double area = 3.14159265 * 120 * 120;
         for (int level = 0; level <= 3; ++level) {
             double covered = 0;
@@ -76,9 +81,10 @@ TEST(Pyramid, HolesAndCoastsKeepTheirSize) {
 TEST(Pyramid, BoundsHoldEveryPost) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> height(-100, 3000);
-    const Pyramid pyramid(field(300, 280, [&](int x, int y) {
+    const Array2d<float> posts = field(300, 280, [&](int x, int y) {
         return (x > 20 && x < 60 && y < 40) ? kHole : height(random);
-    }));
+    });
+    const Pyramid pyramid(posts);
     for (int level = 0; level < pyramid.levels(); ++level) {
         const glm::ivec2 tiles = pyramid.tiles(level);
         for (int ty = 0; ty < tiles.y; ++ty) {
@@ -120,28 +126,43 @@ TEST(Pyramid, ErrorsAreUpperBoundsOfTheDistanceToThePosts) {
     for (int level = 1; level < pyramid.levels(); ++level) {
         const glm::ivec2 tiles = pyramid.tiles(level);
         const int span = Pyramid::kTileQuads << level;
-        double tightest = 1e9;
+        double tightest = 1e9, lowest_rms = 1e9, highest_rms = 0;
         for (int ty = 0; ty < tiles.y; ++ty) {
             for (int tx = 0; tx < tiles.x; ++tx) {
                 float worst = 0;
+                double squares = 0;
+                int posts = 0;
                 for (int y = ty * span; y <= std::min((ty + 1) * span, dem.height_m.height() - 1);
                      ++y)
                     for (int x = tx * span;
-                         x <= std::min((tx + 1) * span, dem.height_m.width() - 1); ++x)
-                        worst = std::max(worst, std::abs(dem.height_m.at(x, y) -
-                                                         surface_at(pyramid, level, x, y)));
+                         x <= std::min((tx + 1) * span, dem.height_m.width() - 1); ++x) {
+                        const float error =
+                            std::abs(dem.height_m.at(x, y) - surface_at(pyramid, level, x, y));
+                        worst = std::max(worst, error);
+                        squares += double{error} * error;
+                        ++posts;
+                    }
+                const double rms = std::sqrt(squares / posts);
+                const float estimate = pyramid.bounds(level, {tx, ty}).rms_m;
+                lowest_rms = std::min(lowest_rms, estimate / rms);
+                highest_rms = std::max(highest_rms, estimate / rms);
                 const float bound = pyramid.bounds(level, {tx, ty}).error_m;
                 ASSERT_GE(bound * 1.0001f, worst) << level;
                 if (worst > 0) tightest = std::min(tightest, static_cast<double>(bound / worst));
             }
         }
         fmt::print(
-            "[ pyramid ] level {}: error bound of 98 % of tiles {:.1f} m, of all {:.1f} m; at "
+            "[ pyramid ] level {}: error bound of 98 % of tiles {:.1f} m, of all {:.1f} m, at "
             "least "
-            "{:.2f} times the true one\n",
-            level, pyramid.error_m(level, 0.98), pyramid.error_m(level, 1), tightest);
+            "{:.2f} times the true one; root mean square {:.1f} m, {:.2f} to {:.2f} times the true "
+            "one\n",
+            level, pyramid.error_m(level, &Pyramid::Bounds::error_m, 0.98),
+            pyramid.error_m(level, &Pyramid::Bounds::error_m, 1), tightest,
+            pyramid.error_m(level, &Pyramid::Bounds::rms_m, 0.98), lowest_rms, highest_rms);
+        EXPECT_GT(lowest_rms, 0.66);
+        EXPECT_LT(highest_rms, 1.34);
     }
-    EXPECT_EQ(pyramid.error_m(0, 1), 0);
+    EXPECT_EQ(pyramid.error_m(0, &Pyramid::Bounds::error_m, 1), 0);
 }
 
 }  // namespace

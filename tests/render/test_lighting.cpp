@@ -34,8 +34,7 @@ class Picture {
         EffectInputs no_effects;
         no_effects.stitch.values = &values;
         Renderer renderer(context, no_effects, {.width_px = kWidth, .height_px = kHeight});
-        Terrain terrain(dem_, ground_.frame, {.vertex_budget = 4000000},
-                        context.info().max_array_layers);
+        Terrain terrain(dem_, ground_.frame, {.pixel_error = 0});
         inputs_.sun = make_sun_light(position, air, ground_, dem_.grid);
         inputs_.camera = scene::orbit_camera({180, 90, 1}, points_to_show(dem_, ground_, 1),
                                              radians(40), double{kWidth} / kHeight);

@@ -20,7 +20,7 @@ PostPlace degrees_grid(double lat_deg, double lon_deg, double spacing_deg) {
 /// Worst distance [m] from the net to exact places of posts all over the piece, at a height.
 double worst_error_m(const PostPlace& place, const geo::LocalFrame& frame, double side,
                      double height_m) {
-    const PatchNet net = fit_patch_net(place, frame, {0, 0}, side);
+    const PatchNet net = fit_patch_net(place, frame, {0, 0}, glm::dvec2(side));
     double worst = 0;
     for (int j = 0; j <= 32; ++j) {
         for (int i = 0; i <= 32; ++i) {
@@ -60,8 +60,8 @@ TEST(PatchNet, PlacesPostsWithinAHundredthOfTheirSpacing) {
 TEST(PatchNet, NeighboursAgreeAlongTheirSharedSide) {
     const PostPlace place = degrees_grid(56, -5, 1 / 1200.0);
     const geo::LocalFrame frame(geo::geodetic_deg(55.5, -4.5));
-    const PatchNet west = fit_patch_net(place, frame, {0, 0}, 64);
-    const PatchNet east = fit_patch_net(place, frame, {64, 0}, 64);
+    const PatchNet west = fit_patch_net(place, frame, {0, 0}, glm::dvec2(64));
+    const PatchNet east = fit_patch_net(place, frame, {64, 0}, glm::dvec2(64));
     for (double v = 0; v <= 1; v += 0.125)
         EXPECT_LT(distance(west.place(1, v, 0), east.place(0, v, 0)), 1e-6);
 }
@@ -70,7 +70,7 @@ TEST(PatchNet, FollowsTheCurveOfTheEarth) {
     // 200 km east of the origin the ellipsoid has dropped by about d^2 / 2R.
     const PostPlace place = degrees_grid(46, 10, 1 / 1200.0);
     const geo::LocalFrame frame(geo::geodetic_deg(46, 10));
-    const PatchNet net = fit_patch_net(place, frame, {3000, 0}, 256);
+    const PatchNet net = fit_patch_net(place, frame, {3000, 0}, glm::dvec2(256));
     const glm::dvec3 at = net.place(0, 0, 0);
     const double drop_m = at.x * at.x / 2 / 6388000;  // radius of the prime vertical at 46 N
     EXPECT_NEAR(at.z, -drop_m, 5);

@@ -1,0 +1,239 @@
+#include "render/lod.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "base/units.h"
+#include "render/pages.h"
+
+namespace relevo::render {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEquatorialRadius_m = 6378137.0;  // WGS 84
+constexpr double kFlattening = 1 / 298.257223563;  // WGS 84
+
+/// Where morphing starts, as a share of a level's range (Strugar's paper, section 4.2).
+constexpr double kMorphStart = 0.66;
+
+/// Tiles whose error a level's range vouches for; the rest are spikes and cliffs, which stand out
+/// at any level.
+constexpr double kVouchedShare = 0.98;
+
+/// A level counts as wrong by this many times its root mean square distance from the posts.
+constexpr double kSigmas = 4;
+
+/// Error of the biquadratic net over a tile of side s on a sphere of radius R, in s^3 / R^2: that
+/// of interpolating a sine at three points, both ways, with room for the projection's own.
+constexpr double kNetError = 0.03;
+
+}  // namespace
+
+double Box::distance(const glm::dvec3& point) const {
+    return length(glm::max(glm::max(low - point, point - high), glm::dvec3(0)));
+}
+
+bool Box::outside(std::span<const glm::dvec4> planes) const {
+    for (const glm::dvec4& plane : planes) {
+        const glm::dvec3 n(plane);
+        const glm::dvec3 farthest(n.x > 0 ? high.x : low.x, n.y > 0 ? high.y : low.y,
+                                  n.z > 0 ? high.z : low.z);
+        if (dot(n, farthest) + plane.w < 0) return true;
+    }
+    return false;
+}
+
+LodView LodView::of_camera(const scene::Camera& camera, int width_px, int height_px,
+                           double pixel_error, double exaggeration) {
+    LodView view;
+    const double tan_y = std::tan(camera.fov_y_rad / 2);
+    const double tan_x = tan_y * width_px / height_px;
+    const glm::dvec3 right = cross(camera.forward, camera.up);
+    const auto plane = [&](const glm::dvec3& normal) {
+        const glm::dvec3 n = normalize(normal);
+        view.planes.emplace_back(n, -dot(n, camera.eye_m));
+    };
+    plane(camera.forward);
+    plane(tan_x * camera.forward + right);
+    plane(tan_x * camera.forward - right);
+    plane(tan_y * camera.forward + camera.up);
+    plane(tan_y * camera.forward - camera.up);
+    view.eye_m = camera.eye_m;
+    view.tolerance = pixel_error * 2 * tan_y / height_px;
+    view.exaggeration = exaggeration;
+    return view;
+}
+
+TileTree::TileTree(const dem::Pyramid& pyramid, const dem::Grid& grid, const geo::LocalFrame& frame)
+    : pyramid_(&pyramid), grid_(&grid), frame_(&frame) {
+    earth_centre_m_ = frame.to_local({0, 0, -kEquatorialRadius_m});
+    polar_axis_ = frame.up(kPi / 2, 0);
+
+    // Geographic grids are widest nearest to the equator.
+    constexpr int kSamples = 8;
+    const glm::dvec2 last(grid.columns() - 1, grid.rows() - 1);
+    for (int j = 0; j <= kSamples; ++j) {
+        for (int i = 0; i <= kSamples; ++i) {
+            const glm::dvec2 at = glm::min(last * glm::dvec2(i, j) / double{kSamples}, last - 1.0);
+            const auto point = [&](double column, double row) {
+                return frame.to_local(grid.place(at.x + column, at.y + row));
+            };
+            const glm::dvec3 here = point(0, 0);
+            longest_spacing_m_ = std::max(
+                {longest_spacing_m_, length(point(1, 0) - here), length(point(0, 1) - here)});
+        }
+    }
+    lowest_m_ = pyramid.bounds(pyramid.levels() - 1, {0, 0}).lowest_m;
+    for (int level = 0; level < pyramid.levels(); ++level) {
+        const double side_m = longest_spacing_m_ * (kTileQuads << level);
+        const double net_m =
+            kNetError * side_m * side_m * side_m / (kEquatorialRadius_m * kEquatorialRadius_m);
+        error_m_.push_back(
+            kSigmas * pyramid.error_m(level, &dem::Pyramid::Bounds::rms_m, kVouchedShare) + net_m);
+        double relief_m = 0;
+        const glm::ivec2 count = pyramid.tiles(level);
+        for (int y = 0; y < count.y; ++y) {
+            for (int x = 0; x < count.x; ++x) {
+                const dem::Pyramid::Bounds& bounds = pyramid.bounds(level, {x, y});
+                if (!bounds.empty())
+                    relief_m = std::max(relief_m, double{bounds.highest_m} - bounds.lowest_m);
+            }
+        }
+        relief_m_.push_back(relief_m);
+    }
+}
+
+TileTree::Node& TileTree::node(const TileKey& key) {
+    const auto [found, is_new] = nodes_.try_emplace(key.packed());
+    if (is_new) {
+        const glm::ivec2 first = key.at * (kTileQuads << key.level);
+        found->second.net = fit_patch_net(
+            [this](double column, double row) { return grid_->place(column, row); }, *frame_,
+            glm::dvec2(first), glm::dvec2(span_on_dem(*pyramid_, first, kTileQuads << key.level)));
+    }
+    return found->second;
+}
+
+const PatchNet& TileTree::net(const TileKey& key) {
+    return node(key).net;
+}
+
+Box TileTree::box(const TileKey& key, double exaggeration) {
+    Node& n = node(key);
+    if (n.exaggeration == exaggeration) return n.box;
+    const dem::Pyramid::Bounds& bounds = pyramid_->bounds(key.level, key.at);
+    Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
+    for (const double u : {0.0, 0.5, 1.0}) {
+        for (const double v : {0.0, 0.5, 1.0}) {
+            for (const float h : {bounds.lowest_m, bounds.highest_m}) {
+                const glm::dvec3 p = n.net.place(u, v, h * exaggeration);
+                box.low = glm::min(box.low, p);
+                box.high = glm::max(box.high, p);
+            }
+        }
+    }
+    // Between those points the net bulges by a sixteenth of its second differences.
+    const auto& p = n.net.position_m;
+    const double bulge =
+        (length(p[2]) + length(p[6]) + length(p[5]) + length(p[7]) + length(p[8])) / 16;
+    box.low -= bulge + 0.01;
+    box.high += bulge + 0.01;
+    n.box = box;
+    n.exaggeration = exaggeration;
+    return box;
+}
+
+bool TileTree::below_horizon(const Box& box, const glm::dvec3& eye_m) const {
+    // In a space where the ellipsoid, lowered to the DEM's lowest post, is the unit sphere.
+    // Source: P. Cozzi, K. Ring, 3D Engine Design for Virtual Globes, 2011, section 12.
+    const double lowered = std::min(double{lowest_m_}, 0.0);
+    const double a = kEquatorialRadius_m + lowered;
+    const double b = kEquatorialRadius_m * (1 - kFlattening) + lowered;
+    const auto scaled = [&](const glm::dvec3& p) {
+        const glm::dvec3 q = p - earth_centre_m_;
+        const double along = dot(q, polar_axis_);
+        return (q - along * polar_axis_) / a + along / b * polar_axis_;
+    };
+    const glm::dvec3 eye = scaled(eye_m);
+    const double to_horizon2 = dot(eye, eye) - 1;
+    if (to_horizon2 <= 0) return false;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 to =
+            scaled({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                    corner & 4 ? box.high.z : box.low.z}) -
+            eye;
+        const double down = -dot(to, eye);
+        if (down <= to_horizon2 || down * down <= to_horizon2 * dot(to, to)) return false;
+    }
+    return true;
+}
+
+bool TileTree::hidden(const Box& box, const LodView& view) const {
+    return box.outside(view.planes) || (view.eye_m && below_horizon(box, *view.eye_m));
+}
+
+LodRanges TileTree::ranges(const LodView& view) {
+    LodRanges ranges;
+    const std::size_t top = error_m_.size() - 1;
+    ranges.levels.resize(top + 1);
+    for (std::size_t k = 0; k <= top; ++k) {
+        LodRanges::Level& level = ranges.levels[k];
+        if (k == top || view.tolerance <= 0) {
+            level = {kInfinity, kInfinity};
+            continue;
+        }
+        const double error_m = error_m_[k + 1] * view.exaggeration;
+        if (!view.eye_m) {
+            // One level for all: the coarsest that is good enough.
+            level.range_m = level.morph_start_m = error_m > view.tolerance ? kInfinity : 0;
+            continue;
+        }
+        level.range_m = error_m / view.tolerance / kMorphStart;
+        if (k > 0 && ranges.levels[k - 1].range_m > 0) {
+            const double side_m = longest_spacing_m_ * (kTileQuads << (k - 1));
+            const double across_m =
+                std::hypot(1.05 * side_m, 1.05 * side_m, relief_m_[k - 1] * view.exaggeration);
+            level.range_m =
+                std::max(level.range_m, (ranges.levels[k - 1].range_m + across_m) / kMorphStart);
+        }
+        level.morph_start_m = kMorphStart * level.range_m;
+    }
+    return ranges;
+}
+
+std::vector<TileDraw> TileTree::select(const LodView& view) {
+    const LodRanges ranges = this->ranges(view);
+    std::vector<TileDraw> draws;
+    // True where the tile is dealt with, false where it is left to its parent's level.
+    const auto take = [&](auto&& self, const TileKey& key) -> bool {
+        if (pyramid_->bounds(key.level, key.at).empty()) return true;
+        const Box b = box(key, view.exaggeration);
+        const double distance_m = view.eye_m ? b.distance(*view.eye_m) : 0;
+        if (distance_m >= ranges.levels[static_cast<std::size_t>(key.level)].range_m) {
+            return hidden(b, view);
+        }
+        if (hidden(b, view)) return true;
+        if (key.level == 0 ||
+            distance_m >= ranges.levels[static_cast<std::size_t>(key.level - 1)].range_m) {
+            draws.push_back({key, 0xf, distance_m});
+            return true;
+        }
+        std::uint8_t quadrants = 0;
+        for_children(key, [&](const TileKey& child, int q) {
+            if (!self(self, child)) quadrants |= static_cast<std::uint8_t>(1 << q);
+        });
+        if (quadrants) draws.push_back({key, quadrants, distance_m});
+        return true;
+    };
+    take(take, root());
+    std::sort(draws.begin(), draws.end(),
+              [](const TileDraw& a, const TileDraw& b) { return a.distance_m < b.distance_m; });
+    return draws;
+}
+
+}  // namespace relevo::render
