@@ -1,17 +1,18 @@
 //! provides  the light that a visible point of the terrain sends to the eye
 //! reads     place (geometry.frag.glsl), normal pages
-//! writes    radiance, linear, exposed; overlay, premultiplied sRGB
+//! writes    with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB
 
 //@ include lib/exposed.glsl
 //@ include lib/ground.glsl
 //@ include lib/pages.glsl
+//@ include lib/shown.glsl
 //@ include lib/tangent.glsl
 
 uniform usampler2D place;
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
 uniform usampler2D page_table;  // r: layer of the finest normal page that covers this one; g: its level
 
-layout(location = 0) out vec4 radiance_out;
+layout(location = 0) out vec4 light_out;
 #ifdef DISPLAY_OVERLAY
 layout(location = 1) out vec4 overlay_out;
 #endif
@@ -105,9 +106,15 @@ void main() {
     vec3 radiance = s.emissive + irradiance * lit * hook_brdf(s, to_sun, -view) + s.ambient * sky;
     hook_lit(s, radiance);
     hook_atmosphere(s, view, radiance);
-    radiance_out = vec4(exposed(radiance), 1.0);
+    radiance = exposed(radiance);
+    vec4 over = vec4(0.0);
+    hook_display(s, over);
+#ifdef SHOWN
+    light_out = shown(radiance, over);
+#else
+    light_out = vec4(radiance, 1.0);
+#endif
 #ifdef DISPLAY_OVERLAY
-    overlay_out = vec4(0.0);
-    hook_display(s, overlay_out);
+    overlay_out = over;
 #endif
 }

@@ -118,7 +118,8 @@ void capture(const Arguments& arguments) {
     gl::Context context({.device = arguments.device});
     timings.add("device", device_began);
     const auto compile_began = Clock::now();
-    const render::RendererOptions options{.width_px = size.x, .height_px = size.y};
+    const render::RendererOptions options{
+        .width_px = size.x, .height_px = size.y, .radiance = image::holds_linear_light(output)};
     render::Renderer renderer(context, effects->inputs(), options);
     std::optional<render::Renderer> without;
     if (compared) without.emplace(context, others->inputs(), options);

@@ -31,15 +31,20 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
         geometry.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
         terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
     }
-    if (options.overlay) terrain.defines.push_back({"DISPLAY_OVERLAY", ""});
+    std::vector<shader::Define> ends;  // what the shading programs end in
+    if (options.shown)
+        ends.push_back({"SHOWN", ""});
+    else if (has_overlay(input))
+        ends.push_back({"DISPLAY_OVERLAY", ""});
+    terrain.defines.insert(terrain.defines.end(), ends.begin(), ends.end());
     std::vector<ProgramText> programs;
     programs.push_back({"geometry", shader::stitch(core, geometry, input)});
     programs.push_back({"terrain", shader::stitch(core, terrain, input)});
-    for (const char* name : {"sky", "post", "edges", "antialias"}) {
+    for (const std::string name : {"sky", "post", "edges", "antialias"}) {
+        if (name == "post" && options.shown) continue;
         shader::ProgramRecipe recipe{.vertex_main = "fullscreen.vert.glsl",
-                                     .fragment_main = fmt::format("{}.frag.glsl", name)};
-        if (options.overlay && std::string_view(name) == "post")
-            recipe.defines.push_back({"DISPLAY_OVERLAY", ""});
+                                     .fragment_main = name + ".frag.glsl"};
+        if (name == "sky" || name == "post") recipe.defines = ends;
         programs.push_back({name, shader::stitch(core, recipe, input)});
     }
     return programs;

@@ -1,5 +1,7 @@
+#include <array>
+#include <cmath>
 #include <filesystem>
-#include <set>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -102,6 +104,44 @@ TEST_F(Toggles, EveryPairOfEffectsCompilesAndDraws) {
             EXPECT_GT(image::compare(pair, none).worst, 8) << ids[i] << " and " << ids[j];
         }
     }
+}
+
+TEST_F(Toggles, AnOverlaysColoursAreTheLegendsWhateverTheLight) {
+    const std::filesystem::path folder = dir_ / "plugins/legend";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "plugin.json")
+        << R"({"format": 1, "id": "legend", "name": "Legend", "version": "1.0.0"})";
+    std::ofstream(folder / "legend.glsl")
+        << "uniform float legend_opaque = 1.0; //@ range(0, 1)\n"
+           "void legend_on_display(in Surface s, inout vec4 overlay) {\n"
+           "    overlay = legend_opaque * vec4(0.8, 0.4, 0.2, 1.0);\n"
+           "}\n";
+    const std::string path = (dir_ / "plugins").string();
+    take("plain.png", {"--only", "", "--view", "el=90,zoom=3"});
+    const image::Image8 plain = picture("plain.png");
+    for (const char* time : {"2026-06-21T18:30-04:00", "2026-06-22T01:00-04:00"}) {
+        take("legend.png",
+             {"--only", "legend", "--plugin-path", path, "--view", "el=90,zoom=3", "--time", time});
+        const image::Image8 legend = picture("legend.png");
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(legend.at(48, 32, c), std::array{204, 102, 51}[static_cast<std::size_t>(c)],
+                        1)
+                << time;
+    }
+    // Half of it lies over half of the picture.
+    take("half.png", {"--only", "legend", "--plugin-path", path, "--view", "el=90,zoom=3", "--set",
+                      "legend.opaque=0.5"});
+    const image::Image8 half = picture("half.png");
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(
+            half.at(48, 32, c),
+            0.5 * plain.at(48, 32, c) + 0.5 * std::array{204, 102, 51}[static_cast<std::size_t>(c)],
+            1.5);
+    // It is no light: linear pictures are without it.
+    take("plain.exr", {"--only", "", "--view", "el=90,zoom=3"});
+    take("legend.exr", {"--only", "legend", "--plugin-path", path, "--view", "el=90,zoom=3"});
+    EXPECT_EQ(image::read_float(dir_ / "plain.exr").values,
+              image::read_float(dir_ / "legend.exr").values);
 }
 
 TEST_F(Toggles, AbIsWithOnTheLeftAndWithoutOnTheRight) {
