@@ -1,9 +1,10 @@
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include <fmt/format.h>
+#include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
@@ -21,8 +22,10 @@ namespace {
 class Toggles : public testing::Test {
   protected:
     Result take(const std::string& name, std::vector<std::string> more) {
+        if (std::find(more.begin(), more.end(), "--time") == more.end())
+            more.insert(more.end(), {"--time", "2026-06-21T18:30-04:00"});
         more.insert(more.begin(), {"capture", bundled_dem(), "-o", (dir_ / name).string(), "--size",
-                                   "96x64", "--overwrite", "--time", "2026-06-21T18:30-04:00"});
+                                   "96x64", "--overwrite"});
         return relevo(more);
     }
     image::Image8 picture(const std::string& name) { return image::read(dir_ / name); }
@@ -116,6 +119,7 @@ TEST_F(Toggles, AnOverlaysColoursAreTheLegendsWhateverTheLight) {
            "void legend_on_display(in Surface s, inout vec4 overlay) {\n"
            "    overlay = legend_opaque * vec4(0.8, 0.4, 0.2, 1.0);\n"
            "}\n";
+    const glm::ivec3 kColour{204, 102, 51};
     const std::string path = (dir_ / "plugins").string();
     take("plain.png", {"--only", "", "--view", "el=90,zoom=3"});
     const image::Image8 plain = picture("plain.png");
@@ -124,19 +128,14 @@ TEST_F(Toggles, AnOverlaysColoursAreTheLegendsWhateverTheLight) {
              {"--only", "legend", "--plugin-path", path, "--view", "el=90,zoom=3", "--time", time});
         const image::Image8 legend = picture("legend.png");
         for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(legend.at(48, 32, c), std::array{204, 102, 51}[static_cast<std::size_t>(c)],
-                        1)
-                << time;
+            EXPECT_NEAR(legend.at(48, 32, c), kColour[c], 1) << time;
     }
     // Half of it lies over half of the picture.
     take("half.png", {"--only", "legend", "--plugin-path", path, "--view", "el=90,zoom=3", "--set",
                       "legend.opaque=0.5"});
     const image::Image8 half = picture("half.png");
     for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(
-            half.at(48, 32, c),
-            0.5 * plain.at(48, 32, c) + 0.5 * std::array{204, 102, 51}[static_cast<std::size_t>(c)],
-            1.5);
+        EXPECT_NEAR(half.at(48, 32, c), 0.5 * plain.at(48, 32, c) + 0.5 * kColour[c], 1.5);
     // It is no light: linear pictures are without it.
     take("plain.exr", {"--only", "", "--view", "el=90,zoom=3"});
     take("legend.exr", {"--only", "legend", "--plugin-path", path, "--view", "el=90,zoom=3"});
