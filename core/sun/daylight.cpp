@@ -107,9 +107,9 @@ double natural_exposure(double elevation_rad) {
     };
     static const double kReference_lux = level_lux(radians(45));
     // From nautical dusk on, as long exposures do, white ground is held at what is left.
-    constexpr double kNightLevel = 0.08;
+    constexpr double kNightLevel = 0.05;
     const double level = level_lux(elevation_rad);
-    return std::max(2.2 * std::pow(kReference_lux / level, 0.76),
+    return std::max(2.2 * std::pow(kReference_lux / level, 0.74),
                     kNightLevel * kSolarIlluminance_lux / level);
 }
 

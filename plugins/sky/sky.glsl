@@ -13,14 +13,14 @@ uniform sampler2D sky_sunset;
 uniform sampler2D sky_night;
 
 uniform int sky_colours = 0; //@ enum(model, three) static label("Colours") description("A sky for every height of the sun, or the paper's three, blended")
-uniform float sky_brightness = 1.0; //@ range(0, 10) label("Brightness")
+uniform float sky_brightness = 1.3; //@ range(0, 10) label("Brightness") description("Of the sky without the sun; above 1 because less of the aureole is drawn than there is")
 uniform float sky_horizon = 0.5; //@ range(0.05, 2) label("Horizon") description("Exponent of equation 3 for an eye at sea level: the higher, the farther up the horizon's colours reach")
 uniform float sky_day_deg = 25.0; //@ angle range(1, 90) unit(deg) label("Day from") description("Height of the sun from which on the day's texture is shown alone; of the three")
 uniform float sky_night_deg = -12.0; //@ angle range(-90, -1) unit(deg) label("Night from") description("Height of the sun below which the night's texture is shown alone; of the three")
 
-uniform float sky_power = 9.0; //@ range(1, 4000) label("Power") description("Least exponent of equation 1; the next two are 4 and 16 times it")
+uniform float sky_power = 20.0; //@ range(1, 4000) label("Power") description("Least exponent of equation 1; the next two are 4 and 16 times it")
 uniform vec3 sky_weights = vec3(0.133, 0.532, 0.346); //@ range(0, 1) label("Weights") description("Of those three powers; all 1 in the paper")
-uniform float sky_aureole = 0.5; //@ range(0, 100) label("Aureole") description("Brightness of the glow, as a multiple of the sun's light at the eye")
+uniform float sky_aureole = 0.3; //@ range(0, 100) label("Aureole") description("Brightness of the glow, as a multiple of the sun's light at the eye")
 uniform bool sky_air_mass = true; //@ static label("Aureole by air mass") description("A low sun shines through more haze; off in the paper")
 uniform float sky_disc_power = 65000.0; //@ range(100, 1000000) label("Power of the disc") description("65000 falls to one half at 0.265 degrees: the sun's true size")
 uniform float sky_disc = 30.0; //@ range(0, 10000) label("Disc") description("Brightness of the sun's disc, as a multiple of its light at the eye")
@@ -134,9 +134,9 @@ void sky_on_ambient(in Surface s, inout vec3 irradiance) {
         vec3 to_sun = frame.eye_sun.xyz;
         vec3 at = vec3(sky_s(to_sun, s.normal, s.up), clamp(dot(s.normal, s.up), 0.0, 1.0),
                        sky_slice(dot(to_sun, s.up)));
-        irradiance = sky_brightness * sky_luminance() *
+        irradiance = sky_luminance() *
                      textureLod(sky_light, sky_texel(at, sky_light_size), 0.0).rgb;
     } else {
-        irradiance = sky_brightness * frame.sky_irradiance.rgb;
+        irradiance = frame.sky_irradiance.rgb;
     }
 }
