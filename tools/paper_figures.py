@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Takes the pictures of docs/paper.md: the paper's figures 1, 3, 4, 5 and 7 on the real terrain that comes along.
+"""Takes the pictures of docs/paper.md: the paper's figures 1, 3, 4, 5 and 7 on the real terrain that comes along,
+and the one of the haze's README.
 
-Usage: paper_figures.py [BUILD] [--only 4,7] [--size 960x600]      BUILD: build/release (default)
+Usage: paper_figures.py [BUILD] [--only 4,haze] [--size 960x600]      BUILD: build/release (default)
 
-Writes docs/images/paper_*.jpg. Everything a picture depends on is in this file.
+Writes docs/images/. Everything a picture depends on is in this file.
 """
 
 import argparse
@@ -22,12 +23,13 @@ GROUND = f"--eye 36.3513,-84.2290,2agl --heading 75 --pitch -10 --fov 50 --time 
 RIDGES = "--eye 36.35,-84.38,1000 --heading 95 --pitch 0 --fov 40"
 
 FIGURES = {
-    "1": {"1_dawn": DAWN},
-    "3": {"3a_abrupt": f"{EDGE} --set bump.correction=abrupt", "3b_smooth": f"{EDGE} --set bump.correction=smooth"},
-    "4": {"4a_disc": DISC, "4b_sky": WIDE, "4c_paper": f"{WIDE} --preset paper"},
-    "5": {"5a_dry": GROUND, "5b_wet": f"{GROUND} --enable wet"},
-    "7": {"7a_day": f"{RIDGES} --time 2026-03-20T13:00-04:00", "7b_sunset": f"{RIDGES} --time 2026-03-20T07:55-04:00",
-          "7c_night": f"{RIDGES} --time 2026-03-20T05:30-04:00"},
+    "1": {"paper_1_dawn": DAWN},
+    "3": {"paper_3a_abrupt": f"{EDGE} --set bump.correction=abrupt", "paper_3b_smooth": f"{EDGE} --set bump.correction=smooth"},
+    "4": {"paper_4a_disc": DISC, "paper_4b_sky": WIDE, "paper_4c_paper": f"{WIDE} --preset paper"},
+    "5": {"paper_5a_dry": GROUND, "paper_5b_wet": f"{GROUND} --enable wet"},
+    "7": {"paper_7a_day": f"{RIDGES} --time 2026-03-20T13:00-04:00", "paper_7b_sunset": f"{RIDGES} --time 2026-03-20T07:55-04:00",
+          "paper_7c_night": f"{RIDGES} --time 2026-03-20T05:30-04:00"},
+    "haze": {"haze_ab": f"{RIDGES} --time 2026-03-20T09:00-04:00 --ab haze"},
 }
 
 
@@ -39,7 +41,7 @@ def main():
     arguments = parser.parse_args()
     for number in arguments.only.split(","):
         for name, view in FIGURES[number].items():
-            path = ROOT / f"docs/images/paper_{name}.jpg"
+            path = ROOT / f"docs/images/{name}.jpg"
             subprocess.run([arguments.build / "bin/relevo", "-q", "capture", ROOT / "data/dem/jacksboro.tif", "-o", path,
                             "--overwrite", "--size", arguments.size, "--device", "software", *view.split()], check=True)
             print(f"{path.relative_to(ROOT)}: {path.stat().st_size // 1024} kB")
