@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -51,8 +52,10 @@ class Timings {
         stages_[stage] = milliseconds(began, Clock::now());
     }
 
+    /// @param processor_ms  of all threads, for all frames
     void write(const std::filesystem::path& path, const render::PassTimes& passes,
-               std::vector<double> frames_ms, int triangles, const gl::DeviceInfo& device) {
+               std::vector<double> frames_ms, double processor_ms, int triangles,
+               const gl::DeviceInfo& device) {
         nlohmann::ordered_json json;
         json["device"] = device.renderer;
         json["triangles"] = triangles;
@@ -63,10 +66,12 @@ class Timings {
             pass_json[name] = ms;
         if (!frames_ms.empty()) {
             std::sort(frames_ms.begin(), frames_ms.end());
-            json["frames"] = {{"count", frames_ms.size()},
-                              {"min_ms", frames_ms.front()},
-                              {"median_ms", frames_ms[frames_ms.size() / 2]},
-                              {"max_ms", frames_ms.back()}};
+            json["frames"] = {
+                {"count", frames_ms.size()},
+                {"min_ms", frames_ms.front()},
+                {"median_ms", frames_ms[frames_ms.size() / 2]},
+                {"max_ms", frames_ms.back()},
+                {"processor_ms", processor_ms / static_cast<double>(frames_ms.size())}};
         }
         std::ofstream file(path);
         file << json.dump(2) << '\n';
@@ -100,7 +105,7 @@ void capture(const Arguments& arguments) {
     const glm::ivec2 size = parse_size(arguments.size);
     const scene::View view = arguments.view.view_of();
     std::optional<sun::ParsedTime> given_time;
-    if (arguments.time.given()) given_time = arguments.time.parse();
+    if (arguments.time.given() && !arguments.time.needs_dem()) given_time = arguments.time.parse();
 
     // The DEM is read on a thread of its own while the device starts and the programs are compiled.
     auto loading = std::async(std::launch::async, [&] {
@@ -127,6 +132,8 @@ void capture(const Arguments& arguments) {
         render::dump_programs(renderer.texts(), arguments.dump_shaders);
     timings.add("compile", compile_began);
     const dem::Heightfield dem = loading.get();
+    if (arguments.time.given() && !given_time)
+        given_time = arguments.time.parse([&]() -> const dem::Heightfield& { return dem; });
 
     const auto upload_began = Clock::now();
     const render::Ground ground = render::make_ground(dem);
@@ -185,13 +192,17 @@ void capture(const Arguments& arguments) {
 
     if (timed) {
         std::vector<double> frames_ms;
+        const std::clock_t processor_began = std::clock();
         for (int i = 0; i < arguments.repeat; ++i) {
             const auto began = Clock::now();
             renderer.render_frame(terrain, ground, inputs);
             context.finish();
             frames_ms.push_back(milliseconds(began, Clock::now()));
         }
-        timings.write(arguments.timings, passes, frames_ms, renderer.triangles(), context.info());
+        const double processor_ms =
+            1e3 * static_cast<double>(std::clock() - processor_began) / CLOCKS_PER_SEC;
+        timings.write(arguments.timings, passes, frames_ms, processor_ms, renderer.triangles(),
+                      context.info());
     }
 }
 

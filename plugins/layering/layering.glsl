@@ -143,9 +143,23 @@ void layering_on_albedo(inout Surface s) {
         texture_scale = vec3(layering_texture_repeats * frame.ground_extent.zw, 0.0);
         noise_scale = vec3(layering_noise_repeats * frame.ground_extent.zw, 0.0);
     }
-    vec3 noise_at = s.ground_m * noise_scale;
-    float noise = 2.0 * textureGrad(layering_noise, noise_at, s.ground_dx_m * noise_scale,
-                                    s.ground_dy_m * noise_scale).r - 1.0;
+    vec4 small, broad;
+    float noise;
+    if (layering_nature) {
+        vec3 scale = 1.0 / layering_patch_m;
+        vec2 gx = s.ground_dx_m.xy, gy = s.ground_dy_m.xy;
+        small = textureGrad(layering_patches, s.ground_m.xy * scale.x, gx * scale.x, gy * scale.x);
+        vec4 region = textureGrad(layering_patches, s.ground_m.yx * scale.z, gx.yx * scale.z, gy.yx * scale.z);
+        // Regions push the broad patches about, so that those do not show as tiles from afar.
+        broad = textureGrad(layering_patches, layering_turn * s.ground_m.xy * scale.y + 2.4 * region.rg,
+                            layering_turn * gx * scale.y, layering_turn * gy * scale.y);
+        broad.rg += 0.6 * (region.ra - 0.5);
+        // As strong as the volume's, which need not be read then.
+        noise = 1.2 * (broad.r - 0.5) + 0.7 * (broad.a - 0.5) + 0.4 * (small.r - 0.5);
+    } else {
+        noise = 2.0 * textureGrad(layering_noise, s.ground_m * noise_scale, s.ground_dx_m * noise_scale,
+                                  s.ground_dy_m * noise_scale).r - 1.0;
+    }
 
     float latitude_deg = degrees(asin(clamp(dot(s.up, frame.polar_axis.xyz), -1.0, 1.0)));
     layering_Limits limits = layering_limits_at(latitude_deg);
@@ -170,15 +184,6 @@ void layering_on_albedo(inout Surface s) {
     vec3 albedo;
     float gloss;
     if (layering_nature) {
-        vec3 scale = 1.0 / layering_patch_m;
-        vec2 gx = s.ground_dx_m.xy, gy = s.ground_dy_m.xy;
-        vec4 small = textureGrad(layering_patches, s.ground_m.xy * scale.x, gx * scale.x, gy * scale.x);
-        vec4 region = textureGrad(layering_patches, s.ground_m.yx * scale.z, gx.yx * scale.z, gy.yx * scale.z);
-        // Regions push the broad patches about, so that those do not show as tiles from afar.
-        vec4 broad = textureGrad(layering_patches,
-                                 layering_turn * s.ground_m.xy * scale.y + 2.4 * region.rg,
-                                 layering_turn * gx * scale.y, layering_turn * gy * scale.y);
-        broad.rg += 0.6 * (region.ra - 0.5);
         float flatness = dot(s.geometric_normal, s.up);
         vec4 heavier = layering_unrepeated(at, dx, dy, first);
         vec4 lighter = layering_read(at, dx, dy, second);
