@@ -123,7 +123,7 @@ void ViewArguments::add_to(CLI::App& verb) {
                     "Direction from --eye, degrees clockwise from true north")
         ->group("View");
     verb.add_option("--pitch", pitch_deg, "Degrees above the horizontal")
-        ->check(CLI::Range(-90, 90))
+        ->check(CLI::Range(-90.0, 90.0))
         ->group("View");
     verb.add_option("--fov", fov_deg, "Angle of view from bottom to top, degrees (40)")
         ->check(CLI::Range(0.1, 170.0))

@@ -32,8 +32,9 @@ struct FrameBlock {
     float footprint_limit;
     float normal_texels_per_m;
     float normal_levels;
+    glm::vec4 eye_up, eye_sun, eye_sun_light;
 };
-static_assert(sizeof(FrameBlock) == 26 * 16);
+static_assert(sizeof(FrameBlock) == 29 * 16);
 
 /// The sun over a DEM, as the shaders need it.
 struct SunLight {

@@ -1,7 +1,7 @@
 //! provides  materials: sand, grass, rock, snow by elevation and slope, two at most at a point
 //! hook      albedo
 //! reads     height [m and 0..1], slope, latitude, ground coordinates [m]
-//! writes    material, material_weight, diffuse, ambient, specular, emissive, shininess
+//! writes    material, material_weight, texture_at, gloss, diffuse, ambient, specular, emissive, shininess
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section 3.1 and table 1
 
@@ -107,13 +107,15 @@ vec4 layering_read(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
 const mat2 layering_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
 
 /// A material without visible repeats: the same texture, turned and several times as large, shades it.
+/// @returns albedo, and in `a` the gloss
 /// @param dx, dy  change of `at` from pixel to pixel
-vec3 layering_unrepeated(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
+vec4 layering_unrepeated(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
     const float larger = 0.23;
     vec3 mean = texelFetch(layering_albedo, ivec3(0, 0, material), layering_last_level).rgb;
     vec3 wide = layering_read(layering_turn * at * larger, layering_turn * dx * larger,
                               layering_turn * dy * larger, material).rgb;
-    return layering_read(at, dx, dy, material).rgb * (0.35 + 0.65 * wide / mean);
+    vec4 near = layering_read(at, dx, dy, material);
+    return vec4(near.rgb * (0.35 + 0.65 * wide / mean), near.a);
 }
 
 /// What places do to a material's colour: factors on its albedo.
@@ -180,16 +182,26 @@ void layering_on_albedo(inout Surface s) {
     vec2 at = s.ground_m.xy * texture_scale.xy;
     vec2 dx = s.ground_dx_m.xy * texture_scale.xy, dy = s.ground_dy_m.xy * texture_scale.xy;
     vec3 albedo;
+    float gloss;
     if (layering_nature) {
         float flatness = dot(s.geometric_normal, s.up);
-        albedo = most * layering_unrepeated(at, dx, dy, first) * layering_tint(first, small, broad, flatness) +
-                 next * layering_read(at, dx, dy, second).rgb * layering_tint(second, small, broad, flatness);
+        vec4 heavier = layering_unrepeated(at, dx, dy, first);
+        vec4 lighter = layering_read(at, dx, dy, second);
+        albedo = most * heavier.rgb * layering_tint(first, small, broad, flatness) +
+                 next * lighter.rgb * layering_tint(second, small, broad, flatness);
+        gloss = most * heavier.a + next * lighter.a;
     } else {
-        albedo = most * layering_read(at, dx, dy, first).rgb +
-                 next * layering_read(at, dx, dy, second).rgb;
+        vec4 read =
+            most * layering_read(at, dx, dy, first) + next * layering_read(at, dx, dy, second);
+        albedo = read.rgb;
+        gloss = read.a;
     }
     albedo *= 1.0 + layering_variation * noise;
 
+    s.texture_at = at;
+    s.texture_dx = dx;
+    s.texture_dy = dy;
+    s.gloss = gloss;
     s.diffuse = albedo * dot(layering_diffuse, weights);
     s.ambient = albedo * dot(layering_ambient, weights);
     s.specular = vec3(dot(layering_specular, weights));
