@@ -58,6 +58,7 @@ int run(int argc, char** argv) {
     relevo::cli::add_info(app);
     relevo::cli::add_sun(app);
     relevo::cli::add_plugins(app);
+    relevo::cli::add_doctor(app);
     if (argc > 1) check_verb(app, argv[1]);
     try {
         app.parse(argc, argv);

@@ -17,11 +17,13 @@ vec3 core_on_background_radiance(in vec3 direction, in bool with_disc) {
     return mix(horizon, zenith, sqrt(height));
 }
 
-/// Keeps colours as they are up to 0.76 and bends brighter ones softly below 1, towards white.
-/// source: Khronos PBR Neutral Tone Mapper specification 1.0 (2024), without its toe
+/// Keeps colours as they are up to one half and bends brighter ones softly below 1, towards white.
+/// source: Khronos PBR Neutral Tone Mapper specification 1.0 (2024), without its toe; it starts at 0.5
+/// instead of 0.76 and takes less colour away, because skies at dusk and snow at noon are brighter
+/// than the lit studio that it was made for
 void core_on_tonemap(inout vec3 colour) {
-    const float start = 0.76;
-    const float desaturation = 0.15;
+    const float start = 0.5;
+    const float desaturation = 0.07;
     float peak = max(colour.r, max(colour.g, colour.b));
     if (peak > start) {
         const float room = 1.0 - start;

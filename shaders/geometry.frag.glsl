@@ -17,6 +17,9 @@ void main() {
 #else
     uvec2 normal_source = floatBitsToUint(post);
 #endif
+    // A sliver that the near plane has cut to nothing has no coordinates in llvmpipe; its neighbours
+    // cover the pixel.
+    if (isnan(height_m)) discard;
     place_out = uvec4(normal_source, floatBitsToUint(height_m), floatBitsToUint(1.0 / gl_FragCoord.w));
     store_varyings();
 }

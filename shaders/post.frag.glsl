@@ -1,15 +1,19 @@
-//! provides  from linear radiance to the colours of the picture
-//! reads     radiance, linear
+//! provides  from linear radiance to the colours of the picture, where the radiance itself is wanted too
+//! reads     radiance, linear, exposed; overlay
 //! writes    colour: sRGB
 
-//@ include lib/srgb.glsl
+//@ include lib/shown.glsl
 
 uniform sampler2D radiance;
+uniform sampler2D overlay;  // premultiplied sRGB, where an effect has the hook display
 
 layout(location = 0) out vec4 colour_out;
 
 void main() {
-    vec3 colour = texelFetch(radiance, ivec2(gl_FragCoord.xy), 0).rgb * frame.exposure;
-    hook_tonemap(colour);
-    colour_out = vec4(srgb_encoded(colour), 1.0);
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 over = vec4(0.0);
+#ifdef DISPLAY_OVERLAY
+    over = texelFetch(overlay, pixel, 0);
+#endif
+    colour_out = shown(texelFetch(radiance, pixel, 0).rgb, over);
 }

@@ -1,10 +1,18 @@
 //! provides  the sky where there is no terrain
-//! writes    radiance, linear
+//! writes    as terrain.frag.glsl
 
-layout(location = 0) out vec4 radiance_out;
+//@ include lib/exposed.glsl
+//@ include lib/shown.glsl
+
+layout(location = 0) out vec4 light_out;
 
 void main() {
     vec3 ray = frame.pixel_ray.xyz + gl_FragCoord.x * frame.pixel_ray_dx.xyz +
                gl_FragCoord.y * frame.pixel_ray_dy.xyz;
-    radiance_out = vec4(background_radiance(normalize(ray), true), 1.0);
+    vec3 radiance = exposed(background_radiance(normalize(ray), true));
+#ifdef SHOWN
+    light_out = shown(radiance, vec4(0.0));
+#else
+    light_out = vec4(radiance, 1.0);
+#endif
 }

@@ -1,13 +1,19 @@
 //! provides  the light that a visible point of the terrain sends to the eye
 //! reads     place (geometry.frag.glsl), normal pages
-//! writes    radiance, linear; overlay, premultiplied sRGB
+//! writes    with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB
 
+//@ include lib/exposed.glsl
 //@ include lib/ground.glsl
 //@ include lib/pages.glsl
+//@ include lib/shown.glsl
+//@ include lib/tangent.glsl
 
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
 
-layout(location = 0) out vec4 radiance_out;
+layout(location = 0) out vec4 light_out;
+#ifdef DISPLAY_OVERLAY
+layout(location = 1) out vec4 overlay_out;
+#endif
 
 /// Where the ray of the neighbouring pixel meets the plane of this point, from this point.
 vec3 footprint(in vec3 position, in vec3 normal, in vec3 ray, in vec3 ray_step) {
@@ -57,7 +63,7 @@ void main() {
     slope *= frame.height_range.z;
     s.geometric_normal = normalize(slope.x * east + slope.y * north + rise * s.up);
 #endif
-    s.tangent = normalize(vec3(1.0, 0.0, 0.0) - s.geometric_normal.x * s.geometric_normal);
+    s.tangent = tangent_of(s.geometric_normal);
     s.bitangent = cross(s.geometric_normal, s.tangent);
     s.normal = s.geometric_normal;
 
@@ -69,6 +75,10 @@ void main() {
     s.ground_dx_m = dx * min(1.0, most / length(dx));
     s.ground_dy_m = dy * min(1.0, most / length(dy));
 
+    s.texture_at = s.ground_m.xy;
+    s.texture_dx = s.ground_dx_m.xy;
+    s.texture_dy = s.ground_dy_m.xy;
+    s.gloss = 1.0;
     s.material = ivec2(0);
     s.material_weight = vec2(1.0, 0.0);
     s.diffuse = vec3(0.3);
@@ -94,5 +104,15 @@ void main() {
     vec3 radiance = s.emissive + irradiance * lit * hook_brdf(s, to_sun, -view) + s.ambient * sky;
     hook_lit(s, radiance);
     hook_atmosphere(s, view, radiance);
-    radiance_out = vec4(radiance, 1.0);
+    radiance = exposed(radiance);
+    vec4 over = vec4(0.0);
+    hook_display(s, over);
+#ifdef SHOWN
+    light_out = shown(radiance, over);
+#else
+    light_out = vec4(radiance, 1.0);
+#endif
+#ifdef DISPLAY_OVERLAY
+    overlay_out = over;
+#endif
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -30,6 +31,7 @@ struct Arguments {
     ViewArguments view;
     EffectArguments effects;
     std::string output, size = "1280x1024", device = "auto", timings, dump_shaders;
+    std::vector<std::string> ab;
     double exposure_ev = 0;
     double pixel_error = render::TerrainOptions{}.pixel_error;
     int repeat = 0;
@@ -50,8 +52,10 @@ class Timings {
         stages_[stage] = milliseconds(began, Clock::now());
     }
 
+    /// @param processor_ms  of all threads, for all frames
     void write(const std::filesystem::path& path, const render::PassTimes& passes,
-               std::vector<double> frames_ms, int triangles, const gl::DeviceInfo& device) {
+               std::vector<double> frames_ms, double processor_ms, int triangles,
+               const gl::DeviceInfo& device) {
         nlohmann::ordered_json json;
         json["device"] = device.renderer;
         json["triangles"] = triangles;
@@ -62,10 +66,12 @@ class Timings {
             pass_json[name] = ms;
         if (!frames_ms.empty()) {
             std::sort(frames_ms.begin(), frames_ms.end());
-            json["frames"] = {{"count", frames_ms.size()},
-                              {"min_ms", frames_ms.front()},
-                              {"median_ms", frames_ms[frames_ms.size() / 2]},
-                              {"max_ms", frames_ms.back()}};
+            json["frames"] = {
+                {"count", frames_ms.size()},
+                {"min_ms", frames_ms.front()},
+                {"median_ms", frames_ms[frames_ms.size() / 2]},
+                {"max_ms", frames_ms.back()},
+                {"processor_ms", processor_ms / static_cast<double>(frames_ms.size())}};
         }
         std::ofstream file(path);
         file << json.dump(2) << '\n';
@@ -77,6 +83,21 @@ class Timings {
     nlohmann::ordered_json stages_ = nlohmann::ordered_json::object();
 };
 
+constexpr int kDivider_px = 2;
+
+/// Puts the left half of one picture beside the right half of the other, with a line between.
+template <typename Picture, typename Value>
+Picture side_by_side(const Picture& left, const Picture& right, Value line) {
+    Picture both = right;
+    const int first = std::max((left.width - kDivider_px) / 2, 0) * left.channels;
+    const int last = std::min(left.width * left.channels, first + kDivider_px * left.channels);
+    for (int y = 0; y < left.height; ++y) {
+        std::copy_n(left.row(y), first, both.row(y));
+        std::fill(both.row(y) + first, both.row(y) + last, line);
+    }
+    return both;
+}
+
 void capture(const Arguments& arguments) {
     Timings timings;
     const std::filesystem::path output = arguments.output;
@@ -84,32 +105,43 @@ void capture(const Arguments& arguments) {
     const glm::ivec2 size = parse_size(arguments.size);
     const scene::View view = arguments.view.view_of();
     std::optional<sun::ParsedTime> given_time;
-    if (arguments.time.given()) given_time = arguments.time.parse();
+    if (arguments.time.given() && !arguments.time.needs_dem()) given_time = arguments.time.parse();
 
     // The DEM is read on a thread of its own while the device starts and the programs are compiled.
     auto loading = std::async(std::launch::async, [&] {
         const auto began = Clock::now();
-        dem::Heightfield field = dem::load(arguments.dem.paths, arguments.dem.options);
+        dem::Source source = dem::Source::open(arguments.dem.paths, arguments.dem.options);
+        dem::Heightfield field = dem::load(source, arguments.dem.options.max_posts);
         timings.add("load", began);
-        return field;
+        return std::pair(std::move(source), std::move(field));
     });
     const auto device_began = Clock::now();
-    const std::unique_ptr<ActiveEffects> effects = arguments.effects.active();
+    const bool compared = !arguments.ab.empty();
+    const std::unique_ptr<ActiveEffects> effects =
+        (compared ? arguments.effects.with(arguments.ab) : arguments.effects).active();
+    const std::unique_ptr<ActiveEffects> others =
+        compared ? arguments.effects.without(arguments.ab).active() : nullptr;
     gl::Context context({.device = arguments.device});
     timings.add("device", device_began);
     const auto compile_began = Clock::now();
-    render::Renderer renderer(context, effects->inputs(),
-                              {.width_px = size.x, .height_px = size.y});
+    const render::RendererOptions options{
+        .width_px = size.x, .height_px = size.y, .radiance = image::holds_linear_light(output)};
+    render::Renderer renderer(context, effects->inputs(), options);
+    std::optional<render::Renderer> without;
+    if (compared) without.emplace(context, others->inputs(), options);
     if (!arguments.dump_shaders.empty())
         render::dump_programs(renderer.texts(), arguments.dump_shaders);
     timings.add("compile", compile_began);
-    const dem::Heightfield dem = loading.get();
+    const auto [source, dem] = loading.get();
+    if (arguments.time.given() && !given_time)
+        given_time = arguments.time.parse([&]() -> const dem::Heightfield& { return dem; });
 
     const auto upload_began = Clock::now();
     const render::Ground ground = render::make_ground(dem);
-    render::Terrain terrain(dem, ground.frame,
-                            {.pixel_error = arguments.pixel_error,
-                             .max_array_layers = context.info().max_array_layers});
+    render::Terrain terrain(
+        dem, ground.frame,
+        {.pixel_error = arguments.pixel_error, .max_array_layers = context.info().max_array_layers},
+        &source);
     timings.add("upload", upload_began);
 
     const geo::Geodetic place = ground.frame.origin();
@@ -137,6 +169,7 @@ void capture(const Arguments& arguments) {
     const auto passes_began = Clock::now();
     renderer.render_frame(terrain, ground, inputs, timed ? &passes : nullptr);
     timings.add("passes", passes_began);
+    if (without) without->render_frame(terrain, ground, inputs);
 
     const image::Metadata metadata{
         {"Software", "Relevo " RELEVO_VERSION},
@@ -144,13 +177,15 @@ void capture(const Arguments& arguments) {
          fmt::format("{}; {}; {}", geo::degrees_text(place), sun::to_iso(utc), sun_text)}};
     const auto readback_began = Clock::now();
     if (image::holds_linear_light(output)) {
-        const image::ImageF picture = renderer.read_radiance();
+        image::ImageF picture = renderer.read_radiance();
+        if (without) picture = side_by_side(picture, without->read_radiance(), 0.0f);
         timings.add("readback", readback_began);
         const auto write_began = Clock::now();
         image::write(output, picture, metadata, arguments.overwrite);
         timings.add("write", write_began);
     } else {
-        const image::Image8 picture = renderer.read_picture();
+        image::Image8 picture = renderer.read_picture();
+        if (without) picture = side_by_side(picture, without->read_picture(), std::uint8_t{255});
         timings.add("readback", readback_began);
         const auto write_began = Clock::now();
         image::write(output, picture, metadata, arguments.overwrite);
@@ -159,13 +194,17 @@ void capture(const Arguments& arguments) {
 
     if (timed) {
         std::vector<double> frames_ms;
+        const std::clock_t processor_began = std::clock();
         for (int i = 0; i < arguments.repeat; ++i) {
             const auto began = Clock::now();
             renderer.render_frame(terrain, ground, inputs);
             context.finish();
             frames_ms.push_back(milliseconds(began, Clock::now()));
         }
-        timings.write(arguments.timings, passes, frames_ms, renderer.triangles(), context.info());
+        const double processor_ms =
+            1e3 * static_cast<double>(std::clock() - processor_began) / CLOCKS_PER_SEC;
+        timings.write(arguments.timings, passes, frames_ms, processor_ms, renderer.triangles(),
+                      context.info());
     }
 }
 
@@ -184,6 +223,10 @@ void add_capture(CLI::App& app) {
     arguments->refraction.add_to(verb);
     arguments->view.add_to(verb);
     arguments->effects.add_to(verb);
+    verb.add_option("--ab", arguments->ab,
+                    "Compare: the left half with these effects, the right half without them")
+        ->delimiter(',')
+        ->group("Effects");
     verb.add_option("--exposure", arguments->exposure_ev, "Stops brighter than natural, EV")
         ->check(CLI::Range(-20.0, 20.0));
     verb.add_option("--pixel-error", arguments->pixel_error,

@@ -1,5 +1,7 @@
 #include "cli/effects.h"
 
+#include <algorithm>
+
 #include "base/log.h"
 
 namespace relevo::cli {
@@ -36,6 +38,32 @@ void EffectArguments::add_to(CLI::App& verb) {
     verb.add_option("--plugin-path", plugin_path, "Folder of further plugins")
         ->allow_extra_args(false)
         ->group("Effects");
+}
+
+namespace {
+
+/// Takes `ids` out of one list of effects and adds them to another.
+void move_to(const std::vector<std::string>& ids, std::vector<std::string>& from,
+             std::vector<std::string>& to) {
+    for (const std::string& id : ids) {
+        from.erase(std::remove(from.begin(), from.end(), id), from.end());
+        if (std::find(to.begin(), to.end(), id) == to.end()) to.push_back(id);
+    }
+}
+
+}  // namespace
+
+EffectArguments EffectArguments::with(const std::vector<std::string>& ids) const {
+    EffectArguments changed = *this;
+    move_to(ids, changed.disable, changed.enable);
+    return changed;
+}
+
+EffectArguments EffectArguments::without(const std::vector<std::string>& ids) const {
+    EffectArguments changed = *this;
+    move_to(ids, changed.enable, changed.disable);
+    move_to(ids, changed.only, changed.disable);
+    return changed;
 }
 
 std::unique_ptr<ActiveEffects> EffectArguments::active() const {

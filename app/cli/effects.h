@@ -31,6 +31,9 @@ struct EffectArguments {
     void add_to(CLI::App& verb);
     /// Loads the plugins and switches them; says on standard error what is not as asked.
     std::unique_ptr<ActiveEffects> active() const;
+    /// The same with these effects on, or off, whatever was asked of them.
+    EffectArguments with(const std::vector<std::string>& ids) const;
+    EffectArguments without(const std::vector<std::string>& ids) const;
 };
 
 }  // namespace relevo::cli

@@ -1,30 +1,123 @@
-#include <cstdio>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "base/log.h"
+#include "base/units.h"
 #include "cli/commands.h"
 #include "cli/shared.h"
+#include "dem/pyramid.h"
 #include "dem/summary.h"
+#include "geo/local_frame.h"
+#include "render/patch_net.h"
+#include "sun/position.h"
 
 namespace relevo::cli {
+namespace {
+
+struct Sun {
+    sun::Instant utc;
+    double azimuth_deg = 0;
+    double elevation_deg = 0;
+    double apparent_deg = 0;
+};
+
+Sun sun_over(const dem::Summary& summary, sun::Instant utc) {
+    const geo::Geodetic& place = summary.center;
+    const sun::Position position = sun::position(utc, place);
+    // The air over a sea floor begins at the sea; outliers have none.
+    const double middle_m = std::clamp(0.5 * (summary.min_m + summary.max_m), 0.0, 9000.0);
+    const sun::Refraction air = sun::Refraction::standard({place.lat_rad, place.lon_rad, middle_m});
+    return {utc, degrees(position.azimuth_rad), degrees(position.elevation_rad),
+            degrees(air.apparent_rad(position.elevation_rad))};
+}
+
+/// How far the net that terrain is drawn on is from the places themselves.
+struct NetError {
+    int posts = 0;  ///< along a side of a piece of the net
+    double worst_m = 0;
+};
+
+/// Over pieces all over the DEM, at the height of its highest post. The pieces are those of ground
+/// that is drawn post by post; what is drawn coarser counts its larger error as part of
+/// --pixel-error.
+NetError net_error(const dem::Heightfield& field) {
+    constexpr int kPosts = dem::Pyramid::kTileQuads, kPieces = 4, kPoints = 16;
+    const geo::Geodetic center = field.grid.center();
+    const geo::LocalFrame frame(center);
+    const auto place = [&](double column, double row) { return field.grid.place(column, row); };
+    NetError error;
+    error.posts = std::min(kPosts, std::max(field.grid.columns(), field.grid.rows()) - 1);
+    const double height_m = static_cast<double>(field.about.statistics.max_m);
+    for (int k = 0; k < kPieces * kPieces; ++k) {
+        const auto first = [&](int index, int count) {
+            return std::max(0.0, (count - 1.0 - error.posts) * index / (kPieces - 1));
+        };
+        const glm::dvec2 corner(first(k % kPieces, field.grid.columns()),
+                                first(k / kPieces, field.grid.rows()));
+        const render::PatchNet net =
+            render::fit_patch_net(place, frame, corner, glm::dvec2(error.posts));
+        for (int i = 0; i <= kPoints * kPoints; ++i) {
+            const glm::dvec2 at = glm::dvec2(i % kPoints, i / kPoints) / double{kPoints};
+            geo::Geodetic exact =
+                place(corner.x + at.x * error.posts, corner.y + at.y * error.posts);
+            exact.height_m = height_m;
+            const double off_m =
+                glm::distance(net.place(at.x, at.y, height_m), frame.to_local(exact));
+            // Corners of whole-Earth maps are in space.
+            if (std::isfinite(off_m)) error.worst_m = std::max(error.worst_m, off_m);
+        }
+    }
+    return error;
+}
+
+}  // namespace
 
 void add_info(CLI::App& app) {
     struct Arguments {
         DemArguments dem;
+        TimeArguments time;
         bool json = false;
     };
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb = *app.add_subcommand("info", "What a DEM is, and what is assumed of it");
     arguments->dem.add_to(verb);
+    arguments->time.add_to(verb);
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");
     verb.callback([arguments] {
+        const sun::Instant utc =
+            arguments->time.given() ? arguments->time.parse().utc : sun::Instant::now();
         const dem::Heightfield field = dem::load(arguments->dem.paths, arguments->dem.options);
         const dem::Summary summary = dem::summarize(field);
-        if (arguments->json)
-            fmt::print("{}\n", dem::to_json(summary));
-        else
-            fmt::print("{}", dem::to_text(summary));
+        const Sun sun = sun_over(summary, utc);
+        const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
+        if (arguments->json) {
+            const NetError net = net_error(field);
+            auto json = nlohmann::ordered_json::parse(dem::to_json(summary));
+            json["sun"] = {{"utc", sun::to_iso(sun.utc)},
+                           {"azimuth_deg", sun.azimuth_deg},
+                           {"elevation_deg", sun.elevation_deg},
+                           {"apparent_elevation_deg", sun.apparent_deg}};
+            json["position_net"] = {{"piece_posts", net.posts}, {"error_m", net.worst_m}};
+            fmt::print("{}\n", json.dump(2));
+            return;
+        }
+        fmt::print("{}", dem::to_text(summary));
+        const std::string with_air = sun.elevation_deg < -2
+                                         ? "below the horizon"
+                                         : fmt::format("{:.2f} with refraction", sun.apparent_deg);
+        fmt::print("{:<10} azimuth {:.2f}, elevation {:.2f} ({}) at {}\n", "sun", sun.azimuth_deg,
+                   sun.elevation_deg, with_air, sun::to_iso(sun.utc));
+        if (log::level() == log::Level::Debug) {
+            const NetError net = net_error(field);
+            fmt::print(
+                "{:<10} pieces of {} posts are drawn within {:.2g} m of where they are, "
+                "{:.2g} of the post spacing\n",
+                "net", net.posts, net.worst_m, net.worst_m / spacing_m);
+        }
     });
 }
 

@@ -9,11 +9,20 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "geo/geodetic.h"
+#include "light/event_time.h"
+#include "sun/event_time.h"
 
 namespace relevo::cli {
 
+namespace {
+
+constexpr std::int64_t kBytesAPost = sizeof(float);
+
+}  // namespace
+
 void DemArguments::add_to(CLI::App& verb) {
-    verb.add_option("DEM", paths, "Elevation raster: anything GDAL opens")->required();
+    verb.add_option("DEM", paths, "Elevation rasters: anything GDAL opens; several are one DEM")
+        ->required();
     verb.add_option("--crs", options.crs,
                     "Coordinate reference system instead of the file's (EPSG:n, WKT)")
         ->group("DEM");
@@ -22,19 +31,65 @@ void DemArguments::add_to(CLI::App& verb) {
         ->group("DEM");
     verb.add_option("--unit", options.unit, "Unit of the heights: m, ft, us-ft, cm, km")
         ->group("DEM");
-    verb.add_option("--nodata", options.nodata, "Stored value that marks a hole")->group("DEM");
+    verb.add_option_function<std::string>(
+            "--nodata",
+            [this](const std::string& text) {
+                const std::optional<double> value = parse_number(text);
+                options.no_nodata = text == "none" || text == "nan";  // NaN is a hole always
+                if (!value && !options.no_nodata)
+                    bad_usage(
+                        fmt::format("--nodata: expected a number or none but got \"{}\"", text));
+                options.nodata = value;
+            },
+            "Stored value that marks a hole; none: no value does")
+        ->group("DEM");
+    verb.add_option_function<std::string>(
+            "--encoding",
+            [this](const std::string& text) {
+                options.encoding = dem::parse_encoding(text, "--encoding");
+            },
+            "Heights in the colours of a picture: terrain-rgb, terrarium")
+        ->group("DEM");
+    verb.add_option_function<std::string>(
+            "--bounds",
+            [this](const std::string& text) {
+                options.bounds = dem::parse_bounds(text, "--bounds");
+            },
+            "Edges of the raster instead of its georeference: W,S,E,N in degrees")
+        ->group("DEM");
+    verb.add_option_function<int>(
+            "--memory",
+            [this](int mib) { options.max_posts = (std::int64_t{mib} << 20) / kBytesAPost; },
+            "MiB of heights that are kept; a larger DEM is averaged, and drawn in detail where it "
+            "is near (1024)")
+        ->check(CLI::Range(1, 1 << 20))
+        ->group("DEM");
 }
 
 void TimeArguments::add_to(CLI::App& verb) {
     verb.add_option("--time", time,
-                    "Moment: 2026-06-21T18:30+02:00, or without offset together with --tz");
+                    "Moment: 2026-06-21T18:30+02:00, or without offset together with --tz; or an "
+                    "event at a place, sunset-30min@46.55,8.56, together with --date and --tz");
+    verb.add_option("--date", date, "Day of the event in --time: 2026-06-21");
     verb.add_option("--tz", zone, "Time zone: Europe/Zurich, +05:30");
 }
 
-sun::ParsedTime TimeArguments::parse() const {
+bool TimeArguments::needs_dem() const {
+    return sun::is_event_time(time) && !sun::parse_event_time(time).event;
+}
+
+sun::ParsedTime TimeArguments::parse(const std::function<const dem::Heightfield&()>& dem) const {
     std::optional<sun::Zone> in_zone;
     if (!zone.empty()) in_zone = sun::Zone::named(zone);
-    sun::ParsedTime parsed = sun::parse_time(time, in_zone);
+    std::optional<sun::Date> on_date;
+    if (!date.empty()) {
+        if (!sun::is_event_time(time))
+            bad_usage(
+                "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
+                "day is written 2026-06-21T18:30");
+        on_date = sun::parse_date(date);
+    }
+    sun::ParsedTime parsed = light::parse_time(time, on_date, in_zone, dem);
     if (!parsed.note.empty()) log::info(parsed.note);
     return parsed;
 }
@@ -68,7 +123,7 @@ void ViewArguments::add_to(CLI::App& verb) {
                     "Direction from --eye, degrees clockwise from true north")
         ->group("View");
     verb.add_option("--pitch", pitch_deg, "Degrees above the horizontal")
-        ->check(CLI::Range(-90, 90))
+        ->check(CLI::Range(-90.0, 90.0))
         ->group("View");
     verb.add_option("--fov", fov_deg, "Angle of view from bottom to top, degrees (40)")
         ->check(CLI::Range(0.1, 170.0))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,19 +22,23 @@ namespace relevo::cli {
 /// DEM... and how to read it.
 struct DemArguments {
     std::vector<std::string> paths;
-    dem::LoadOptions options;
+    dem::LoadOptions options;  ///< valid once the line has been parsed
 
     void add_to(CLI::App& verb);
 };
 
-/// --time and --tz.
+/// --time, --date and --tz.
 struct TimeArguments {
-    std::string time, zone;
+    std::string time, date, zone;
 
     void add_to(CLI::App& verb);
     bool given() const { return !time.empty(); }
-    /// Tells the user where a wall time was skipped or came twice. @throws Error (Usage)
-    sun::ParsedTime parse() const;
+    /// First and last light hang on the terrain; all other times are known without it.
+    bool needs_dem() const;
+    /// Tells the user where a wall time was skipped or came twice.
+    /// @param dem  called once where the time needs it; empty: there is none
+    /// @throws Error (Usage, BadInput)
+    sun::ParsedTime parse(const std::function<const dem::Heightfield&()>& dem = {}) const;
 };
 
 /// --refraction and --no-refraction.

@@ -1,85 +1,17 @@
-#include <memory>
+#include "cli/sun.h"
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include "base/error.h"
-#include "base/units.h"
 #include "cli/commands.h"
-#include "cli/shared.h"
-#include "geo/format.h"
-#include "geo/geodetic.h"
-#include "sun/position.h"
 
 namespace relevo::cli {
-namespace {
-
-/// A direction in words of the compass rose: "ESE".
-const char* compass_point(double azimuth_deg) {
-    constexpr const char* kPoints[] = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
-                                       "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
-    return kPoints[static_cast<int>(azimuth_deg / 22.5 + 0.5) % 16];
-}
-
-void add_position(CLI::App& sun_verb) {
-    struct Arguments {
-        std::string at;
-        TimeArguments time;
-        RefractionArguments refraction;
-        bool json = false;
-    };
-    const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *sun_verb.add_subcommand("position", "Where the sun stands");
-    verb.add_option("--at", arguments->at, "Place: LAT,LON[,H]")->required();
-    arguments->time.add_to(verb);
-    verb.get_option("--time")->required();
-    arguments->refraction.add_to(verb);
-    verb.add_flag("--json", arguments->json, "One JSON object on standard output");
-    verb.callback([arguments] {
-        const geo::PlaceText at = geo::parse_place(arguments->at, "--at");
-        if (at.above_ground)
-            bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
-        const sun::ParsedTime when = arguments->time.parse();
-        const sun::Position position = sun::position(when.utc, at.place);
-        const sun::Refraction air = arguments->refraction.at(at.place);
-        const double apparent_deg = degrees(air.apparent_rad(position.elevation_rad));
-        const double azimuth_deg = degrees(position.azimuth_rad);
-        if (arguments->json) {
-            const nlohmann::ordered_json json = {
-                {"utc", sun::to_iso(when.utc, 3)},
-                {"azimuth_deg", azimuth_deg},
-                {"elevation_deg", degrees(position.elevation_rad)},
-                {"apparent_elevation_deg", apparent_deg},
-                {"refraction", air.description()},
-                {"distance_au", position.distance_au},
-                {"declination_deg", degrees(position.declination_rad)},
-                {"right_ascension_deg", degrees(position.right_ascension_rad)},
-                {"semidiameter_deg", degrees(position.semidiameter_rad)},
-                {"equation_of_time_min", position.equation_of_time_s / 60}};
-            fmt::print("{}\n", json.dump(2));
-            return;
-        }
-        fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(at.place),
-                   at.place.height_m);
-        fmt::print("time                {}  ({})\n", sun::to_iso(when.utc, when.zone),
-                   sun::to_iso(when.utc));
-        fmt::print("azimuth             {:9.4f} deg  {}\n", azimuth_deg,
-                   compass_point(azimuth_deg));
-        fmt::print("elevation           {:9.4f} deg  geometric, without air\n",
-                   degrees(position.elevation_rad));
-        fmt::print("apparent elevation  {:9.4f} deg  {}\n", apparent_deg, air.description());
-        fmt::print("distance            {:9.6f} au\n", position.distance_au);
-        fmt::print("declination         {:9.4f} deg\n", degrees(position.declination_rad));
-        fmt::print("equation of time    {:9.3f} min\n", position.equation_of_time_s / 60);
-    });
-}
-
-}  // namespace
 
 void add_sun(CLI::App& app) {
     CLI::App& verb = *app.add_subcommand("sun", "Figures of the sun");
     verb.require_subcommand(1);
-    add_position(verb);
+    add_sun_position(verb);
+    add_sun_day(verb);
+    add_sun_horizon(verb);
+    add_sun_carpet(verb);
+    add_sun_when(verb);
 }
 
 }  // namespace relevo::cli

@@ -31,12 +31,13 @@ struct Statistics {
 Statistics statistics(const Array2d<float>& height_m);
 
 /// Where the unit of the heights was found.
-enum class UnitSource { Option, Band, VerticalCrs, Assumed };
+enum class UnitSource { Option, Band, VerticalCrs, Encoding, Assumed };
 
 /// What was read and what was assumed.
 struct Description {
-    std::string path;       ///< as it was given
-    std::string driver;     ///< GDAL's short name: "GTiff", "SRTMHGT", "USGSDEM"
+    std::string path;                ///< as it was given; of several files "a.tif and 3 more"
+    std::vector<std::string> files;  ///< all of them, as they were given
+    std::string driver;              ///< GDAL's short name: "GTiff", "SRTMHGT", "USGSDEM"
     std::string data_type;  ///< GDAL's name of what a cell is stored as: "Int16", "Float32"
     int band = 1;           ///< from 1
     int bands = 1;          ///< that the file has
@@ -54,6 +55,8 @@ struct Description {
 
     /// Whole sentences, for people: every choice that the file did not make itself.
     std::vector<std::string> assumptions;
+    /// Those among them that are guesses, which Source::open says with log::info.
+    std::vector<std::string> guesses;
 
     Statistics statistics;  ///< of the heights that were loaded; all zero before
 };
@@ -63,6 +66,7 @@ struct Heightfield {
     Array2d<float> height_m;  ///< metres, NaN for holes; row 0 is the first row of the file
     Grid grid;                ///< as many columns and rows
     Description about;
+    int reduction = 1;  ///< posts of the file that a post here is the mean of, each way
 
     /// The height between posts, bilinear [m]; NaN outside of the grid and where a hole takes part.
     double height_at(double column, double row) const;

@@ -4,11 +4,12 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
+#include <vector>
 
 #include <cpl_string.h>
 #include <fmt/format.h>
 #include <gdal.h>
-#include <ogr_srs_api.h>
 
 #include "base/error.h"
 #include "dem/gdal_support.h"
@@ -17,22 +18,68 @@
 namespace relevo::dem {
 namespace {
 
-/// The picture that a file is, if it is one: "red, green and blue bands", else empty.
+/// The picture that a file is, if it is one: "red, green and blue bands of 8 bits", else empty.
 std::string picture_in(GDALDatasetH dataset) {
     const int bands = GDALGetRasterCount(dataset);
     bool red = false;
     bool green = false;
     bool blue = false;
+    bool bytes = true;
     for (int i = 1; i <= bands; ++i) {
         const GDALRasterBandH band = GDALGetRasterBand(dataset, i);
-        if (GDALGetRasterDataType(band) != GDT_Byte) return {};
+        const GDALDataType type = GDALGetRasterDataType(band);
+        if (type != GDT_Byte && type != GDT_UInt16) return {};
         const GDALColorInterp meaning = GDALGetRasterColorInterpretation(band);
         if (meaning == GCI_PaletteIndex) return "a palette of colours";
+        bytes = bytes && type == GDT_Byte;
         red = red || meaning == GCI_RedBand;
         green = green || meaning == GCI_GreenBand;
         blue = blue || meaning == GCI_BlueBand;
     }
-    return red && green && blue ? "red, green and blue bands of 8 bits" : "";
+    if (red && green && blue)
+        return fmt::format("red, green and blue bands of {} bits", bytes ? 8 : 16);
+    // Satellite bands whose colours nobody noted. Heights do not come in threes of 256 steps.
+    return bytes && bands >= 3 ? fmt::format("{} bands of 8 bits", bands) : "";
+}
+
+bool has_colour_bytes(GDALDatasetH dataset) {
+    if (GDALGetRasterCount(dataset) < 3) return false;
+    for (int i = 1; i <= 3; ++i)
+        if (GDALGetRasterDataType(GDALGetRasterBand(dataset, i)) != GDT_Byte) return false;
+    return true;
+}
+
+/// The encoding that a picture's colours may be in, by its middle.
+std::optional<Encoding> encoding_in(GDALDatasetH dataset) {
+    if (!has_colour_bytes(dataset)) return std::nullopt;
+    const int width = std::min(256, GDALGetRasterXSize(dataset));
+    const int height = std::min(256, GDALGetRasterYSize(dataset));
+    const int left = (GDALGetRasterXSize(dataset) - width) / 2;
+    const int top = (GDALGetRasterYSize(dataset) - height) / 2;
+    const std::size_t n = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    std::array<std::vector<std::uint8_t>, 3> colours;
+    for (int i = 0; i < 3; ++i) {
+        colours[static_cast<std::size_t>(i)].resize(n);
+        GdalMessages messages;
+        if (GDALRasterIO(GDALGetRasterBand(dataset, i + 1), GF_Read, left, top, width, height,
+                         colours[static_cast<std::size_t>(i)].data(), width, height, GDT_Byte, 0,
+                         0) != CE_None)
+            return std::nullopt;
+    }
+    return plausible_encoding(colours[0], colours[1], colours[2], width);
+}
+
+[[noreturn]] void refuse_picture(const std::string& path, GDALDatasetH dataset,
+                                 const std::string& picture) {
+    if (const std::optional<Encoding> encoding = encoding_in(dataset))
+        refuse(path,
+               fmt::format("a picture ({}) whose colours look like heights in {}; if they "
+                           "are, pass --encoding {}",
+                           picture, *encoding == Encoding::TerrainRgb ? "Terrain-RGB" : "Terrarium",
+                           name_of(*encoding)));
+    refuse(path, fmt::format("a picture ({}), expected heights; if its colours encode heights pass "
+                             "--encoding terrain-rgb or terrarium, if one band holds them --band N",
+                             picture));
 }
 
 std::string first_subdataset(GDALDatasetH dataset, int& count) {
@@ -42,59 +89,7 @@ std::string first_subdataset(GDALDatasetH dataset, int& count) {
     return first ? first : "";
 }
 
-/// Whether a netCDF file has axes of latitude and longitude by CF's own words, whatever their names
-/// (CF conventions 1.10, sections 4.1 and 4.2). COARDS and GMT files say no more than that.
-bool has_cf_lat_lon(GDALDatasetH dataset) {
-    constexpr std::array kNorth = {"degrees_north", "degree_north", "degree_N",
-                                   "degrees_N",     "degreeN",      "degreesN"};
-    constexpr std::array kEast = {"degrees_east", "degree_east", "degree_E",
-                                  "degrees_E",    "degreeE",     "degreesE"};
-    bool north = false;
-    bool east = false;
-    for (char** item = GDALGetMetadata(dataset, nullptr); item && *item; ++item) {
-        const std::string_view text = *item;
-        const std::size_t at = text.find("#units=");
-        if (at == std::string_view::npos) continue;
-        const std::string_view unit = text.substr(at + 7);
-        north = north || std::find(kNorth.begin(), kNorth.end(), unit) != kNorth.end();
-        east = east || std::find(kEast.begin(), kEast.end(), unit) != kEast.end();
-    }
-    return north && east;
-}
-
 }  // namespace
-
-void CloseDataset::operator()(void* dataset) const {
-    GDALClose(dataset);
-}
-
-void refuse(const std::string& path, const std::string& what) {
-    bad_input(fmt::format("dem::load: {}: {}", path, what));
-}
-
-Dataset open_dataset(const std::string& path) {
-    prepare_gdal();
-    std::error_code ignored;
-    const bool is_folder = std::filesystem::is_directory(path, ignored);
-    // Names that are no file may still mean something to GDAL: "/vsizip/...", "NETCDF:a.nc:topo".
-    const bool may_be_gdals = path.starts_with("/vsi") || path.find(':') != std::string::npos;
-    if (!may_be_gdals && !std::filesystem::exists(path, ignored))
-        refuse(path.empty() ? "\"\"" : path, "cannot be read, no such file");
-    GdalMessages messages;
-    Dataset dataset(GDALOpenEx(path.c_str(),
-                               GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
-                               nullptr, nullptr));
-    if (dataset) return dataset;
-    if (is_folder) refuse(path, "a folder, expected a raster file; name the files in it");
-    const std::string reason = messages.failure(path);
-    if (reason.find("does not exist") != std::string::npos ||
-        reason.find("No such file") != std::string::npos)
-        refuse(path, "cannot be read, no such file");
-    if (reason.empty() || reason.find("not recognized as") != std::string::npos)
-        refuse(path, "not a raster in any format that GDAL reads");
-    refuse(path, fmt::format("cannot be opened as a raster, {}; the file is damaged or incomplete",
-                             reason));
-}
 
 void refuse_if_short(const std::string& path, GDALDatasetH dataset, const Description& about) {
     char** files = GDALGetFileList(dataset);
@@ -120,7 +115,9 @@ void refuse_if_short(const std::string& path, GDALDatasetH dataset, const Descri
                                  least, size));
 }
 
-int chosen_band(const std::string& path, GDALDatasetH dataset, int wanted, Description& about) {
+int chosen_band(const std::string& path, GDALDatasetH dataset, const LoadOptions& options,
+                Description& about) {
+    const int wanted = options.band;
     const int bands = GDALGetRasterCount(dataset);
     if (bands == 0) {
         int count = 0;
@@ -134,12 +131,23 @@ int chosen_band(const std::string& path, GDALDatasetH dataset, int wanted, Descr
     if (wanted < 0 || wanted > bands)
         refuse(path, fmt::format("band, expected 1 to {} but got {}; --band counts from 1", bands,
                                  wanted));
-    if (wanted == 0) {
+    if (options.encoding != Encoding::None) {
+        const GDALRasterBandH first = GDALGetRasterBand(dataset, 1);
+        if (!has_colour_bytes(dataset))
+            refuse(path, fmt::format("--encoding {}, expected red, green and blue bands of 8 bits "
+                                     "but got {} of {}",
+                                     name_of(options.encoding),
+                                     bands == 1 ? "one band" : fmt::format("{} bands", bands),
+                                     GDALGetDataTypeName(GDALGetRasterDataType(first))));
+        about.assumptions.push_back(
+            fmt::format("colours are heights in {}, as given",
+                        options.encoding == Encoding::TerrainRgb ? "Terrain-RGB" : "Terrarium"));
+    } else if (wanted == 0) {
         if (const std::string picture = picture_in(dataset); !picture.empty())
-            refuse(path, fmt::format("a picture ({}), expected heights; --band N takes band N as "
-                                     "heights all the same",
-                                     picture));
-        if (bands > 1)
+            refuse_picture(path, dataset, picture);
+        const bool alpha = bands == 2 && GDALGetRasterColorInterpretation(
+                                             GDALGetRasterBand(dataset, 2)) == GCI_AlphaBand;
+        if (bands > 1 && !alpha)
             about.assumptions.push_back(
                 fmt::format("band 1 of {} holds the heights; --band N takes another", bands));
     }
@@ -152,59 +160,13 @@ int chosen_band(const std::string& path, GDALDatasetH dataset, int wanted, Descr
     return wanted == 0 ? 1 : wanted;
 }
 
-Affine georeference(const std::string& path, GDALDatasetH dataset) {
-    std::array<double, 6> g{};
-    const bool found = GDALGetGeoTransform(dataset, g.data()) == CE_None;
-    // What drivers give back for want of anything better.
-    const bool identity =
-        g[0] == 0 && g[1] == 1 && g[2] == 0 && g[3] == 0 && g[4] == 0 && std::abs(g[5]) == 1;
-    if (!found || identity) {
-        if (GDALGetGCPCount(dataset) > 0)
-            refuse(path,
-                   "georeferenced by control points only, expected a grid; make one with "
-                   "gdalwarp");
-        refuse(path,
-               "no georeference, it does not say where its posts are; give it one with "
-               "gdal_translate -a_ullr W N E S -a_srs EPSG:n, or a world file beside it");
-    }
-    const double area = g[1] * g[5] - g[2] * g[4];
-    if (!std::isfinite(area) || area == 0 || !std::isfinite(g[0] + g[3]))
-        refuse(path, "a georeference in which the cells have no area; the file is damaged");
-    // GDAL's coordinates are those of cell corners, whatever AREA_OR_POINT says.
-    return {g[0] + (g[1] + g[2]) / 2, g[1], g[2], g[3] + (g[4] + g[5]) / 2, g[4], g[5]};
-}
-
-geo::Crs crs_of(const std::string& path, GDALDatasetH dataset, const std::string& given,
-                Description& about) {
-    std::string in_file;
-    {
-        GdalMessages messages;  // of keys that make no CRS; what counts is whether one comes out
-        if (OGRSpatialReferenceH srs = GDALGetSpatialRef(dataset)) {
-            char* wkt = nullptr;
-            constexpr std::array<const char*, 2> kForm = {"FORMAT=WKT2_2019", nullptr};
-            if (OSRExportToWktEx(srs, &wkt, kForm.data()) == OGRERR_NONE && wkt) in_file = wkt;
-            CPLFree(wkt);
-        }
-    }
-    const std::string who = fmt::format("dem::load: {}", path);
-    if (!given.empty()) {
-        const geo::Crs crs = geo::Crs::parse(given, who);
-        about.assumptions.push_back(fmt::format("the CRS is {}, as given{}", crs.name(),
-                                                in_file.empty() ? "" : ", not the file's own"));
-        return crs;
-    }
-    if (in_file.empty() && has_cf_lat_lon(dataset)) {
-        about.assumptions.push_back(
-            "the CRS is WGS 84: the file has latitude and longitude but names no datum; --crs sets "
-            "another");
-        return geo::Crs();
-    }
-    if (in_file.empty()) refuse(path, "no coordinate reference system; pass --crs EPSG:n");
-    return geo::Crs::parse(in_file, who);
-}
-
 void settle_unit(const std::string& path, GDALRasterBandH band, const geo::Crs& crs,
-                 const std::string& given, Description& about) {
+                 const LoadOptions& options, Description& about) {
+    if (options.encoding != Encoding::None && options.unit.empty()) {
+        about.unit_source = UnitSource::Encoding;
+        return;
+    }
+    const std::string& given = options.unit;
     std::string word = GDALGetRasterUnitType(band);
     if (means_no_unit(word)) word.clear();
     if (!given.empty()) {

@@ -1,56 +1,69 @@
 #include "dem/load.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/log.h"
+#include "dem/frame.h"
 
 namespace relevo::dem {
 
 Heightfield load(const std::string& path, const LoadOptions& options) {
-    const Source source = Source::open(path, options);
-    const Grid& full = source.grid();
-    const Window all{0, 0, full.columns(), full.rows()};
-    Description about = source.description();
+    return load(std::span(&path, 1), options);
+}
 
-    int columns = all.columns;
-    int rows = all.rows;
-    const double posts = static_cast<double>(columns) * rows;
-    if (posts > static_cast<double>(options.max_posts)) {
-        const double factor = std::sqrt(posts / static_cast<double>(options.max_posts));
-        columns = std::clamp(static_cast<int>(columns / factor), 2, columns);
-        rows = std::clamp(static_cast<int>(rows / factor), 2, rows);
+Heightfield load(std::span<const std::string> paths, const LoadOptions& options) {
+    return load(Source::open(paths, options), options.max_posts);
+}
+
+Heightfield load(const Source& source, std::int64_t max_posts) {
+    const Grid& full = source.grid();
+    Description about = source.description();
+    int reduction = 1;
+    const auto reduced_posts = [&] {
+        return std::int64_t{full.columns() / reduction} * (full.rows() / reduction);
+    };
+    while (reduced_posts() > max_posts &&
+           std::min(full.columns(), full.rows()) / (2 * reduction) >= 2)
+        reduction *= 2;
+    const int columns = full.columns() / reduction, rows = full.rows() / reduction;
+    // What is left over at the last row and column is less than one mean.
+    const Window all{0, 0, columns * reduction, rows * reduction};
+    if (reduction > 1)
         about.assumptions.push_back(fmt::format(
-            "reduced from {} x {} to {} x {} posts, means of {:.1f} x {:.1f}, to keep "
-            "within the memory allowed",
-            all.columns, all.rows, columns, rows, all.columns / static_cast<double>(columns),
-            all.rows / static_cast<double>(rows)));
-    }
+            "reduced from {} x {} to {} x {} posts, means of {} x {}, to keep within the memory "
+            "allowed",
+            full.columns(), full.rows(), columns, rows, reduction, reduction));
     Array2d<float> height_m = source.read(all, columns, rows);
     about.statistics = statistics(height_m);
     const Statistics& s = about.statistics;
     if (s.valid == 0)
         bad_input(fmt::format(
-            "dem::load: {}: not one valid height, all {} posts are holes{}", path, s.holes,
+            "dem::load: {}: not one valid height, all {} posts are holes{}", about.path, s.holes,
             about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
+    const auto guess = [&](const std::string& sentence) {
+        about.assumptions.push_back(sentence);
+        about.guesses.push_back(sentence);
+        log::info(fmt::format("{}: {}", about.path, sentence));
+    };
     if (s.outliers > 0)
-        about.assumptions.push_back(fmt::format(
-            "{} heights are below -11500 m or above 9000 m, which the Earth has not, "
-            "and are drawn as they are; --nodata V makes V a hole, --unit sets the unit",
-            s.outliers));
-    Grid grid = columns == all.columns && rows == all.rows ? full : full.part(all, columns, rows);
-    return {std::move(height_m), std::move(grid), std::move(about)};
-}
-
-Heightfield load(std::span<const std::string> paths, const LoadOptions& options) {
-    if (paths.size() != 1)
-        bad_input(
-            fmt::format("dem::load: {}: the DEM, expected one raster but got {}; join several "
-                        "with gdalbuildvrt",
-                        paths.empty() ? std::string("nothing") : paths.front(), paths.size()));
-    return load(paths.front(), options);
+        guess(
+            fmt::format("{} heights are below -11500 m or above 9000 m, which the Earth has not, "
+                        "and are drawn as they are; --nodata V makes V a hole, --unit sets the "
+                        "unit",
+                        s.outliers));
+    if (const std::optional<Frame> frame = find_frame(height_m))
+        guess(
+            fmt::format("the edge is {:g} m all around and the ground beside it {:.0f} m off, "
+                        "perhaps what is left around a turned raster; --nodata {:g} makes it a "
+                        "hole",
+                        frame->height_m, frame->step_m,
+                        (static_cast<double>(frame->height_m) - about.offset) / about.scale /
+                            about.unit.metres));
+    Grid grid = reduction == 1 ? full : full.part(all, columns, rows);
+    return {std::move(height_m), std::move(grid), std::move(about), reduction};
 }
 
 }  // namespace relevo::dem

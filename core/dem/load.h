@@ -12,8 +12,11 @@ namespace relevo::dem {
 /// @throws Error (BadInput) as they do, and where not one post has a height
 Heightfield load(const std::string& path, const LoadOptions& options = {});
 
-/// The same for the inputs of a command line.
-/// @throws Error (BadInput) also where they are not exactly one
+/// The same for the inputs of a command line: one file or more, joined.
+/// @throws Error (BadInput) also where there are none, or where they cannot be joined
 Heightfield load(std::span<const std::string> paths, const LoadOptions& options = {});
+
+/// The same for what is open already.
+Heightfield load(const Source& source, std::int64_t max_posts);
 
 }  // namespace relevo::dem

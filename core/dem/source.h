@@ -2,9 +2,12 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "dem/encoding.h"
 #include "dem/heightfield.h"
+#include "dem/placement.h"
 
 namespace relevo::dem {
 
@@ -15,19 +18,35 @@ struct LoadOptions {
     int band = 0;           ///< `--band`, from 1; 0: the first
     std::string unit = {};  ///< `--unit`; empty: the file's, else metres as an assumption
     std::optional<double> nodata = {};  ///< `--nodata`: the stored value that marks a hole
-    /// The most posts that load() keeps; a larger raster is averaged down and the description says
-    /// by how much. The default is 1 GiB of heights.
+    /// `--nodata none`: no value marks a hole, whatever the file says. NaN, infinities and masks
+    /// still do.
+    bool no_nodata = false;
+    Encoding encoding = Encoding::None;  ///< `--encoding`: heights in the colours of a picture
+    std::optional<Bounds> bounds = {};   ///< `--bounds`: instead of the file's georeference
+    /// The most posts that load() keeps; a larger raster is averaged down by a power of two and the
+    /// description says by which. The default is 1 GiB of heights.
     std::int64_t max_posts = std::int64_t{1} << 28;
 };
 
-/// A raster that is open: what it is, and its heights on demand. Errors begin with `dem::load`.
+/// A DEM that is open: what it is, and its heights on demand. Errors begin with `dem::load`.
+///
+/// Several files are one DEM. Its grid is that of the finest of them, over all; files on that grid
+/// are read as they are, all others are resampled to it (bilinear) as they are read. Where files
+/// overlap, the one named last is on top, as in gdalbuildvrt; its holes show what is below. Each
+/// file keeps its own nodata value, unit, scale and mask.
 class Source {
   public:
-    /// Opens any single raster that GDAL reads and settles what its numbers mean; reads no heights.
-    /// @param path  a file, a folder that is one raster (Esri grids), or another name that GDAL
-    ///              opens ("/vsizip/alps.zip/alps.tif", "NETCDF:a.nc:topo")
+    /// Opens a raster of any dialect (docs/dem-formats.md) and settles what its numbers mean. Reads
+    /// no heights but, where no nodata value is declared, a sample to see whether one is used;
+    /// what was found there holds for every later read. Guesses are said with log::info.
+    /// @param path  a file, a folder that is one raster (Esri grids), an archive of one raster, or
+    ///              another name that GDAL opens ("/vsizip/alps.zip/alps.tif", "NETCDF:a.nc:topo")
     /// @throws Error (BadInput) `dem::load: PATH: what, expected E but got G; remedy`
     static Source open(const std::string& path, const LoadOptions& options = {});
+
+    /// The same for one file or more.
+    /// @throws Error (BadInput) also where there are none, or where they cannot be joined
+    static Source open(std::span<const std::string> paths, const LoadOptions& options = {});
 
     Source(Source&&) noexcept;
     Source& operator=(Source&&) noexcept;
@@ -40,8 +59,9 @@ class Source {
     ///
     /// With `columns` and `rows` those of the window, every post as stored. With fewer, means over
     /// equal parts of the window, each stored post counting by the area of its cell inside; a part
-    /// of which less than half is valid is a hole. Means start from the file's coarsest overview
-    /// that is still fine enough, where it has any. Where the posts of the result are:
+    /// of which less than half is valid is a hole. Means start from each file's coarsest overview
+    /// that is still fine enough, where it has any (overviews made without knowledge of the holes,
+    /// or of encoded colours, are left alone). Where the posts of the result are:
     /// grid().part(window, columns, rows). Rows of compressed GeoTIFFs are read on several threads.
     ///
     /// @param window  inside of the grid; at least as many columns and rows as are asked for

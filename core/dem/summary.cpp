@@ -19,6 +19,8 @@ const char* name_of(UnitSource source) {
             return "band";
         case UnitSource::VerticalCrs:
             return "vertical crs";
+        case UnitSource::Encoding:
+            return "encoding";
         default:
             return "assumed";
     }
@@ -42,6 +44,7 @@ Summary summarize(const Heightfield& field) {
     const Description& about = field.about;
     Summary s;
     s.path = about.path;
+    s.files = about.files;
     s.driver = about.driver;
     s.data_type = about.data_type;
     s.columns = field.grid.columns();
@@ -49,6 +52,8 @@ Summary summarize(const Heightfield& field) {
     s.crs = field.grid.crs().text();
     s.crs_name = field.grid.crs().name();
     s.center = field.grid.center();
+    s.utm = geo::utm_text(s.center);
+    s.mgrs = geo::mgrs_text(s.center);
     s.extent_m = field.grid.extent_m();
     s.post_spacing_m = field.grid.post_spacing_m();
     s.min_m = about.statistics.min_m;
@@ -57,6 +62,8 @@ Summary summarize(const Heightfield& field) {
     s.nodata = about.nodata;
     s.nodata_text = about.nodata_text();
     s.outliers = about.statistics.outliers;
+    s.spikes = find_spikes(field.height_m, s.post_spacing_m);
+    if (s.spikes.count > 0) s.worst_spike = field.place(s.spikes.worst_column, s.spikes.worst_row);
     s.unit = about.unit.name;
     s.unit_source = name_of(about.unit_source);
     s.vertical_datum = about.vertical_datum;
@@ -70,6 +77,7 @@ std::string to_json(const Summary& s) {
     using Json = nlohmann::ordered_json;
     Json json;
     json["path"] = s.path;
+    json["files"] = s.files;
     json["driver"] = s.driver;
     json["data_type"] = s.data_type;
     json["size"] = {s.columns, s.rows};
@@ -77,6 +85,8 @@ std::string to_json(const Summary& s) {
     json["crs_name"] = s.crs_name;
     json["center"] = {{"lat_deg", rounded(degrees(s.center.lat_rad), 9)},
                       {"lon_deg", rounded(degrees(s.center.lon_rad), 9)}};
+    json["utm"] = s.utm;
+    json["mgrs"] = s.mgrs;
     json["extent_m"] = {rounded(s.extent_m.x, 3), rounded(s.extent_m.y, 3)};
     json["post_spacing_m"] = {rounded(s.post_spacing_m.x, 6), rounded(s.post_spacing_m.y, 6)};
     json["elevation_m"] = {{"min", rounded(s.min_m, 3)}, {"max", rounded(s.max_m, 3)}};
@@ -86,6 +96,13 @@ std::string to_json(const Summary& s) {
                      : std::isfinite(*s.nodata) ? Json(*s.nodata)
                                                 : Json(s.nodata_text);
     json["outliers"] = s.outliers;
+    Json& spikes = json["spikes"] = {
+        {"count", s.spikes.count}, {"limit_m", rounded(s.spikes.limit_m, 3)}, {"worst", Json()}};
+    if (s.worst_spike)
+        spikes["worst"] = {{"lat_deg", rounded(degrees(s.worst_spike->lat_rad), 9)},
+                           {"lon_deg", rounded(degrees(s.worst_spike->lon_rad), 9)},
+                           {"height_m", rounded(s.worst_spike->height_m, 3)},
+                           {"off_m", rounded(s.spikes.worst_m, 3)}};
     json["unit"] = s.unit;
     json["unit_source"] = s.unit_source;
     json["vertical_datum"] = s.vertical_datum.empty() ? Json() : Json(s.vertical_datum);
@@ -107,7 +124,8 @@ std::string to_text(const Summary& s) {
     line("posts", fmt::format("{} x {}", s.columns, s.rows));
     line("crs", s.crs.size() < 40 && s.crs != s.crs_name ? fmt::format("{} ({})", s.crs, s.crs_name)
                                                          : s.crs_name);
-    line("center", fmt::format("{} ({})", geo::degrees_text(s.center), geo::utm_text(s.center)));
+    line("center", fmt::format("{} ({}{}, MGRS {})", geo::degrees_text(s.center),
+                               s.utm.starts_with("UPS") ? "" : "UTM ", s.utm, s.mgrs));
     line("extent", fmt::format("{} east, {} north", distance_text(s.extent_m.x),
                                distance_text(s.extent_m.y)));
     line("spacing", fmt::format("{} x {}", distance_text(s.post_spacing_m.x),
@@ -115,6 +133,13 @@ std::string to_text(const Summary& s) {
     line("heights", fmt::format("{:.1f} to {:.1f} m", s.min_m, s.max_m));
     line("holes", fmt::format("{:.4g} %{}", 100 * s.nodata_share,
                               s.nodata ? fmt::format(" (nodata {})", s.nodata_text) : ""));
+    if (s.outliers > 0)
+        line("outliers", fmt::format("{} heights that the Earth has not", s.outliers));
+    if (s.worst_spike)
+        line("spikes", fmt::format("{} posts stand more than {:.0f} m out of all their neighbours, "
+                                   "the worst by {:.0f} m at {}",
+                                   s.spikes.count, s.spikes.limit_m, s.spikes.worst_m,
+                                   geo::degrees_text(*s.worst_spike)));
     line("unit", fmt::format("{} ({})", s.unit, s.unit_source));
     line("above", s.vertical_datum.empty() ? "unknown" : s.vertical_datum);
     for (const std::string& assumption : s.assumptions)

@@ -4,19 +4,23 @@
 #include <vector>
 
 #include "dem/heightfield.h"
+#include "dem/spikes.h"
 
 namespace relevo::dem {
 
 /// What `relevo info` says about a DEM.
 struct Summary {
     std::string path;
-    std::string driver;     ///< GDAL's short name
-    std::string data_type;  ///< "Int16"
+    std::vector<std::string> files;  ///< more than one: they are joined
+    std::string driver;              ///< GDAL's short name
+    std::string data_type;           ///< "Int16"
     int columns = 0;
     int rows = 0;
     std::string crs;       ///< what `--crs` takes to mean the same: a code, else WKT
     std::string crs_name;  ///< for people
     geo::Geodetic center;
+    std::string utm;              ///< geo::utm_text() of the centre
+    std::string mgrs;             ///< geo::mgrs_text() of the centre
     glm::dvec2 extent_m{};        ///< Grid::extent_m(): east, north
     glm::dvec2 post_spacing_m{};  ///< Grid::post_spacing_m(): x, y
     float min_m = 0;
@@ -25,8 +29,10 @@ struct Summary {
     std::optional<double> nodata;
     std::string nodata_text;  ///< in as many digits as the file's type has
     std::int64_t outliers = 0;
-    std::string unit;         ///< of the heights in the file: "m", "ft", "us-ft"
-    std::string unit_source;  ///< "option", "band", "vertical crs", "assumed"
+    Spikes spikes;
+    std::optional<geo::Geodetic> worst_spike;  ///< where, with its height
+    std::string unit;                          ///< of the heights in the file: "m", "ft", "us-ft"
+    std::string unit_source;                   ///< "option", "band", "vertical crs", "assumed"
     std::string vertical_datum;
     int band = 1;
     int bands = 1;
@@ -36,10 +42,10 @@ struct Summary {
 Summary summarize(const Heightfield& field);
 
 /// The object of `relevo info --json`, two blanks a level, no line end after it. Keys
-/// (docs/cli.md): path, driver, data_type, size [columns, rows], crs, crs_name, center {lat_deg,
-/// lon_deg}, extent_m [east, north], post_spacing_m [x, y], elevation_m {min, max}, nodata_share,
-/// nodata, outliers, unit, unit_source, vertical_datum, band, bands, assumptions [text]. Unknown
-/// ones are null.
+/// (docs/cli.md): path, files, driver, data_type, size [columns, rows], crs, crs_name, center
+/// {lat_deg, lon_deg}, utm, mgrs, extent_m [east, north], post_spacing_m [x, y], elevation_m {min,
+/// max}, nodata_share, nodata, outliers, spikes {count, limit_m, worst}, unit, unit_source,
+/// vertical_datum, band, bands, assumptions [text]. Unknown ones are null.
 std::string to_json(const Summary& summary);
 
 /// The same in lines for people, a line end after each.

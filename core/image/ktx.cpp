@@ -52,6 +52,7 @@ struct FormatInfo {
     std::uint32_t bytes_per_channel;
     bool srgb;
     const char* name;
+    bool is_float = false;
 };
 
 constexpr std::array kFormats{
@@ -60,6 +61,7 @@ constexpr std::array kFormats{
     FormatInfo{TextureFormat::Rgba8, 37, 4, 1, false, "VK_FORMAT_R8G8B8A8_UNORM"},
     FormatInfo{TextureFormat::SrgbA8, 43, 4, 1, true, "VK_FORMAT_R8G8B8A8_SRGB"},
     FormatInfo{TextureFormat::R16, 70, 1, 2, false, "VK_FORMAT_R16_UNORM"},
+    FormatInfo{TextureFormat::Rgba16F, 97, 4, 2, false, "VK_FORMAT_R16G16B16A16_SFLOAT", true},
 };
 
 const FormatInfo& info(TextureFormat format) {
@@ -87,7 +89,8 @@ std::size_t aligned(std::size_t offset, std::size_t alignment) {
 /// The data format descriptor that belongs to a format, its total size first.
 /// Source: Khronos Data Format Specification 1.3, section 5 (basic descriptor block).
 std::vector<std::uint32_t> descriptor(const FormatInfo& f) {
-    constexpr std::uint32_t kRgbsda = 1, kBt709 = 1, kLinear = 1, kSrgb = 2, kLinearAlpha = 0x10;
+    constexpr std::uint32_t kRgbsda = 1, kBt709 = 1, kLinear = 1, kSrgb = 2, kLinearAlpha = 0x10,
+                            kSignedFloat = 0xC0;
     constexpr std::array<std::uint32_t, 4> kChannelId{0, 1, 2, 15};  // red, green, blue, alpha
     const std::uint32_t block_size = 24 + 16 * f.channels;
     std::vector<std::uint32_t> words{
@@ -102,7 +105,11 @@ std::vector<std::uint32_t> descriptor(const FormatInfo& f) {
     for (std::uint32_t c = 0; c < f.channels; ++c) {
         std::uint32_t id = kChannelId[c];
         if (f.srgb && c == 3) id |= kLinearAlpha;
-        words.insert(words.end(), {c * bits | (bits - 1) << 16 | id << 24, 0, 0, (1u << bits) - 1});
+        if (f.is_float) id |= kSignedFloat;
+        words.insert(words.end(),
+                     {c * bits | (bits - 1) << 16 | id << 24, 0,
+                      f.is_float ? std::bit_cast<std::uint32_t>(-1.0f) : 0,
+                      f.is_float ? std::bit_cast<std::uint32_t>(1.0f) : (1u << bits) - 1});
     }
     return words;
 }

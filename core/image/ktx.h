@@ -16,16 +16,17 @@
 namespace relevo::image {
 
 /// Texel formats that are read and written; each is one `VkFormat`.
-/// All are normalised to 0..1; multi-byte values are little-endian.
+/// Whole numbers are normalised to 0..1; multi-byte values are little-endian.
 enum class TextureFormat {
-    R8,      ///< VK_FORMAT_R8_UNORM
-    Rg8,     ///< VK_FORMAT_R8G8_UNORM
-    Rgba8,   ///< VK_FORMAT_R8G8B8A8_UNORM
-    SrgbA8,  ///< VK_FORMAT_R8G8B8A8_SRGB: R, G, B in sRGB encoding, A linear
-    R16,     ///< VK_FORMAT_R16_UNORM
+    R8,       ///< VK_FORMAT_R8_UNORM
+    Rg8,      ///< VK_FORMAT_R8G8_UNORM
+    Rgba8,    ///< VK_FORMAT_R8G8B8A8_UNORM
+    SrgbA8,   ///< VK_FORMAT_R8G8B8A8_SRGB: R, G, B in sRGB encoding, A linear
+    R16,      ///< VK_FORMAT_R16_UNORM
+    Rgba16F,  ///< VK_FORMAT_R16G16B16A16_SFLOAT: half floats, linear
 };
 
-/// Bytes of one texel of `format`: 1, 2 or 4.
+/// Bytes of one texel of `format`: 1, 2, 4 or 8.
 std::size_t bytes_per_texel(TextureFormat format);
 
 /// Levels of a full mip chain down to 1 x 1 x 1: floor(log2(greatest side)) + 1.

@@ -16,7 +16,20 @@ Light light_at(const LightDay& day, const sun::Day& level, Instant utc) {
         if (interval.begin.utc <= utc && utc < interval.end.utc) return Light::Lit;
     for (const sun::TimeSpan& up : level.sun_up)
         if (up.begin <= utc && utc < up.end) return Light::Shaded;
-    return Light::Night;
+    // Civil twilight: dawn or dusk comes next, or it lasts all day or all of what is left of it.
+    bool above = level.civil == sun::Crossing::AboveAllDay;
+    bool known = level.civil != sun::Crossing::Crosses;
+    for (const sun::Event& event : level.events) {
+        const bool dawn = event.kind == sun::EventKind::CivilDawn;
+        if (!dawn && event.kind != sun::EventKind::CivilDusk) continue;
+        if (event.utc > utc) {
+            if (!known) above = !dawn;
+            break;
+        }
+        above = dawn;
+        known = true;
+    }
+    return above ? Light::Twilight : Light::Night;
 }
 
 }  // namespace
@@ -25,6 +38,8 @@ std::string_view name_of(Light light) {
     switch (light) {
         case Light::Night:
             return "night";
+        case Light::Twilight:
+            return "twilight";
         case Light::Shaded:
             return "shaded";
         case Light::Lit:
@@ -62,6 +77,7 @@ Carpet carpet(const DirectLight& light, int year, const sun::Zone& zone, int ste
         carpet.lit_s += day.lit_s;
         const sun::Day& level_day = level_days[static_cast<std::size_t>(row)];
         carpet.level_s += level_day.day_length_s;
+        carpet.day_level_s.push_back(level_day.day_length_s);
         carpet.month_lit_s[static_cast<std::size_t>(day.date.month - 1)] += day.lit_s;
         for (int column = 0; column < columns; ++column) {
             const int half_seconds = (2 * column + 1) * step_s;

@@ -12,12 +12,13 @@ namespace relevo::light {
 
 /// What a point gets at a moment.
 enum class Light : std::uint8_t {
-    Night,   ///< the sun is down over a level horizon, too
-    Shaded,  ///< it is up over a level horizon, but behind terrain
-    Lit,     ///< it shines on the point
+    Night,     ///< the sun is down over a level horizon, too
+    Twilight,  ///< likewise, but its centre is less than 6 degrees below: civil twilight
+    Shaded,    ///< it is up over a level horizon, but behind terrain
+    Lit,       ///< it shines on the point
 };
 
-/// "night", "shaded", "lit".
+/// "night", "twilight", "shaded", "lit".
 std::string_view name_of(Light light);
 
 /// A year of light at a point: a row for every day, a column for every step of the clock.
@@ -30,6 +31,7 @@ struct Carpet {
     double lit_s = 0;                 ///< of the year, from the exact edges
     double level_s = 0;               ///< likewise, over a level horizon
     std::vector<double> month_lit_s;  ///< of each of the twelve months
+    std::vector<double> day_level_s;  ///< over a level horizon, of each of `days`
     std::string definition;
 
     /// What the clock shows in the middle of a column, from midnight [s].

@@ -450,6 +450,13 @@ HorizonPoint TerrainHorizon::at(double azimuth_rad) const {
     return point;
 }
 
+double TerrainHorizon::elevation_within_rad(double azimuth_rad, double distance_m) const {
+    Scan scan;
+    scan.until_m = distance_m;
+    look(azimuth_rad, scan);
+    return std::atan(scan.best);
+}
+
 std::vector<HorizonPoint> TerrainHorizon::profile(int count) const {
     std::vector<HorizonPoint> points(static_cast<std::size_t>(count));
     parallel_for(0, count, 256, [&](int first, int last) {

@@ -107,6 +107,10 @@ class TerrainHorizon {
     /// Elevation alone.
     double elevation_rad(double azimuth_rad) const { return at(azimuth_rad).elevation_rad; }
 
+    /// The highest ground of the DEM no farther away than `distance_m`, to draw ridges before
+    /// ridges; -pi/2 where none is that near.
+    double elevation_within_rad(double azimuth_rad, double distance_m) const;
+
     /// `count` directions from north on, clockwise; on several threads.
     std::vector<HorizonPoint> profile(int count) const;
 

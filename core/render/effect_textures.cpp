@@ -61,6 +61,8 @@ gl::Format format_of(image::TextureFormat format) {
             return gl::Format::Srgb8A8;
         case image::TextureFormat::R16:
             return gl::Format::R16;
+        case image::TextureFormat::Rgba16F:
+            return gl::Format::RGBA16F;
     }
     return gl::Format::RGBA8;
 }

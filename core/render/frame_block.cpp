@@ -129,7 +129,24 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     block.exposure =
         static_cast<float>(sun::natural_exposure(elevation) * std::exp2(inputs.exposure_ev));
     block.footprint_limit = static_cast<float>(footprint_limit);
-    block.normal_texels_per_m = static_cast<float>(1 / ground.normal_spacing_m);
+
+    const glm::dvec3 eye_up = ground.frame.up(eye.lat_rad, eye.lon_rad);
+    const double above_sea_m = std::max(eye.height_m, 0.0);
+    block.eye_up =
+        glm::vec4(eye_up, -std::sqrt(1 - std::pow(curvature_m / (curvature_m + above_sea_m), 2)));
+    const double eye_elevation =
+        std::asin(std::clamp(dot(inputs.sun.direction, eye_up), -1.0, 1.0));
+    // Refraction goes with the density of the air around the eye, which falls by e over 10 km.
+    const double thinned =
+        std::exp(std::clamp((inputs.sun.ground_height_m - above_sea_m) / 10000, -10.0, 1.0));
+    const double eye_lift =
+        inputs.sun.refraction_rad ? thinned * inputs.sun.refraction_rad(eye_elevation) : 0;
+    const double apparent_cosine = std::cos(eye_elevation + eye_lift);
+    const double raise = apparent_cosine > 1e-6 ? std::sin(eye_lift) / apparent_cosine : 0;
+    block.eye_sun =
+        glm::vec4(normalize(inputs.sun.direction + raise * eye_up), eye_elevation + eye_lift);
+    block.eye_sun_light =
+        glm::vec4(sun::direct_transmittance(eye_elevation + eye_lift, above_sea_m), 0);
     return block;
 }
 

@@ -32,8 +32,9 @@ struct FrameBlock {
     float footprint_limit;
     float normal_texels_per_m;
     float normal_levels;
+    glm::vec4 eye_up, eye_sun, eye_sun_light;
 };
-static_assert(sizeof(FrameBlock) == 26 * 16);
+static_assert(sizeof(FrameBlock) == 29 * 16);
 
 /// The sun over a DEM, as the shaders need it.
 struct SunLight {
@@ -75,9 +76,9 @@ struct Ground {
 
     glm::dvec2 south_west_m{-1, -1};  ///< corner of the DEM's posts in the local frame
     glm::dvec2 north_east_m{1, 1};    ///< likewise
-    double normal_spacing_m = 30;     ///< from texel to texel of the normal pages
 };
 
+/// All but what the terrain knows of its pages.
 /// @param footprint_limit  see frame.glsl
 FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int width_px,
                             int height_px, double footprint_limit);

@@ -273,7 +273,7 @@ struct NativeHost::Impl {
         full.exaggeration = state.inputs.exaggeration;
         full.lowest_m = state.ground.lowest_m;
         full.highest_m = state.ground.highest_m;
-        full.post_spacing_m = state.ground.normal_spacing_m;
+        full.post_spacing_m = state.terrain.normal_spacing_m();
         full.ground = state.terrain.serial();
         full.software_device = context.info().device.software ? 1 : 0;
         copy_out(full, out);

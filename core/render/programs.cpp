@@ -1,5 +1,6 @@
 #include "render/programs.h"
 
+#include <algorithm>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -8,6 +9,14 @@
 #include "shader/driver_log.h"
 
 namespace relevo::render {
+
+bool has_overlay(const shader::StitchInput& input) {
+    return std::any_of(
+        input.snippets.begin(), input.snippets.end(), [](const shader::Snippet* snippet) {
+            return std::any_of(snippet->hooks.begin(), snippet->hooks.end(),
+                               [](const auto& hook) { return hook.hook->name == "display"; });
+        });
+}
 
 std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
                                          const shader::StitchInput& input,
@@ -22,6 +31,12 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
         geometry.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
         terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
     }
+    std::vector<shader::Define> ends;  // what the shading programs end in
+    if (options.shown)
+        ends.push_back({"SHOWN", ""});
+    else if (has_overlay(input))
+        ends.push_back({"DISPLAY_OVERLAY", ""});
+    terrain.defines.insert(terrain.defines.end(), ends.begin(), ends.end());
     std::vector<ProgramText> programs;
     programs.push_back({"geometry", shader::stitch(core, geometry, input)});
     programs.push_back({"terrain", shader::stitch(core, terrain, input)});
@@ -30,9 +45,11 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
                                                     {.vertex_main = "terrain.vert.glsl",
                                                      .fragment_main = "depth.frag.glsl"},
                                                     input)});
-    for (const char* name : {"sky", "post", "edges", "antialias"}) {
-        const shader::ProgramRecipe recipe{.vertex_main = "fullscreen.vert.glsl",
-                                           .fragment_main = fmt::format("{}.frag.glsl", name)};
+    for (const std::string name : {"sky", "post", "edges", "antialias"}) {
+        if (name == "post" && options.shown) continue;
+        shader::ProgramRecipe recipe{.vertex_main = "fullscreen.vert.glsl",
+                                     .fragment_main = name + ".frag.glsl"};
+        if (name == "sky" || name == "post") recipe.defines = ends;
         programs.push_back({name, shader::stitch(core, recipe, input)});
     }
     return programs;

@@ -11,14 +11,21 @@ namespace relevo::render {
 
 /// One of the programs of a frame as text.
 struct ProgramText {
-    std::string name;  ///< "geometry", "terrain", "sky", "post", "edges", "antialias"
+    std::string
+        name;  ///< "geometry", "terrain", "sky", "post" (not if shown), "edges", "antialias"
     shader::Stitched stitched;
 };
 
 struct ProgramOptions {
     bool vertex_normals = false;  ///< per vertex instead of per fragment
     bool depth = false;           ///< also "depth": the terrain as parallel light sees it
+    /// Shading ends in the colours of the picture, without a stored radiance and the program
+    /// "post".
+    bool shown = false;
 };
+
+/// Whether any of the effects draws over the finished picture.
+bool has_overlay(const shader::StitchInput& input);
 
 /// Stitches all programs of a frame. @throws Error as shader::stitch
 std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,

@@ -49,18 +49,22 @@ struct Renderer::Impl {
     RendererOptions options;
     double anisotropy;
     std::vector<ProgramText> texts;
-    LinkedProgram geometry, terrain, sky, post, edges, antialias, depth_only;
+    LinkedProgram geometry, terrain, sky;
+    std::optional<LinkedProgram> post;
+    LinkedProgram edges, antialias, depth_only;
     EffectTextures effect_textures;
     gl::Buffer frame_block;
     shader::ParamStore values;  // as given; native modules write host parameters
+    double exposure = 1;  // of the last frame
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
     TileSelection tiles;  // of the last frame
     bool reads_surface = false;
 
-    gl::Texture place, depth, radiance, tone_mapped, edge_marks, picture;
+    gl::Texture place, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     std::vector<gl::Texture> varyings;
-    gl::Framebuffer geometry_target, radiance_target, post_target, picture_target;
+    // Light is the radiance, or at once the picture's colours.
+    gl::Framebuffer geometry_target, light_target, overlaid_target, post_target, picture_target;
     std::vector<NativeHost> natives;
 
     Impl(gl::Context& c, const EffectInputs& effects, const RendererOptions& o)
@@ -68,11 +72,11 @@ struct Renderer::Impl {
           options(o),
           // A software renderer pays for every tap of an anisotropic filter (four times the frame).
           anisotropy(c.info().device.software ? 1 : std::min(kAnisotropy, c.info().max_anisotropy)),
-          texts(stitch(effects, c.info().max_texture_units)),
+          texts(stitch(effects, c.info().max_texture_units, !o.radiance)),
           geometry(link("geometry")),
           terrain(link("terrain")),
           sky(link("sky")),
-          post(link("post")),
+          post(o.radiance ? std::optional(link("post")) : std::nullopt),
           edges(link("edges")),
           antialias(link("antialias")),
           effect_textures(effects.textures, anisotropy),
@@ -93,7 +97,7 @@ struct Renderer::Impl {
         place = target(gl::Format::RGBA32UI, "place");
         place.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
         depth = target(gl::Format::Depth32F, "depth");
-        radiance = target(gl::Format::RGBA16F, "radiance");
+        if (options.radiance) radiance = target(gl::Format::RGBA16F, "radiance");
         tone_mapped = target(gl::Format::RGBA8, "tone mapped");
         edge_marks = gl::Texture(gl::TextureKind::D2, gl::Format::Stencil8, size, 1, "edge marks");
         depth.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
@@ -108,8 +112,15 @@ struct Renderer::Impl {
         for (const gl::Texture& texture : varyings)
             outputs.push_back(&texture);
         geometry_target = gl::Framebuffer(outputs, &depth, "geometry");
-        radiance_target = gl::Framebuffer({&radiance}, &depth, "radiance");
-        post_target = gl::Framebuffer({&tone_mapped}, nullptr, "post");
+        const gl::Texture& end = options.antialias ? tone_mapped : picture;
+        light_target = gl::Framebuffer({options.radiance ? &radiance : &end}, &depth, "light");
+        if (options.radiance) {
+            post_target = gl::Framebuffer({&end}, nullptr, "post");
+            if (has_overlay(effects.stitch)) {
+                overlay = target(gl::Format::RGBA8, "overlay");
+                overlaid_target = gl::Framebuffer({&radiance, &overlay}, &depth, "overlaid");
+            }
+        }
         picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
 
         reads_surface = std::any_of(
@@ -122,14 +133,16 @@ struct Renderer::Impl {
                 values, options.width_px, options.height_px);
     }
 
-    static std::vector<ProgramText> stitch(const EffectInputs& effects, int max_texture_units) {
+    static std::vector<ProgramText> stitch(const EffectInputs& effects, int max_texture_units,
+                                           bool shown) {
         shader::StitchInput input = effects.stitch;
         input.max_texture_units = max_texture_units;
         const shader::FolderTexts core(share_dir() / "shaders");
         const bool vertex_normals = input.values && input.values->find(kNormalAddress) &&
                                     input.values->value(kNormalAddress)[0] == 1;
         return stitch_programs(core, input, {.vertex_normals = vertex_normals,
-                                             .depth = !effects.modules.empty()});
+                                             .depth = !effects.modules.empty(),
+                                             .shown = shown});
     }
 
     const ProgramText& text(const std::string& name) const {
@@ -160,6 +173,7 @@ struct Renderer::Impl {
     const gl::Texture* core_texture(const std::string& name, const Terrain& ground) const {
         if (name == "place") return &place;
         if (name == "radiance") return &radiance;
+        if (name == "overlay") return &overlay;
         if (name == "colour") return &tone_mapped;
         if (name == "depth") return &depth;
         if (name == "height_pages") return &ground.height_pages();
@@ -179,6 +193,7 @@ struct Renderer::Impl {
     void draw(Terrain& ground, const Ground& about, const FrameInputs& inputs, FrameBlock block,
               PassTimes* times) {
         block.normal_levels = static_cast<float>(ground.normal_levels());
+        block.normal_texels_per_m = static_cast<float>(1 / ground.normal_spacing_m());
         frame_block.write(std::as_bytes(std::span(&block, 1)));
         frame_block.bind_uniform(kFrameBinding);
         if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
@@ -222,22 +237,27 @@ struct Renderer::Impl {
 
         // The full-screen triangle lies at depth 0, the far end: "less" lets it through where
         // something nearer was drawn, "equal" where nothing was.
-        radiance_target.bind();
+        const bool overlaid = overlay.name() != 0;
+        (overlaid ? overlaid_target : light_target).bind();
+        if (overlaid) overlaid_target.clear_colour(1, glm::vec4(0));
         glDepthMask(GL_FALSE);
         glDepthFunc(GL_LESS);
         bind(terrain, ground);
         draw_fullscreen();
         passed("terrain");
+        light_target.bind();
         glDepthFunc(GL_EQUAL);
         bind(sky, ground);
         draw_fullscreen();
         glDisable(GL_DEPTH_TEST);
         passed("sky");
 
-        (options.antialias ? post_target : picture_target).bind();
-        bind(post, ground);
-        draw_fullscreen();
-        passed("post");
+        if (post) {
+            post_target.bind();
+            bind(*post, ground);
+            draw_fullscreen();
+            passed("post");
+        }
         if (options.antialias) {
             // Two draws: the first marks the few pixels of silhouettes, the second works on those.
             picture.copy_from(tone_mapped);
@@ -277,6 +297,7 @@ void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameI
         impl_->anisotropy > 1 ? impl_->anisotropy : kFootprintWithoutAnisotropy;
     const FrameBlock block = make_frame_block(inputs, ground, impl_->options.width_px,
                                               impl_->options.height_px, footprint);
+    impl_->exposure = block.exposure;
     impl_->draw(terrain, ground, inputs, block, times);
 }
 
@@ -306,17 +327,20 @@ image::Image8 Renderer::read_picture() const {
 }
 
 image::ImageF Renderer::read_radiance() const {
+    assert(impl_->options.radiance);
     const int width = impl_->options.width_px, height = impl_->options.height_px;
     std::vector<float> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
                               4);
     impl_->radiance.read_floats(texels);
+    // The passes store exposed light.
+    const auto scale = static_cast<float>(1 / impl_->exposure);
     image::ImageF picture(width, height, 3);
     for (int y = 0; y < height; ++y) {
         const float* from = texels.data() + static_cast<std::size_t>(height - 1 - y) *
                                                 static_cast<std::size_t>(width) * 4;
         float* to = picture.row(y);
         for (int x = 0; x < width; ++x, from += 4, to += 3)
-            std::copy_n(from, 3, to);
+            std::transform(from, from + 3, to, [&](float value) { return value * scale; });
     }
     return picture;
 }

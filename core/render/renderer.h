@@ -20,6 +20,9 @@ struct RendererOptions {
     int width_px = 1280;
     int height_px = 1024;
     bool antialias = true;
+    /// Keep the linear radiance for read_radiance(). Without it shading ends in the colours of the
+    /// picture at once, which saves a pass over it.
+    bool radiance = true;
 };
 
 /// The enabled effects, as drawing needs them.

@@ -105,11 +105,12 @@ std::vector<std::byte> bytes_of(const std::vector<T>& values) {
 }  // namespace
 
 Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
-                 const TerrainOptions& options)
+                 const TerrainOptions& options, const dem::Source* finer)
     : serial_(next_serial()),
       options_(options),
-      pyramid_(heightfield.height_m),
-      grid_(heightfield.grid),
+      pyramid_(finer && heightfield.reduction > 1 ? dem::Pyramid(heightfield, *finer)
+                                                  : dem::Pyramid(heightfield.height_m)),
+      grid_(finer && heightfield.reduction > 1 ? finer->grid() : heightfield.grid),
       frame_(frame),
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),
@@ -165,6 +166,9 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
     LodView view = wanted;
     std::vector<TileDraw> draws;
     std::vector<TileKey> keys;
+    // A quarter of the pages is for those that are drawn beside.
+    const int layers = height_pages_.layers();
+    const int room = keep || layers == tiles_of_all_levels(pyramid_) ? layers : layers - layers / 4;
     while (true) {
         draws = tree_.select(view);
         keys.clear();
@@ -177,7 +181,7 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
                 name(tile.draw.key);
         for (const TileDraw& draw : draws)
             name(draw.key);
-        const bool fits = static_cast<int>(keys.size()) <= height_pages_.layers();
+        const bool fits = static_cast<int>(keys.size()) <= room;
         const bool in_budget =
             wanted.tolerance <= 0 ||
             draws.size() * kGridVertices <= static_cast<std::size_t>(options_.vertex_budget);

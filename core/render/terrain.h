@@ -49,9 +49,12 @@ class TileSelection {
 class Terrain {
   public:
     /// @param heightfield  must outlive this
+    /// @param finer        where a heightfield of means was made from: its posts are drawn where
+    /// they
+    ///                     are near enough to be seen; null if there is none
     /// @param frame        the DEM's local frame; every position below is in it; must outlive this
     Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
-            const TerrainOptions& options);
+            const TerrainOptions& options, const dem::Source* finer = nullptr);
 
     /// Chooses the tiles of a view and makes their height pages.
     /// @param keep  a selection that has to stay drawable beside the new one
@@ -85,7 +88,8 @@ class Terrain {
     /// No two terrains of a process have the same.
     std::uint64_t serial() const { return serial_; }
     bool has_holes() const { return pyramid_.has_holes(); }
-    int normal_levels() const { return normal_levels_; }  ///< of normal pages
+    int normal_levels() const { return normal_levels_; }           ///< of normal pages
+    double normal_spacing_m() const { return normal_spacing_m_; }  ///< of the finest of them
 
   private:
     void prepare_normals(const LodView& view, int width_px);

@@ -97,8 +97,8 @@ glm::dvec3 sky_irradiance(double elevation_rad) {
 
 double natural_exposure(double elevation_rad) {
     // Light on level ground, against that of a sun 45 degrees high. The eye and every camera give
-    // part of the difference back; four fifths keep noon at its place and leave civil twilight
-    // readable.
+    // part of the difference back; three quarters keep noon at its place, the colours of a sunset
+    // in the picture and civil twilight readable.
     const auto level_lux = [](double h_rad) {
         const double direct =
             dot(direct_transmittance(h_rad, 0), glm::dvec3(0.2126, 0.7152, 0.0722));
@@ -106,7 +106,11 @@ double natural_exposure(double elevation_rad) {
                sky_illuminance_lux(h_rad);
     };
     static const double kReference_lux = level_lux(radians(45));
-    return 1.8 * std::pow(kReference_lux / level_lux(elevation_rad), 0.8);
+    // From nautical dusk on, as long exposures do, white ground is held at what is left.
+    constexpr double kNightLevel = 0.05;
+    const double level = level_lux(elevation_rad);
+    return std::max(2.2 * std::pow(kReference_lux / level, 0.74),
+                    kNightLevel * kSolarIlluminance_lux / level);
 }
 
 }  // namespace relevo::sun

@@ -40,7 +40,7 @@ double sky_illuminance_lux(double elevation_rad);
 /// bluer through twilight, when ozone takes the yellow away.
 glm::dvec3 sky_irradiance(double elevation_rad);
 
-/// Factor on radiance that a photographer would choose for a sun at this elevation: 1 with the sun
+/// Factor on radiance that a photographer would choose for a sun at this elevation: 2 with the sun
 /// high, more the less light there is, though never so much that dusk looks like day. It depends on
 /// the sun alone, never on the picture, so that frames of one moment match.
 /// @param elevation_rad  of the sun's centre, geometric

@@ -40,7 +40,8 @@ constexpr std::array kNames{Name{"sunrise", EventKind::Sunrise},
     bad_input(fmt::format("{}: {}: {}", kWho, text, what));
 }
 
-/// "1h30min", "45s", "90min".
+}  // namespace
+
 std::optional<double> parse_duration_s(std::string_view text) {
     if (text.empty()) return std::nullopt;
     double sum_s = 0;
@@ -58,8 +59,6 @@ std::optional<double> parse_duration_s(std::string_view text) {
     }
     return sum_s;
 }
-
-}  // namespace
 
 bool is_event_time(std::string_view text) {
     return text.find('@') != std::string_view::npos;

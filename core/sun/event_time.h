@@ -21,6 +21,9 @@ struct EventTime {
     std::string text;  ///< as it was given, for messages
 };
 
+/// "1h30min", "45s", "90min" in seconds; nothing where it is no duration.
+std::optional<double> parse_duration_s(std::string_view text);
+
 /// Whether a time is given so: by an `@`.
 bool is_event_time(std::string_view text);
 

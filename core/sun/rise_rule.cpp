@@ -37,20 +37,34 @@ RiseRule RiseRule::seen(Limb limb, const Refraction& refraction, double eye_heig
             fmt::format("sun::RiseRule: eye height {:.10g} m: no eye there, expected 0 to 10000 "
                         "above the sea or plain",
                         eye_height_m));
-    RiseRule rule{Unset{}};
     const double dip_rad = seen_dip_rad(eye_height_m, refraction.bends());
-    rule.elevation_rad_ = refraction.true_rad(-dip_rad);
-    rule.semidiameters_ = limb == Limb::Upper ? 1 : limb == Limb::Lower ? -1 : 0;
+    return {limb, refraction, dip_rad,
+            eye_height_m > 0
+                ? fmt::format(" as seen from {:.6g} m above it (dip {:.2f} arc-minutes)",
+                              eye_height_m, degrees(dip_rad) * 60)
+                : ""};
+}
+
+RiseRule RiseRule::seen_over_dip(Limb limb, const Refraction& refraction, double dip_rad) {
+    if (!(dip_rad >= 0 && dip_rad <= radians(5)))
+        bad_input(fmt::format(
+            "sun::RiseRule: dip of the horizon {:.10g} degrees: none there, expected 0 to 5",
+            degrees(dip_rad)));
+    return {limb, refraction, dip_rad,
+            fmt::format(" {:.2f} arc-minutes below the level one", degrees(dip_rad) * 60)};
+}
+
+RiseRule::RiseRule(Limb limb, const Refraction& refraction, double dip_rad,
+                   const std::string& dip_text)
+    : elevation_rad_(refraction.true_rad(-dip_rad)),
+      semidiameters_(limb == Limb::Upper   ? 1
+                     : limb == Limb::Lower ? -1
+                                           : 0) {
     const char* part = limb == Limb::Upper   ? "upper limb"
                        : limb == Limb::Lower ? "lower limb"
                                              : "centre";
-    const std::string dip =
-        eye_height_m > 0 ? fmt::format(" as seen from {:.6g} m above it (dip {:.2f} arc-minutes)",
-                                       eye_height_m, degrees(dip_rad) * 60)
-                         : "";
-    rule.description_ = fmt::format("sunrise and sunset: {} of the sun on the horizon{}, {}", part,
-                                    dip, refraction.description());
-    return rule;
+    description_ = fmt::format("sunrise and sunset: {} of the sun on the horizon{}, {}", part,
+                               dip_text, refraction.description());
 }
 
 double RiseRule::center_elevation_rad(double distance_au) const {

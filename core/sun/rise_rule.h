@@ -26,6 +26,12 @@ class RiseRule {
     /// @throws Error (BadInput) for a height that is none
     static RiseRule seen(Limb limb, const Refraction& refraction, double eye_height_m = 0);
 
+    /// The same with the dip of the horizon below the level one given itself, as measured or from
+    /// another table.
+    /// @param dip_rad  0 to 5 degrees
+    /// @throws Error (BadInput) for a dip that is none
+    static RiseRule seen_over_dip(Limb limb, const Refraction& refraction, double dip_rad);
+
     /// True elevation that the sun's centre has at that moment, for a sun at this distance [rad].
     double center_elevation_rad(double distance_au) const;
 
@@ -38,6 +44,7 @@ class RiseRule {
   private:
     struct Unset {};
     explicit RiseRule(Unset) {}
+    RiseRule(Limb limb, const Refraction& refraction, double dip_rad, const std::string& dip_text);
     double elevation_rad_ = 0;
     double semidiameters_ = 0;  // added to that of the centre: 1 upper limb, -1 lower limb
     std::string description_;

@@ -1,12 +1,13 @@
 //! provides  materials: sand, grass, rock, snow by elevation and slope, two at most at a point
 //! hook      albedo
 //! reads     height [m and 0..1], slope, latitude, ground coordinates [m]
-//! writes    material, material_weight, diffuse, ambient, specular, emissive, shininess
+//! writes    material, material_weight, texture_at, gloss, diffuse, ambient, specular, emissive, shininess
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section 3.1 and table 1
 
 uniform sampler2DArray layering_albedo;
 uniform sampler3D layering_noise;
+uniform sampler2D layering_patches;
 
 uniform int layering_limits = 2; //@ enum(normalised, metres, climate) label("Limits") description("Where materials change: the paper's share of the DEM's range, heights in metres, or tree and snow line of the latitude")
 
@@ -30,6 +31,8 @@ uniform float layering_noise_m = 2400.0; //@ range(1, 1000000) unit(m) label("No
 uniform float layering_texture_repeats = 64.0; //@ range(1, 100000) label("Texture repeats")
 uniform float layering_noise_repeats = 8.0; //@ range(1, 1000) label("Noise repeats")
 uniform float layering_variation = 0.35; //@ range(0, 1) label("Variation") description("How much broad patches differ in brightness; 0 in the paper")
+uniform bool layering_nature = true; //@ label("Natural ground") description("Textures without repeats, dry and lush ground, shrubs, bands of rock; not in the paper")
+uniform vec3 layering_patch_m = vec3(230.0, 5300.0, 67000.0); //@ range(1, 10000000) unit(m) label("Patch sizes") description("Of the small and the broad patches of natural ground, and of its regions")
 
 // Coefficients of sand, grass, rock, snow.
 uniform vec4 layering_diffuse = vec4(1.0, 1.0, 1.0, 1.0); //@ range(0, 2) label("Diffuse")
@@ -37,6 +40,8 @@ uniform vec4 layering_ambient = vec4(1.0, 1.0, 1.0, 1.0); //@ range(0, 2) label(
 uniform vec4 layering_specular = vec4(0.02, 0.015, 0.03, 0.10); //@ range(0, 1) label("Specular")
 uniform vec4 layering_emissive = vec4(0.0, 0.0, 0.0, 0.0); //@ range(0, 10) label("Emissive")
 uniform vec4 layering_shininess = vec4(12.0, 10.0, 16.0, 24.0); //@ range(1, 1000) label("Shininess")
+
+const int layering_last_level = 10;  // of the albedo textures, 1 x 1: their mean
 
 /// Elevations at which materials change: where sand begins to turn into grass, and so on.
 struct layering_Limits {
@@ -98,6 +103,39 @@ vec4 layering_read(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
     return textureGrad(layering_albedo, vec3(at, float(material)), dx, dy);
 }
 
+/// Turns by 37 degrees: patterns read both ways do not line up.
+const mat2 layering_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
+
+/// A material without visible repeats: the same texture, turned and several times as large, shades it.
+/// @returns albedo, and in `a` the gloss
+/// @param dx, dy  change of `at` from pixel to pixel
+vec4 layering_unrepeated(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
+    const float larger = 0.23;
+    vec3 mean = texelFetch(layering_albedo, ivec3(0, 0, material), layering_last_level).rgb;
+    vec3 wide = layering_read(layering_turn * at * larger, layering_turn * dx * larger,
+                              layering_turn * dy * larger, material).rgb;
+    vec4 near = layering_read(at, dx, dy, material);
+    return vec4(near.rgb * (0.35 + 0.65 * wide / mean), near.a);
+}
+
+/// What places do to a material's colour: factors on its albedo.
+/// @param small, broad  of patches.ktx2 at two sizes: tone, hue, shrubs, fine tone
+/// @param flatness      cosine of the slope
+vec3 layering_tint(in int material, in vec4 small, in vec4 broad, in float flatness) {
+    float tone = small.r + broad.r - 1.0, fine = small.a - 0.5;
+    float hue = 0.6 * small.g + broad.g - 0.8;
+    if (material == 0) return vec3(1.0 + 0.45 * tone + 0.15 * fine) + hue * vec3(0.10, 0.0, -0.12);
+    if (material == 2)
+        return vec3(1.0 + 0.9 * tone + 0.5 * fine) + hue * vec3(0.16, 0.02, -0.12);
+    if (material == 3) return vec3(1.0 + 0.08 * tone) + 0.04 * hue * vec3(1.0, 0.0, -1.0);
+    // Grass: straw where it is dry, and shrubs in groups where it is not, fewer on steep ground.
+    float dry = smoothstep(-0.12, 0.42, hue + 0.4 * tone);
+    vec3 grass = mix(vec3(0.88, 0.97, 0.84), vec3(1.55, 1.28, 1.12), dry) * (1.0 + 0.5 * tone + 0.35 * fine);
+    float groups = smoothstep(0.62, 0.38, broad.g) * smoothstep(0.40, 0.62, broad.a);
+    float shrubs = small.b * groups * smoothstep(0.55, 0.8, flatness);
+    return mix(grass, vec3(0.42, 0.52, 0.44) * (1.0 + 0.8 * fine), 0.8 * shrubs);
+}
+
 void layering_on_albedo(inout Surface s) {
     vec3 texture_scale = vec3(1.0 / layering_texture_m);
     vec3 noise_scale = vec3(1.0 / layering_noise_m);
@@ -105,9 +143,23 @@ void layering_on_albedo(inout Surface s) {
         texture_scale = vec3(layering_texture_repeats * frame.ground_extent.zw, 0.0);
         noise_scale = vec3(layering_noise_repeats * frame.ground_extent.zw, 0.0);
     }
-    vec3 noise_at = s.ground_m * noise_scale;
-    float noise = 2.0 * textureGrad(layering_noise, noise_at, s.ground_dx_m * noise_scale,
-                                    s.ground_dy_m * noise_scale).r - 1.0;
+    vec4 small, broad;
+    float noise;
+    if (layering_nature) {
+        vec3 scale = 1.0 / layering_patch_m;
+        vec2 gx = s.ground_dx_m.xy, gy = s.ground_dy_m.xy;
+        small = textureGrad(layering_patches, s.ground_m.xy * scale.x, gx * scale.x, gy * scale.x);
+        vec4 region = textureGrad(layering_patches, s.ground_m.yx * scale.z, gx.yx * scale.z, gy.yx * scale.z);
+        // Regions push the broad patches about, so that those do not show as tiles from afar.
+        broad = textureGrad(layering_patches, layering_turn * s.ground_m.xy * scale.y + 2.4 * region.rg,
+                            layering_turn * gx * scale.y, layering_turn * gy * scale.y);
+        broad.rg += 0.6 * (region.ra - 0.5);
+        // As strong as the volume's, which need not be read then.
+        noise = 1.2 * (broad.r - 0.5) + 0.7 * (broad.a - 0.5) + 0.4 * (small.r - 0.5);
+    } else {
+        noise = 2.0 * textureGrad(layering_noise, s.ground_m * noise_scale, s.ground_dx_m * noise_scale,
+                                  s.ground_dy_m * noise_scale).r - 1.0;
+    }
 
     float latitude_deg = degrees(asin(clamp(dot(s.up, frame.polar_axis.xyz), -1.0, 1.0)));
     layering_Limits limits = layering_limits_at(latitude_deg);
@@ -129,10 +181,27 @@ void layering_on_albedo(inout Surface s) {
 
     vec2 at = s.ground_m.xy * texture_scale.xy;
     vec2 dx = s.ground_dx_m.xy * texture_scale.xy, dy = s.ground_dy_m.xy * texture_scale.xy;
-    vec3 albedo = most * layering_read(at, dx, dy, first).rgb +
-                  next * layering_read(at, dx, dy, second).rgb;
+    vec3 albedo;
+    float gloss;
+    if (layering_nature) {
+        float flatness = dot(s.geometric_normal, s.up);
+        vec4 heavier = layering_unrepeated(at, dx, dy, first);
+        vec4 lighter = layering_read(at, dx, dy, second);
+        albedo = most * heavier.rgb * layering_tint(first, small, broad, flatness) +
+                 next * lighter.rgb * layering_tint(second, small, broad, flatness);
+        gloss = most * heavier.a + next * lighter.a;
+    } else {
+        vec4 read =
+            most * layering_read(at, dx, dy, first) + next * layering_read(at, dx, dy, second);
+        albedo = read.rgb;
+        gloss = read.a;
+    }
     albedo *= 1.0 + layering_variation * noise;
 
+    s.texture_at = at;
+    s.texture_dx = dx;
+    s.texture_dy = dy;
+    s.gloss = gloss;
     s.diffuse = albedo * dot(layering_diffuse, weights);
     s.ambient = albedo * dot(layering_ambient, weights);
     s.specular = vec3(dot(layering_specular, weights));

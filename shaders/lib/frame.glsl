@@ -20,8 +20,11 @@ layout(std140, binding = 0) uniform Frame {
     vec4 sky_irradiance;      // rgb: on level ground from the whole sky
     vec4 height_range;        // x: lowest post [m], y: 1/(highest - lowest) [1/m], z: exaggeration
     vec4 ground_extent;       // xy: the DEM's south-west corner, zw: 1/its width and 1/its height, in ground_m
-    float exposure;           // factor on radiance before tone mapping
+    float exposure;           // factor on radiance before tone mapping, already in what is stored
     float footprint_limit;    // longest to shortest side of a pixel's footprint that textures resolve
     float normal_texels_per_m;  // of the finest normal pages
     float normal_levels;      // of normal pages
+    vec4 eye_up;              // xyz: vertical at the eye; w: sine of the horizon's elevation, 0 or below
+    vec4 eye_sun;             // xyz: towards the sun as the eye sees it, with refraction; w: its elevation [rad]
+    vec4 eye_sun_light;       // rgb: irradiance there on a surface that faces it
 } frame;

@@ -30,4 +30,8 @@ struct Surface {
     float distance_m;         // from the eye [m]
     vec3 ground_dx_m;         // how ground_m changes from this pixel to the next one right ...
     vec3 ground_dy_m;         // ... and up [m/px]: gradients for textureGrad
+    vec2 texture_at;          // coordinates that the materials' textures are read at ...
+    vec2 texture_dx;          // ... and their gradients, right
+    vec2 texture_dy;          // ... and up
+    float gloss;              // of the materials, 0..1: how much of their highlight this point has
 };

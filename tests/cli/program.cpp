@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "base/text.h"
 #include "support/support.h"
@@ -24,8 +25,10 @@ Result relevo(const std::vector<std::string>& arguments,
     static int count = 0;
     const std::filesystem::path dir = build_dir() / "scratch";
     std::filesystem::create_directories(dir);
-    const std::filesystem::path out = dir / ("cli." + std::to_string(++count) + ".out");
-    const std::filesystem::path err = dir / ("cli." + std::to_string(count) + ".err");
+    // Several test programs may run at once.
+    const std::string name = "cli." + std::to_string(getpid()) + "." + std::to_string(++count);
+    const std::filesystem::path out = dir / (name + ".out");
+    const std::filesystem::path err = dir / (name + ".err");
     std::string command = "env ";
     for (const std::string& variable : environment)
         command += quoted(variable) + " ";

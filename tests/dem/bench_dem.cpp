@@ -1,7 +1,10 @@
 #include <cmath>
+#include <cstdlib>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
+#include "base/text.h"
 #include "dem/load.h"
 #include "support/support.h"
 
@@ -46,6 +49,47 @@ BENCHMARK_CAPTURE(read_reduced, overview_450x450, "tyrol_aw3d30_n47e011_1s_cog.t
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 BENCHMARK_CAPTURE(read_reduced, means_149x80, "srtm_bigtujunga30m_utm11.tif")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// One DEM of any size: `$RELEVO_BENCH_DEM`, its files with blanks between.
+std::vector<std::string> given_files() {
+    const char* files = std::getenv("RELEVO_BENCH_DEM");
+    return files ? split(files, ' ') : std::vector<std::string>();
+}
+
+void open_given(benchmark::State& state) {
+    const std::vector<std::string> files = given_files();
+    if (files.empty()) state.SkipWithError("set RELEVO_BENCH_DEM to the files of a DEM");
+    for (auto _ : state)
+        benchmark::DoNotOptimize(Source::open(files).grid().columns());
+}
+BENCHMARK(open_given)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// Windows of 512 x 512 posts all over it, each post covering `state.range(0)` squared of the
+/// file's.
+void read_windows(benchmark::State& state) {
+    const std::vector<std::string> files = given_files();
+    if (files.empty()) {
+        state.SkipWithError("set RELEVO_BENCH_DEM to the files of a DEM");
+        return;
+    }
+    const Source source = Source::open(files);
+    const int side = static_cast<int>(512 * state.range(0));
+    const int across = source.grid().columns() / side, down = source.grid().rows() / side;
+    int i = 0;
+    for (auto _ : state) {
+        // A stride that visits all, seldom neighbours.
+        i = (i + 37) % (across * down);
+        benchmark::DoNotOptimize(
+            source.read({i % across * side, i / across * side, side, side}, 512, 512).data());
+    }
+}
+BENCHMARK(read_windows)
+    ->Arg(1)
+    ->Arg(2)
+    ->Arg(8)
+    ->Arg(16)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

@@ -157,9 +157,10 @@ TEST(LoadError, WrongCrsPutsItOffTheEarth) {
 TEST(LoadError, NoGeoreference) {
     Raster raster;
     raster.geotransform.reset();
-    EXPECT_EQ(refusal("no_place.tif", raster),
-              "no georeference, it does not say where its posts are; give it one with "
-              "gdal_translate -a_ullr W N E S -a_srs EPSG:n, or a world file beside it");
+    EXPECT_EQ(
+        refusal("no_place.tif", raster),
+        "no georeference, it does not say where its posts are; give its edges in degrees with "
+        "--bounds W,S,E,N");
 }
 
 TEST(LoadError, CellsWithoutArea) {
@@ -210,14 +211,114 @@ TEST(LoadError, UnknownUnit) {
               "exit 2: --unit: parsec: a unit of height, expected m, ft, us-ft, cm or km");
 }
 
+/// A photograph, as far as neighbours go: each colour is its own affair.
+double photograph(int column, int row, int band) {
+    return (column * 97 + row * 61 + band * 131 + column * row * 7) % 256;
+}
+
 TEST(LoadError, Picture) {
     Raster raster;
     raster.type = "Byte";
     raster.bands = 3;
+    raster.columns = raster.rows = 64;
+    raster.value = photograph;
+    raster.options = {"PHOTOMETRIC=MINISBLACK"};
+    constexpr const char* kRemedy =
+        ", expected heights; if its colours encode heights pass --encoding terrain-rgb or "
+        "terrarium, if one band holds them --band N";
+    // Colours that nobody noted are colours all the same.
+    EXPECT_EQ(refusal("bands.tif", raster), "a picture (3 bands of 8 bits)" + std::string(kRemedy));
     raster.pictures = true;
+    raster.options = {};
     EXPECT_EQ(refusal("picture.tif", raster),
-              "a picture (red, green and blue bands of 8 bits), expected heights; --band N takes "
-              "band N as heights all the same");
+              "a picture (red, green and blue bands of 8 bits)" + std::string(kRemedy));
+    raster.bands = 4;
+    EXPECT_EQ(refusal("picture_alpha.tif", raster),
+              "a picture (red, green and blue bands of 8 bits)" + std::string(kRemedy));
+    raster.type = "UInt16";
+    EXPECT_EQ(refusal("picture16.tif", raster),
+              "a picture (red, green and blue bands of 16 bits)" + std::string(kRemedy));
+}
+
+TEST(LoadError, PictureOfHeightsSaysInWhichEncoding) {
+    Raster raster;
+    raster.type = "Byte";
+    raster.bands = 3;
+    raster.pictures = true;
+    raster.columns = raster.rows = 64;
+    const auto height_m = [](int column, int row) { return 1500 + 7 * column + 3 * row; };
+    raster.value = [&](int column, int row, int band) {
+        const int code = (height_m(column, row) + 10000) * 10;
+        return code >> (8 * (3 - band)) & 255;
+    };
+    EXPECT_EQ(refusal("terrain_rgb.tif", raster),
+              "a picture (red, green and blue bands of 8 bits) whose colours look like heights in "
+              "Terrain-RGB; if they are, pass --encoding terrain-rgb");
+    raster.value = [&](int column, int row, int band) {
+        const int code = (height_m(column, row) + 32768) * 256;
+        return code >> (8 * (3 - band)) & 255;
+    };
+    EXPECT_EQ(refusal("terrarium.tif", raster),
+              "a picture (red, green and blue bands of 8 bits) whose colours look like heights in "
+              "Terrarium; if they are, pass --encoding terrarium");
+}
+
+TEST(LoadError, EncodingOfWhatIsNoPicture) {
+    EXPECT_EQ(refusal("heights.tif", {}, {.encoding = Encoding::TerrainRgb}),
+              "--encoding terrain-rgb, expected red, green and blue bands of 8 bits but got one "
+              "band of Float32");
+}
+
+TEST(LoadError, BoundsOutsideOfTheCrs) {
+    Raster raster;
+    raster.geotransform.reset();
+    EXPECT_EQ(
+        refusal("bounds.tif", raster, {.crs = "EPSG:32632", .bounds = Bounds{100, 0, 101, 1}}),
+        "--bounds 100,0,101,1 are not within WGS 84 / UTM zone 32N; pass the right CRS with "
+        "--crs EPSG:n");
+}
+
+TEST(LoadError, DegreesInACrsOfMetres) {
+    Raster raster;
+    raster.geotransform = {{11, 0.001, 0, 47, 0, -0.001}};
+    EXPECT_EQ(refusal("degrees.tif", raster),
+              "its coordinates are like degrees, but WGS 84 / UTM zone 32N counts in metre; pass "
+              "the right CRS with --crs, perhaps EPSG:4326");
+    EXPECT_NO_THROW(load((folder() / "degrees.tif").string(), {.crs = "EPSG:4326"}));
+}
+
+/// Replaces bytes of a file by as many others.
+void replace_bytes(const std::string& path, const std::string& from, const std::string& to) {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+    const std::size_t at = bytes.find(from);
+    ASSERT_NE(at, std::string::npos);
+    ASSERT_EQ(from.size(), to.size());
+    file.clear();
+    file.seekp(static_cast<std::streamoff>(at));
+    file << to;
+}
+
+TEST(LoadError, GeoKeysOfAnUnknownCode) {
+    const std::string path = write_raster(folder() / "keys.tif", {});
+    // The key of the projected CRS (3072, one short number) gets a code that EPSG does not have.
+    const auto key = [](std::uint16_t code) {
+        const std::uint16_t numbers[] = {3072, 0, 1, code};
+        return std::string(reinterpret_cast<const char*>(numbers), sizeof numbers);
+    };
+    replace_bytes(path, key(32632), key(29999));
+    // The name is left.
+    const Heightfield f = load(path);
+    EXPECT_EQ(f.grid.crs().code(), "EPSG:32632");
+    EXPECT_EQ(f.about.guesses,
+              (std::vector<std::string>{"the CRS is WGS 84 / UTM zone 32N, by its name: the file "
+                                        "does not define it; --crs sets another"}));
+    replace_bytes(path, "WGS 84 / UTM zone 32N", "WGS 84 / UTM zone 92N");
+    EXPECT_EQ(refusal(path),
+              "WGS 84 / UTM zone 92N: a local (engineering) coordinate reference system, which "
+              "cannot place a raster; give a geographic or projected one of the Earth with --crs "
+              "EPSG:n");
+    EXPECT_EQ(load(path, {.crs = "EPSG:32632"}).grid.crs().code(), "EPSG:32632");
 }
 
 TEST(LoadError, ComplexNumbers) {

@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <ostream>
 
+#include <gmock/gmock.h>
+
+#include "base/text.h"
 #include "base/units.h"
 #include "dem/load.h"
 #include "support/support.h"
@@ -11,7 +15,7 @@ namespace {
 
 /// What dem/INDEX.md of the outside test data says of a file.
 struct Listed {
-    const char* file;
+    const char* files;  ///< one, or more with blanks between
     const char* driver;
     const char* type;
     int columns, rows;
@@ -20,17 +24,21 @@ struct Listed {
     float min_m, max_m;
     std::int64_t holes;
     float printed_m = 0;  ///< half of the last digit that the range is printed to
+    LoadOptions options = {};
+    const char* unit = "m";
 };
 
 void PrintTo(const Listed& listed, std::ostream* out) {
-    *out << listed.file;
+    *out << listed.files;
 }
 
-constexpr Listed kListed[] = {
+const Listed kListed[] = {
     {"tyrol_aw3d30_n47e011_1s_cog.tif", "GTiff", "Int16", 3600, 3600, "EPSG:4326", 47.5, 11.5, 1e-9,
      461, 3458, 0},
     {"highlands_srtm3/highlands_srtm3.vrt", "VRT", "Int16", 2401, 1201, "EPSG:4326", 56.5, -5.0,
      1e-9, -4, 1336, 0},
+    {"highlands_srtm3/N56W005.hgt highlands_srtm3/N56W006.hgt", "SRTMHGT", "Int16", 2401, 1201,
+     "EPSG:4326", 56.5, -5.0, 1e-9, -4, 1336, 0},
     {"N42E001.hgt", "SRTMHGT", "Int16", 1201, 1201, "EPSG:4326", 42.5, 1.5, 1e-9, 349, 3100, 7652},
     {"mt_rainier_90m.tif", "GTiff", "Int16", 1201, 1201, "EPSG:4326", 46.5, -121.5, 1e-9, 263, 4371,
      9033},
@@ -44,15 +52,86 @@ constexpr Listed kListed[] = {
      0.005, 0, 1699, 0},
     {"colorado_tut_relief.nc", "netCDF", "Int16", 600, 600, "EPSG:4326", 37.5, -105.5, 1e-9, 1052,
      4328, 0},
-    {"HI_topo_04.nc", "netCDF", "Int16", 181, 85, "EPSG:4326", 21.5, -157.5, 1e-9, -5784, 2804, 0,
-     1e-3F},
+    {"HI_topo_04.nc",
+     "netCDF",
+     "Int16",
+     181,
+     85,
+     "EPSG:4326",
+     21.5,
+     -157.5,
+     1e-9,
+     -5784,
+     2804,
+     0,
+     1e-3F,
+     {},
+     "km"},
     {"rmnp/rmnp-dem.tif", "GTiff", "UInt16", 152, 187, "EPSG:4326", 40.36, -105.70, 0.005, 2281,
      4261, 0},
     {"holyroodpark.tif", "GTiff", "Float32", 815, 563, "EPSG:27700", 55.945, -3.162, 0.0005, 33.8F,
      250.8F, 0, 0.05F},
     {"dem_RGI50-05.08389.tif", "GTiff", "Int16", 245, 302, "", 80.62, -64.16, 0.005, 202, 1062, 0},
+    {"avaGar.asc",
+     "AAIGrid",
+     "Float32",
+     520,
+     387,
+     "EPSG:31287",
+     47.05,
+     11.3,
+     0.05,
+     1234,
+     2672,
+     82888,
+     0.5F,
+     {.crs = "EPSG:31287"}},
     {"roi.tif", "GTiff", "Float32", 70, 100, "", 37.733, -83.766, 0.0006, 1008.6F, 1264.9F, 0,
      0.05F},
+    {"roi.tif",
+     "GTiff",
+     "Float32",
+     70,
+     100,
+     "",
+     37.733,
+     -83.766,
+     0.0006,
+     307.42F,
+     385.54F,
+     0,
+     0.02F,
+     {.unit = "us-ft"},
+     "us-ft"},
+    {"terrainrgb_z12/12/2177/1435.png terrainrgb_z12/12/2177/1436.png "
+     "terrainrgb_z12/12/2178/1435.png terrainrgb_z12/12/2178/1436.png",
+     "PNG",
+     "Byte",
+     1024,
+     1024,
+     "EPSG:3857",
+     47.27,
+     11.43,
+     0.01,
+     555,
+     2598,
+     0,
+     0.5F,
+     {.encoding = Encoding::TerrainRgb}},
+    {"terrarium.png",
+     "PNG",
+     "Byte",
+     256,
+     256,
+     "EPSG:4326",
+     46.05,
+     10.05,
+     1e-9,
+     852.1F,
+     2475.1F,
+     0,
+     0.05F,
+     {.encoding = Encoding::Terrarium, .bounds = Bounds{10, 46, 10.1, 46.1}}},
     {"missoula_valley.img", "HFA", "Int16", 714, 975, "EPSG:32611", 46.94, -114.03, 0.005, 930,
      2465, 0},
     {"monterey_bay_topobathy.tif", "GTiff", "Float32", 540, 540, "EPSG:4326", 36.68, -121.87, 0.005,
@@ -61,12 +140,19 @@ constexpr Listed kListed[] = {
      4197, 7188, 0.5F},
 };
 
+std::vector<std::string> paths_of(const std::filesystem::path& dir, const char* files) {
+    std::vector<std::string> paths;
+    for (const std::string& file : split(files, ' '))
+        paths.push_back((dir / file).string());
+    return paths;
+}
+
 class RealDem : public testing::TestWithParam<Listed> {};
 
 TEST_P(RealDem, LoadsAsListed) {
     SKIP_WITHOUT_TEST_DATA(data);
     const Listed& listed = GetParam();
-    const Heightfield f = load((data / "dem" / listed.file).string());
+    const Heightfield f = load(paths_of(data / "dem", listed.files), listed.options);
     EXPECT_EQ(f.about.driver, listed.driver);
     EXPECT_EQ(f.about.data_type, listed.type);
     EXPECT_EQ(f.height_m.width(), listed.columns);
@@ -80,7 +166,7 @@ TEST_P(RealDem, LoadsAsListed) {
     EXPECT_NEAR(f.about.statistics.max_m, listed.max_m, listed.printed_m);
     EXPECT_EQ(f.about.statistics.holes, listed.holes);
     EXPECT_EQ(f.about.statistics.outliers, 0);
-    EXPECT_EQ(f.about.unit.name, std::string(listed.file) == "HI_topo_04.nc" ? "km" : "m");
+    EXPECT_EQ(f.about.unit.name, listed.unit);
     // The first row of all of these is the northern one.
     EXPECT_GT(f.grid.place(0, 0).lat_rad, f.grid.place(0, listed.rows - 1).lat_rad);
 }
@@ -88,9 +174,9 @@ TEST_P(RealDem, LoadsAsListed) {
 INSTANTIATE_TEST_SUITE_P(Index, RealDem, testing::ValuesIn(kListed),
                          [](const testing::TestParamInfo<Listed>& test) {
                              std::string name;
-                             for (const char* c = test.param.file; *c; ++c)
+                             for (const char* c = test.param.files; *c; ++c)
                                  if (std::isalnum(static_cast<unsigned char>(*c))) name += *c;
-                             return name;
+                             return name + "In" + test.param.unit[0];
                          });
 
 /// Where the highest post within `radius_m` of a place is.
@@ -139,29 +225,84 @@ TEST(RealDem, WithoutACrsOneMustBeGiven) {
     EXPECT_EQ(test::error_of([&] { load(path); }),
               "exit 3: dem::load: " + path + ": no coordinate reference system; pass --crs EPSG:n");
     const Heightfield f = load(path, {.crs = "EPSG:31287"});
-    EXPECT_EQ(f.about.statistics.holes, 82888);
-    EXPECT_NEAR(f.about.statistics.min_m, 1234, 0.5);
-    EXPECT_NEAR(f.about.statistics.max_m, 2672, 0.5);
-    EXPECT_NEAR(degrees(f.grid.center().lat_rad), 47.05, 0.05);
-    EXPECT_NEAR(degrees(f.grid.center().lon_rad), 11.3, 0.05);
     EXPECT_NEAR(f.grid.post_spacing_m().x, 4.9977, 0.002);  // 0.03 % of scale
 }
 
-TEST(RealDem, UnitOptionTurnsFeetIntoMetres) {
+TEST(RealDem, FeetOfADistanceAreUsSurveyFeet) {
     SKIP_WITHOUT_TEST_DATA(data);
-    const Heightfield f = load((data / "dem" / "roi.tif").string(), {.unit = "us-ft"});
-    EXPECT_NEAR(f.about.statistics.max_m, 1264.9 * kUsSurveyFoot_m, 0.02);
+    const Heightfield f = load((data / "dem" / "roi.tif").string());
     EXPECT_NEAR(f.grid.post_spacing_m().x, 30 * kUsSurveyFoot_m, 0.002);
+}
+
+TEST(RealDem, AFrameOfZeroesIsMentioned) {
+    SKIP_WITHOUT_TEST_DATA(data);
+    const std::string path = (data / "dem" / "swellendam/srtm_41_19_4326.tif").string();
+    EXPECT_THAT(load(path).about.guesses,
+                testing::ElementsAre(testing::HasSubstr("the edge is 0 m all around")));
+    EXPECT_EQ(load(path, {.nodata = 0}).about.statistics.min_m, 4);
+}
+
+// The same ground through two encodings. Row 1 of the index was made from tiles like these by
+// averaging onto 1 arc-second posts and rounding to whole metres, so the mean of the tiles over
+// each of its cells is compared.
+TEST(RealDem, TerrainRgbTilesAgreeWithTheModelTheyWereMadeFrom) {
+    SKIP_WITHOUT_TEST_DATA(data);
+    const Source model = Source::open((data / "dem/tyrol_aw3d30_n47e011_1s_cog.tif").string());
+    const Source tiles =
+        Source::open(paths_of(data / "dem",
+                              "terrainrgb_z12/12/2177/1435.png terrainrgb_z12/12/2177/1436.png "
+                              "terrainrgb_z12/12/2178/1435.png terrainrgb_z12/12/2178/1436.png"),
+                     {.encoding = Encoding::TerrainRgb});
+    const Array2d<float> fine = tiles.read();
+    // The sum over the cells from the origin to a point between posts; bilinear inside of a cell,
+    // as heights are constant there.
+    Array2d<double> sums(fine.width() + 1, fine.height() + 1);
+    for (int r = 0; r < fine.height(); ++r)
+        for (int c = 0; c < fine.width(); ++c)
+            sums.at(c + 1, r + 1) = static_cast<double>(fine.at(c, r)) + sums.at(c, r + 1) +
+                                    sums.at(c + 1, r) - sums.at(c, r);
+    const auto sum_to = [&](double x, double y) {
+        const int c = std::min(static_cast<int>(x), fine.width() - 1);
+        const int r = std::min(static_cast<int>(y), fine.height() - 1);
+        const double u = x - c, v = y - r;
+        return (1 - u) * (1 - v) * sums.at(c, r) + u * (1 - v) * sums.at(c + 1, r) +
+               (1 - u) * v * sums.at(c, r + 1) + u * v * sums.at(c + 1, r + 1);
+    };
+    const glm::dvec2 north_west = model.grid().post(tiles.grid().place(-0.5, -0.5));
+    const glm::dvec2 south_east =
+        model.grid().post(tiles.grid().place(fine.width() - 0.5, fine.height() - 0.5));
+    const Window window{static_cast<int>(north_west.x) + 2, static_cast<int>(north_west.y) + 2,
+                        static_cast<int>(south_east.x - north_west.x) - 4,
+                        static_cast<int>(south_east.y - north_west.y) - 4};
+    const Array2d<float> coarse = model.read(window, window.columns, window.rows);
+    std::vector<double> errors_m;
+    for (int r = 0; r < window.rows; ++r)
+        for (int c = 0; c < window.columns; ++c) {
+            const glm::dvec2 post(window.column + c, window.row + r);
+            const auto edge = [&](double dc, double dr) {
+                return tiles.grid().post(model.grid().place(post.x + dc, post.y + dr)) + 0.5;
+            };
+            const glm::dvec2 a = edge(-0.5, -0.5), b = edge(0.5, 0.5);
+            const double mean_m =
+                (sum_to(b.x, b.y) - sum_to(a.x, b.y) - sum_to(b.x, a.y) + sum_to(a.x, a.y)) /
+                ((b.x - a.x) * (b.y - a.y));
+            errors_m.push_back(std::abs(mean_m - static_cast<double>(coarse.at(c, r))));
+        }
+    test::print_accuracy("Terrain-RGB tiles and the model they were made from", errors_m, "m", 1.1);
+    EXPECT_GT(errors_m.size(), 150'000U);
+    EXPECT_LT(*std::max_element(errors_m.begin(), errors_m.end()), 0.1 + 1);
 }
 
 TEST(RealDem, PicturesAreRefused) {
     SKIP_WITHOUT_TEST_DATA(data);
     for (const char* file : {"rmnp/rmnp-rgb.tif", "swellendam/3320D_2010_315_RGB_LATLNG.tif"}) {
         const std::string path = (data / "dem" / file).string();
-        EXPECT_EQ(test::error_of([&] { load(path); }),
-                  "exit 3: dem::load: " + path +
-                      ": a picture (red, green and blue bands of 8 bits), expected heights; --band "
-                      "N takes band N as heights all the same");
+        EXPECT_EQ(
+            test::error_of([&] { load(path); }),
+            "exit 3: dem::load: " + path +
+                ": a picture (red, green and blue bands of 8 bits), expected heights; if its "
+                "colours encode heights pass --encoding terrain-rgb or terrarium, if one band "
+                "holds them --band N");
     }
 }
 

@@ -51,7 +51,8 @@ TEST(Ktx, ReadsBackWhatWasWritten) {
     for (const Case& c :
          {Case{TextureFormat::R8, 16, 16, 16, 1}, Case{TextureFormat::Rg8, 5, 3, 1, 1},
           Case{TextureFormat::Rgba8, 8, 2, 1, 4}, Case{TextureFormat::SrgbA8, 64, 64, 1, 1},
-          Case{TextureFormat::R16, 7, 9, 3, 1}, Case{TextureFormat::R8, 1, 1, 1, 1}}) {
+          Case{TextureFormat::R16, 7, 9, 3, 1}, Case{TextureFormat::Rgba16F, 5, 4, 3, 1},
+          Case{TextureFormat::R8, 1, 1, 1, 1}}) {
         TextureData texture = counted(c.format, c.width, c.height, c.depth, c.layers);
         texture.metadata = {{"KTXorientation", "ru"}, {"relevo.tile_m", "4"}, {"empty", ""}};
         const auto path = dir / "texture.ktx2";

@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "light/carpet.h"
 #include "light/fields.h"
+#include "sun/position.h"
 
 namespace relevo::light {
 namespace {
@@ -30,7 +31,7 @@ TEST_F(Valley, CarpetHasEveryDayAndItsExactHours) {
     std::int64_t lit = 0, up = 0;
     for (const Light light : c.light) {
         lit += light == Light::Lit;
-        up += light != Light::Night;
+        up += light == Light::Shaded || light == Light::Lit;
     }
     EXPECT_NEAR(static_cast<double>(lit) * 600, c.lit_s, 0.002 * c.lit_s);
     EXPECT_NEAR(static_cast<double>(up) * 600, c.level_s, 0.002 * c.level_s);
@@ -59,8 +60,27 @@ TEST_F(Valley, CarpetCellsAreWhatThereIsInTheMiddleOfTheirStep) {
         const sun::CivilTime wall = zone_.local(t).wall;
         return (wall.hour * 60 + wall.minute) / 15;
     };
-    EXPECT_EQ(c.light.at(local_column(summer.flat.sun_up[0].begin) - 1, 171), Light::Night);
+    EXPECT_EQ(c.light.at(local_column(summer.flat.sun_up[0].begin) - 1, 171), Light::Twilight);
     EXPECT_EQ(c.light.at(local_column(summer.flat.sun_up[0].begin) + 1, 171), Light::Shaded);
+}
+
+TEST_F(Valley, TwilightOfTheCarpetIsBetweenTheHorizonAndSixDegreesBelow) {
+    const Carpet c = carpet(light_, 2026, zone_, 1200);
+    int twilight = 0, night = 0;
+    for (int row = 0; row < 365; row += 7)
+        for (int column = 0; column < c.light.width(); ++column) {
+            const Light light = c.light.at(column, row);
+            if (light != Light::Night && light != Light::Twilight) continue;
+            const sun::Instant t = zone_
+                                       .resolve({c.days[static_cast<std::size_t>(row)].date,
+                                                 column / 3, column % 3 * 20 + 10})
+                                       .utc;
+            const double below_rad = sun::position(t, horizon_.place()).elevation_rad;
+            EXPECT_EQ(light == Light::Twilight, below_rad > radians(-6));
+            (light == Light::Night ? night : twilight)++;
+        }
+    EXPECT_GT(twilight, 100);
+    EXPECT_GT(night, 1000);
 }
 
 TEST_F(Valley, CarpetErrorsSayWhatIsWrong) {
@@ -78,6 +98,25 @@ TEST(Carpet, LeavesOutDaysThatTheZoneSkipped) {
     const Carpet c = carpet(DirectLight(horizon), 2011, Zone::named("Pacific/Apia"), 3600);
     EXPECT_EQ(c.light.height(), 364);
     EXPECT_EQ(c.days.size(), 364U);
+}
+
+TEST(Carpet, TwilightLastsAllDayAroundThePolarNight) {
+    // 75 N: the sun is down from 3 November to 8 February, and nearer than 6 degrees at noon but
+    // for some weeks; in May it is up all day.
+    const dem::Heightfield plain = test::field_of(21, 21, {15.0, 0.004, 0, 75.0, 0, -0.001},
+                                                  "EPSG:4326", [](int, int) { return 10.0; });
+    const TerrainHorizon horizon(plain, plain.grid.place(10, 10));
+    const Carpet c = carpet(DirectLight(horizon), 2026, Zone::named("+01:00"), 3600);
+    const auto row = [](int month, int day) {
+        return sun::days_between({2026, 1, 1}, {2026, month, day});
+    };
+    EXPECT_EQ(c.light.at(11, row(1, 20)), Light::Twilight);
+    EXPECT_EQ(c.light.at(0, row(1, 20)), Light::Night);
+    EXPECT_EQ(c.light.at(11, row(12, 21)), Light::Night);
+    EXPECT_EQ(c.light.at(0, row(4, 20)), Light::Twilight);  // no night between two days
+    EXPECT_EQ(c.light.at(23, row(4, 20)), Light::Twilight);
+    EXPECT_EQ(c.light.at(0, row(5, 20)), Light::Lit);
+    EXPECT_EQ(name_of(Light::Twilight), "twilight");
 }
 
 }  // namespace

@@ -60,6 +60,19 @@ TEST(RiseRule, SaysWhatItIs) {
               "sunrise and sunset: centre of the sun on the horizon, no refraction");
 }
 
+TEST(RiseRule, ADipCanBeGivenItself) {
+    const Refraction air = Refraction::standard(kBern);
+    const RiseRule by_eye = RiseRule::seen(Limb::Upper, air, 100);
+    EXPECT_NEAR(
+        RiseRule::seen_over_dip(Limb::Upper, air, radians(17.6 / 60)).center_elevation_rad(1),
+        by_eye.center_elevation_rad(1), 1e-9);
+    EXPECT_EQ(RiseRule::seen_over_dip(Limb::Center, Refraction::none(), radians(0.5)).description(),
+              "sunrise and sunset: centre of the sun on the horizon 30.00 arc-minutes below the "
+              "level one, no refraction");
+    EXPECT_EQ(test::error_of([&] { RiseRule::seen_over_dip(Limb::Upper, air, radians(6.0)); }),
+              "exit 3: sun::RiseRule: dip of the horizon 6 degrees: none there, expected 0 to 5");
+}
+
 TEST(RiseRule, AnImpossibleEyeIsAnError) {
     EXPECT_EQ(test::error_of([] { RiseRule::seen(Limb::Upper, Refraction::none(), -3); }),
               "exit 3: sun::RiseRule: eye height -3 m: no eye there, expected 0 to 10000 above the "

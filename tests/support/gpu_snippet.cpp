@@ -1,5 +1,7 @@
 #include "support/gpu_snippet.h"
 
+#include <optional>
+
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
@@ -40,18 +42,19 @@ shader::Snippet read_snippet(const std::string& plugin) {
 }  // namespace
 
 GpuSnippet::GpuSnippet(const std::string& plugin) : plugin_(plugin) {
-    values_.declare(read_snippet(plugin).source.params);
+    if (!plugin.empty()) values_.declare(read_snippet(plugin).source.params);
 }
 
 std::vector<glm::vec4> GpuSnippet::run(const std::string& body, int columns, int rows) {
-    const shader::Snippet snippet = read_snippet(plugin_);
+    std::optional<shader::Snippet> snippet;
+    if (!plugin_.empty()) snippet = read_snippet(plugin_);
     const TextsWithTest texts(source_dir() / "shaders",
                               "layout(location = 0) out vec4 result;\n"
                               "void main() {\n"
                               "    int x = int(gl_FragCoord.x), y = int(gl_FragCoord.y);\n" +
                                   body + "\n}\n");
     shader::StitchInput input;
-    input.snippets = {&snippet};
+    if (snippet) input.snippets = {&*snippet};
     input.values = &values_;
     const shader::Stitched stitched = shader::stitch(
         texts, {.vertex_main = "fullscreen.vert.glsl", .fragment_main = "test.frag.glsl"}, input);
@@ -63,8 +66,8 @@ std::vector<glm::vec4> GpuSnippet::run(const std::string& body, int columns, int
     const gl::Buffer frame(std::as_bytes(std::span(&frame_, 1)), "frame block");
     frame.bind_uniform(0);
     const std::vector<std::byte> bytes = shader::pack(stitched.params, values_);
-    const gl::Buffer params(bytes, "parameters");
-    params.bind_uniform(1);
+    std::optional<gl::Buffer> params;
+    if (!bytes.empty()) params.emplace(bytes, "parameters").bind_uniform(1);
     const gl::VertexArray no_inputs;
     no_inputs.bind();
     framebuffer.bind();

@@ -16,7 +16,9 @@ namespace relevo::test {
 /// can hold them against a reference number by number.
 class GpuSnippet {
   public:
-    /// @param plugin  the id of a plugin of this project, whose GLSL is read from its folder
+    /// @param plugin  the id of a plugin of this project, whose GLSL is read from its folder;
+    /// empty:
+    ///                core's own functions alone
     explicit GpuSnippet(const std::string& plugin);
 
     shader::ParamStore& values() { return values_; }

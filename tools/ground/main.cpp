@@ -13,6 +13,7 @@
 #include "base/log.h"
 #include "maps.h"
 #include "material.h"
+#include "patches.h"
 #include "preview.h"
 #include "volume.h"
 
@@ -45,6 +46,7 @@ void run(const Options& options) {
     }
     const image::TextureData volume = perlin_texture(options.volume_size);
     write_ktx(options.output / "noise" / "perlin.ktx2", volume);
+    write_ktx(options.output / "noise" / "patches.ktx2", patches_texture(options.size));
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     log::debug(fmt::format("all done at {:.2f} s", taken.count()));
 
@@ -68,7 +70,7 @@ int main(int argc, char** argv) {
     using namespace relevo;
     ground::Options options;
     bool verbose = false;
-    CLI::App app{"Makes the ground materials and the noise volume of Relevo"};
+    CLI::App app{"Makes the ground materials and the noises of Relevo"};
     app.add_option("output", options.output, "Folder to write ground/ and noise/ into")->required();
     app.add_option("--png", options.png, "Folder for pictures to look at");
     app.add_option("--only", options.only, "Grounds to make: sand, grass, rock, snow")

@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
                     const Truth::Mask mask = truth.cast(to_sun);
                     const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
                     const Score s = score(truth, mask, lit, drawn.texel_m(), to_sun,
-                                          drawn.ground().normal_spacing_m);
+                                          drawn.spacing_m());
                     fmt::print("| {} | {} | {:.1f} % | {:.2f} % | {:.2f} % | {:.2f} | {:.2f} | {:.1f} x {:.2f} m |\n", elevation,
                                azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond,
                                100 * s.lit_right, 100 * s.shaded_right, s.texel_m.x, s.texel_m.y);

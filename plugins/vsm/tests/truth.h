@@ -182,6 +182,7 @@ class Drawn {
     }
 
     const render::Ground& ground() const { return ground_; }
+    double spacing_m() const { return terrain_->normal_spacing_m(); }  ///< from post to post
     glm::ivec2 size() const { return size_; }
     render::FrameInputs& inputs() { return inputs_; }
 
@@ -238,7 +239,7 @@ class Drawn {
             inputs.modules.push_back(&module);
         if (chosen.native.selection.effects.size() != only.size()) failed(chosen.native.selection.notices.at(0));
         chosen.renderer = std::make_unique<render::Renderer>(
-            context_, inputs, render::RendererOptions{.width_px = size_.x, .height_px = size_.y, .antialias = false});
+            context_, inputs, render::RendererOptions{.width_px = size_.x, .height_px = size_.y, .antialias = false, .radiance = true});
         return chosen;
     }
 

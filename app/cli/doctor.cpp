@@ -1,0 +1,246 @@
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "base/paths.h"
+#include "cli/commands.h"
+#include "dem/versions.h"
+#include "effect/registry.h"
+#include "gl/context.h"
+
+namespace relevo::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A device, and what came of opening it.
+struct Tried {
+    gl::Device device;
+    std::optional<gl::DeviceInfo> info;  ///< it can draw
+    std::string reason;                  ///< it cannot, why
+};
+
+Tried try_device(const gl::Device& device) {
+    Tried tried{device, std::nullopt, {}};
+    try {
+        tried.info = gl::Context({.device = std::to_string(device.index)}).info();
+    } catch (const Error& error) {
+        // The message names each device that was tried, on a line of its own.
+        const std::string text = error.what();
+        const std::string line =
+            fmt::format("{}: {} ({}) ", device.index, device.platform, device.description);
+        const std::size_t at = text.find(line);
+        tried.reason = at == std::string::npos ? text : text.substr(at + line.size());
+        tried.reason = tried.reason.substr(0, tried.reason.find('\n'));
+    }
+    return tried;
+}
+
+/// What stands between this program and the machine's GPUs, as far as it can be seen, and what to
+/// do about it.
+std::vector<std::string> remedies(const std::vector<Tried>& devices,
+                                  const std::optional<gl::DeviceInfo>& chosen) {
+    std::vector<std::string> lines;
+    std::error_code ignored;
+    bool hardware_listed = false;
+    bool hardware_draws = false;
+    for (const Tried& tried : devices) {
+        const bool hardware = tried.device.platform == "device" && !tried.device.software;
+        hardware_listed = hardware_listed || hardware;
+        hardware_draws = hardware_draws || (hardware && tried.info);
+    }
+    int nodes = 0;
+    for (std::filesystem::directory_iterator node("/dev/dri", ignored), end;
+         !ignored && node != end; node.increment(ignored)) {
+        if (!node->path().filename().string().starts_with("renderD")) continue;
+        ++nodes;
+        if (access(node->path().c_str(), R_OK | W_OK) != 0)
+            lines.push_back(
+                fmt::format("{} may not be opened by this user: join its group "
+                            "(usually render or video)",
+                            node->path().string()));
+    }
+    const bool nvidia = std::filesystem::exists("/dev/nvidiactl", ignored);
+    if (!hardware_listed && nvidia)
+        lines.push_back(
+            "an NVIDIA GPU is there, but EGL does not list it: install its driver's EGL library "
+            "(libnvidia-gl, or in a container NVIDIA_DRIVER_CAPABILITIES=graphics)");
+    else if (!hardware_listed && nodes == 0)
+        lines.push_back(
+            "no GPU is visible (/dev/dri has no render node): where the machine has one, install "
+            "its driver, or let it into the container (--device /dev/dri, --gpus all)");
+    for (const char* name : {"LIBGL_ALWAYS_SOFTWARE", "MESA_LOADER_DRIVER_OVERRIDE",
+                             "GALLIUM_DRIVER", "__EGL_VENDOR_LIBRARY_FILENAMES", "EGL_PLATFORM"})
+        if (const char* value = std::getenv(name); value && *value)
+            lines.push_back(
+                fmt::format("{}={} is set and takes part in the choice; unset it to "
+                            "leave the choice to EGL",
+                            name, value));
+    if (!chosen)
+        lines.push_back(
+            "install Mesa's software renderer, which draws anywhere: libegl1, libegl-mesa0, "
+            "libgl1-mesa-dri");
+    if (devices.size() > 1)
+        lines.push_back("--device N takes another by its index, --device nvidia by its name");
+    if (chosen && hardware_draws && !chosen->device.software)
+        lines.push_back("--device software draws with Mesa's software renderer");
+    return lines;
+}
+
+std::string why(const std::string& wanted, const std::vector<Tried>& devices,
+                const gl::DeviceInfo& chosen) {
+    if (wanted != "auto") return fmt::format("--device {} asks for it", wanted);
+    std::string text = chosen.device.index == 0
+                           ? "the first that EGL lists, hardware before software"
+                           : "the first that can draw, hardware before software";
+    for (const Tried& tried : devices)
+        if (tried.device.index < chosen.device.index && !tried.info)
+            text += fmt::format("; {} {}", tried.device.index, tried.reason);
+    return text;
+}
+
+struct Plugins {
+    std::filesystem::path folder;
+    std::vector<std::string> ids;
+    std::vector<std::string> broken;
+};
+
+Plugins find_plugins() {
+    Plugins plugins{share_dir() / "plugins", {}, {}};
+    try {
+        const effect::Registry registry = effect::Registry::load_installed();
+        for (const effect::Effect& effect : registry.effects())
+            plugins.ids.push_back(effect.id());
+        for (const effect::BrokenEffect& effect : registry.broken())
+            plugins.broken.push_back(effect.error);
+    } catch (const Error& error) {
+        plugins.broken.emplace_back(error.what());
+    }
+    return plugins;
+}
+
+Json to_json(const gl::Device& device) {
+    return {{"index", device.index},
+            {"platform", device.platform},
+            {"description", device.description},
+            {"software", device.software}};
+}
+
+Json to_json(const Tried& tried) {
+    Json json = to_json(tried.device);
+    json["can_draw"] = tried.info.has_value();
+    json["renderer"] = tried.info ? Json(tried.info->renderer) : Json();
+    json["vendor"] = tried.info ? Json(tried.info->vendor) : Json();
+    json["version"] = tried.info ? Json(tried.info->version) : Json();
+    json["reason"] = tried.info ? Json() : Json(tried.reason);
+    return json;
+}
+
+void doctor(const std::string& wanted, bool as_json) {
+    std::vector<Tried> devices;
+    for (const gl::Device& device : gl::list_devices())
+        devices.push_back(try_device(device));
+    std::optional<gl::DeviceInfo> chosen;
+    std::string error;
+    try {
+        chosen = gl::Context({.device = wanted}).info();
+    } catch (const Error& none) {
+        error = none.what();
+    }
+    const Plugins plugins = find_plugins();
+    const std::vector<std::string> advice = remedies(devices, chosen);
+    // What llvmpipe and its kin call themselves; EGL does not mark what it finds without a device.
+    const bool software = chosen && (chosen->device.software ||
+                                     chosen->renderer.find("llvmpipe") != std::string::npos ||
+                                     chosen->renderer.find("softpipe") != std::string::npos);
+    std::error_code ignored;
+    const bool has_share = std::filesystem::is_directory(share_dir() / "shaders", ignored);
+
+    if (as_json) {
+        Json json;
+        json["version"] = RELEVO_VERSION;
+        json["device"] = Json();
+        if (chosen) {
+            Json& device = json["device"] = to_json(chosen->device);
+            device["renderer"] = chosen->renderer;
+            device["vendor"] = chosen->vendor;
+            device["version"] = chosen->version;
+            device["software"] = software;
+            device["why"] = why(wanted, devices, *chosen);
+            device["limits"] = {{"texture_size_px", chosen->max_texture_size},
+                                {"array_layers", chosen->max_array_layers},
+                                {"texture_units", chosen->max_texture_units},
+                                {"samples", chosen->max_samples},
+                                {"anisotropy", chosen->max_anisotropy}};
+        }
+        json["devices"] = Json::array();
+        for (const Tried& tried : devices)
+            json["devices"].push_back(to_json(tried));
+        json["threads"] = thread_count();
+        json["gdal"] = dem::gdal_version();
+        json["proj"] = dem::proj_version();
+        json["share_dir"] = share_dir().string();
+        json["share_found"] = has_share;
+        json["plugin_folder"] = plugins.folder.string();
+        json["plugins"] = plugins.ids;
+        json["broken_plugins"] = plugins.broken;
+        json["advice"] = advice;
+        fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    } else {
+        const auto line = [](std::string_view name, const std::string& value) {
+            fmt::print("{:<10} {}\n", name, value);
+        };
+        line("version", fmt::format("relevo {}, GDAL {}, PROJ {}", RELEVO_VERSION,
+                                    dem::gdal_version(), dem::proj_version()));
+        if (chosen) {
+            line("draws with", fmt::format("{}, {}{}", chosen->renderer, chosen->version,
+                                           software ? " (software, on the processor)" : ""));
+            line("because", why(wanted, devices, *chosen));
+            line("limits",
+                 fmt::format("textures of {} px, {} layers, {} units, {:g}x anisotropic filter",
+                             chosen->max_texture_size, chosen->max_array_layers,
+                             chosen->max_texture_units, chosen->max_anisotropy));
+        } else {
+            line("draws with", "nothing");
+        }
+        for (const Tried& tried : devices)
+            line(fmt::format("device {}", tried.device.index),
+                 fmt::format("{} ({}): {}", tried.device.platform, tried.device.description,
+                             tried.info
+                                 ? fmt::format("{}, {}", tried.info->renderer, tried.info->version)
+                                 : tried.reason));
+        line("threads", std::to_string(thread_count()));
+        line("data", fmt::format("{}{}", share_dir().string(),
+                                 has_share ? "" : " (not there; RELEVO_SHARE names another)"));
+        line("plugins", fmt::format("{} in {}", plugins.ids.size(), plugins.folder.string()));
+        for (const std::string& broken : plugins.broken)
+            line("broken", broken);
+        for (const std::string& text : advice)
+            line("advice", text);
+    }
+    if (!chosen) throw Error(ErrorCode::NoDevice, error);
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app) {
+    struct Arguments {
+        std::string device = "auto";
+        bool json = false;
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App& verb = *app.add_subcommand("doctor", "What would draw here, and why");
+    verb.add_option("--device", arguments->device,
+                    "GL device: auto, an index, software, or a part of its name");
+    verb.add_flag("--json", arguments->json, "One JSON object on standard output");
+    verb.callback([arguments] { doctor(arguments->device, arguments->json); });
+}
+
+}  // namespace relevo::cli

@@ -1,0 +1,178 @@
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "cli/sun.h"
+#include "cli/sun_options.h"
+#include "dem/load.h"
+#include "geo/format.h"
+#include "light/carpet.h"
+#include "light/carpet_chart.h"
+#include "sun/event_time.h"
+
+namespace relevo::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Arguments {
+    DemArguments dem;
+    PlaceArguments place;
+    int year = 0;
+    std::string zone, step = "3min";
+    LightArguments light;
+    HorizonArguments horizon;
+    OutputArguments output;
+};
+
+struct MonthSums {
+    double lit_s = 0, level_s = 0;
+};
+
+std::vector<MonthSums> months_of(const light::Carpet& carpet) {
+    std::vector<MonthSums> months(12);
+    for (std::size_t i = 0; i < carpet.days.size(); ++i) {
+        MonthSums& month = months[static_cast<std::size_t>(carpet.days[i].date.month - 1)];
+        month.lit_s += carpet.days[i].lit_s;
+        month.level_s += carpet.day_level_s[i];
+    }
+    return months;
+}
+
+ordered_json json_of(const light::Carpet& carpet, const light::TerrainHorizon& horizon) {
+    ordered_json json;
+    json["place"] = place_json(horizon.place());
+    json["zone"] = carpet.zone.name();
+    json["year"] = carpet.year;
+    json["light_definition"] = carpet.definition;
+    json["horizon_definition"] = horizon.description();
+    json["direct_sun_h"] = carpet.lit_s / 3600;
+    json["level_horizon_h"] = carpet.level_s / 3600;
+    ordered_json& months = json["months"] = ordered_json::array();
+    for (const MonthSums& month : months_of(carpet))
+        months.push_back(
+            {{"direct_sun_h", month.lit_s / 3600}, {"level_horizon_h", month.level_s / 3600}});
+    ordered_json& days = json["days"] = ordered_json::array();
+    for (std::size_t i = 0; i < carpet.days.size(); ++i) {
+        const light::LightDay& day = carpet.days[i];
+        ordered_json lit = ordered_json::array();
+        for (const light::LitInterval& interval : day.lit)
+            lit.push_back({{"first_utc", utc_json(interval.begin.utc)},
+                           {"last_utc", utc_json(interval.end.utc)}});
+        days.push_back({{"date", sun::to_string(day.date)},
+                        {"direct_sun", lit},
+                        {"direct_sun_h", day.lit_s / 3600},
+                        {"level_horizon_h", carpet.day_level_s[i] / 3600}});
+    }
+    return json;
+}
+
+std::string csv_of(const light::Carpet& carpet, const light::TerrainHorizon& horizon) {
+    std::string text =
+        csv_remarks({fmt::format("{}, {:.1f} m; columns: what there is at that time of day in {}",
+                                 geo::degrees_text(horizon.place()), horizon.place().height_m,
+                                 carpet.zone.name()),
+                     carpet.definition, horizon.description()});
+    text += "date,direct_sun_h,level_horizon_h";
+    for (int column = 0; column < carpet.light.width(); ++column) {
+        const long ms = std::lround(carpet.time_of_day_s(column) * 1000);
+        text += fmt::format(",{:02}:{:02}:{:02}", ms / 3600000, ms / 60000 % 60, ms / 1000 % 60);
+        if (ms % 1000 != 0) text += fmt::format(".{:03}", ms % 1000);
+    }
+    text += '\n';
+    for (int row = 0; row < carpet.light.height(); ++row) {
+        const auto i = static_cast<std::size_t>(row);
+        text += fmt::format("{},{:.4f},{:.4f}", sun::to_string(carpet.days[i].date),
+                            carpet.days[i].lit_s / 3600, carpet.day_level_s[i] / 3600);
+        for (int column = 0; column < carpet.light.width(); ++column) {
+            text += ',';
+            text += light::name_of(carpet.light.at(column, row));
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+void print_text(const light::Carpet& carpet, const light::TerrainHorizon& horizon) {
+    fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(horizon.place()),
+               horizon.place().height_m);
+    fmt::print("year                {}, {}\n\n", carpet.year, carpet.zone.name());
+    fmt::print("month     direct sun   level horizon   share\n");
+    const auto line = [](const std::string& name, double lit_s, double level_s) {
+        fmt::print("{:<8}{:10.2f} h{:14.2f} h{:6.1f} %\n", name, lit_s / 3600, level_s / 3600,
+                   level_s > 0 ? 100 * lit_s / level_s : 0);
+    };
+    const std::vector<MonthSums> months = months_of(carpet);
+    for (std::size_t i = 0; i < 12; ++i)
+        line(fmt::format("{}-{:02}", carpet.year, i + 1), months[i].lit_s, months[i].level_s);
+    line(std::to_string(carpet.year), carpet.lit_s, carpet.level_s);
+    int dark = 0;
+    for (const light::LightDay& day : carpet.days)
+        dark += day.lit.empty();
+    fmt::print("\ndays without direct sun: {}\n\n{}\n{}\n", dark, carpet.definition,
+               horizon.description());
+}
+
+void run(const Arguments& arguments) {
+    const OutputArguments& output = arguments.output;
+    output.check();
+    DaysArguments days;
+    days.year = arguments.year;
+    days.zone = arguments.zone;
+    const DaysArguments::Days asked = days.parse();
+    const auto step_s = sun::parse_duration_s(arguments.step);
+    if (!step_s || *step_s != std::round(*step_s) || *step_s < 1 || *step_s > 86400)
+        bad_usage(
+            fmt::format("--step: {}: no duration, expected whole seconds up to a day such "
+                        "as 3min, 10min or 30s",
+                        arguments.step));
+    const geo::PlaceText at = arguments.place.parse();
+    const dem::Heightfield dem = dem::load(arguments.dem.paths, arguments.dem.options);
+    const light::TerrainHorizon horizon(
+        dem, at.place, arguments.horizon.options(at, arguments.light.eye_height_m));
+    const light::DirectLight direct(horizon, arguments.light.light(horizon.place()));
+    const light::Carpet carpet =
+        light::carpet(direct, asked.first.year, asked.zone, static_cast<int>(std::lround(*step_s)));
+    arguments.horizon.check(horizon, horizon.profile(1440));
+
+    if (output.is_drawing()) {
+        light::CarpetChart chart;
+        chart.carpet = &carpet;
+        chart.place = horizon.place();
+        chart.place_name = arguments.place.name;
+        chart.horizon_definition = horizon.description();
+        output.write(chart.draw());
+    } else if (output.ending() == "csv") {
+        output.write(csv_of(carpet, horizon));
+    } else if (output.ending() == "json") {
+        output.write(json_of(carpet, horizon));
+    }
+    if (output.json)
+        fmt::print("{}\n", json_of(carpet, horizon).dump(2));
+    else if (output.csv)
+        fmt::print("{}", csv_of(carpet, horizon));
+    else if (output.path.empty())
+        print_text(carpet, horizon);
+}
+
+}  // namespace
+
+void add_sun_carpet(CLI::App& sun_verb) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App& verb =
+        *sun_verb.add_subcommand("carpet", "A year of direct light at a point, day by time of day");
+    arguments->dem.add_to(verb);
+    arguments->place.add_to(verb);
+    verb.add_option("--year", arguments->year, "Year, 1900 to 2100")->required();
+    verb.add_option("--tz", arguments->zone,
+                    "Time zone that days are counted by: Europe/Zurich, +05:30");
+    verb.add_option("--step", arguments->step, "Of the time of day (3min); divides a day");
+    arguments->light.add_to(verb);
+    arguments->horizon.add_to(verb);
+    arguments->output.add_to(verb, {"png", "svg", "csv", "json"});
+    verb.callback([arguments] { run(*arguments); });
+}
+
+}  // namespace relevo::cli

@@ -1,0 +1,401 @@
+#include <cmath>
+#include <memory>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "cli/sun.h"
+#include "cli/sun_options.h"
+#include "dem/load.h"
+#include "geo/format.h"
+#include "light/sun_path_diagram.h"
+#include "sun/position.h"
+#include "sun/seasons.h"
+
+namespace relevo::cli {
+namespace {
+
+using nlohmann::ordered_json;
+using sun::EventKind;
+
+constexpr EventKind kKinds[] = {EventKind::AstronomicalDawn, EventKind::NauticalDawn,
+                                EventKind::CivilDawn,        EventKind::Sunrise,
+                                EventKind::Transit,          EventKind::Sunset,
+                                EventKind::CivilDusk,        EventKind::NauticalDusk,
+                                EventKind::AstronomicalDusk, EventKind::LowerTransit};
+constexpr const char* kTwilights =
+    "twilights: centre of the sun 6 (civil), 12 (nautical), 18 (astronomical) degrees below the "
+    "level horizon; golden hour: centre from 4 below to 6 above; blue hour: from 6 to 4 below; all "
+    "without refraction";
+
+struct Arguments {
+    DemArguments dem;
+    PlaceArguments place;
+    DaysArguments days;
+    LightArguments light;
+    HorizonArguments horizon;
+    OutputArguments output;
+};
+
+/// Everything that the verb says, before it is text.
+struct Result {
+    geo::Geodetic place;
+    DaysArguments::Days asked;
+    std::string definition;
+    std::vector<sun::Day> days;
+    std::vector<light::LightDay> light;  ///< beside days, where there is a DEM
+    std::string light_definition, horizon_definition;
+};
+
+const char* polar_of(const sun::Day& day) {
+    return day.sun == sun::Crossing::AboveAllDay   ? "day"
+           : day.sun == sun::Crossing::BelowAllDay ? "night"
+                                                   : nullptr;
+}
+
+ordered_json spans_json(const std::vector<sun::TimeSpan>& spans) {
+    ordered_json array = ordered_json::array();
+    for (const sun::TimeSpan& span : spans)
+        array.push_back({{"begin_utc", utc_json(span.begin)}, {"end_utc", utc_json(span.end)}});
+    return array;
+}
+
+ordered_json day_json(const Result& result, std::size_t i) {
+    const sun::Day& day = result.days[i];
+    ordered_json json;
+    json["date"] = sun::to_string(day.date);
+    const char* polar = polar_of(day);
+    json["polar"] = polar ? ordered_json(polar) : ordered_json();
+    for (const EventKind kind : kKinds)
+        json[std::string(sun::name_of(kind)) + "_utc"] = utc_json(day.first(kind));
+    json["day_length_h"] = day.day_length_s / 3600;
+    json["golden_hour"] = spans_json(day.golden_hour);
+    json["blue_hour"] = spans_json(day.blue_hour);
+    ordered_json& events = json["events"] = ordered_json::array();
+    for (const sun::Event& event : day.events)
+        events.push_back({{"kind", sun::name_of(event.kind)},
+                          {"utc", utc_json(event.utc)},
+                          {"local", sun::to_iso(event.utc, result.asked.zone)},
+                          {"azimuth_deg", angle_deg(event.azimuth_rad)},
+                          {"elevation_deg", angle_deg(event.elevation_rad)}});
+    if (!result.light.empty()) {
+        ordered_json& lit = json["direct_sun"] = ordered_json::array();
+        for (const light::LitInterval& interval : result.light[i].lit)
+            lit.push_back(
+                {{"first_utc", utc_json(interval.begin.utc)},
+                 {"last_utc", utc_json(interval.end.utc)},
+                 {"first_azimuth_deg", angle_deg(interval.begin.azimuth_rad)},
+                 {"last_azimuth_deg", angle_deg(interval.end.azimuth_rad)},
+                 {"first_apparent_elevation_deg", angle_deg(interval.begin.elevation_rad)},
+                 {"last_apparent_elevation_deg", angle_deg(interval.end.elevation_rad)},
+                 {"from_midnight", interval.begin.midnight},
+                 {"to_midnight", interval.end.midnight}});
+        json["direct_sun_h"] = result.light[i].lit_s / 3600;
+    }
+    return json;
+}
+
+ordered_json seasons_json(int year) {
+    const sun::Seasons s = sun::seasons(year);
+    return {{"year", year},
+            {"march_equinox_utc", utc_json(s.march_equinox)},
+            {"june_solstice_utc", utc_json(s.june_solstice)},
+            {"september_equinox_utc", utc_json(s.september_equinox)},
+            {"december_solstice_utc", utc_json(s.december_solstice)}};
+}
+
+ordered_json json_of(const Result& result) {
+    ordered_json json;
+    json["place"] = place_json(result.place);
+    json["zone"] = result.asked.zone.name();
+    json["definition"] = result.definition;
+    json["twilight_definition"] = kTwilights;
+    if (!result.light.empty()) {
+        json["light_definition"] = result.light_definition;
+        json["horizon_definition"] = result.horizon_definition;
+    }
+    if (result.asked.single) {
+        json.update(day_json(result, 0));
+    } else {
+        ordered_json& days = json["days"] = ordered_json::array();
+        for (std::size_t i = 0; i < result.days.size(); ++i)
+            days.push_back(day_json(result, i));
+    }
+    ordered_json& seasons = json["seasons"] = ordered_json::array();
+    for (int year = result.asked.first.year; year <= result.asked.last.year; ++year)
+        seasons.push_back(seasons_json(year));
+    return json;
+}
+
+std::string csv_of(const Result& result) {
+    std::vector<std::string> remarks{result.definition, kTwilights};
+    if (!result.light.empty()) {
+        remarks.push_back(result.light_definition);
+        remarks.push_back(result.horizon_definition);
+    }
+    std::string text = csv_remarks(remarks) + "date,polar";
+    for (const EventKind kind : kKinds)
+        text += fmt::format(",{}", sun::name_of(kind));
+    text += ",day_length_h,golden_hour,blue_hour";
+    if (!result.light.empty()) text += ",direct_sun,direct_sun_h";
+    text += '\n';
+    const sun::Zone& zone = result.asked.zone;
+    const auto spans = [&](const auto& list, const auto& begin, const auto& end) {
+        std::string joined;
+        for (const auto& span : list)
+            joined += fmt::format("{}{}/{}", joined.empty() ? "" : ";",
+                                  sun::to_iso(begin(span), zone), sun::to_iso(end(span), zone));
+        return joined;
+    };
+    const auto of_spans = [&](const std::vector<sun::TimeSpan>& list) {
+        return spans(
+            list, [](const sun::TimeSpan& s) { return s.begin; },
+            [](const sun::TimeSpan& s) { return s.end; });
+    };
+    for (std::size_t i = 0; i < result.days.size(); ++i) {
+        const sun::Day& day = result.days[i];
+        const char* polar = polar_of(day);
+        text += sun::to_string(day.date) + "," + (polar ? polar : "");
+        for (const EventKind kind : kKinds) {
+            std::string times;
+            for (const sun::Instant utc : day.all(kind))
+                times += (times.empty() ? "" : ";") + sun::to_iso(utc, zone);
+            text += "," + times;
+        }
+        text += fmt::format(",{:.4f},{},{}", day.day_length_s / 3600, of_spans(day.golden_hour),
+                            of_spans(day.blue_hour));
+        if (!result.light.empty())
+            text += fmt::format(
+                ",{},{:.4f}",
+                spans(
+                    result.light[i].lit, [](const light::LitInterval& s) { return s.begin.utc; },
+                    [](const light::LitInterval& s) { return s.end.utc; }),
+                result.light[i].lit_s / 3600);
+        text += '\n';
+    }
+    return text;
+}
+
+std::string spans_text(const std::vector<sun::TimeSpan>& spans, const sun::Zone& zone) {
+    std::string text;
+    for (const sun::TimeSpan& span : spans)
+        text += fmt::format("{}{} to {}", text.empty() ? "" : ", ", clock_text(span.begin, zone),
+                            clock_text(span.end, zone));
+    return text.empty() ? "none" : text;
+}
+
+const char* word_of(EventKind kind) {
+    switch (kind) {
+        case EventKind::AstronomicalDawn:
+            return "astronomical dawn";
+        case EventKind::NauticalDawn:
+            return "nautical dawn";
+        case EventKind::CivilDawn:
+            return "civil dawn";
+        case EventKind::Sunrise:
+            return "sunrise";
+        case EventKind::Transit:
+            return "transit";
+        case EventKind::Sunset:
+            return "sunset";
+        case EventKind::CivilDusk:
+            return "civil dusk";
+        case EventKind::NauticalDusk:
+            return "nautical dusk";
+        case EventKind::AstronomicalDusk:
+            return "astronomical dusk";
+        case EventKind::LowerTransit:
+            return "lower transit";
+    }
+    return "";
+}
+
+void print_seasons(const Result& result) {
+    for (int year = result.asked.first.year; year <= result.asked.last.year; ++year) {
+        const sun::Seasons s = sun::seasons(year);
+        for (const auto& [name, utc] : {std::pair{"March equinox", s.march_equinox},
+                                        std::pair{"June solstice", s.june_solstice},
+                                        std::pair{"September equinox", s.september_equinox},
+                                        std::pair{"December solstice", s.december_solstice}}) {
+            const sun::Date on = result.asked.zone.local(utc).wall.date;
+            if (on >= result.asked.first && on <= result.asked.last)
+                fmt::print("{:<20}{}\n", name, sun::to_iso(utc, result.asked.zone));
+        }
+    }
+}
+
+void print_head(const Result& result) {
+    fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(result.place),
+               result.place.height_m);
+    if (result.asked.single)
+        fmt::print("date                {}, {}\n", sun::to_string(result.asked.first),
+                   result.asked.zone.name());
+    else
+        fmt::print("dates               {} to {}, {}\n", sun::to_string(result.asked.first),
+                   sun::to_string(result.asked.last), result.asked.zone.name());
+}
+
+void print_definitions(const Result& result) {
+    fmt::print("\n{}\n{}\n", result.definition, kTwilights);
+    if (!result.light.empty())
+        fmt::print("{}\n{}\n", result.light_definition, result.horizon_definition);
+}
+
+void print_day(const Result& result) {
+    const sun::Day& day = result.days.front();
+    const sun::Zone& zone = result.asked.zone;
+    print_head(result);
+    for (const sun::Event& event : day.events) {
+        // 359.996 is 0.00 to two decimals.
+        const double azimuth_deg =
+            std::fmod(std::round(degrees(event.azimuth_rad) * 100) / 100, 360.0);
+        fmt::print("{:<20}{}  azimuth {:6.2f} {:<4}", word_of(event.kind),
+                   sun::to_iso(event.utc, zone), azimuth_deg, compass_point(azimuth_deg));
+        if (event.kind == EventKind::Transit || event.kind == EventKind::LowerTransit)
+            fmt::print(" elevation {:6.2f} without refraction", degrees(event.elevation_rad));
+        fmt::print("\n");
+    }
+    if (const char* polar = polar_of(day))
+        fmt::print("polar {:<14}the sun {} all day\n", polar,
+                   day.sun == sun::Crossing::AboveAllDay ? "stays up" : "stays down");
+    for (const auto& [name, down_deg, crossing] :
+         {std::tuple{"civil twilight", 6, day.civil},
+          std::tuple{"nautical twilight", 12, day.nautical},
+          std::tuple{"astron. twilight", 18, day.astronomical}}) {
+        if (crossing == sun::Crossing::BelowAllDay)
+            fmt::print("{:<20}none, the sun's centre stays more than {} degrees down all day\n",
+                       name, down_deg);
+        else if (crossing == sun::Crossing::AboveAllDay && day.sun != crossing)
+            fmt::print("{:<20}the sun's centre stays less than {} degrees down all day\n", name,
+                       down_deg);
+    }
+    fmt::print("day length          {}\n", hours_text(day.day_length_s));
+    fmt::print("golden hour         {}\n", spans_text(day.golden_hour, zone));
+    fmt::print("blue hour           {}\n", spans_text(day.blue_hour, zone));
+    if (!result.light.empty()) {
+        const light::LightDay& light = result.light.front();
+        for (const light::LitInterval& lit : light.lit)
+            fmt::print("direct sun          {} to {}  azimuth {:6.2f} to {:6.2f}\n",
+                       lit.begin.midnight ? "midnight" : clock_text(lit.begin.utc, zone),
+                       lit.end.midnight ? "midnight" : clock_text(lit.end.utc, zone),
+                       degrees(lit.begin.azimuth_rad), degrees(lit.end.azimuth_rad));
+        if (light.lit.empty()) fmt::print("direct sun          none\n");
+        fmt::print("direct sun, whole   {}\n", hours_text(light.lit_s));
+    }
+    print_seasons(result);
+    print_definitions(result);
+}
+
+void print_days(const Result& result) {
+    const sun::Zone& zone = result.asked.zone;
+    print_head(result);
+    const bool lit = !result.light.empty();
+    fmt::print("\n{:<12}{:<10}{:<10}{:<10}{:<10}{:<10}{:>10}{}\n", "date", "civ. dawn", "sunrise",
+               "transit", "sunset", "civ. dusk", "day", lit ? "  direct sun" : "");
+    for (std::size_t i = 0; i < result.days.size(); ++i) {
+        const sun::Day& day = result.days[i];
+        fmt::print("{:<12}", sun::to_string(day.date));
+        for (const EventKind kind : {EventKind::CivilDawn, EventKind::Sunrise, EventKind::Transit,
+                                     EventKind::Sunset, EventKind::CivilDusk}) {
+            const auto utc = day.first(kind);
+            fmt::print("{:<10}", utc ? clock_text(*utc, zone) : "-");
+        }
+        fmt::print("{:>10}", hours_text(day.day_length_s));
+        if (lit) {
+            fmt::print("  {:>8}", hours_text(result.light[i].lit_s));
+            for (const light::LitInterval& interval : result.light[i].lit)
+                fmt::print("  {}-{}", clock_text(interval.begin.utc, zone),
+                           interval.end.midnight ? "24:00:00" : clock_text(interval.end.utc, zone));
+        }
+        if (const char* polar = polar_of(day)) fmt::print("  polar {}", polar);
+        fmt::print("\n");
+    }
+    fmt::print("\n");
+    print_seasons(result);
+    print_definitions(result);
+}
+
+void run(const Arguments& arguments) {
+    const OutputArguments& output = arguments.output;
+    output.check();
+    Result result;
+    result.asked = arguments.days.parse();
+    const geo::PlaceText at = arguments.place.parse();
+    std::optional<dem::Heightfield> dem;
+    std::optional<light::TerrainHorizon> horizon;
+    std::optional<light::DirectLight> direct;
+    if (!arguments.dem.paths.empty()) {
+        dem = dem::load(arguments.dem.paths, arguments.dem.options);
+        horizon.emplace(*dem, at.place,
+                        arguments.horizon.options(at, arguments.light.eye_height_m));
+        result.place = horizon->place();
+        direct.emplace(*horizon, arguments.light.light(result.place));
+        arguments.horizon.check(*horizon, horizon->profile(1440));
+        result.light = direct->days(result.asked.first, result.asked.last, result.asked.zone);
+        for (const light::LightDay& day : result.light)
+            result.days.push_back(day.flat);
+        result.light_definition = direct->definition();
+        result.horizon_definition = horizon->description();
+    } else {
+        if (at.above_ground)
+            bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
+        result.place = at.place;
+        sun::DayOptions options;
+        options.rule = arguments.light.rule(at.place);
+        result.days = sun::day_events(result.asked.first, result.asked.last, result.asked.zone,
+                                      at.place, options);
+    }
+    result.definition = arguments.light.rule(result.place).description();
+
+    if (output.is_drawing()) {
+        light::SunPathDiagram diagram;
+        diagram.place = result.place;
+        diagram.place_name = arguments.place.name;
+        diagram.zone = result.asked.zone;
+        diagram.year = result.asked.first.year;
+        diagram.refraction = arguments.light.refraction.at(result.place);
+        if (result.asked.single) diagram.day = result.days.front();
+        if (direct) {
+            diagram.terrain = &direct->skyline();
+            diagram.terrain_definition = result.horizon_definition;
+            if (result.asked.single) diagram.light = result.light.front();
+            diagram.light_definition = result.light_definition;
+        }
+        output.write(diagram.draw());
+    } else if (output.ending() == "csv") {
+        output.write(csv_of(result));
+    } else if (output.ending() == "json") {
+        output.write(json_of(result));
+    }
+    if (output.json)
+        fmt::print("{}\n", json_of(result).dump(2));
+    else if (output.csv)
+        fmt::print("{}", csv_of(result));
+    else if (!output.path.empty())
+        return;
+    else if (result.asked.single)
+        print_day(result);
+    else
+        print_days(result);
+}
+
+}  // namespace
+
+void add_sun_day(CLI::App& sun_verb) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App& verb = *sun_verb.add_subcommand(
+        "day", "Sunrise, twilights, transit, day length; with a DEM also direct light");
+    arguments->dem.add_to(verb);
+    verb.get_option("DEM")->required(false);
+    arguments->place.add_to(verb);
+    arguments->days.add_to(verb);
+    arguments->light.add_to(verb);
+    arguments->light.add_rule_to(verb);
+    arguments->horizon.add_to(verb);
+    arguments->output.add_to(verb, {"svg", "png", "csv", "json"});
+    verb.callback([arguments] { run(*arguments); });
+}
+
+}  // namespace relevo::cli

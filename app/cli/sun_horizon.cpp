@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "cli/sun.h"
+#include "cli/sun_options.h"
+#include "dem/load.h"
+#include "geo/format.h"
+#include "light/panorama.h"
+
+namespace relevo::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Arguments {
+    DemArguments dem;
+    PlaceArguments place;
+    DaysArguments days;
+    LightArguments light;
+    HorizonArguments horizon;
+    OutputArguments output;
+    double step_deg = 0.1;
+};
+
+ordered_json number_or_null(double value) {
+    return std::isnan(value) ? ordered_json() : ordered_json(value);
+}
+
+ordered_json json_of(const light::TerrainHorizon& horizon,
+                     const std::vector<light::HorizonPoint>& profile,
+                     const std::vector<light::OpenSector>& sectors) {
+    ordered_json json;
+    json["place"] = place_json(horizon.place());
+    json["eye_m"] = horizon.eye_m();
+    json["definition"] = horizon.description();
+    ordered_json& points = json["horizon"] = ordered_json::array();
+    for (const light::HorizonPoint& p : profile) {
+        const geo::Geodetic at = horizon.place_of(p);
+        points.push_back({{"azimuth_deg", angle_deg(p.azimuth_rad)},
+                          {"horizon_deg", angle_deg(p.elevation_rad)},
+                          {"distance_m", number_or_null(p.distance_m)},
+                          {"lat_deg", number_or_null(angle_deg(at.lat_rad))},
+                          {"lon_deg", number_or_null(angle_deg(at.lon_rad))},
+                          {"height_m", number_or_null(p.height_m)},
+                          {"hole", p.hole}});
+    }
+    ordered_json& open = json["open_sectors"] = ordered_json::array();
+    for (const light::OpenSector& s : sectors)
+        open.push_back({{"from_azimuth_deg", angle_deg(s.from_azimuth_rad)},
+                        {"to_azimuth_deg", angle_deg(s.to_azimuth_rad)},
+                        {"reach_m", s.reach_m},
+                        {"needed_m", s.needed_m}});
+    return json;
+}
+
+std::string csv_of(const light::TerrainHorizon& horizon,
+                   const std::vector<light::HorizonPoint>& profile) {
+    std::string text =
+        csv_remarks({fmt::format("eye at {}, {:.2f} m", geo::degrees_text(horizon.place()),
+                                 horizon.eye_m()),
+                     horizon.description()}) +
+        "azimuth_deg,horizon_deg,distance_m,lat_deg,lon_deg,height_m\n";
+    for (const light::HorizonPoint& p : profile) {
+        text += fmt::format("{:.6g},{:.5f}", degrees(p.azimuth_rad), degrees(p.elevation_rad));
+        const geo::Geodetic at = horizon.place_of(p);
+        if (std::isnan(p.distance_m))
+            text += ",,,,\n";
+        else
+            text += fmt::format(",{:.1f},{:.6f},{:.6f},{:.1f}\n", p.distance_m, degrees(at.lat_rad),
+                                degrees(at.lon_rad), p.height_m);
+    }
+    return text;
+}
+
+void print_text(const light::TerrainHorizon& horizon,
+                const std::vector<light::HorizonPoint>& profile) {
+    fmt::print("place               {}, {:.1f} m, eye at {:.1f} m\n\n",
+               geo::degrees_text(horizon.place()), horizon.place().height_m, horizon.eye_m());
+    fmt::print("azimuth       horizon   distance   height\n");
+    const auto line = [&](double azimuth_deg) {
+        const light::HorizonPoint p = horizon.at(radians(azimuth_deg));
+        fmt::print("{:5.1f} {:<4}  {:7.3f} deg", azimuth_deg, compass_point(azimuth_deg),
+                   degrees(p.elevation_rad));
+        if (std::isnan(p.distance_m))
+            fmt::print("   beyond the DEM\n");
+        else
+            fmt::print("  {:6.2f} km  {:5.0f} m\n", p.distance_m / 1000, p.height_m);
+    };
+    for (int k = 0; k < 16; ++k)
+        line(22.5 * k);
+    const auto highest = std::max_element(
+        profile.begin(), profile.end(),
+        [](const auto& a, const auto& b) { return a.elevation_rad < b.elevation_rad; });
+    fmt::print("\nhighest\n");
+    line(degrees(highest->azimuth_rad));
+    fmt::print("\n{}\n", horizon.description());
+}
+
+void run(const Arguments& arguments) {
+    const OutputArguments& output = arguments.output;
+    output.check();
+    const geo::PlaceText at = arguments.place.parse();
+    std::optional<DaysArguments::Days> asked;
+    if (arguments.days.given()) {
+        asked = arguments.days.parse();
+        if (!asked->single && !arguments.days.year)
+            bad_usage(
+                "--from and --to: a panorama shows one day or one year; pass --date or "
+                "--year");
+        if (!output.is_drawing())
+            bad_usage(
+                "--date and --year: only a panorama shows the sun; pass -o with a name that "
+                "ends in svg, png");
+    }
+    const double directions = 360 / arguments.step_deg;
+    if (std::abs(directions - std::round(directions)) > 1e-6)
+        bad_usage(
+            fmt::format("--step: {:.10g} degrees: no even part of a turn, expected one such "
+                        "as 0.1, 0.5 or 1",
+                        arguments.step_deg));
+    const dem::Heightfield dem = dem::load(arguments.dem.paths, arguments.dem.options);
+    const light::TerrainHorizon horizon(
+        dem, at.place, arguments.horizon.options(at, arguments.light.eye_height_m));
+    const std::vector<light::HorizonPoint> profile =
+        horizon.profile(static_cast<int>(std::lround(directions)));
+    const std::vector<light::OpenSector> sectors = arguments.horizon.check(horizon, profile);
+
+    if (output.is_drawing()) {
+        light::HorizonPanorama panorama;
+        panorama.horizon = &horizon;
+        panorama.profile = &profile;
+        panorama.place_name = arguments.place.name;
+        std::optional<light::DirectLight> direct;
+        if (asked) {
+            panorama.year = asked->first.year;
+            panorama.zone = asked->zone;
+            panorama.refraction = arguments.light.refraction.at(horizon.place());
+            if (asked->single) {
+                direct.emplace(horizon, arguments.light.light(horizon.place()));
+                panorama.day = direct->day(asked->first, asked->zone);
+                panorama.light_definition = direct->definition();
+            }
+        }
+        output.write(panorama.draw());
+    } else if (output.ending() == "csv") {
+        output.write(csv_of(horizon, profile));
+    } else if (output.ending() == "json") {
+        output.write(json_of(horizon, profile, sectors));
+    }
+    if (output.json)
+        fmt::print("{}\n", json_of(horizon, profile, sectors).dump(2));
+    else if (output.csv)
+        fmt::print("{}", csv_of(horizon, profile));
+    else if (output.path.empty())
+        print_text(horizon, profile);
+}
+
+}  // namespace
+
+void add_sun_horizon(CLI::App& sun_verb) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App& verb = *sun_verb.add_subcommand(
+        "horizon", "The terrain horizon of a point; as a panorama also the sun's paths over it");
+    arguments->dem.add_to(verb);
+    arguments->place.add_to(verb);
+    verb.add_option("--step", arguments->step_deg, "Degrees from direction to direction (0.1)")
+        ->check(CLI::Range(0.01, 90.0));
+    arguments->horizon.add_to(verb);
+    arguments->days.add_to(verb);
+    arguments->light.add_to(verb);
+    arguments->light.add_rule_to(verb);
+    arguments->output.add_to(verb, {"csv", "json", "svg", "png"});
+    verb.callback([arguments] { run(*arguments); });
+}
+
+}  // namespace relevo::cli

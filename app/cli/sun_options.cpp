@@ -1,0 +1,260 @@
+#include "cli/sun_options.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/output_file.h"
+#include "base/units.h"
+#include "geo/geodetic.h"
+#include "image/image.h"
+
+namespace relevo::cli {
+
+void PlaceArguments::add_to(CLI::App& verb) {
+    verb.add_option("--at", at, "Place: LAT,LON[,H]")->required();
+    verb.add_option("--name", name, "Name of the place, for titles");
+}
+
+geo::PlaceText PlaceArguments::parse() const {
+    return geo::parse_place(at, "--at");
+}
+
+void DaysArguments::add_to(CLI::App& verb) {
+    verb.add_option("--date", date, "Day: 2026-06-21");
+    verb.add_option("--from", from, "First day of a range");
+    verb.add_option("--to", to, "Last day of it");
+    verb.add_option("--year", year, "All days of a year, 1900 to 2100");
+    verb.add_option("--tz", zone, "Time zone that days are counted by: Europe/Zurich, +05:30");
+}
+
+DaysArguments::Days DaysArguments::parse() const {
+    const int ways = !date.empty() + (!from.empty() || !to.empty()) + year.has_value();
+    if (ways == 0)
+        bad_usage("--date: missing; pass --date 2026-06-21, --from and --to, or --year 2026");
+    if (ways > 1)
+        bad_usage("--date, --from with --to, and --year exclude each other; give one of them");
+    if (from.empty() != to.empty())
+        bad_usage(from.empty() ? "--to needs --from" : "--from needs --to");
+    Days days;
+    std::string given;
+    if (year) {
+        if (*year < sun::kFirstYear || *year > sun::kLastYear)
+            bad_input(fmt::format("--year: {}: the sun is computed for the years {} to {}", *year,
+                                  sun::kFirstYear, sun::kLastYear));
+        days.first = {*year, 1, 1};
+        days.last = {*year, 12, 31};
+        given = fmt::format("--year {}", *year);
+    } else if (!date.empty()) {
+        days.first = days.last = sun::parse_date(date);
+        days.single = true;
+        given = "--date " + date;
+    } else {
+        days.first = sun::parse_date(from);
+        days.last = sun::parse_date(to);
+        given = fmt::format("--from {} --to {}", from, to);
+        if (days.last < days.first)
+            bad_input(given + ": ends before it begins, expected the earlier day first");
+    }
+    if (zone.empty())
+        bad_input(given +
+                  ": no time zone to count days by; pass --tz, as in --tz Europe/Zurich or --tz "
+                  "+05:30");
+    days.zone = sun::Zone::named(zone);
+    if (days.single) days.zone.day(days.first);  // says so where the zone skipped it
+    return days;
+}
+
+void LightArguments::add_to(CLI::App& verb) {
+    refraction.add_to(verb);
+    refraction_option_ = verb.get_option("--refraction");
+    verb.add_option("--limb", limb, "Part of the sun that counts: upper, center, lower")
+        ->check(CLI::IsMember({"upper", "center", "lower"}));
+    verb.add_option("--eye-height", eye_height_m, "Of the eye above the ground, m")
+        ->check(CLI::Range(0.0, 10000.0));
+}
+
+void LightArguments::add_rule_to(CLI::App& verb) {
+    verb.add_option("--dip", dip_deg,
+                    "Of a flat horizon below the level one, degrees; otherwise by --eye-height")
+        ->check(CLI::Range(0.0, 5.0));
+}
+
+namespace {
+
+sun::Limb limb_of(const std::optional<std::string>& text, sun::Limb otherwise) {
+    if (!text) return otherwise;
+    return *text == "upper"   ? sun::Limb::Upper
+           : *text == "lower" ? sun::Limb::Lower
+                              : sun::Limb::Center;
+}
+
+}  // namespace
+
+sun::RiseRule LightArguments::rule(const geo::Geodetic& place) const {
+    const bool refraction_given = refraction_option_->count() > 0 || refraction.off;
+    if (!limb && !refraction_given && !eye_height_m && !dip_deg) return {};
+    if (dip_deg && eye_height_m)
+        bad_usage("--dip and --eye-height exclude each other; give one of them");
+    const sun::Limb part = limb_of(limb, sun::Limb::Upper);
+    if (dip_deg) return sun::RiseRule::seen_over_dip(part, refraction.at(place), radians(*dip_deg));
+    return sun::RiseRule::seen(part, refraction.at(place), eye_height_m.value_or(0));
+}
+
+light::LightOptions LightArguments::light(const geo::Geodetic& place) const {
+    light::LightOptions options;
+    options.limb = limb_of(limb, sun::Limb::Center);
+    options.refraction = refraction.at(place);
+    options.flat.rule = rule(place);
+    return options;
+}
+
+void HorizonArguments::add_to(CLI::App& verb) {
+    verb.add_option("-k,--terrestrial-refraction", refraction,
+                    "Curvature of a line of sight over the ground, in units of the Earth's (0.13)")
+        ->check(CLI::Range(-1.0, 0.9))
+        ->group("Horizon");
+    verb.add_option("--highest", highest_m,
+                    "Terrain beyond the DEM is no higher than this, m (the DEM's highest)")
+        ->check(CLI::Range(-12000.0, 9000.0))
+        ->group("Horizon");
+}
+
+light::HorizonOptions HorizonArguments::options(const geo::PlaceText& at,
+                                                const std::optional<double>& eye_height_m) const {
+    if (at.has_height && eye_height_m)
+        bad_usage("--eye-height and a height in --at exclude each other; give one of them");
+    light::HorizonOptions options;
+    options.refraction = refraction;
+    options.eye_height_m = at.has_height ? at.place.height_m : eye_height_m.value_or(0);
+    options.eye_above_ground = at.above_ground || !at.has_height;
+    return options;
+}
+
+std::vector<light::OpenSector> HorizonArguments::check(
+    const light::TerrainHorizon& horizon, const std::vector<light::HorizonPoint>& profile) const {
+    const double high_m = highest_m.value_or(horizon.field().about.statistics.max_m);
+    std::vector<light::OpenSector> sectors = horizon.open_sectors(profile, high_m);
+    // Directions that follow each other but for less than two degrees are one for a reader.
+    std::vector<light::OpenSector> merged;
+    for (const light::OpenSector& sector : sectors) {
+        if (!merged.empty() &&
+            sector.from_azimuth_rad - merged.back().to_azimuth_rad < radians(2)) {
+            light::OpenSector& last = merged.back();
+            last.to_azimuth_rad = sector.to_azimuth_rad;
+            last.reach_m = std::min(last.reach_m, sector.reach_m);
+            last.needed_m = std::max(last.needed_m, sector.needed_m);
+        } else {
+            merged.push_back(sector);
+        }
+    }
+    constexpr std::size_t kMost = 6;
+    for (std::size_t i = 0; i < std::min(merged.size(), kMost); ++i) {
+        const light::OpenSector& s = merged[i];
+        const double from_deg = degrees(s.from_azimuth_rad), to_deg = degrees(s.to_azimuth_rad);
+        log::warning(fmt::format(
+            "the blocking ridge may lie beyond the DEM from azimuth {:.0f} ({}) to {:.0f} ({}): "
+            "the "
+            "DEM reaches {:.1f} km there, and terrain of {:.0f} m would stand over this horizon as "
+            "far as {:.0f} km away; use a DEM that goes so far, or --highest with the height that "
+            "terrain has there at most",
+            from_deg, compass_point(from_deg), to_deg, compass_point(to_deg), s.reach_m / 1000,
+            high_m, s.needed_m / 1000));
+    }
+    if (merged.size() > kMost)
+        log::warning(
+            fmt::format("likewise in {} further directions; relevo sun horizon --json lists all",
+                        merged.size() - kMost));
+    return sectors;
+}
+
+void OutputArguments::add_to(CLI::App& verb, const std::vector<std::string>& endings_of_verb) {
+    endings = endings_of_verb;
+    verb.add_option("-o,--output", path, fmt::format("Write {}", fmt::join(endings, ", ")));
+    verb.add_flag("--overwrite", overwrite, "Replace an existing file");
+    verb.add_option("--scale", scale, "Pixels of a PNG for each unit of the drawing (1.5)")
+        ->check(CLI::Range(0.25, 8.0));
+    CLI::Option* csv_flag = verb.add_flag("--csv", csv, "CSV on standard output");
+    verb.add_flag("--json", json, "One JSON object on standard output")->excludes(csv_flag);
+}
+
+std::string OutputArguments::ending() const {
+    if (path.empty()) return {};
+    std::string ending = std::filesystem::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    return ending.empty() ? ending : ending.substr(1);
+}
+
+void OutputArguments::check() const {
+    if (path.empty()) return;
+    if (std::find(endings.begin(), endings.end(), ending()) == endings.end())
+        bad_usage(
+            fmt::format("-o: {}: no format that this command writes, expected a name that "
+                        "ends in {}",
+                        path, fmt::join(endings, ", ")));
+    check_output_file(path, overwrite, "-o");
+}
+
+void OutputArguments::write(const light::Drawing& drawing) const {
+    if (ending() == "svg")
+        write_text(path, light::to_svg(drawing), overwrite, "-o");
+    else
+        image::write(path, light::to_image(drawing, scale),
+                     {{"Software", "Relevo " RELEVO_VERSION},
+                      {"Title", drawing.title()},
+                      {"Description", drawing.description()}},
+                     overwrite);
+}
+
+void OutputArguments::write(const std::string& text) const {
+    write_text(path, text, overwrite, "-o");
+}
+
+void OutputArguments::write(const nlohmann::ordered_json& object) const {
+    write(object.dump(2) + "\n");
+}
+
+nlohmann::ordered_json place_json(const geo::Geodetic& place) {
+    return {{"lat_deg", angle_deg(place.lat_rad)},
+            {"lon_deg", angle_deg(place.lon_rad)},
+            {"height_m", place.height_m}};
+}
+
+double angle_deg(double angle_rad) {
+    return std::round(degrees(angle_rad) * 1e8) / 1e8;
+}
+
+nlohmann::ordered_json utc_json(const std::optional<sun::Instant>& utc) {
+    if (!utc) return nullptr;
+    return sun::to_iso(*utc, 3);
+}
+
+const char* compass_point(double azimuth_deg) {
+    constexpr const char* kPoints[] = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
+                                       "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
+    return kPoints[static_cast<int>(azimuth_deg / 22.5 + 0.5) % 16];
+}
+
+std::string clock_text(sun::Instant utc, const sun::Zone& zone) {
+    const sun::CivilTime wall = zone.local(utc + 0.5).wall;
+    return fmt::format("{:02}:{:02}:{:02}", wall.hour, wall.minute, wall.second);
+}
+
+std::string hours_text(double seconds) {
+    const long whole = std::lround(seconds);
+    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string csv_remarks(const std::vector<std::string>& remarks) {
+    std::string text;
+    for (const std::string& remark : remarks)
+        text += "# " + remark + "\n";
+    return text;
+}
+
+}  // namespace relevo::cli

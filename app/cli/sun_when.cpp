@@ -1,0 +1,158 @@
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "cli/sun.h"
+#include "cli/sun_options.h"
+#include "dem/load.h"
+#include "geo/format.h"
+#include "light/alignment.h"
+
+namespace relevo::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct Arguments {
+    DemArguments dem;
+    PlaceArguments place;
+    std::string over;
+    DaysArguments days;
+    RefractionArguments refraction;
+    std::optional<double> eye_height_m;
+    double tolerance_deg = 0.5, summit_radius_m = 100;
+    HorizonArguments horizon;
+    OutputArguments output;
+};
+
+ordered_json json_of(const light::Alignments& found, const light::TerrainHorizon& horizon,
+                     const sun::Zone& zone) {
+    ordered_json json;
+    json["place"] = place_json(horizon.place());
+    json["eye_m"] = horizon.eye_m();
+    json["target"] = place_json(found.target);
+    json["sight"] = {{"azimuth_deg", angle_deg(found.sight.azimuth_rad)},
+                     {"elevation_deg", angle_deg(found.sight.elevation_rad)},
+                     {"distance_m", found.sight.distance_m},
+                     {"visible", found.sight.visible},
+                     {"hidden_by_deg", angle_deg(found.sight.hidden_by_rad)}};
+    json["zone"] = zone.name();
+    json["definition"] = found.definition;
+    ordered_json& passages = json["passages"] = ordered_json::array();
+    for (const light::Alignment& p : found.passages)
+        passages.push_back({{"utc", utc_json(p.utc)},
+                            {"local", sun::to_iso(p.utc, zone)},
+                            {"date", sun::to_string(p.date)},
+                            {"separation_deg", angle_deg(p.separation_rad)},
+                            {"right_deg", angle_deg(p.right_rad)},
+                            {"above_deg", angle_deg(p.above_rad)},
+                            {"azimuth_deg", angle_deg(p.azimuth_rad)},
+                            {"apparent_elevation_deg", angle_deg(p.elevation_rad)},
+                            {"sun_visible", p.sun_visible}});
+    return json;
+}
+
+std::string csv_of(const light::Alignments& found, const sun::Zone& zone) {
+    std::string text = csv_remarks(
+        {fmt::format("target {}, {:.1f} m", geo::degrees_text(found.target), found.target.height_m),
+         found.definition});
+    text +=
+        "time,separation_deg,right_deg,above_deg,azimuth_deg,apparent_elevation_deg,sun_visible\n";
+    for (const light::Alignment& p : found.passages)
+        text += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", sun::to_iso(p.utc, zone),
+                            degrees(p.separation_rad), degrees(p.right_rad), degrees(p.above_rad),
+                            degrees(p.azimuth_rad), degrees(p.elevation_rad), p.sun_visible);
+    return text;
+}
+
+void print_text(const light::Alignments& found, const light::TerrainHorizon& horizon,
+                const sun::Zone& zone) {
+    const double azimuth_deg = degrees(found.sight.azimuth_rad);
+    fmt::print("place               {}, {:.1f} m, eye at {:.1f} m\n",
+               geo::degrees_text(horizon.place()), horizon.place().height_m, horizon.eye_m());
+    fmt::print("target              {}, {:.1f} m\n", geo::degrees_text(found.target),
+               found.target.height_m);
+    fmt::print(
+        "in the sky          azimuth {:.3f} deg ({}), elevation {:.3f} deg, {:.2f} km away\n",
+        azimuth_deg, compass_point(azimuth_deg), degrees(found.sight.elevation_rad),
+        found.sight.distance_m / 1000);
+    if (!found.sight.visible)
+        fmt::print("not seen            ground before it stands {:.3f} deg higher\n",
+                   degrees(found.sight.hidden_by_rad));
+    if (found.passages.empty())
+        fmt::print("\nthe sun does not come that near on these days\n");
+    else
+        fmt::print("\n{:<27}{:>10}{:>19}{:>19}\n", "time", "apart", "along the horizon",
+                   "in elevation");
+    for (const light::Alignment& p : found.passages)
+        fmt::print("{:<27}{:6.3f} deg  {:6.3f} deg {:<6}  {:6.3f} deg {:<6}{}\n",
+                   sun::to_iso(p.utc, zone), degrees(p.separation_rad),
+                   std::abs(degrees(p.right_rad)), p.right_rad < 0 ? "left" : "right",
+                   std::abs(degrees(p.above_rad)), p.above_rad < 0 ? "below" : "above",
+                   p.sun_visible ? "" : "  behind terrain");
+    fmt::print("\n{}\n{}\n", found.definition, horizon.description());
+}
+
+void run(const Arguments& arguments) {
+    const OutputArguments& output = arguments.output;
+    output.check();
+    const DaysArguments::Days asked = arguments.days.parse();
+    const geo::PlaceText at = arguments.place.parse();
+    const geo::PlaceText over = geo::parse_place(arguments.over, "--over");
+    const dem::Heightfield dem = dem::load(arguments.dem.paths, arguments.dem.options);
+    const light::TerrainHorizon horizon(dem, at.place,
+                                        arguments.horizon.options(at, arguments.eye_height_m));
+    geo::Geodetic target = over.place;
+    if (!over.has_height || over.above_ground) {
+        target =
+            light::summit_near(dem, over.place, over.has_height ? 0 : arguments.summit_radius_m);
+        target.height_m += over.place.height_m;
+    }
+    light::AlignmentOptions options;
+    options.tolerance_rad = radians(arguments.tolerance_deg);
+    options.refraction = arguments.refraction.at(horizon.place());
+    const light::Alignments found =
+        light::alignments(horizon, target, asked.first, asked.last, asked.zone, options);
+
+    if (output.ending() == "csv")
+        output.write(csv_of(found, asked.zone));
+    else if (output.ending() == "json")
+        output.write(json_of(found, horizon, asked.zone));
+    if (output.json)
+        fmt::print("{}\n", json_of(found, horizon, asked.zone).dump(2));
+    else if (output.csv)
+        fmt::print("{}", csv_of(found, asked.zone));
+    else if (output.path.empty())
+        print_text(found, horizon, asked.zone);
+}
+
+}  // namespace
+
+void add_sun_when(CLI::App& sun_verb) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App& verb =
+        *sun_verb.add_subcommand("when", "When the sun stands over a summit, as seen from a place");
+    arguments->dem.add_to(verb);
+    arguments->place.add_to(verb);
+    verb.add_option("--over", arguments->over,
+                    "Summit: LAT,LON; the highest post nearby is taken. With a height: that point")
+        ->required();
+    verb.add_option("--summit-radius", arguments->summit_radius_m,
+                    "How far around LAT,LON the summit may be, m (100)")
+        ->check(CLI::Range(0.0, 10000.0));
+    verb.add_option("--tolerance", arguments->tolerance_deg,
+                    "How near the sun's centre must come, degrees (0.5)")
+        ->check(CLI::Range(0.001, 45.0));
+    arguments->days.add_to(verb);
+    arguments->refraction.add_to(verb);
+    verb.add_option("--eye-height", arguments->eye_height_m, "Of the eye above the ground, m")
+        ->check(CLI::Range(0.0, 10000.0));
+    arguments->horizon.add_to(verb);
+    arguments->output.add_to(verb, {"csv", "json"});
+    verb.callback([arguments] { run(*arguments); });
+}
+
+}  // namespace relevo::cli

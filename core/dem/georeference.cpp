@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <cpl_string.h>
+#include <fmt/format.h>
+#include <gdal.h>
+#include <ogr_srs_api.h>
+
+#include "base/error.h"
+#include "dem/gdal_support.h"
+#include "dem/interpret.h"
+
+namespace relevo::dem {
+namespace {
+
+/// Whether a netCDF file has axes of latitude and longitude by CF's own words, whatever their names
+/// (CF conventions 1.10, sections 4.1 and 4.2). COARDS and GMT files say no more than that.
+bool has_cf_lat_lon(GDALDatasetH dataset) {
+    constexpr std::array kNorth = {"degrees_north", "degree_north", "degree_N",
+                                   "degrees_N",     "degreeN",      "degreesN"};
+    constexpr std::array kEast = {"degrees_east", "degree_east", "degree_E",
+                                  "degrees_E",    "degreeE",     "degreesE"};
+    bool north = false;
+    bool east = false;
+    for (char** item = GDALGetMetadata(dataset, nullptr); item && *item; ++item) {
+        const std::string_view text = *item;
+        const std::size_t at = text.find("#units=");
+        if (at == std::string_view::npos) continue;
+        const std::string_view unit = text.substr(at + 7);
+        north = north || std::find(kNorth.begin(), kNorth.end(), unit) != kNorth.end();
+        east = east || std::find(kEast.begin(), kEast.end(), unit) != kEast.end();
+    }
+    return north && east;
+}
+
+/// The file's own cells, if it says where they are.
+std::optional<Affine> affine_in(const std::string& path, GDALDatasetH dataset) {
+    std::array<double, 6> g{};
+    const bool found = GDALGetGeoTransform(dataset, g.data()) == CE_None;
+    // What drivers give back for want of anything better.
+    const bool identity =
+        g[0] == 0 && g[1] == 1 && g[2] == 0 && g[3] == 0 && g[4] == 0 && std::abs(g[5]) == 1;
+    if (!found || identity) return std::nullopt;
+    const double area = g[1] * g[5] - g[2] * g[4];
+    if (!std::isfinite(area) || area == 0 || !std::isfinite(g[0] + g[3]))
+        refuse(path, "a georeference in which the cells have no area; the file is damaged");
+    // GDAL's coordinates are those of cell corners, whatever AREA_OR_POINT says.
+    return Affine{g[0] + (g[1] + g[2]) / 2, g[1], g[2], g[3] + (g[4] + g[5]) / 2, g[4], g[5]};
+}
+
+/// What a file says of its CRS.
+struct FileCrs {
+    std::string wkt;     // empty: nothing
+    std::string reason;  // why GDAL could make nothing of it, where it says so
+    std::string name;    // of one that is not bound to the Earth
+};
+
+FileCrs crs_in(const std::string& path, GDALDatasetH dataset) {
+    FileCrs found;
+    GdalMessages messages;  // of keys that make no CRS; what counts is whether one comes out
+    if (OGRSpatialReferenceH srs = GDALGetSpatialRef(dataset)) {
+        char* wkt = nullptr;
+        constexpr std::array<const char*, 2> kForm = {"FORMAT=WKT2_2019", nullptr};
+        if (OSRExportToWktEx(srs, &wkt, kForm.data()) == OGRERR_NONE && wkt) found.wkt = wkt;
+        CPLFree(wkt);
+        const char* name = OSRIsLocal(srs) ? OSRGetName(srs) : nullptr;
+        found.name = name ? name : "";
+    }
+    found.reason = messages.failure(path);
+    return found;
+}
+
+/// The CRS that a file defines. GeoTIFF keys that GDAL cannot resolve leave only their name, which
+/// often is that of a known CRS.
+geo::Crs defined_crs(const FileCrs& in_file, const std::string& who, Description& about) {
+    try {
+        return geo::Crs::parse(in_file.wkt, who);
+    } catch (const Error&) {
+        if (in_file.name.empty()) throw;
+        try {
+            geo::Crs crs = geo::Crs::parse(in_file.name, who);
+            guess(about, fmt::format("the CRS is {}, by its name: the file does not define it; "
+                                     "--crs sets another",
+                                     crs.name()));
+            return crs;
+        } catch (const Error&) {
+        }
+        throw;
+    }
+}
+
+/// Whether cells like these are counted in degrees and not in metres: small, and all on the globe.
+bool like_degrees(const Affine& cells, int columns, int rows) {
+    const glm::dvec2 first = cells(-0.5, -0.5);
+    const glm::dvec2 last = cells(columns - 0.5, rows - 0.5);
+    const auto globe = [](const glm::dvec2& point) {
+        return point.x >= -180.5 && point.x <= 360.5 && std::abs(point.y) <= 90.001;
+    };
+    return std::max(std::abs(cells.x_column), std::abs(cells.y_row)) <= 0.25 && globe(first) &&
+           globe(last);
+}
+
+}  // namespace
+
+Georeference georeference(const std::string& path, GDALDatasetH dataset, const LoadOptions& options,
+                          Description& about) {
+    const int columns = GDALGetRasterXSize(dataset);
+    const int rows = GDALGetRasterYSize(dataset);
+    const std::string who = fmt::format("dem::load: {}", path);
+    std::optional<Affine> affine;
+    if (!options.bounds) affine = affine_in(path, dataset);
+    if (!affine && !options.bounds) {
+        if (GDALGetGCPCount(dataset) > 0)
+            refuse(path,
+                   "georeferenced by control points only, expected a grid; make one with "
+                   "gdalwarp");
+        const std::optional<WebTile> tile = web_tile(path);
+        if (tile && options.crs.empty() && options.encoding != Encoding::None) {
+            guess(about,
+                  "the place is that of the web map tile that the path names, zoom/x/y with y from "
+                  "the north");
+            return {affine_of(*tile, columns, rows), geo::Crs::parse("EPSG:3857", who)};
+        }
+        refuse(path,
+               "no georeference, it does not say where its posts are; give its edges in degrees "
+               "with --bounds W,S,E,N");
+    }
+
+    const FileCrs in_file = crs_in(path, dataset);
+    geo::Crs crs;
+    if (!options.crs.empty()) {
+        crs = geo::Crs::parse(options.crs, who);
+        about.assumptions.push_back(fmt::format("the CRS is {}, as given{}", crs.name(),
+                                                in_file.wkt.empty() ? "" : ", not the file's own"));
+    } else if (!in_file.wkt.empty()) {
+        crs = defined_crs(in_file, who, about);
+    } else if (has_cf_lat_lon(dataset)) {
+        about.assumptions.push_back(
+            "the CRS is WGS 84: the file has latitude and longitude but names no datum; --crs sets "
+            "another");
+    } else if (!options.bounds) {
+        if (!like_degrees(*affine, columns, rows))
+            refuse(path,
+                   fmt::format("no coordinate reference system{}; pass --crs EPSG:n",
+                               in_file.reason.empty() ? "" : fmt::format(" ({})", in_file.reason)));
+        guess(about,
+              "the CRS is WGS 84: the file names none, and its coordinates are like degrees; --crs "
+              "sets another");
+    }
+    if (options.bounds) {
+        const Bounds& b = *options.bounds;
+        affine = affine_of(b, crs, columns, rows);
+        if (!std::isfinite(affine->x0 + affine->y0 + affine->x_column + affine->y_row))
+            refuse(path, fmt::format("--bounds {:g},{:g},{:g},{:g} are not within {}; pass the "
+                                     "right CRS with --crs EPSG:n",
+                                     b.west_deg, b.south_deg, b.east_deg, b.north_deg, crs.name()));
+        about.assumptions.push_back(
+            fmt::format("its edges are {:g} and {:g} degrees east, {:g} and {:g} north, as given",
+                        b.west_deg, b.east_deg, b.south_deg, b.north_deg));
+    } else if (!crs.is_geographic() && like_degrees(*affine, columns, rows) &&
+               std::abs(affine->x_column) < 0.05) {
+        refuse(path, fmt::format("its coordinates are like degrees, but {} counts in {}; pass the "
+                                 "right CRS with --crs, perhaps EPSG:4326",
+                                 crs.name(), crs.unit_name()));
+    }
+    return {*affine, std::move(crs)};
+}
+
+}  // namespace relevo::dem

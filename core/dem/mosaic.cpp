@@ -1,0 +1,228 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/units.h"
+#include "dem/piece.h"
+
+namespace relevo::dem {
+namespace {
+
+/// Of a post: files whose posts are this near to those of the others are on one grid.
+constexpr double kSamePlace = 0.02;
+/// More columns or rows than a raster of the whole Earth at 1 m has is a mistake.
+constexpr double kMostPosts = 5e7;
+
+bool north_up(const Affine& a) {
+    return a.x_row == 0 && a.y_column == 0 && a.x_column > 0 && a.y_row < 0;
+}
+
+/// The raster with the finest posts; only such as others can be resampled to, if that is needed.
+const Piece* finest(const std::vector<Piece>& pieces, bool need_north_up) {
+    const Piece* best = nullptr;
+    double best_m2 = std::numeric_limits<double>::infinity();
+    for (const Piece& piece : pieces) {
+        if (need_north_up && !north_up(piece.grid.affine())) continue;
+        const glm::dvec2 spacing_m = piece.grid.post_spacing_m();
+        // Tiles of one set differ by their latitude, which must not make the choice.
+        if (spacing_m.x * spacing_m.y < 0.8 * best_m2) {
+            best = &piece;
+            best_m2 = spacing_m.x * spacing_m.y;
+        }
+    }
+    return best;
+}
+
+/// The place of a piece whose posts are on the grid's; nothing where they are not.
+std::optional<Window> place_on_grid(const Piece& piece, const Grid& grid) {
+    if (piece.grid.crs().text() != grid.crs().text()) return std::nullopt;
+    const Affine& own = piece.grid.affine();
+    const int columns = piece.grid.columns(), rows = piece.grid.rows();
+    double shift = 0;
+    if (grid.crs().is_geographic()) {
+        // The tiles on both sides of the antimeridian, or one that counts past 180 degrees.
+        const double turn = 2 * kPi / grid.crs().unit_si();
+        const auto middle = [](const Grid& of) {
+            return of.affine()((of.columns() - 1) / 2.0, (of.rows() - 1) / 2.0).x;
+        };
+        shift = turn * std::round((middle(grid) - middle(piece.grid)) / turn);
+    }
+    const auto post = [&](int column, int row) {
+        return grid.affine().inverse(own(column, row) + glm::dvec2(shift, 0));
+    };
+    const glm::dvec2 first = glm::round(post(0, 0));
+    for (const glm::ivec2 corner : {glm::ivec2(0, 0), glm::ivec2(columns - 1, 0),
+                                    glm::ivec2(0, rows - 1), glm::ivec2(columns - 1, rows - 1)}) {
+        const glm::dvec2 off = post(corner.x, corner.y) - first - glm::dvec2(corner);
+        if (!(std::abs(off.x) < kSamePlace && std::abs(off.y) < kSamePlace)) return std::nullopt;
+    }
+    if (!(std::abs(first.x) < kMostPosts && std::abs(first.y) < kMostPosts)) return std::nullopt;
+    return Window{static_cast<int>(first.x), static_cast<int>(first.y), columns, rows};
+}
+
+/// The posts of the grid that a piece covers with its cells.
+Window place_resampled(const Piece& piece, const Grid& grid, const Piece& reference) {
+    constexpr int kSteps = 32;
+    glm::dvec2 low(std::numeric_limits<double>::infinity());
+    glm::dvec2 high = -low;
+    for (int i = 0; i <= 4 * kSteps; ++i) {
+        const double t = (i % kSteps) / double{kSteps};
+        const double w = piece.grid.columns(), h = piece.grid.rows();
+        const std::array<glm::dvec2, 4> sides = {glm::dvec2(t * w, 0), glm::dvec2(w, t * h),
+                                                 glm::dvec2(w - t * w, h),
+                                                 glm::dvec2(0, h - t * h)};
+        const glm::dvec2 edge = sides[static_cast<std::size_t>(i / kSteps % 4)] - 0.5;
+        const glm::dvec2 at = grid.post(piece.grid.place(edge.x, edge.y));
+        if (!(std::abs(at.x) < kMostPosts && std::abs(at.y) < kMostPosts))
+            refuse(piece.path,
+                   fmt::format("cannot be resampled to the grid of {}: parts of it are not within "
+                               "{}; bring them to one CRS with gdalwarp",
+                               reference.path, grid.crs().name()));
+        low = glm::min(low, at);
+        high = glm::max(high, at);
+    }
+    const glm::ivec2 first(glm::ceil(low)), last(glm::floor(high));
+    return {first.x, first.y, std::max(1, last.x - first.x + 1), std::max(1, last.y - first.y + 1)};
+}
+
+/// What the pieces do not agree on, for people: "-9999, -32768"; empty where they do.
+template <typename Text>
+std::string differing(const std::vector<Piece>& pieces, const Text& text) {
+    std::set<std::string> all;
+    for (const Piece& piece : pieces)
+        all.insert(text(piece));
+    return all.size() > 1 ? fmt::format("{}", fmt::join(all, ", ")) : "";
+}
+
+/// What each file was taken to mean, with its name where not all files are alike in it.
+void gather(const std::vector<Piece>& pieces, std::vector<std::string> Description::*list,
+            Description& about) {
+    std::vector<std::string>& result = about.*list;
+    result.clear();
+    for (const Piece& piece : pieces)
+        for (const std::string& sentence : piece.about.*list) {
+            const auto says = [&](const Piece& other) {
+                const std::vector<std::string>& lines = other.about.*list;
+                return std::find(lines.begin(), lines.end(), sentence) != lines.end();
+            };
+            const bool all = std::all_of(pieces.begin(), pieces.end(), says);
+            const std::string line =
+                all ? sentence : fmt::format("{}: {}", piece.about.path, sentence);
+            if (std::find(result.begin(), result.end(), line) == result.end())
+                result.push_back(line);
+        }
+}
+
+}  // namespace
+
+Grid join(std::vector<Piece>& pieces, Description& about) {
+    if (pieces.size() == 1) {
+        about = pieces.front().about;
+        return pieces.front().grid;
+    }
+    std::vector<std::optional<Window>> places(pieces.size());
+    const auto try_grid = [&](const Grid& grid) {
+        bool all = true;
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            places[i] = place_on_grid(pieces[i], grid);
+            all = all && places[i];
+        }
+        return all;
+    };
+    const Piece* reference = finest(pieces, false);
+    if (!try_grid(reference->grid)) {
+        reference = finest(pieces, true);
+        if (!reference)
+            refuse(pieces.front().path,
+                   "cannot be joined with the others: their grids differ and none of them runs "
+                   "east and south; bring them to one grid with gdalwarp");
+        try_grid(reference->grid);
+    }
+    const Grid& grid = reference->grid;
+    int resampled = 0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        Piece& piece = pieces[i];
+        if (places[i]) {
+            piece.place = *places[i];
+            continue;
+        }
+        if (piece.encoding != Encoding::None)
+            refuse(piece.path, fmt::format("cannot be joined with {}: pictures of encoded heights "
+                                           "must be on one grid, tiles of one zoom",
+                                           reference->path));
+        piece.place = place_resampled(piece, grid, *reference);
+        const glm::dvec2 first = grid.affine()(piece.place.column, piece.place.row);
+        Affine affine = grid.affine();
+        affine.x0 = first.x;
+        affine.y0 = first.y;
+        piece.resampling = Resampling{affine, grid.crs()};
+        piece.levels = {{-1, piece.place.columns, piece.place.rows}};
+        ++resampled;
+    }
+
+    glm::dvec2 low(std::numeric_limits<double>::infinity());
+    glm::dvec2 high = -low;
+    double covered = 0;
+    for (const Piece& piece : pieces) {
+        const Window& w = piece.place;
+        low = glm::min(low, glm::dvec2(w.column, w.row));
+        high = glm::max(high, glm::dvec2(w.column + w.columns, w.row + w.rows));
+        covered += double(w.columns) * w.rows;
+    }
+    const glm::dvec2 size = high - low;
+    if (size.x > kMostPosts || size.y > kMostPosts)
+        refuse(pieces.front().path,
+               fmt::format("too far from the other files for one DEM, which would have {:.0f} x "
+                           "{:.0f} posts",
+                           size.x, size.y));
+    for (Piece& piece : pieces) {
+        piece.place.column -= static_cast<int>(low.x);
+        piece.place.row -= static_cast<int>(low.y);
+    }
+    const glm::dvec2 origin = grid.affine()(low.x, low.y);
+    Affine affine = grid.affine();
+    affine.x0 = origin.x;
+    affine.y0 = origin.y;
+    const Grid whole(static_cast<int>(size.x), static_cast<int>(size.y), affine, grid.crs());
+
+    about = reference->about;
+    about.files.clear();
+    for (const Piece& piece : pieces)
+        about.files.push_back(piece.about.path);
+    about.path = fmt::format("{} and {} more", pieces.front().about.path, pieces.size() - 1);
+    gather(pieces, &Description::assumptions, about);
+    gather(pieces, &Description::guesses, about);
+    about.assumptions.insert(
+        about.assumptions.begin(),
+        fmt::format("{} files are joined; where they overlap, the one named last is on top",
+                    pieces.size()));
+    if (resampled > 0)
+        guess(about, fmt::format("{} of the {} files {} resampled to the grid of {}", resampled,
+                                 pieces.size(), resampled == 1 ? "is" : "are", reference->path));
+    if (covered < 0.25 * size.x * size.y)
+        guess(about, fmt::format("the files cover {:.2g} % of the DEM that they make, the rest is "
+                                 "one hole",
+                                 100 * covered / (size.x * size.y)));
+    const std::string units =
+        differing(pieces, [](const Piece& piece) { return piece.about.unit.name; });
+    if (!units.empty()) guess(about, fmt::format("heights are in {}: each file in its own", units));
+    const std::string datums = differing(pieces, [](const Piece& piece) {
+        return piece.about.vertical_datum.empty() ? "no stated datum" : piece.about.vertical_datum;
+    });
+    if (!datums.empty())
+        guess(about, fmt::format("heights are above {}, and are joined as they are", datums));
+    const auto nodata_text = [](const Piece& piece) {
+        return piece.about.nodata ? piece.about.nodata_text() : "no value";
+    };
+    if (const std::string nodata = differing(pieces, nodata_text); !nodata.empty())
+        about.assumptions.push_back(
+            fmt::format("holes are marked by {}: in each file by its own", nodata));
+    return whole;
+}
+
+}  // namespace relevo::dem

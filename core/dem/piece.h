@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dem/interpret.h"
+
+// One raster of a DEM, and several joined. Inside of the layer only.
+
+namespace relevo::dem {
+
+/// How stored numbers become metres.
+struct Meaning {
+    std::optional<double> nodata;
+    double beyond = 0;    // numbers further from zero are no heights; infinite: all are
+    double scale = 1;     // metres in one step of the stored number
+    double offset_m = 0;  // height of the stored number 0
+};
+
+/// One of a file's resolutions.
+struct Level {
+    int overview = -1;  ///< -1: the raster itself
+    int columns = 0;
+    int rows = 0;
+};
+
+/// Onto the DEM's grid: the size is that of Piece::place.
+struct Resampling {
+    Affine affine;  ///< of the first post of the place
+    geo::Crs crs;
+};
+
+/// One raster: where it is, what its numbers mean, and how they are read.
+struct Piece {
+    std::string path;  ///< by which GDAL opens it
+    Grid grid;         ///< its own
+    Window place;      ///< its posts among those of the DEM, after resampling
+    std::optional<Resampling> resampling;
+
+    Meaning meaning;
+    Encoding encoding = Encoding::None;
+    bool has_mask = false;     ///< a mask or an alpha band says where the holes are
+    int alpha_band = 0;        ///< GDAL makes no mask of it, which it does of 8 and 16 bits alone
+    bool wide = false;         ///< stored numbers need doubles
+    bool threads_pay = false;  ///< the driver decodes blocks one by one, whichever handle asks
+    bool knows_holes = true;   ///< overviews were made by who knew which numbers are heights
+    int block_rows = 1;
+    std::vector<Level> levels;  ///< the raster itself, then its overviews
+    Description about;
+
+    /// A handle of one's own. @throws Error (BadInput)
+    Dataset open() const;
+
+    /// Heights in metres of a window of a level, NaN for holes; row after row.
+    /// @throws Error (BadInput) where they cannot all be read
+    void read(void* dataset, const Level& level, const Window& window, float* height_m) const;
+};
+
+/// Opens one file and settles what it means.
+/// @param options  of all files
+/// @param files    how many there are: of many, each is looked at less closely
+/// @param opened   becomes the handle that was used for it, as by Piece::open()
+Piece open_piece(const std::string& path, const LoadOptions& options, std::size_t files,
+                 Dataset& opened);
+
+/// Gives each piece its place on one grid, which is returned, and says in `about` what was done.
+/// @throws Error (BadInput) where they cannot be joined
+Grid join(std::vector<Piece>& pieces, Description& about);
+
+}  // namespace relevo::dem

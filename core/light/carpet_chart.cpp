@@ -1,0 +1,143 @@
+#include "light/carpet_chart.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "light/diagram_parts.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr double kMargin = 28;
+constexpr double kLeft = 116, kTop = 112;
+constexpr double kDayWidth = 2.8, kHourHeight = 20;
+
+Color color_of(Light light) {
+    switch (light) {
+        case Light::Night:
+            return {0x1e2943};
+        case Light::Twilight:
+            return {0x6d7fb5};
+        case Light::Shaded:
+            return {0xb5aca0};
+        case Light::Lit:
+            return {0xffd24a};
+    }
+    return {};
+}
+
+double y_of(double time_of_day_s) {
+    return kTop + 24 * kHourHeight - time_of_day_s / 3600 * kHourHeight;
+}
+
+}  // namespace
+
+Drawing CarpetChart::draw() const {
+    const int year = carpet->year;
+    const int days = sun::days_between({year, 1, 1}, {year + 1, 1, 1});
+    const double width = days * kDayWidth, height = 24 * kHourHeight;
+    const double right = kLeft + width, bottom = kTop + height;
+    const std::vector<std::string> foot{
+        "D" + carpet->definition.substr(1) +
+            ". Level horizon: the same part of the sun at 0 degrees. Twilight: civil, the sun's "
+            "centre less than 6 degrees below the horizon.",
+        "T" + horizon_definition.substr(1) + "."};
+    const double keys_y = bottom + 92;
+    Drawing drawing(1160, keys_y + 22 + foot_height(1160, kMargin, foot) + kMargin);
+
+    std::string title = place_name.empty() ? "" : place_name + ": ";
+    title += fmt::format("{}irect sun through {}", title.empty() ? 'D' : 'd', year);
+    const std::vector<std::string> lines{
+        fmt::format("{}, {}", place_text(place), carpet->zone.name()),
+        fmt::format("{:.0f} hours of direct sun, {:.0f} over a level horizon ({:.0f} %)",
+                    carpet->lit_s / 3600, carpet->level_s / 3600,
+                    carpet->level_s > 0 ? 100 * carpet->lit_s / carpet->level_s : 0)};
+    drawing.describe(title, lines.back());
+    add_title(drawing, kMargin, title, lines);
+
+    // Cells of one kind that follow each other are one area.
+    drawing.rect({kLeft, kTop, width, height}, {.fill = color_of(Light::Night), .crisp = true});
+    for (int row = 0; row < carpet->light.height(); ++row) {
+        const sun::Date date = carpet->days[static_cast<std::size_t>(row)].date;
+        const double x = kLeft + sun::days_between({year, 1, 1}, date) * kDayWidth;
+        for (int from = 0, to = 0; from < carpet->light.width(); from = to) {
+            const Light light = carpet->light.at(from, row);
+            while (to < carpet->light.width() && carpet->light.at(to, row) == light)
+                ++to;
+            if (light == Light::Night) continue;
+            const double top = y_of(to * double{1} * carpet->step_s);
+            drawing.rect({x, top, kDayWidth, y_of(from * double{1} * carpet->step_s) - top},
+                         {.fill = color_of(light), .crisp = true});
+        }
+    }
+
+    // True noon.
+    std::vector<glm::dvec2> noon;
+    double before_s = -1;
+    for (const LightDay& day : carpet->days) {
+        const auto transit = day.flat.first(sun::EventKind::Transit);
+        if (!transit) continue;
+        const sun::CivilTime wall = carpet->zone.local(*transit).wall;
+        const double s = wall.hour * 3600 + wall.minute * 60 + wall.second;
+        if (before_s >= 0 && std::abs(s - before_s) > 600) noon.emplace_back(std::nan(""));
+        before_s = s;
+        noon.emplace_back(kLeft + (sun::days_between({year, 1, 1}, day.date) + 0.5) * kDayWidth,
+                          y_of(s));
+    }
+    drawing.path(std::move(noon), {.stroke = Color{0xb06000}, .width = 1.1, .dash = {4, 3}});
+
+    for (int hour = 0; hour <= 24; hour += 1) {
+        const double y = y_of(hour * 3600.0);
+        if (hour % 3 == 0 && hour % 24 != 0)
+            drawing.line({kLeft, y}, {right, y}, {.stroke = Color{0xffffff, 0.35}, .width = 0.8});
+        drawing.line({kLeft - (hour % 3 == 0 ? 7 : 4), y}, {kLeft, y}, {.stroke = kSoft});
+        if (hour % 3 == 0)
+            drawing.text({kLeft - 11, y + 4}, fmt::format("{:02}:00", hour),
+                         {.size = 12, .color = kSoft, .anchor = Anchor::End});
+    }
+    std::vector<double> month_level_s(12, 0);
+    for (std::size_t i = 0; i < carpet->days.size(); ++i)
+        month_level_s[static_cast<std::size_t>(carpet->days[i].date.month - 1)] +=
+            carpet->day_level_s[i];
+    const double names_y = bottom + 20, lit_y = bottom + 40, level_y = bottom + 57;
+    for (int month = 1; month <= 12; ++month) {
+        const double from = kLeft + sun::days_between({year, 1, 1}, {year, month, 1}) * kDayWidth;
+        const sun::Date next =
+            month < 12 ? sun::Date{year, month + 1, 1} : sun::Date{year + 1, 1, 1};
+        const double middle =
+            (from + kLeft + sun::days_between({year, 1, 1}, next) * kDayWidth) / 2;
+        if (month > 1)
+            drawing.line({from, kTop}, {from, bottom},
+                         {.stroke = Color{0xffffff, 0.35}, .width = 0.8});
+        drawing.line({from, bottom}, {from, bottom + 7}, {.stroke = kSoft});
+        const auto i = static_cast<std::size_t>(month - 1);
+        drawing.text({middle, names_y}, month_name(month).substr(0, 3),
+                     {.size = 13, .color = kInk, .anchor = Anchor::Middle, .bold = true});
+        drawing.text({middle, lit_y}, fmt::format("{:.0f} h", carpet->month_lit_s[i] / 3600),
+                     {.size = 12, .color = kInk, .anchor = Anchor::Middle});
+        drawing.text({middle, level_y}, fmt::format("{:.0f} h", month_level_s[i] / 3600),
+                     {.size = 12, .color = kSoft, .anchor = Anchor::Middle});
+    }
+    drawing.line({right, bottom}, {right, bottom + 7}, {.stroke = kSoft});
+    drawing.rect({kLeft, kTop, width, height}, {.stroke = kSoft, .width = 1.2});
+    drawing.text({kLeft - 11, lit_y}, "direct sun",
+                 {.size = 12, .color = kInk, .anchor = Anchor::End});
+    drawing.text({kLeft - 11, level_y}, "level horizon",
+                 {.size = 12, .color = kSoft, .anchor = Anchor::End});
+    drawing.text({kMargin + 14, kTop + height / 2}, "time of day, by the clock",
+                 {.size = 12, .color = kSoft, .anchor = Anchor::Middle, .turn_deg = -90});
+
+    double x = kLeft;
+    x = add_key(drawing, x, keys_y, {.fill = color_of(Light::Lit)}, "direct sun");
+    x = add_key(drawing, x, keys_y, {.fill = color_of(Light::Shaded)},
+                "sun behind terrain, up over a level horizon");
+    x = add_key(drawing, x, keys_y, {.fill = color_of(Light::Twilight)}, "civil twilight");
+    x = add_key(drawing, x, keys_y, {.fill = color_of(Light::Night)}, "night");
+    add_key(drawing, x, keys_y, {.stroke = Color{0xb06000}, .width = 1.1, .dash = {4, 3}},
+            "true noon");
+    add_foot(drawing, kMargin, foot);
+    return drawing;
+}
+
+}  // namespace relevo::light

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "light/carpet.h"
+#include "light/drawing.h"
+
+namespace relevo::light {
+
+/// A carpet as a picture: the days of the year from left to right, the time of day upwards, what
+/// light there is by colour; under it the hours of each month.
+struct CarpetChart {
+    const Carpet* carpet = nullptr;
+    geo::Geodetic place;
+    std::string place_name;          ///< for the title, where there is one
+    std::string horizon_definition;  ///< TerrainHorizon::description()
+
+    /// 1160 units wide.
+    Drawing draw() const;
+};
+
+}  // namespace relevo::light

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "light/direct_light.h"
+#include "light/drawing.h"
+
+namespace relevo::light {
+
+/// The landscape round a viewpoint as it stands against the sky, ridge before ridge, with the paths
+/// of the sun behind it.
+struct HorizonPanorama {
+    const TerrainHorizon* horizon = nullptr;
+    const std::vector<HorizonPoint>* profile = nullptr;  ///< of that horizon, all round
+    std::string place_name;                              ///< for the title, where there is one
+    /// The sun's paths of a year by the clock of a zone; 0: the landscape alone.
+    int year = 0;
+    sun::Zone zone;
+    sun::Refraction refraction = sun::Refraction::none();
+    /// The day to be drawn strongly, with its direct light.
+    std::optional<LightDay> day;
+    std::string light_definition;
+
+    /// 1500 units wide. Azimuths run evenly along it, the sun's side of the sky in the middle;
+    /// elevations have a scale of their own, which is said.
+    Drawing draw() const;
+};
+
+}  // namespace relevo::light

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "light/direct_light.h"
+#include "light/drawing.h"
+#include "sun/events.h"
+
+namespace relevo::light {
+
+/// The sky of a place as a disc, zenith in the middle and north at the top, with the sun's paths of
+/// a year and the hours on them.
+struct SunPathDiagram {
+    geo::Geodetic place;
+    std::string place_name;  ///< for the title, where there is one
+    sun::Zone zone;
+    int year = 0;
+    sun::Refraction refraction = sun::Refraction::none();
+    /// The day to be drawn strongly, with its hours by the clock; none: the year alone.
+    std::optional<sun::Day> day;
+    const Skyline* terrain = nullptr;  ///< stands in the sky where there is one
+    std::string terrain_definition;
+    std::optional<LightDay> light;  ///< of `day`, where there is terrain
+    std::string light_definition;
+
+    /// 900 units wide. The sky is projected stereographically, so that the sun's daily circles
+    /// remain circles.
+    Drawing draw() const;
+};
+
+}  // namespace relevo::light

@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include "base/units.h"
+#include "support/gpu_snippet.h"
+#include "support/support.h"
+
+namespace relevo {
+namespace {
+
+double smoothstep(double from, double to, double x) {
+    const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
+/// A normal by column (azimuth) and row (slope 0 to 85 degrees), as in kNormal.
+glm::dvec3 normal_of(int x, int y) {
+    const double azimuth = radians(10.0 * x), slope = radians(5.0 * y);
+    return {std::sin(slope) * std::sin(azimuth), std::sin(slope) * std::cos(azimuth),
+            std::cos(slope)};
+}
+constexpr const char* kNormal =
+    "float azimuth = radians(10.0 * float(x)), slope = radians(5.0 * float(y));\n"
+    "vec3 normal = vec3(sin(slope) * vec2(sin(azimuth), cos(azimuth)), cos(slope));\n";
+constexpr int kColumns = 36, kRows = 18;
+
+TEST(Bump, TangentFrameIsOrthonormalAndRunsEast) {
+    // The reference: Gram and Schmidt's of east, and the cross product.
+    test::GpuSnippet gpu("bump");
+    std::vector<double> errors;
+    for (const bool bitangent : {false, true}) {
+        const auto results = gpu.run(std::string("//@ include lib/tangent.glsl\n") + kNormal +
+                                         "vec3 tangent = tangent_of(normal);\n" +
+                                         (bitangent ? "result = vec4(cross(normal, tangent), 0.0);"
+                                                    : "result = vec4(tangent, 0.0);"),
+                                     kColumns, kRows);
+        for (int y = 0; y < kRows; ++y) {
+            for (int x = 0; x < kColumns; ++x) {
+                const glm::dvec3 n = normal_of(x, y);
+                const glm::dvec3 tangent = normalize(glm::dvec3(1, 0, 0) - n.x * n);
+                const glm::dvec3 expected = bitangent ? cross(n, tangent) : tangent;
+                const glm::dvec3 found(results[static_cast<std::size_t>(y * kColumns + x)]);
+                errors.push_back(length(found - expected));
+                errors.push_back(std::abs(dot(found, n)));
+                errors.push_back(std::abs(length(found) - 1));
+                if (bitangent) {
+                    EXPECT_GE(found.y, -1e-6) << "the bitangent runs north";
+                }
+            }
+        }
+    }
+    test::print_accuracy("tangent frame, GPU against double", errors, "", 1e-3);
+    EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 1e-3);
+}
+
+TEST(Bump, TheNormalIsTheMapsInTheTangentFrame) {
+    for (const double strength : {0.0, 1.0, 2.5}) {
+        test::GpuSnippet gpu("bump");
+        gpu.values().set("bump.strength", fmt::format("{}", strength));
+        const auto results = gpu.run(
+            std::string("//@ include lib/tangent.glsl\n") + kNormal +
+                "vec3 tangent = tangent_of(normal);\n"
+                "vec3 map = normalize(vec3(0.4, -0.3, 0.8));\n"
+                "result = vec4(bump_normal(map, tangent, cross(normal, tangent), normal), 0.0);",
+            kColumns, kRows);
+        std::vector<double> errors;
+        const glm::dvec3 map = normalize(glm::dvec3(0.4, -0.3, 0.8));
+        for (int y = 0; y < kRows; ++y) {
+            for (int x = 0; x < kColumns; ++x) {
+                const glm::dvec3 n = normal_of(x, y);
+                const glm::dvec3 tangent = normalize(glm::dvec3(1, 0, 0) - n.x * n);
+                const glm::dvec3 expected =
+                    normalize(strength * (map.x * tangent + map.y * cross(n, tangent)) + map.z * n);
+                errors.push_back(length(
+                    glm::dvec3(results[static_cast<std::size_t>(y * kColumns + x)]) - expected));
+            }
+        }
+        test::print_accuracy("bumped normal, GPU against double", errors, "", 1e-3);
+        EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 1e-3);
+    }
+}
+
+TEST(Bump, LitOnlyWhereGroundAndBumpBothFaceTheSun) {
+    // Columns: cosine of the ground's angle, rows: of the bump's, both -1 to 1.
+    struct Case {
+        const char* correction;
+        double (*factor)(double cosine);
+    };
+    for (const Case& c :
+         {Case{"none", [](double) { return 1.0; }},
+          Case{"abrupt", [](double cosine) { return cosine > 0 ? 1.0 : 0.0; }},
+          Case{"smooth", [](double cosine) { return smoothstep(0, 0.12, cosine); }}}) {
+        test::GpuSnippet gpu("bump");
+        gpu.values().set("bump.correction", c.correction);
+        constexpr int n = 201;
+        const auto results = gpu.run(
+            "Surface s;\n"
+            "float ground = float(x - 100) / 100.0, bumped = float(y - 100) / 100.0;\n"
+            "s.geometric_normal = vec3(sqrt(1.0 - ground * ground), 0.0, ground);\n"
+            "s.normal = vec3(0.0, sqrt(1.0 - bumped * bumped), bumped);\n"
+            "float factor = 1.0;\n"
+            "bump_on_facing(s, vec3(0.0, 0.0, 1.0), factor);\n"
+            "result = vec4(factor);",
+            n, n);
+        std::vector<double> errors;
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x)
+                errors.push_back(
+                    std::abs(results[static_cast<std::size_t>(y * n + x)].x -
+                             c.factor((x - 100) / 100.0) * c.factor((y - 100) / 100.0)));
+        test::print_accuracy(fmt::format("facing factor, {}", c.correction), errors, "", 1e-3);
+        EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 1e-3) << c.correction;
+    }
+}
+
+}  // namespace
+}  // namespace relevo

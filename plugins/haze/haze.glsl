@@ -1,0 +1,47 @@
+//! provides  haze: a layer of air near the ground that thins with height
+//! hook      vertex, atmosphere
+//! reads     height [m], distance [m], height of the eye [m], the sky's radiance without the sun's disc
+//! writes    radiance
+//! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
+//!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section on sky and haze
+
+uniform float haze_density = 0.022; //@ range(0, 100) unit(1/km) label("Density") description("Extinction of green light at height 0")
+uniform float haze_visibility = 0.0; //@ range(0, 1000) unit(km) label("Visibility") description("Meteorological range at height 0, in the density's place: 3.912 / density. 0: the density counts")
+uniform float haze_scale_height = 2500.0; //@ range(10, 100000) unit(m) label("Scale height") description("Over which the haze thins by e")
+uniform float haze_blue = 0.6; //@ range(0, 1) label("Blue") description("How much more blue is scattered than red: 1 as by pure air, 0 as by fog and in the paper")
+
+out vec3 haze_strength;  // red, green, blue: share of the sky's colour
+
+/// Extinction at height 0 [1/m]. Koschmieder's visibility is the distance from which 2 % of a black
+/// thing's contrast is left: ln 50 = 3.912.
+float haze_extinction() {
+    return 1e-3 * (haze_visibility > 0.0 ? 3.912 / haze_visibility : haze_density);
+}
+
+/// Optical depth of the air between two points in green light: the mean of exp(-height / H) along
+/// the straight line between them, times its length.
+float haze_depth(in float eye_height_m, in float height_m, in float distance_m) {
+    float a = eye_height_m / haze_scale_height, b = height_m / haze_scale_height;
+    float rise = b - a;
+    float middle = exp(-0.5 * (a + b));
+    float mean = abs(rise) < 0.1 ? middle * (1.0 + rise * rise / 24.0) : (exp(-a) - exp(-b)) / rise;
+    return haze_extinction() * distance_m * mean;
+}
+
+/// Red and blue against green. Pure air scatters with the fourth power of the wavelength, 610, 550
+/// and 465 nm.
+vec3 haze_colour() {
+    return mix(vec3(1.0), vec3(0.661, 1.0, 1.957), haze_blue);
+}
+
+vec3 haze_strength_of(in float depth) {
+    return 1.0 - exp(-depth * haze_colour());
+}
+
+void haze_on_vertex(in VertexFrame v) {
+    haze_strength = haze_strength_of(haze_depth(frame.eye_m.w, v.height_m, v.distance_m));
+}
+
+void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
+    radiance = mix(radiance, background_radiance(view, false), haze_strength);
+}

@@ -1,0 +1,142 @@
+//! provides  the sky: its colours, the sun in it, and its light on slopes
+//! hook      background_radiance, ambient
+//! reads     direction of the view, of the sun with refraction, height of the eye [m]
+//! writes    radiance, linear sRGB; irradiance
+//! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
+//!           usando placas graficas programaveis (Tecgraf, PUC-Rio), equations 1 to 3; the textures are
+//!           made by tools/sky, which names its model
+
+uniform sampler3D sky_radiance;  // by s, t and height of the sun
+uniform sampler3D sky_light;     // irradiance of slopes, likewise
+uniform sampler2D sky_day;
+uniform sampler2D sky_sunset;
+uniform sampler2D sky_night;
+
+uniform int sky_colours = 0; //@ enum(model, three) static label("Colours") description("A sky for every height of the sun, or the paper's three, blended")
+uniform float sky_brightness = 1.3; //@ range(0, 10) label("Brightness") description("Of the sky without the sun; above 1 because less of the aureole is drawn than there is")
+uniform float sky_horizon = 0.5; //@ range(0.05, 2) label("Horizon") description("Exponent of equation 3 for an eye at sea level: the higher, the farther up the horizon's colours reach")
+uniform float sky_day_deg = 25.0; //@ angle range(1, 90) unit(deg) label("Day from") description("Height of the sun from which on the day's texture is shown alone; of the three")
+uniform float sky_night_deg = -12.0; //@ angle range(-90, -1) unit(deg) label("Night from") description("Height of the sun below which the night's texture is shown alone; of the three")
+
+uniform float sky_power = 20.0; //@ range(1, 4000) label("Power") description("Least exponent of equation 1; the next two are 4 and 16 times it")
+uniform vec3 sky_weights = vec3(0.133, 0.532, 0.346); //@ range(0, 1) label("Weights") description("Of those three powers; all 1 in the paper")
+uniform float sky_aureole = 0.3; //@ range(0, 100) label("Aureole") description("Brightness of the glow, as a multiple of the sun's light at the eye")
+uniform bool sky_air_mass = true; //@ static label("Aureole by air mass") description("A low sun shines through more haze; off in the paper")
+uniform float sky_disc_power = 65000.0; //@ range(100, 1000000) label("Power of the disc") description("65000 falls to one half at 0.265 degrees: the sun's true size")
+uniform float sky_disc = 30.0; //@ range(0, 10000) label("Disc") description("Brightness of the sun's disc, as a multiple of its light at the eye")
+uniform float sky_disc_edge = 8.0; //@ range(1, 100) label("Edge of the disc") description("How sharply the disc ends; 1, a soft spot, in the paper")
+
+uniform bool sky_slopes = true; //@ static label("Light by direction") description("A slope gets the light of the part of the sky that it faces; else all ground gets the same")
+
+const float sky_fold = 0.14;       // tools/sky/textures.h: how heights of the sun are spread ...
+const float sky_lowest = 0.68822;  // ... over the slices: folded(sin 18 deg)
+const float sky_span = 1.56541;    // folded(1) + folded(sin 18 deg)
+const vec3 sky_size = vec3(48.0, 64.0, 40.0);        // texels of the radiance
+const vec3 sky_light_size = vec3(12.0, 12.0, 40.0);  // and of the light
+
+/// The horizontal part of a direction, unit length; shrinks to 0 over the last 0.6 degrees before the
+/// zenith, which has none.
+vec3 sky_level(in vec3 direction, in vec3 up) {
+    vec3 level = direction - dot(direction, up) * up;
+    return level * inversesqrt(max(dot(level, level), 1e-4));
+}
+
+/// Equation 2: 0 away from the sun, 1 towards it, one half where one of the two is the zenith.
+float sky_s(in vec3 to_sun, in vec3 direction, in vec3 up) {
+    return 0.5 * dot(sky_level(to_sun, up), sky_level(direction, up)) + 0.5;
+}
+
+/// The exponent h of equation 3. The horizon's white is the air between eye and space, which thins by
+/// e every 8.43 km: an eye up there sees a narrower band of it.
+float sky_exponent(in float eye_height_m) {
+    return sky_horizon * exp(-clamp(eye_height_m, 0.0, 20000.0) / 8430.0);
+}
+
+/// Equation 3: 0 on the horizon and below, 1 in the zenith.
+float sky_t(in vec3 direction, in vec3 up, in float exponent) {
+    return pow(clamp(dot(direction, up), 0.0, 1.0), exponent);
+}
+
+/// Equation 1 without its narrowest term. @param cosine  L . V
+float sky_glow(in float cosine) {
+    float broad = pow(max(cosine, 0.0), sky_power);
+    float middle = broad * broad * broad * broad;
+    return dot(sky_weights, vec3(broad, middle, middle * middle * middle * middle));
+}
+
+/// The narrowest term, (L . V)^k. The cosine of so small an angle has lost it by the time that it is
+/// a float: with k = 65000 the power itself is off by 9e-3, this by 1e-5.
+/// @param distance2  |L - V|^2
+float sky_narrow(in float distance2) {
+    return exp(-0.5 * sky_disc_power * distance2);
+}
+
+/// The disc: one half where the sun's limb is, whatever the sharpness of the edge.
+float sky_sun(in float distance2) {
+    return clamp(0.5 + sky_disc_edge * (sky_narrow(distance2) - 0.5), 0.0, 1.0);
+}
+
+/// Relative air mass. source: G. V. Rozenberg, Twilight, 1966: at most 40, on the horizon
+float sky_air_mass_of(in float sun_sine) {
+    float sine = max(sun_sine, 0.0);
+    return 1.0 / (sine + 0.025 * exp(-11.0 * sine));
+}
+
+/// Place of a height of the sun among the slices, 0..1.
+float sky_slice(in float sun_sine) {
+    return clamp((sun_sine / (sky_fold + abs(sun_sine)) + sky_lowest) / sky_span, 0.0, 1.0);
+}
+
+/// Weights of day, sunset and night, sum 1: two at most above zero.
+vec3 sky_blend(in float sun_sine) {
+    float day = clamp(sun_sine / sin(sky_day_deg), 0.0, 1.0);
+    float night = clamp(sun_sine / sin(sky_night_deg), 0.0, 1.0);
+    return vec3(day, 1.0 - day - night, night);
+}
+
+/// Texture coordinates that have the first and the last texel's centre at 0 and 1.
+vec3 sky_texel(in vec3 at, in vec3 size) {
+    return at * (1.0 - 1.0 / size) + 0.5 / size;
+}
+
+float sky_luminance() {
+    return dot(frame.sky_irradiance.rgb, vec3(0.2126, 0.7152, 0.0722));
+}
+
+vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
+    vec3 up = frame.eye_up.xyz;
+    vec3 to_sun = frame.eye_sun.xyz;
+    float sun_sine = dot(to_sun, up);
+    vec2 at = vec2(sky_s(to_sun, direction, up), sky_t(direction, up, sky_exponent(frame.eye_m.w)));
+    vec3 colour;
+    if (sky_colours == 0) {
+        colour = textureLod(sky_radiance, sky_texel(vec3(at, sky_slice(sun_sine)), sky_size), 0.0).rgb;
+    } else {
+        vec2 texel = sky_texel(vec3(at, 0.0), sky_size).xy;
+        vec3 blend = sky_blend(sun_sine);
+        colour = blend.x * textureLod(sky_day, texel, 0.0).rgb +
+                 blend.y * textureLod(sky_sunset, texel, 0.0).rgb +
+                 blend.z * textureLod(sky_night, texel, 0.0).rgb;
+    }
+    vec3 radiance = sky_brightness * sky_luminance() * colour;
+    float haze = sky_air_mass ? sky_air_mass_of(sun_sine) : 1.0;
+    float sun = sky_aureole * haze * sky_glow(dot(to_sun, direction));
+    // What has set is behind the Earth, whose edge lies lower the higher the eye.
+    if (with_disc && dot(direction, up) > frame.eye_up.w) {
+        vec3 apart = to_sun - direction;
+        sun += sky_disc * sky_sun(dot(apart, apart));
+    }
+    return radiance + sun * frame.eye_sun_light.rgb;
+}
+
+void sky_on_ambient(in Surface s, inout vec3 irradiance) {
+    if (sky_slopes) {
+        vec3 to_sun = frame.eye_sun.xyz;
+        vec3 at = vec3(sky_s(to_sun, s.normal, s.up), clamp(dot(s.normal, s.up), 0.0, 1.0),
+                       sky_slice(dot(to_sun, s.up)));
+        irradiance = sky_luminance() *
+                     textureLod(sky_light, sky_texel(at, sky_light_size), 0.0).rgb;
+    } else {
+        irradiance = frame.sky_irradiance.rgb;
+    }
+}

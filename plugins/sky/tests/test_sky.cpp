@@ -1,0 +1,199 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include "base/units.h"
+#include "support/gpu_snippet.h"
+#include "support/support.h"
+
+namespace relevo {
+namespace {
+
+// The paper's equations, written again in double precision; up is z.
+
+glm::dvec3 direction(double azimuth_rad, double elevation_rad) {
+    return {std::cos(elevation_rad) * std::sin(azimuth_rad),
+            std::cos(elevation_rad) * std::cos(azimuth_rad), std::sin(elevation_rad)};
+}
+
+/// Horizontal part of unit length, but for the last 0.01 before the zenith.
+glm::dvec3 level(const glm::dvec3& v) {
+    const glm::dvec3 flat(v.x, v.y, 0);
+    return flat / std::max(length(flat), 0.01);
+}
+
+/// Equation 2. @param l  towards the sun  @param v  of the view
+double equation_2(const glm::dvec3& l, const glm::dvec3& v) {
+    return dot(level(l), level(v)) / 2 + 0.5;
+}
+
+/// Equation 3.
+double equation_3(const glm::dvec3& v, double h) {
+    return std::pow(std::max(0.0, v.z), h);
+}
+
+constexpr const char* kDirection =
+    "float azimuth = radians(float(x)), elevation = radians(float(y) - 90.0);\n"
+    "vec3 up = vec3(0.0, 0.0, 1.0);\n"
+    "vec3 view = vec3(cos(elevation) * vec2(sin(azimuth), cos(azimuth)), sin(elevation));\n";
+
+double worst(std::vector<double>& errors, std::string_view what, double limit) {
+    test::print_accuracy(what, errors, "", limit);
+    return *std::max_element(errors.begin(), errors.end());
+}
+
+TEST(Sky, Equation1IsTheSumOfThePowersOfTheCosine) {
+    // Every tenth of a degree; weights and powers as they are by default and as in the paper.
+    for (const bool paper : {false, true}) {
+        test::GpuSnippet gpu("sky");
+        if (paper) gpu.values().set("sky.weights", "1,1,1");
+        const std::array<double, 3> weights =
+            paper ? std::array{1.0, 1.0, 1.0} : std::array{0.133, 0.532, 0.346};
+        const auto results =
+            gpu.run("result = vec4(sky_glow(cos(radians(0.1 * float(x)))));", 1801, 1);
+        std::vector<double> errors;
+        for (int x = 0; x <= 1800; ++x) {
+            const double cosine = std::max(std::cos(radians(0.1 * x)), 0.0);
+            const double expected = weights[0] * std::pow(cosine, 20) +
+                                    weights[1] * std::pow(cosine, 80) +
+                                    weights[2] * std::pow(cosine, 320);
+            errors.push_back(std::abs(results[static_cast<std::size_t>(x)].x - expected));
+        }
+        EXPECT_LT(worst(errors, "sky equation 1, GPU against double", 1e-3), 1e-3);
+    }
+}
+
+TEST(Sky, TheNarrowestPowerIsADiscOfTheSunsTrueSize) {
+    // A thousandth of a degree apart, out to a whole one.
+    test::GpuSnippet gpu("sky");
+    const auto results = gpu.run(
+        "vec3 sun = vec3(0.6, 0.0, 0.8);\n"
+        "float angle = radians(0.001 * float(x));\n"
+        "vec3 view = vec3(0.6 * cos(angle) + 0.8 * sin(angle), 0.0,\n"
+        "                 0.8 * cos(angle) - 0.6 * sin(angle));\n"
+        "vec3 apart = sun - view;\n"
+        "float d2 = dot(apart, apart);\n"
+        "result = vec4(sky_narrow(d2), sky_sun(d2), 0.0, 0.0);",
+        1001, 1);
+    std::vector<double> errors;
+    for (int x = 0; x <= 1000; ++x)
+        errors.push_back(std::abs(results[static_cast<std::size_t>(x)].x -
+                                  std::pow(std::cos(radians(0.001 * x)), 65000)));
+    EXPECT_LT(worst(errors, "sky (L.V)^65000, GPU against double", 1e-3), 1e-3);
+    // Half of it, at the limb, lies 0.53 / 2 degrees from the centre: the sun's mean semidiameter
+    // is 0.2666 (Astronomical Almanac).
+    for (const int component : {0, 1}) {
+        int x = 0;
+        while (results[static_cast<std::size_t>(x)][component] > 0.5f)
+            ++x;
+        EXPECT_NEAR(0.001 * x, 0.2655, 0.0015) << component;
+    }
+}
+
+TEST(Sky, Equation2IsTheHorizontalAngleToTheSun) {
+    test::GpuSnippet gpu("sky");
+    std::vector<double> errors;
+    for (const double sun_deg : {0.0, 15.0, 60.0, 89.0, 90.0}) {
+        const glm::dvec3 sun = direction(radians(200.0), radians(sun_deg));
+        const auto results = gpu.run(fmt::format("{}vec3 sun = vec3({:.9f}, {:.9f}, {:.9f});\n"
+                                                 "result = vec4(sky_s(sun, view, up));",
+                                                 kDirection, sun.x, sun.y, sun.z),
+                                     360, 181);
+        for (int y = 0; y <= 180; ++y)
+            for (int x = 0; x < 360; ++x)
+                errors.push_back(
+                    std::abs(results[static_cast<std::size_t>(y * 360 + x)].x -
+                             equation_2(sun, direction(radians(x), radians(y - 90.0)))));
+    }
+    EXPECT_LT(worst(errors, "sky equation 2, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(Sky, TheZenithHasNoAzimuth) {
+    test::GpuSnippet gpu("sky");
+    const auto results = gpu.run(
+        "vec3 up = vec3(0.0, 0.0, 1.0);\n"
+        "result = vec4(sky_s(normalize(vec3(1.0, 0.0, 1.0)), up, up), sky_s(up, up, up), 0.0, "
+        "0.0);",
+        1, 1);
+    EXPECT_EQ(results[0].x, 0.5f);
+    EXPECT_EQ(results[0].y, 0.5f);
+}
+
+TEST(Sky, Equation3IsAPowerOfTheHeight) {
+    test::GpuSnippet gpu("sky");
+    std::vector<double> errors;
+    for (const double h : {0.05, 0.3, 0.5, 1.0, 2.0}) {
+        const auto results = gpu.run(
+            fmt::format("{}result = vec4(sky_t(view, up, {:.2f}));", kDirection, h), 1, 181);
+        for (int y = 0; y <= 180; ++y) {
+            if (y == 90) continue;  // 0^h: a float's sin 0 is not the double's
+            errors.push_back(std::abs(results[static_cast<std::size_t>(y)].x -
+                                      equation_3(direction(0, radians(y - 90.0)), h)));
+        }
+    }
+    EXPECT_LT(worst(errors, "sky equation 3, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(Sky, TheExponentFallsWithTheEyesHeight) {
+    test::GpuSnippet gpu("sky");
+    const auto results = gpu.run("result = vec4(sky_exponent(100.0 * float(x) - 500.0));", 301, 1);
+    std::vector<double> errors;
+    for (int x = 0; x <= 300; ++x)
+        errors.push_back(
+            std::abs(results[static_cast<std::size_t>(x)].x -
+                     0.5 * std::exp(-std::clamp(100.0 * x - 500.0, 0.0, 20000.0) / 8430)));
+    EXPECT_LT(worst(errors, "sky exponent, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(Sky, TheSunsHeightBlendsTwoOfTheThreeTextures) {
+    test::GpuSnippet gpu("sky");
+    const auto results =
+        gpu.run("result = vec4(sky_blend(sin(radians(float(x) - 90.0))), 0.0);", 181, 1);
+    std::vector<double> errors;
+    for (int deg = -90; deg <= 90; ++deg) {
+        const glm::vec4 w = results[static_cast<std::size_t>(deg + 90)];
+        const double sine = std::sin(radians(deg));
+        const double day = std::clamp(sine / std::sin(radians(25.0)), 0.0, 1.0);
+        const double night = std::clamp(sine / std::sin(radians(-12.0)), 0.0, 1.0);
+        errors.push_back(std::abs(w.x - day));
+        errors.push_back(std::abs(w.y - (1 - day - night)));
+        errors.push_back(std::abs(w.z - night));
+        EXPECT_LE((w.x > 0) + (w.y > 0) + (w.z > 0), 2) << deg;
+    }
+    EXPECT_LT(worst(errors, "sky blend, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(Sky, SlicesAreThoseOfTheGenerator) {
+    // tools/sky/textures.cpp, Layout::slice_of.
+    const auto folded = [](double y) { return y / (0.14 + std::abs(y)); };
+    const double lowest = folded(std::sin(radians(-18.0)));
+    test::GpuSnippet gpu("sky");
+    const auto results =
+        gpu.run("result = vec4(sky_slice(sin(radians(float(x) - 90.0))));", 181, 1);
+    std::vector<double> errors;
+    for (int deg = -90; deg <= 90; ++deg)
+        errors.push_back(
+            std::abs(results[static_cast<std::size_t>(deg + 90)].x -
+                     std::clamp((folded(std::sin(radians(deg))) - lowest) / (folded(1) - lowest),
+                                0.0, 1.0)));
+    EXPECT_LT(worst(errors, "sky slice, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(Sky, AirMassIsRozenbergs) {
+    test::GpuSnippet gpu("sky");
+    const auto results = gpu.run("result = vec4(sky_air_mass_of(sin(radians(float(x)))));", 91, 1);
+    std::vector<double> errors;
+    for (int deg = 0; deg <= 90; ++deg) {
+        const double sine = std::sin(radians(deg));
+        const double expected = 1 / (sine + 0.025 * std::exp(-11 * sine));
+        errors.push_back(std::abs(results[static_cast<std::size_t>(deg)].x / expected - 1));
+    }
+    EXPECT_LT(worst(errors, "sky air mass, relative", 1e-3), 1e-3);
+}
+
+}  // namespace
+}  // namespace relevo

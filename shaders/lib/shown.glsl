@@ -1,0 +1,21 @@
+//! provides  shown: from radiance to the colours of the picture
+//! hook      tonemap
+
+//@ include lib/srgb.glsl
+
+/// Rounds to 8 bits up or down by where the pixel is, so that a sky's gradient does not end in steps.
+/// source: J. Jimenez, Next Generation Post Processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014
+/// course, slide 123: interleaved gradient noise
+vec3 dithered(in vec3 colour) {
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    return colour + (noise - 0.5) / 255.0;
+}
+
+/// @param radiance  linear, exposed
+/// @param over      premultiplied sRGB that lies over the picture
+vec4 shown(in vec3 radiance, in vec4 over) {
+    vec3 colour = radiance;
+    hook_tonemap(colour);
+    colour = srgb_encoded(colour) * (1.0 - over.a) + over.rgb;
+    return vec4(dithered(colour), 1.0);
+}

@@ -1,0 +1,267 @@
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "dem/fixture.h"
+#include "support/support.h"
+
+namespace relevo::test {
+namespace {
+
+std::filesystem::path dir() {
+    static const std::filesystem::path folder = scratch_dir("cli_info");
+    return folder;
+}
+
+TEST(InfoVerb, SaysEverythingInLines) {
+    const Result run = relevo({"-v", "info", bundled_dem(), "--time", "2026-06-21T16:00Z"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.out,
+              "file       " + bundled_dem() +
+                  "\n"
+                  "format     GTiff, Int16\n"
+                  "posts      403 x 344\n"
+                  "crs        EPSG:4326 (WGS 84)\n"
+                  "center     36.30292 N 84.24583 W (UTM 16N 747302 E 4021068 N, MGRS "
+                  "16SGF4730221067)\n"
+                  "extent     30.1 km east, 31.7 km north\n"
+                  "spacing    74.85 m x 92.47 m\n"
+                  "heights    236.0 to 1076.0 m\n"
+                  "holes      0 %\n"
+                  "unit       m (band)\n"
+                  "above      unknown\n"
+                  "assumed    heights are placed as ellipsoidal ones: the file does not say what "
+                  "they are above\n"
+                  "sun        azimuth 114.27, elevation 65.12 (65.13 with refraction) at "
+                  "2026-06-21T16:00:00Z\n"
+                  "net        pieces of 64 posts are drawn within 0.00024 m of where they are, "
+                  "3.2e-06 of the post spacing\n");
+}
+
+TEST(InfoVerb, JsonHasTheSunAndTheNet) {
+    const Result run = relevo({"info", bundled_dem(), "--json", "--time", "2026-06-21T16:00Z"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["files"], nlohmann::json{bundled_dem()});
+    EXPECT_EQ(json["utm"], "16N 747302 E 4021068 N");
+    EXPECT_EQ(json["mgrs"], "16SGF4730221067");
+    EXPECT_EQ(json["sun"]["utc"], "2026-06-21T16:00:00Z");
+    const Result sun = relevo(
+        {"sun", "position", "--json", "--at", "36.30292,-84.24583", "--time", "2026-06-21T16:00Z"});
+    const nlohmann::json position = nlohmann::json::parse(sun.out);
+    for (const char* key : {"azimuth_deg", "elevation_deg"})
+        EXPECT_NEAR(json["sun"][key].get<double>(), position[key].get<double>(), 1e-4) << key;
+    EXPECT_GT(json["sun"]["apparent_elevation_deg"], json["sun"]["elevation_deg"]);
+    EXPECT_EQ(json["position_net"]["piece_posts"], 64);
+    EXPECT_LT(json["position_net"]["error_m"].get<double>(), 0.75);
+    EXPECT_EQ(json["spikes"]["count"], 0);
+    EXPECT_EQ(json["spikes"]["limit_m"], 449.088);
+    EXPECT_TRUE(json["spikes"]["worst"].is_null());
+}
+
+TEST(InfoVerb, SaysGuessesOnStandardError) {
+    Raster raster;
+    raster.type = "Int16";
+    raster.columns = raster.rows = 20;
+    raster.value = [](int column, int row, int) { return column == 3 ? -9999.0 : 500 + row; };
+    const std::string path = write_raster(dir() / "undeclared.tif", raster);
+    const std::string said =
+        "-9999 marks holes, though the file does not say so: no height is near it; --nodata none "
+        "takes it as a height";
+    const Result run = relevo({"info", path, "--json"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(run.err, "relevo: " + path + ": " + said + "\n");
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["nodata"], -9999);
+    EXPECT_EQ(json["nodata_share"], 0.05);
+    EXPECT_EQ(json["assumptions"].back(), said);
+    EXPECT_EQ(relevo({"-q", "info", path}).err, "");
+
+    const Result all = relevo({"info", path, "--json", "--nodata", "none"});
+    EXPECT_EQ(all.err, "");
+    EXPECT_EQ(nlohmann::json::parse(all.out)["elevation_m"]["min"], -9999);
+    const Result other = relevo({"info", path, "--json", "--nodata", "-9999"});
+    EXPECT_EQ(other.err, "");
+    EXPECT_EQ(nlohmann::json::parse(other.out)["elevation_m"]["min"], 500);
+}
+
+TEST(InfoVerb, ReportsSpikesAndOutliers) {
+    Raster raster;
+    raster.columns = raster.rows = 20;
+    raster.value = [](int column, int row, int) {
+        return column == 3 && row == 4 ? 9500.0 : 500.0 + row;
+    };
+    const std::string path = write_raster(dir() / "spike.tif", raster);
+    const Result run = relevo({"-q", "info", path, "--nodata", "none"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_NE(run.out.find("outliers   1 heights that the Earth has not\n"
+                           "spikes     1 posts stand more than 180 m out of all their neighbours, "
+                           "the worst by 8995 m at 46.95231 N 9.00138 E\n"),
+              std::string::npos)
+        << run.out;
+}
+
+TEST(InfoVerb, JoinsFiles) {
+    Raster east;
+    east.geotransform = {{500180, 30, 0, 5200000, 0, -30}};
+    const std::string a = write_raster(dir() / "a.tif", {});
+    const std::string b = write_raster(dir() / "b.tif", east);
+    const Result run = relevo({"info", a, b, "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["size"], (nlohmann::json{12, 4}));
+    EXPECT_EQ(json["files"], (nlohmann::json{a, b}));
+    EXPECT_EQ(json["path"], a + " and 1 more");
+}
+
+TEST(DemOptions, TakeTheirValues) {
+    Raster picture;
+    picture.driver = "PNG";
+    picture.type = "Byte";
+    picture.crs = "";
+    picture.geotransform.reset();
+    picture.bands = 3;
+    picture.columns = picture.rows = 16;
+    picture.value = [](int column, int row, int band) {
+        return ((300 + column + row + 10000) * 10) >> (8 * (3 - band)) & 255;
+    };
+    const std::string path = write_raster(dir() / "coded.png", picture);
+    const Result run = relevo(
+        {"info", path, "--json", "--encoding", "terrain-rgb", "--bounds", "-10,46,-9.9,46.1"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_EQ(json["elevation_m"]["max"], 330);
+    EXPECT_EQ(json["center"]["lat_deg"], 46.05);
+    EXPECT_EQ(json["center"]["lon_deg"], -9.95);
+    EXPECT_EQ(json["unit_source"], "encoding");
+}
+
+TEST(DemOptions, WrongOnesHaveTheirMessages) {
+    const struct {
+        std::vector<std::string> options;
+        int status;
+        std::string message;
+    } cases[] = {
+        {{"--nodata", "abc"}, 2, "--nodata: expected a number or none but got \"abc\""},
+        {{"--encoding", "mapbox"},
+         2,
+         "--encoding: mapbox: an encoding of heights, expected terrain-rgb or terrarium"},
+        {{"--bounds", "1,2,3"}, 2, "--bounds: 1,2,3: expected WEST,SOUTH,EAST,NORTH in degrees"},
+        {{"--unit", "furlong"},
+         2,
+         "--unit: furlong: a unit of height, expected m, ft, us-ft, cm or km"},
+        {{"--crs", "EPSG:999999"},
+         3,
+         "dem::load: " + bundled_dem() +
+             ": EPSG:999999: not a coordinate reference system that PROJ knows, crs not found; "
+             "write EPSG:n, WKT or a PROJ string"},
+        {{"--band", "7"},
+         3,
+         "dem::load: " + bundled_dem() + ": band, expected 1 to 1 but got 7; --band counts from 1"},
+        {{"--encoding", "terrarium"},
+         3,
+         "dem::load: " + bundled_dem() +
+             ": --encoding terrarium, expected red, green and blue bands of 8 bits but got one "
+             "band of Int16"},
+    };
+    for (const auto& c : cases)
+        for (const char* verb : {"info", "capture"}) {
+            std::vector<std::string> arguments{verb, bundled_dem()};
+            arguments.insert(arguments.end(), c.options.begin(), c.options.end());
+            const std::string out = (dir() / "out.png").string();
+            if (verb == std::string("capture"))
+                arguments.insert(arguments.end(), {"-o", out, "--size", "64x64"});
+            const Result run = relevo(arguments);
+            EXPECT_EQ(run.status, c.status) << run.err;
+            EXPECT_EQ(run.err, "relevo: error: " + c.message + "\n");
+            EXPECT_EQ(run.out, "");
+            EXPECT_FALSE(std::filesystem::exists(out));
+        }
+}
+
+TEST(DemOptions, PicturesAreNoDems) {
+    Raster picture;
+    picture.type = "Byte";
+    picture.bands = 3;
+    picture.columns = picture.rows = 64;
+    picture.pictures = true;
+    picture.value = [](int column, int row, int band) {
+        return (column * 97 + row * 61 + band * 131 + column * row * 7) % 256;
+    };
+    const std::string path = write_raster(dir() / "photo.tif", picture);
+    const Result run = relevo({"capture", path, "-o", (dir() / "out.png").string()});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_EQ(run.err,
+              "relevo: error: dem::load: " + path +
+                  ": a picture (red, green and blue bands of 8 bits), expected heights; if its "
+                  "colours encode heights pass --encoding terrain-rgb or terrarium, if one band "
+                  "holds them --band N\n");
+}
+
+TEST(DoctorVerb, NamesTheDeviceAndWhy) {
+    const Result run = relevo({"doctor", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    const nlohmann::json& device = json["device"];
+    const int index = device["index"];
+    EXPECT_FALSE(device["renderer"].get<std::string>().empty());
+    EXPECT_TRUE(device["why"].get<std::string>().starts_with("the first that "));
+    EXPECT_EQ(json["devices"][static_cast<std::size_t>(index)]["renderer"], device["renderer"]);
+    for (const nlohmann::json& other : json["devices"]) {
+        // Auto takes the first that can draw.
+        if (other["index"].get<int>() < index) {
+            EXPECT_FALSE(other["can_draw"]);
+        }
+        EXPECT_NE(other["renderer"].is_null(), other["reason"].is_null());
+    }
+    EXPECT_GE(device["limits"]["texture_size_px"], 4096);
+    EXPECT_EQ(json["share_found"], true);
+    EXPECT_TRUE(json["broken_plugins"].empty()) << json["broken_plugins"];
+    EXPECT_FALSE(json["plugins"].empty());
+    EXPECT_EQ(json["plugin_folder"], json["share_dir"].get<std::string>() + "/plugins");
+
+    const Result text = relevo({"doctor"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_NE(text.out.find("draws with " + device["renderer"].get<std::string>() + ", " +
+                            device["version"].get<std::string>()),
+              std::string::npos)
+        << text.out;
+}
+
+TEST(DoctorVerb, AsksForTheDeviceThatIsWanted) {
+    const Result run = relevo({"doctor", "--json", "--device", "software"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(nlohmann::json::parse(run.out)["device"]["software"], true);
+    EXPECT_EQ(nlohmann::json::parse(run.out)["device"]["why"], "--device software asks for it");
+}
+
+TEST(DoctorVerb, WithoutADeviceSaysWhatToDoAndExitsWithFour) {
+    const Result run =
+        relevo({"doctor", "--json"}, {"__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere/none.json"});
+    EXPECT_EQ(run.status, 4);
+    EXPECT_EQ(run.err,
+              "relevo: error: gl: no GL device: EGL offers none; install Mesa's software renderer "
+              "(libegl1, libegl-mesa0, libgl1-mesa-dri)\n");
+    const nlohmann::json json = nlohmann::json::parse(run.out);
+    EXPECT_TRUE(json["device"].is_null());
+    EXPECT_TRUE(json["devices"].empty());
+    const std::string advice = json["advice"].dump();
+    EXPECT_NE(advice.find("__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere/none.json is set"),
+              std::string::npos);
+    EXPECT_NE(advice.find("install Mesa's software renderer"), std::string::npos);
+    const Result wanted = relevo({"doctor", "--device", "voodoo"});
+    EXPECT_EQ(wanted.status, 4);
+    EXPECT_TRUE(wanted.out.find("draws with nothing\n") != std::string::npos) << wanted.out;
+}
+
+TEST(DoctorVerb, SaysWhereItsDataAreNot) {
+    const Result run = relevo({"doctor"}, {"RELEVO_SHARE=/nowhere"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("data       /nowhere (not there; RELEVO_SHARE names another)\n"),
+              std::string::npos)
+        << run.out;
+}
+
+}  // namespace
+}  // namespace relevo::test

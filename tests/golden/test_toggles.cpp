@@ -1,0 +1,217 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "cli/program.h"
+#include "image/image.h"
+#include "support/support.h"
+
+namespace relevo::test {
+namespace {
+
+#define SKIP_WITHOUT_PLUGIN(id)                                    \
+    if (!std::filesystem::exists(source_dir() / "plugins" / (id))) \
+    GTEST_SKIP() << "the plugin " << (id) << " is not there"
+
+class Toggles : public testing::Test {
+  protected:
+    Result take(const std::string& name, std::vector<std::string> more) {
+        if (std::find(more.begin(), more.end(), "--time") == more.end())
+            more.insert(more.end(), {"--time", "2026-06-21T18:30-04:00"});
+        more.insert(more.begin(), {"capture", bundled_dem(), "-o", (dir_ / name).string(), "--size",
+                                   "96x64", "--overwrite"});
+        return relevo(more);
+    }
+    image::Image8 picture(const std::string& name) { return image::read(dir_ / name); }
+    /// What was said besides the line about place, time and sun.
+    static std::string notices(const Result& run) {
+        std::string rest;
+        for (const std::string& line : split(run.err, '\n'))
+            if (!line.empty() && line.find("sun at azimuth") == std::string::npos)
+                rest += line + "\n";
+        return rest;
+    }
+
+    /// Neither the plugin's file nor anything that it declares is in the programs.
+    static void expect_absent(const std::string& id, const std::filesystem::path& dump) {
+        for (const auto& file : std::filesystem::directory_iterator(dump)) {
+            const std::string text = read_text(file.path(), "test");
+            for (const std::string& word : {id + ".glsl", id + "_on_"})
+                EXPECT_EQ(text.find(word), std::string::npos) << word << " in " << file.path();
+        }
+    }
+
+    std::filesystem::path dir_ = scratch_dir("toggles");
+};
+
+TEST_F(Toggles, OnlyHazePullsInTheSkyAndSaysSo) {
+    SKIP_WITHOUT_PLUGIN("haze");
+    const Result run = take("a.png", {"--only", "haze"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(notices(run), "relevo: haze requires sky: sky is switched on too\n");
+    take("b.png", {"--only", "haze,sky"});
+    EXPECT_EQ(image::compare(picture("a.png"), picture("b.png")).worst, 0);
+}
+
+TEST_F(Toggles, DisablingTheSkyTurnsTheHazeOffAndSaysSo) {
+    SKIP_WITHOUT_PLUGIN("haze");
+    const Result run = take("a.png", {"--disable", "sky"});
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(notices(run), "relevo: haze is off: it requires sky, sky is disabled\n");
+}
+
+TEST_F(Toggles, AllOffIsCoreAloneByteForByte) {
+    // A copy of the program's data without any plugin.
+    const std::filesystem::path share = dir_ / "share";
+    std::filesystem::create_directories(share / "plugins");
+    std::filesystem::create_directory_symlink(source_dir() / "shaders", share / "shaders");
+    const Result bare = relevo({"-q", "capture", bundled_dem(), "-o", (dir_ / "bare.png").string(),
+                                "--size", "96x64", "--time", "2026-06-21T18:30-04:00"},
+                               {"RELEVO_SHARE=" + share.string()});
+    ASSERT_EQ(bare.status, 0) << bare.err;
+    take("off.png", {"--only", "", "--dump-shaders", (dir_ / "off").string()});
+    EXPECT_EQ(read_text(dir_ / "bare.png", "test"), read_text(dir_ / "off.png", "test"));
+    for (const auto& plugin : std::filesystem::directory_iterator(source_dir() / "plugins"))
+        expect_absent(plugin.path().filename().string(), dir_ / "off");
+}
+
+TEST_F(Toggles, EachDisabledEffectIsAbsentFromTheText) {
+    std::vector<std::string> ids;
+    for (const auto& plugin : std::filesystem::directory_iterator(source_dir() / "plugins"))
+        ids.push_back(plugin.path().filename().string());
+    for (const std::string& id : ids) {
+        const std::filesystem::path dump = dir_ / ("without_" + id);
+        ASSERT_EQ(take("a.png", {"--disable", id, "--dump-shaders", dump.string()}).status, 0);
+        expect_absent(id, dump);
+    }
+}
+
+TEST_F(Toggles, EveryPairOfEffectsCompilesAndDraws) {
+    const Result list = relevo({"plugins", "list", "--json"});
+    std::vector<std::string> ids;
+    for (const auto& plugin : nlohmann::json::parse(list.out)["plugins"])
+        ids.push_back(plugin["id"]);
+    take("none.png", {"--only", ""});
+    const image::Image8 none = picture("none.png");
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        for (std::size_t j = i + 1; j < ids.size(); ++j) {
+            const Result run = take("pair.png", {"--only", ids[i] + "," + ids[j]});
+            EXPECT_EQ(run.status, 0) << ids[i] << " and " << ids[j] << ": " << run.err;
+            const image::Image8 pair = picture("pair.png");
+            EXPECT_GT(image::compare(pair, none).worst, 8) << ids[i] << " and " << ids[j];
+        }
+    }
+}
+
+TEST_F(Toggles, AnOverlaysColoursAreTheLegendsWhateverTheLight) {
+    const std::filesystem::path folder = dir_ / "plugins/legend";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "plugin.json")
+        << R"({"format": 1, "id": "legend", "name": "Legend", "version": "1.0.0"})";
+    std::ofstream(folder / "legend.glsl")
+        << "uniform float legend_opaque = 1.0; //@ range(0, 1)\n"
+           "void legend_on_display(in Surface s, inout vec4 overlay) {\n"
+           "    overlay = legend_opaque * vec4(0.8, 0.4, 0.2, 1.0);\n"
+           "}\n";
+    const glm::ivec3 kColour{204, 102, 51};
+    const std::string path = (dir_ / "plugins").string();
+    take("plain.png", {"--only", "", "--view", "el=90,zoom=3"});
+    const image::Image8 plain = picture("plain.png");
+    for (const char* time : {"2026-06-21T18:30-04:00", "2026-06-22T01:00-04:00"}) {
+        take("legend.png",
+             {"--only", "legend", "--plugin-path", path, "--view", "el=90,zoom=3", "--time", time});
+        const image::Image8 legend = picture("legend.png");
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(legend.at(48, 32, c), kColour[c], 1) << time;
+    }
+    // Half of it lies over half of the picture.
+    take("half.png", {"--only", "legend", "--plugin-path", path, "--view", "el=90,zoom=3", "--set",
+                      "legend.opaque=0.5"});
+    const image::Image8 half = picture("half.png");
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(half.at(48, 32, c), 0.5 * plain.at(48, 32, c) + 0.5 * kColour[c], 1.5);
+    // It is no light: linear pictures are without it.
+    take("plain.exr", {"--only", "", "--view", "el=90,zoom=3"});
+    take("legend.exr", {"--only", "legend", "--plugin-path", path, "--view", "el=90,zoom=3"});
+    EXPECT_EQ(image::read_float(dir_ / "plain.exr").values,
+              image::read_float(dir_ / "legend.exr").values);
+}
+
+TEST_F(Toggles, AbIsWithOnTheLeftAndWithoutOnTheRight) {
+    SKIP_WITHOUT_PLUGIN("haze");
+    ASSERT_EQ(take("ab.png", {"--ab", "haze"}).status, 0);
+    take("with.png", {});
+    take("without.png", {"--disable", "haze"});
+    const image::Image8 ab = picture("ab.png"), with = picture("with.png"),
+                        without = picture("without.png");
+    EXPECT_GT(image::compare(with, without).worst, 8);
+    for (int y = 0; y < ab.height; ++y) {
+        for (int x = 0; x < ab.width; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                const int expected = x < 47 ? with.at(x, y, c) : x < 49 ? 255 : without.at(x, y, c);
+                ASSERT_EQ(ab.at(x, y, c), expected) << x << " " << y;
+            }
+        }
+    }
+}
+
+double mean(const image::Image8& picture) {
+    double sum = 0;
+    for (const std::uint8_t value : picture.values)
+        sum += value;
+    return sum / static_cast<double>(picture.values.size());
+}
+
+/// Standard deviation over the lower half, which is ground.
+double detail(const image::Image8& picture) {
+    double sum = 0, squares = 0, n = 0;
+    for (int y = picture.height / 2; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x, ++n) {
+            sum += picture.at(x, y, 1);
+            squares += picture.at(x, y, 1) * picture.at(x, y, 1);
+        }
+    }
+    return std::sqrt(squares / n - sum / n * (sum / n));
+}
+
+TEST_F(Toggles, ExposureHoldsFromNoonOnSnowToCivilTwilightToNight) {
+    SKIP_WITHOUT_PLUGIN("layering");
+    SKIP_WITHOUT_PLUGIN("sky");
+    const auto shown = [&](const char* time, std::vector<std::string> more) {
+        more.insert(more.begin(),
+                    {"-q", "capture", bundled_dem(), "-o", (dir_ / "a.png").string(), "--size",
+                     "160x120", "--overwrite", "--view", "az=200,el=35,zoom=3", "--time", time});
+        EXPECT_EQ(relevo(more).status, 0);
+        return picture("a.png");
+    };
+    // Snow everywhere, at noon of the longest day: bright, not white, and its slopes are seen.
+    const image::Image8 snow = shown(
+        "2026-06-21T13:38-04:00",
+        {"--set", "layering.limits=metres", "--set", "layering.sand_grass_m=-900,-800", "--set",
+         "layering.grass_rock_m=-700,-600", "--set", "layering.rock_snow_m=-500,-400"});
+    fmt::print("[ exposure ] snow at noon: mean {:.0f}, deviation {:.1f}\n", mean(snow),
+               detail(snow));
+    EXPECT_GT(mean(snow), 180);
+    EXPECT_LT(mean(snow), 248);
+    EXPECT_GT(detail(snow), 2);
+    // The end of civil twilight, the sun 6 degrees below the horizon: 21:25.
+    const image::Image8 dusk = shown("2026-06-21T21:25-04:00", {});
+    fmt::print("[ exposure ] grass at civil dusk: mean {:.0f}, deviation {:.1f}\n", mean(dusk),
+               detail(dusk));
+    EXPECT_GT(mean(dusk), 20);
+    EXPECT_GT(detail(dusk), 2);
+    // Night without a moon: dark, and not black.
+    const image::Image8 night = shown("2026-06-22T01:00-04:00", {});
+    fmt::print("[ exposure ] grass at night: mean {:.0f}\n", mean(night));
+    EXPECT_GT(mean(night), 8);
+    EXPECT_LT(mean(night), mean(dusk));
+}
+
+}  // namespace
+}  // namespace relevo::test

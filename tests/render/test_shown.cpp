@@ -1,0 +1,40 @@
+#include "base/units.h"
+#include "dem/load.h"
+#include "gl/context.h"
+#include "render/ground.h"
+#include "render/renderer.h"
+#include "sun/zone.h"
+#include "support/support.h"
+
+namespace relevo::render {
+namespace {
+
+TEST(Picture, IsTheSameWithAndWithoutKeepingItsRadiance) {
+    // With it, the light is stored as half floats and tone-mapped by a pass of its own.
+    const dem::Heightfield dem =
+        dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
+    const Ground ground = make_ground(dem);
+    const geo::Geodetic place = ground.frame.origin();
+    gl::Context context({.device = "software", .debug = true});
+    shader::ParamStore values;
+    values.declare(core_params());
+    EffectInputs no_effects;
+    no_effects.stitch.values = &values;
+    FrameInputs inputs;
+    inputs.sun = make_sun_light(sun::position(sun::parse_time("2026-06-21T22:30Z").utc, place),
+                                sun::Refraction::standard(place), ground, dem.grid);
+    inputs.camera = scene::orbit_camera({200, 20, 1.5}, points_to_show(dem, ground, 1), radians(40),
+                                        320.0 / 256);
+    std::vector<image::Image8> pictures;
+    for (const bool radiance : {true, false}) {
+        Renderer renderer(context, no_effects,
+                          {.width_px = 320, .height_px = 256, .radiance = radiance});
+        Terrain terrain(dem, ground.frame, {.max_array_layers = context.info().max_array_layers});
+        renderer.render_frame(terrain, ground, inputs);
+        pictures.push_back(renderer.read_picture());
+    }
+    EXPECT_LE(image::compare(pictures[0], pictures[1]).worst, 1);
+}
+
+}  // namespace
+}  // namespace relevo::render

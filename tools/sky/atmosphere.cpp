@@ -1,0 +1,288 @@
+#include "atmosphere.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel_for.h"
+#include "base/units.h"
+
+namespace relevo::skymaker {
+namespace {
+
+constexpr double kEarth_m = 6371000;
+constexpr double kTop_m = 80000;
+constexpr double kRayleighScale_m = 8000;
+constexpr double kAerosolScale_m = 1200;
+constexpr double kAerosolAlbedo = 0.93;  // what it scatters of what it takes
+constexpr double kForward = 0.8;         // Henyey and Greenstein's g
+constexpr double kAureole_rad = radians(45.0);
+constexpr double kGround = 0.12;  // reflectance of the Earth
+constexpr double kSunRadius_rad = radians(0.2666);
+
+// Tables: heights by the square root, the sun by the root of its distance from the Earth's edge.
+constexpr int kHeights = 48, kSuns = 256;
+constexpr int kManyHeights = 24, kManySuns = 96;
+
+double aerosol_depth_at(double um) {
+    return 0.04 * std::pow(um, -1.3);
+}
+
+double edge_sine(double height_m) {
+    const double cosine = kEarth_m / (kEarth_m + height_m);
+    return -std::sqrt(1 - cosine * cosine);
+}
+
+double ozone_density(double height_m) {
+    return std::max(0.0, 1 - std::abs(height_m - 25000) / 15000);
+}
+
+double rayleigh_phase(double cosine) {
+    return 3 / (16 * kPi) * (1 + cosine * cosine);
+}
+
+double aerosol_phase(double cosine) {
+    const double g = kForward;
+    return (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+}
+
+/// Distance to the sphere of that height from a point, along a direction that meets it.
+double distance_to(double radius_m, double from_m, double sine) {
+    const double across = from_m * from_m * (1 - sine * sine);
+    return -from_m * sine + std::sqrt(std::max(radius_m * radius_m - across, 0.0));
+}
+
+double smooth(double x) {
+    const double t = std::clamp(x, 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
+/// Linear interpolation in a table over the unit square.
+struct Place {
+    std::size_t i00, i10, i01, i11;
+    double x, y;
+};
+Place place(double u, double v, int columns, int rows) {
+    const double c = std::clamp(u, 0.0, 1.0) * (columns - 1),
+                 r = std::clamp(v, 0.0, 1.0) * (rows - 1);
+    const int c0 = std::min(static_cast<int>(c), columns - 2);
+    const int r0 = std::min(static_cast<int>(r), rows - 2);
+    const auto at = [&](int i, int j) { return static_cast<std::size_t>(j * columns + i); };
+    return {at(c0, r0), at(c0 + 1, r0), at(c0, r0 + 1), at(c0 + 1, r0 + 1), c - c0, r - r0};
+}
+double mix(double a, double b, double t) {
+    return a + t * (b - a);
+}
+
+}  // namespace
+
+double aureole_phase(double distance) {
+    const double angle = 2 * std::asin(std::clamp(distance / 2, 0.0, 1.0));
+    const double near = std::exp(-std::pow(angle / kAureole_rad, 2));
+    return near * aerosol_phase(std::cos(angle));
+}
+
+double aerosol_depth() {
+    return aerosol_depth_at(0.55);
+}
+
+Atmosphere::Atmosphere() {
+    constexpr double kOzonePerM3 = 300 * 2.687e20 / 15000;  // 300 Dobson units
+    for (int i = 0; i < kWavelengths; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double um = wavelength_um(i);
+        rayleigh_[k] = 1.24062e-6 * std::pow(um, -4);
+        aerosol_[k] = aerosol_depth_at(um) / kAerosolScale_m;
+        ozone_[k] = kOzonePerM3 * ozone_cross_section()[k];
+    }
+    to_sun_.resize(static_cast<std::size_t>(kHeights * kSuns));
+    parallel_for(0, kHeights, 1, [&](int first, int last) {
+        for (int row = first; row < last; ++row) {
+            const double h = kTop_m * std::pow(row / (kHeights - 1.0), 2);
+            const double edge = edge_sine(h);
+            for (int column = 0; column < kSuns; ++column) {
+                const double t = column / (kSuns - 1.0);
+                to_sun_[static_cast<std::size_t>(row * kSuns + column)].columns =
+                    columns(h, edge + (1 - edge) * t * t);
+            }
+        }
+    });
+    scatter_many();
+}
+
+/// Air along a ray to the top of the atmosphere, as lengths of it at full density.
+Atmosphere::Columns Atmosphere::columns(double height_m, double sine) const {
+    const double from = kEarth_m + height_m;
+    const double length = distance_to(kEarth_m + kTop_m, from, sine);
+    constexpr int kSteps = 400;
+    const double step = length / kSteps;
+    Columns sum;
+    for (int i = 0; i < kSteps; ++i) {
+        const double d = (i + 0.5) * step;
+        const double h =
+            std::max(0.0, std::sqrt(from * from + d * d + 2 * from * d * sine) - kEarth_m);
+        sum.rayleigh_m += step * std::exp(-h / kRayleighScale_m);
+        sum.aerosol_m += step * std::exp(-h / kAerosolScale_m);
+        sum.ozone_m += step * ozone_density(h);
+    }
+    return sum;
+}
+
+Atmosphere::Lit Atmosphere::towards_sun(double height_m, double sine) const {
+    const double edge = edge_sine(height_m);
+    const double above_edge_rad = std::asin(std::clamp(sine, -1.0, 1.0)) - std::asin(edge);
+    Lit lit;
+    lit.share = smooth(0.5 + 0.5 * above_edge_rad / kSunRadius_rad);
+    const double u = std::sqrt(std::max(0.0, (sine - edge) / (1 - edge)));
+    const Place at = place(u, std::sqrt(height_m / kTop_m), kSuns, kHeights);
+    const auto read = [&](double Columns::*member) {
+        const auto value = [&](std::size_t i) { return to_sun_[i].columns.*member; };
+        return mix(mix(value(at.i00), value(at.i10), at.x), mix(value(at.i01), value(at.i11), at.x),
+                   at.y);
+    };
+    lit.columns = {read(&Columns::rayleigh_m), read(&Columns::aerosol_m), read(&Columns::ozone_m)};
+    return lit;
+}
+
+void Atmosphere::pass(Spectrum& through, const Columns& c, double length) const {
+    for (std::size_t k = 0; k < kWavelengths; ++k)
+        through[k] *= std::exp(-length * (c.rayleigh_m * rayleigh_[k] + c.aerosol_m * aerosol_[k] +
+                                          c.ozone_m * ozone_[k]));
+}
+
+void Atmosphere::scatter_many() {
+    constexpr int kDirections = 64, kSteps = 32;
+    many_.assign(static_cast<std::size_t>(kManyHeights * kManySuns), Spectrum{});
+    std::vector<Spectrum> made(many_.size());
+    parallel_for(0, kManyHeights * kManySuns, 1, [&](int first, int last) {
+        for (int index = first; index < last; ++index) {
+            const double h = kTop_m * std::pow(index / kManySuns / (kManyHeights - 1.0), 2);
+            const double y = 2.0 * (index % kManySuns) / (kManySuns - 1.0) - 1;
+            const double sun = y * std::abs(y);  // dense about the horizon
+            Spectrum second{}, share{};
+            for (int d = 0; d < kDirections; ++d) {
+                const double sine = 1 - (2 * d + 1.0) / kDirections;
+                const double azimuth = d * kPi * (3 - std::sqrt(5.0));
+                const double cosine =
+                    sine * sun +
+                    std::sqrt((1 - sine * sine) * std::max(0.0, 1 - sun * sun)) * std::cos(azimuth);
+                const double from = kEarth_m + h;
+                const bool ground = sine < edge_sine(h);
+                const double length =
+                    ground ? -from * sine -
+                                 std::sqrt(std::max(
+                                     0.0, kEarth_m * kEarth_m - from * from * (1 - sine * sine)))
+                           : distance_to(kEarth_m + kTop_m, from, sine);
+                Spectrum through;
+                through.fill(1);
+                double before = 0;
+                for (int i = 0; i < kSteps; ++i) {
+                    const double next = length * std::pow((i + 1.0) / kSteps, 2);
+                    const double step = next - before, at = 0.5 * (next + before);
+                    before = next;
+                    const double r = std::sqrt(from * from + at * at + 2 * from * at * sine);
+                    const double height = std::clamp(r - kEarth_m, 0.0, kTop_m);
+                    // The sun's sine there: the same direction against another vertical.
+                    const double local = std::clamp((from * sun + at * cosine) / r, -1.0, 1.0);
+                    const Lit lit = towards_sun(height, local);
+                    Spectrum light;
+                    light.fill(lit.share);
+                    pass(light, lit.columns, 1);
+                    const double air = std::exp(-height / kRayleighScale_m),
+                                 dust = std::exp(-height / kAerosolScale_m);
+                    Spectrum after = through;
+                    pass(after, {air, dust, ozone_density(height)}, step);
+                    for (std::size_t k = 0; k < kWavelengths; ++k) {
+                        const double scattered =
+                            air * rayleigh_[k] + dust * kAerosolAlbedo * aerosol_[k];
+                        const double taken = air * rayleigh_[k] + dust * aerosol_[k] +
+                                             ozone_density(height) * ozone_[k];
+                        const double passed =
+                            taken > 0 ? (through[k] - after[k]) / taken * scattered : 0.0;
+                        second[k] += passed * light[k] / (4 * kPi) / kDirections;
+                        share[k] += passed / kDirections;
+                    }
+                    through = after;
+                }
+                if (ground) {
+                    const double local =
+                        std::clamp((from * sun + length * cosine) / kEarth_m, -1.0, 1.0);
+                    const Lit lit = towards_sun(0, local);
+                    Spectrum light;
+                    light.fill(lit.share * std::max(local, 0.0) * kGround / kPi);
+                    pass(light, lit.columns, 1);
+                    for (std::size_t k = 0; k < kWavelengths; ++k)
+                        second[k] += through[k] * light[k] / kDirections;
+                }
+            }
+            for (std::size_t k = 0; k < kWavelengths; ++k)
+                made[static_cast<std::size_t>(index)][k] = second[k] / (1 - share[k]);
+        }
+    });
+    many_ = std::move(made);
+}
+
+Spectrum Atmosphere::many(double height_m, double sun_sine) const {
+    const double y = std::copysign(std::sqrt(std::abs(sun_sine)), sun_sine);
+    const Place at = place(0.5 + 0.5 * y, std::sqrt(height_m / kTop_m), kManySuns, kManyHeights);
+    Spectrum result;
+    for (std::size_t k = 0; k < kWavelengths; ++k)
+        result[k] = mix(mix(many_[at.i00][k], many_[at.i10][k], at.x),
+                        mix(many_[at.i01][k], many_[at.i11][k], at.x), at.y);
+    return result;
+}
+
+Atmosphere::Radiance Atmosphere::radiance(double sine, double sun_sine, double azimuth_cos) const {
+    constexpr int kSteps = 40;
+    const double cosine =
+        sine * sun_sine +
+        azimuth_cos * std::sqrt(std::max(0.0, (1 - sine * sine) * (1 - sun_sine * sun_sine)));
+    const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+    const double air_phase = rayleigh_phase(cosine);
+    const double ring_phase = aureole_phase(2 * std::sin(angle / 2));
+    const double dust_phase = aerosol_phase(cosine) - ring_phase;
+    const double length = distance_to(kEarth_m + kTop_m, kEarth_m, sine);
+    Radiance sum;
+    Spectrum through;
+    through.fill(1);
+    double before = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double next = length * std::pow((i + 1.0) / kSteps, 2);
+        const double step = next - before, at = 0.5 * (next + before);
+        before = next;
+        const double r = std::sqrt(kEarth_m * kEarth_m + at * at + 2 * kEarth_m * at * sine);
+        const double height = std::clamp(r - kEarth_m, 0.0, kTop_m);
+        const double local = std::clamp((kEarth_m * sun_sine + at * cosine) / r, -1.0, 1.0);
+        const Lit lit = towards_sun(height, local);
+        Spectrum light;
+        light.fill(lit.share);
+        pass(light, lit.columns, 1);
+        const Spectrum around = many(height, local);
+        const double air = std::exp(-height / kRayleighScale_m),
+                     dust = std::exp(-height / kAerosolScale_m);
+        Spectrum after = through;
+        pass(after, {air, dust, ozone_density(height)}, step);
+        for (std::size_t k = 0; k < kWavelengths; ++k) {
+            const double by_air = air * rayleigh_[k];
+            const double by_dust = dust * kAerosolAlbedo * aerosol_[k];
+            const double taken = by_air + dust * aerosol_[k] + ozone_density(height) * ozone_[k];
+            const double sent = light[k] * (by_air * air_phase + by_dust * dust_phase) +
+                                around[k] * (by_air + by_dust);
+            if (taken <= 0) continue;
+            const double passed = (through[k] - after[k]) / taken * kPi;
+            sum.sky[k] += passed * sent;
+            sum.aureole[k] += passed * light[k] * by_dust * ring_phase;
+        }
+        through = after;
+    }
+    return sum;
+}
+
+Spectrum Atmosphere::transmittance(double sun_sine) const {
+    const Lit lit = towards_sun(0, sun_sine);
+    Spectrum light;
+    light.fill(lit.share);
+    pass(light, lit.columns, 1);
+    return light;
+}
+
+}  // namespace relevo::skymaker

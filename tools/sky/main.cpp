@@ -1,0 +1,63 @@
+#include <exception>
+#include <filesystem>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/units.h"
+#include "textures.h"
+
+namespace relevo::skymaker {
+namespace {
+
+void print_table(const Atmosphere& air) {
+    fmt::print(
+        "sun_deg  irradiance of level ground by the sky: red green blue; luminance lux; "
+        "transmittance of the sun's light: red green blue\n");
+    for (const double deg :
+         {90., 60., 45., 30., 15., 10., 5., 2., 0., -2., -4., -6., -9., -12., -18.}) {
+        const double sine = std::sin(radians(deg));
+        const glm::dvec3 sky = level_irradiance(air, sine);
+        const double level = luminance(sky);
+        const glm::dvec3 sun = colour_of(air.transmittance(sine));
+        fmt::print("{:5.0f}  {:.3e}  {:.2f} {:.2f} {:.2f}  {:9.4g} lux  {:.4f} {:.4f} {:.4f}\n",
+                   deg, level, sky.r / level, sky.g / level, sky.b / level, 127500 * level, sun.r,
+                   sun.g, sun.b);
+    }
+}
+
+}  // namespace
+}  // namespace relevo::skymaker
+
+int main(int argc, char** argv) {
+    using namespace relevo;
+    std::filesystem::path output;
+    bool table = false;
+    CLI::App app{"Makes the skies of Relevo"};
+    app.add_option("output", output, "Folder to write sky/ into")->required();
+    app.add_flag("--table", table, "Print the light of the sky for heights of the sun");
+    CLI11_PARSE(app, argc, argv);
+    try {
+        const skymaker::Atmosphere air;
+        if (table) skymaker::print_table(air);
+        const std::filesystem::path folder = output / "sky";
+        std::filesystem::create_directories(folder);
+        const skymaker::Textures textures = skymaker::make_textures(air);
+        write_ktx(folder / "radiance.ktx2", textures.radiance);
+        write_ktx(folder / "light.ktx2", textures.light);
+        for (const auto& [name, deg] :
+             {std::pair{"day", 45.0}, std::pair{"sunset", 0.0}, std::pair{"night", -18.0}})
+            write_ktx(folder / fmt::format("{}.ktx2", name),
+                      skymaker::single_texture(air, std::sin(radians(deg))));
+        return 0;
+    } catch (const Error& error) {
+        log::error(error.what());
+        return error.exit_status();
+    } catch (const std::exception& error) {
+        log::error(fmt::format("relevo_make_sky: {}", error.what()));
+        return 1;
+    }
+}
