@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <glm/common.hpp>
@@ -31,11 +32,12 @@ constexpr double kWorthwhileShare = 0.25;
 constexpr double kMargin = 0.06;
 /// A map is drawn anew once it is so many times as large as need be.
 constexpr double kTooLarge = 4;
-/// Sizes of texels are powers of two to so many a doubling: the same ground has the same texels
-/// when a map is drawn anew.
-constexpr double kSizesADoubling = 8;
-/// The drawn ground may be off by this share of a texel's height.
-constexpr double kTolerance_texels = 0.5;
+/// Texels come in so many sizes a doubling: the same ground has the same texels when a map is drawn
+/// anew for nearly the same view.
+constexpr double kSizesADoubling = 32;
+/// The drawn ground may be off by so many rows: four times its root mean square error, so that most
+/// of it stays within the bias.
+constexpr double kTolerance_rows = 1.5;
 
 glm::dvec3 vector_of(const double (&v)[3]) {
     return {v[0], v[1], v[2]};
@@ -107,6 +109,7 @@ class Vsm : public Instance {
                 make_textures(1);
             }
         }
+        if (params_.get("vsm.keep") == 0) layers_.clear();
         const std::vector<Rectangle> needed = needed_rectangles(frame);
         if (static_cast<int>(needed.size()) > texture_layers_) {
             make_textures(kMostLayers);
@@ -194,7 +197,7 @@ class Vsm : public Instance {
             view.high[i] = rectangle.high[i];
         }
         const glm::dvec2 texel_m = rectangle.size() / double(size_);
-        terrain_.draw_depth(view, kTolerance_texels * texel_m.y, depth_);
+        const int level = terrain_.draw_depth(view, kTolerance_rows * texel_m.y, depth_);
 
         const double along = dot(axes_.rise, axes_.up), deep = dot(axes_.rise, axes_.towards);
         const auto value = [](double a, double b, double c, double d) {
@@ -209,7 +212,7 @@ class Vsm : public Instance {
         moments_program_.draw(rows_, 0, 0, {&depth_}, {plane, value(lowest_m, 0, 0, 0), weights});
         blur_program_.draw(moments_, static_cast<int>(layer), 0, {&rows_}, {weights});
         log_.debug("vsm: map " + std::to_string(layer) + " drawn, texels of " +
-                   std::to_string(texel_m.x) + " x " + std::to_string(texel_m.y) + " m");
+                   std::to_string(texel_m.x) + " x " + std::to_string(texel_m.y) + " m, ground of level " + std::to_string(level));
     }
 
     void write_params(const relevo_frame& frame) const {

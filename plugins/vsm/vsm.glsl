@@ -8,12 +8,14 @@
 //@ include lib/surface.glsl
 
 uniform int vsm_size = 2048;      //@ range(256, 8192) unit(px) label("Size of a map") description("Texels along each side.")
-uniform float vsm_blur = 0.15;    //@ range(0, 0.6) label("Blur") description("Share of a texel's neighbours in it, each way.")
+uniform float vsm_blur = 0.08;    //@ range(0, 0.6) label("Blur") description("Share of a texel's neighbours in it, each way.")
 uniform float vsm_bleed = 0.2;    //@ range(0, 0.9) label("Light bleed cut") description("What Chebyshev's bound lets through where shadows overlap, and is taken as none.")
 uniform float vsm_bias = 0.5;     //@ range(0, 4) label("Bias") description("How far ground may lie below the map without a shadow, in standard deviations.")
-uniform float vsm_softness = 1.6; //@ range(0, 8) label("Softness") description("Least standard deviation of the heights in a texel, in the height of its row.")
+uniform float vsm_softness = 0.8; //@ range(0, 8) label("Softness") description("Least standard deviation of the heights in a texel, in the height of its row.")
 uniform bool vsm_penumbra = false; //@ static label("Penumbra") description("Shadows grow softer with the distance of what casts them, as the sun's half degree makes them.")
 uniform float vsm_sun_diameter = 0.533;  //@ range(0, 10) angle unit(deg) label("Sun's diameter")
+
+uniform bool vsm_keep = true;     //@ label("Keep the map") description("Until the sun or the ground that is needed changes; else it is drawn for every frame.")
 
 uniform vec4 vsm_across = vec4(0.0);   //@ host
 uniform vec4 vsm_along = vec4(0.0);    //@ host
@@ -26,7 +28,7 @@ uniform vec4 vsm_texel_m = vec4(0.0);  //@ host description("Across and up, of t
 
 uniform sampler2DArray vsm_moments;
 
-const float vsm_rounding_m = 0.5;  // deviation that floats, and levels of the ground, make
+const float vsm_rounding_m = 1.0;  // deviation that floats, and levels of the ground, make
 const int vsm_taps = 16;
 
 /// Upper bound on the share of the ground in a texel that is no higher than a height.

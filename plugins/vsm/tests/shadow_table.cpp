@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "base/text.h"
 #include "image/image.h"
@@ -64,12 +65,15 @@ int main(int argc, char** argv) {
     try {
         for (const std::string& path : dems) {
             const dem::Heightfield dem = dem::load(path);
-            Drawn drawn(dem, std::filesystem::temp_directory_path() / "relevo_shadow_table", settings,
-                        pixel_error);
+            Drawn drawn(dem,
+                        std::filesystem::temp_directory_path() /
+                            fmt::format("relevo_shadow_table_{}", getpid()),
+                        settings, pixel_error);
             const Truth truth(dem, drawn.ground().frame);
             fmt::print("\n{}: {} x {} posts\n\n", std::filesystem::path(path).filename().string(),
                        dem.grid.columns(), dem.grid.rows());
-            fmt::print("| sun | azimuth | shaded | balanced accuracy | beyond two texels | lit right | shaded right | texel |\n");
+            double worst = 1, worst_beyond = 1;
+            fmt::print("| sun | azimuth | shaded | balanced accuracy | beyond two texels | lit cells right | shaded cells right | texel |\n");
             fmt::print("|---|---|---|---|---|---|---|---|\n");
             for (const double elevation : elevations) {
                 for (const double azimuth : azimuths) {
@@ -78,13 +82,17 @@ int main(int argc, char** argv) {
                     const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
                     const Score s = score(truth, mask, lit, drawn.texel_m(), to_sun,
                                           drawn.spacing_m());
-                    fmt::print("| {} | {} | {:.1f} % | {:.2f} % | {:.2f} % | {:.2f} | {:.2f} | {:.1f} x {:.2f} m |\n", elevation,
+                    fmt::print("| {} | {} | {:.1f} % | {:.2f} % | {:.2f} % | {:.2f} % | {:.2f} % | {:.1f} x {:.2f} m |\n", elevation,
                                azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond,
                                100 * s.lit_right, 100 * s.shaded_right, s.texel_m.x, s.texel_m.y);
                     std::fflush(stdout);
+                    worst = s.shaded_share < 0.01 ? worst : std::min(worst, s.balanced);
+                    worst_beyond = s.shaded_share < 0.01 ? worst_beyond : std::min(worst_beyond, s.beyond);
                     if (!pictures.empty()) write_errors(pictures, elevation, azimuth, mask, lit);
                 }
             }
+            fmt::print("\nWorst with at least 1 % shaded: {:.2f} %, beyond two texels {:.2f} %.\n",
+                       100 * worst, 100 * worst_beyond);
         }
     } catch (const std::exception& error) {
         fmt::print(stderr, "{}\n", error.what());
