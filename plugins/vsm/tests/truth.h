@@ -146,6 +146,7 @@ class Truth {
 /// pixels a post, with the shadows and without, read as radiance.
 class Drawn {
   public:
+    /// @param scratch   a folder that may be written
     /// @param settings  "vsm.bleed=0.1"
     Drawn(const dem::Heightfield& dem, const std::filesystem::path& scratch,
           const std::vector<std::string>& settings = {}, double pixel_error = 2)
@@ -193,9 +194,11 @@ class Drawn {
         const image::ImageF with = draw(shadowed_);
         const image::ImageF without = draw(plain_);
         Array2d<float> lit(posts.width(), posts.height());
+        spread_ = Array2d<float>(posts.width(), posts.height());
         for (int y = 0; y < posts.height(); ++y) {
             for (int x = 0; x < posts.width(); ++x) {
                 lit.at(x, y) = 1;
+                spread_.at(x, y) = 1;
                 if (std::isnan(posts.at(x, y).z)) continue;
                 // Between the middles of the four pixels around.
                 const glm::dvec2 at = project(posts.at(x, y)) - 0.5;
@@ -207,6 +210,14 @@ class Drawn {
                     return with.at(pixel.x + i, pixel.y + j, 1) /
                            std::max(without.at(pixel.x + i, pixel.y + j, 1), 1e-6f);
                 };
+                float least = 1e9f, most = -1e9f;
+                const glm::ivec2 first = glm::max(pixel - 1, 0), last = glm::min(pixel + 2, size_ - 1);
+                for (int j = first.y; j <= last.y; ++j)
+                    for (int i = first.x; i <= last.x; ++i) {
+                        least = std::min(least, ratio(i - pixel.x, j - pixel.y));
+                        most = std::max(most, ratio(i - pixel.x, j - pixel.y));
+                    }
+                spread_.at(x, y) = most - least;
                 const float above = ratio(0, 0) + share.x * (ratio(1, 0) - ratio(0, 0));
                 const float below = ratio(0, 1) + share.x * (ratio(1, 1) - ratio(0, 1));
                 lit.at(x, y) = above + share.y * (below - above);
@@ -214,6 +225,9 @@ class Drawn {
         }
         return lit;
     }
+
+    /// Of the last picture: by how much the 16 pixels around each post differ; 1 outside of it.
+    const Array2d<float>& spread() const { return spread_; }
 
     /// Across and up [m]: a texel of the map that the last picture was drawn with.
     glm::dvec2 texel_m() const {
@@ -263,6 +277,7 @@ class Drawn {
     effect::Registry registry_;
     shader::ParamStore values_;
     glm::ivec2 size_{};
+    Array2d<float> spread_;
     render::FrameInputs inputs_;
     std::optional<render::Terrain> terrain_;
     Chosen shadowed_, plain_;

@@ -1,0 +1,241 @@
+#include <cmath>
+#include <random>
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "gl/framebuffer.h"
+#include "gl/program.h"
+#include "gl/texture.h"
+#include "gl/vertex_array.h"
+#include "support/gpu_snippet.h"
+#include "truth.h"
+
+namespace relevo::shadow {
+namespace {
+
+dem::Heightfield jacksboro() {
+    return dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
+}
+
+/// Heights at the posts of a UTM grid of 30 m.
+dem::Heightfield field(int columns, int rows, const std::function<double(int, int)>& height_m) {
+    Array2d<float> heights(columns, rows);
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x)
+            heights.at(x, y) = static_cast<float>(height_m(x, y));
+    dem::Description about;
+    about.statistics = dem::statistics(heights);
+    return {std::move(heights),
+            dem::Grid(columns, rows, {400000, 30, 0, 5000000, 0, -30},
+                      geo::Crs::parse("EPSG:32631", "test")),
+            about};
+}
+
+// ---- the bound
+
+TEST(Vsm, ChebyshevsBoundOnTheGpuIsTheReferences) {
+    constexpr int kHeights = 400, kDeviations = 60;
+    test::GpuSnippet gpu("vsm");
+    const auto results = gpu.run(
+        "float height = float(x) * 2.5 - 500.0;\n"
+        "float deviation = 0.3 * exp2(float(y) * 0.15);\n"
+        "float bound = vsm_chebyshev(vec2(20.0, deviation * deviation), height);\n"
+        "result = vec4(bound, vsm_cut(bound, 0.2), 0.0, 0.0);",
+        kHeights, kDeviations);
+    std::vector<double> errors;
+    for (int y = 0; y < kDeviations; ++y) {
+        for (int x = 0; x < kHeights; ++x) {
+            const double height = x * 2.5 - 500, deviation = 0.3 * std::exp2(y * 0.15);
+            const double above = std::max(20 - height, 0.0);
+            const double bound = deviation * deviation / (deviation * deviation + above * above);
+            const double cut = std::clamp((bound - 0.2) / 0.8, 0.0, 1.0);
+            const glm::vec4& found = results[static_cast<std::size_t>(y * kHeights + x)];
+            errors.push_back(std::abs(found.x - bound));
+            errors.push_back(std::abs(found.y - cut));
+        }
+    }
+    test::print_accuracy("Chebyshev's bound", errors, "of 1", 1e-3);
+    EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 1e-3);
+}
+
+/// Runs a fragment program of the plugin's as core/render/native_host.cpp does.
+gl::Texture filtered(const char* file, const gl::Texture& from,
+                     const std::vector<glm::vec4>& values) {
+    const std::string vertex =
+        "#version 450 core\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0,"
+        " gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }\n";
+    const std::string fragment =
+        "#version 450 core\nlayout(location = 0) uniform vec4 values[16];\n" +
+        read_text(test::source_dir() / "plugins/vsm" / file, "test");
+    gl::Program::Failure failure;
+    const auto program = gl::Program::build(vertex, fragment, file, failure);
+    if (!program) failed(failure.log);
+    gl::Texture target(gl::TextureKind::D2, gl::Format::RG32F,
+                       {from.extent().width, from.extent().height, 1}, 1, file);
+    const gl::Framebuffer framebuffer({&target}, nullptr, file);
+    const gl::VertexArray no_inputs;
+    program->use();
+    from.bind(0);
+    glUniform4fv(0, static_cast<int>(values.size()), &values[0].x);
+    framebuffer.bind();
+    no_inputs.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    return target;
+}
+
+/// Mean and variance about the line through the neighbours, in double precision.
+glm::dvec2 blurred(const std::array<glm::dvec2, 3>& m, double blur) {
+    const double mean = (1 - blur) * m[1].x + blur / 2 * (m[0].x + m[2].x);
+    const double slope = (m[2].x - m[0].x) / 2;
+    const auto off2 = [&](double value) { return (value - mean) * (value - mean); };
+    return {mean, (1 - blur) * (m[1].y + off2(m[1].x)) +
+                      blur / 2 * (m[0].y + off2(m[0].x + slope) + m[2].y + off2(m[2].x - slope))};
+}
+
+TEST(Vsm, BlurOnTheGpuIsTheReferences) {
+    constexpr int kSide = 96;
+    constexpr double kBlur = 0.3, kFloor_m = -700;
+    const gl::Context context({.device = "software", .debug = true});
+    std::mt19937 random(3);
+    std::vector<float> depths(kSide * kSide);
+    for (std::size_t i = 0; i < depths.size(); ++i)
+        depths[i] = random() % 20 == 0 ? 0.0f : static_cast<float>(random() % 100000 + 1) / 100001;
+    gl::Texture depth(gl::TextureKind::D2, gl::Format::Depth32F, {kSide, kSide, 1}, 1, "depth");
+    depth.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+    depth.write(0, {0, 0, 0}, {kSide, kSide, 1}, std::as_bytes(std::span(depths)));
+    const glm::vec4 plane(0, 6.5, 900, -800), weights(1 - kBlur, kBlur / 2, 0, 0);
+    const gl::Texture rows =
+        filtered("moments.frag.glsl", depth, {plane, {kFloor_m, 0, 0, 0}, weights});
+    const gl::Texture both = filtered("blur.frag.glsl", rows, {weights});
+    std::vector<glm::vec2> found(kSide * kSide);
+    both.read(0, std::as_writable_bytes(std::span(found)));
+
+    const auto clamped = [](int i) { return std::clamp(i, 0, kSide - 1); };
+    const auto height = [&](int x, int y) {
+        const float d = depths[static_cast<std::size_t>(clamped(y) * kSide + clamped(x))];
+        return d > 0 ? plane.y * (clamped(y) + 0.5) + double{plane.z} * d + plane.w : kFloor_m;
+    };
+    std::vector<double> errors;
+    for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+            std::array<glm::dvec2, 3> row;
+            for (int j = -1; j <= 1; ++j) {
+                const int at = clamped(y + j);
+                row[static_cast<std::size_t>(j + 1)] =
+                    blurred({glm::dvec2(height(x - 1, at), 0), glm::dvec2(height(x, at), 0),
+                             glm::dvec2(height(x + 1, at), 0)},
+                            kBlur);
+            }
+            const glm::dvec2 expected = blurred(row, kBlur);
+            const glm::vec2 got = found[static_cast<std::size_t>(y * kSide + x)];
+            errors.push_back(std::abs(got.x - expected.x));
+            errors.push_back(std::abs(std::sqrt(got.y) - std::sqrt(expected.y)));
+        }
+    }
+    test::print_accuracy("blurred mean and deviation", errors, "m", 1e-3);
+    EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 1e-3);
+}
+
+TEST(Vsm, ASlopeHasNoDeviationAndAnEdgeHas) {
+    const double slope = blurred({glm::dvec2(10, 0), {20, 0}, {30, 0}}, 0.3).y;
+    const double edge = blurred({glm::dvec2(10, 0), {10, 0}, {30, 0}}, 0.3).y;
+    EXPECT_DOUBLE_EQ(slope, 0);
+    EXPECT_GT(edge, 1);
+}
+
+// ---- against rays
+
+TEST(Vsm, ShadowsAreThoseOfRaysOverTheSamePosts) {
+    const dem::Heightfield dem = jacksboro();
+    Drawn drawn(dem, test::scratch_dir("vsm_truth"));
+    const Truth truth(dem, drawn.ground().frame);
+    for (const auto& [elevation, azimuth] :
+         {std::pair{1.0, 315.0}, {2.0, 0.0}, {5.0, 135.0}, {10.0, 225.0}, {20.0, 90.0}}) {
+        const glm::dvec3 to_sun = direction(azimuth, elevation);
+        const Truth::Mask mask = truth.cast(to_sun);
+        const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
+        const Score s = score(truth, mask, lit, drawn.texel_m(), to_sun, drawn.spacing_m());
+        fmt::print("[ shadow ] sun at {} degrees from {}: {:.1f} % shaded, balanced accuracy "
+                   "{:.2f} %, {:.2f} % beyond two texels\n",
+                   elevation, azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond);
+        EXPECT_GT(s.shaded_share, 0.01);
+        EXPECT_GE(s.balanced, 0.95);
+        EXPECT_GE(s.beyond, 0.985);
+    }
+}
+
+TEST(Vsm, TruthOfAWallIsItsTangent) {
+    // A wall 100 m high along a column of level ground, the sun 10 degrees high beyond it.
+    const dem::Heightfield dem =
+        field(61, 41, [](int x, int) { return x == 50 ? 100.0 : 0.0; });
+    const render::Ground ground = render::make_ground(dem);
+    const Truth truth(dem, ground.frame);
+    const Truth::Mask mask = truth.cast(direction(90, 10));
+    const double reach_posts = 100 / std::tan(radians(10)) / 30;  // 18.9
+    for (int x = 0; x < 49; ++x)
+        EXPECT_EQ(mask.shaded.at(x, 20) != 0, 50 - x < reach_posts) << x;
+    EXPECT_FALSE(mask.shaded.at(55, 20));
+}
+
+TEST(Vsm, TheRimAndHolesCastNothing) {
+    // Level ground 1500 m high with a hole in its middle.
+    const dem::Heightfield dem = field(180, 140, [](int x, int y) {
+        return x > 80 && x < 100 && y > 60 && y < 80 ? std::nan("") : 1500.0;
+    });
+    Drawn drawn(dem, test::scratch_dir("vsm_rim"));
+    const Truth truth(dem, drawn.ground().frame);
+    for (const double elevation : {1.0, 3.0, 30.0}) {
+        for (const double azimuth : {0.0, 70.0, 135.0, 250.0}) {
+            const Array2d<float> lit = drawn.at_posts(direction(azimuth, elevation), truth.posts());
+            int shaded = 0;
+            for (int y = 2; y < lit.height() - 2; ++y)
+                for (int x = 2; x < lit.width() - 2; ++x)
+                    shaded += lit.at(x, y) < 0.98f;
+            EXPECT_EQ(shaded, 0) << elevation << " degrees from " << azimuth;
+        }
+    }
+}
+
+// ---- while the camera moves
+
+TEST(Vsm, ASlowMoveOfTheCameraChangesNoShadow) {
+    const dem::Heightfield dem = jacksboro();
+    Drawn drawn(dem, test::scratch_dir("vsm_move"), {"vsm.keep=false"});
+    const Truth truth(dem, drawn.ground().frame);
+    const glm::dvec3 to_sun = direction(110, 8);
+    const auto points = render::points_to_show(dem, drawn.ground(), 1);
+    Array2d<float> before, before_spread;
+    std::int64_t compared = 0, changed = 0, shaded = 0;
+    float worst = 0;
+    for (int frame = 0; frame < 6; ++frame) {
+        drawn.inputs().camera = scene::orbit_camera({200 + 0.4 * frame, 65, 2.5 + 0.02 * frame},
+                                                    points, radians(40),
+                                                    double(drawn.size().x) / drawn.size().y);
+        const Array2d<float> now = drawn.at_posts(to_sun, truth.posts());
+        const Array2d<float> spread = drawn.spread();
+        for (int y = 0; frame > 0 && y < now.height(); ++y) {
+            for (int x = 0; x < now.width(); ++x) {
+                // Where light changes from pixel to pixel, a moved pixel sees other ground.
+                if (spread.at(x, y) > 0.005f || before_spread.at(x, y) > 0.005f) continue;
+                ++compared;
+                shaded += now.at(x, y) < 0.5f;
+                const float change = std::abs(now.at(x, y) - before.at(x, y));
+                changed += change > 1 / 255.0f;
+                worst = std::max(worst, change);
+            }
+        }
+        before = now;
+        before_spread = spread;
+    }
+    fmt::print("[ shadow ] {} points compared from frame to frame, {} in shadow: {} changed by "
+               "more than 1/255, the worst by {:.1f}/255\n",
+               compared, shaded, changed, 255 * worst);
+    EXPECT_GT(shaded, 10000);
+    EXPECT_LE(static_cast<double>(changed), 0.0002 * static_cast<double>(compared));
+    EXPECT_LE(worst, 3 / 255.0f);
+}
+
+}  // namespace
+}  // namespace relevo::shadow
