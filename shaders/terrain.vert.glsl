@@ -44,11 +44,20 @@ void main() {
     vec2 vertex = min(grid, limit + max(grid - 64.0, 0.0));
     vec2 at = vertex / limit;
     vec4 levels = texelFetch(height_pages, texel, 0);
+#ifdef TERRAIN_DEPTH
+    const float morph = 0.0;  // parallel light sees all of the ground at one level
+#else
     float distance_m = length(placed(at, levels.r));
     float morph = clamp((distance_m - net_vv.w) * net_uvv.w, 0.0, 1.0);
+#endif
     vec2 height = mix(levels.rg, levels.ba, morph);
     bool rim = grid != clamp(grid, 0.0, 64.0);
+#ifdef TERRAIN_DEPTH
+    // Down to where no ground is lower: light does not come in under the DEM's sides.
+    height.r = rim ? frame.height_range.x : height.r;
+#else
     height.r -= rim ? kRim_px * length(frame.pixel_ray_dx.xyz) * distance_m : 0.0;
+#endif
 
     VertexFrame v;
     v.up = up_0.xyz + at.x * up_u.xyz + at.y * up_v.xyz;

@@ -413,8 +413,6 @@ struct NativeHost::Impl {
         matrix[3][2] = 0.5;
         matrix[3][3] = 1;
         block.view_projection = glm::mat4(matrix);
-        // Without a pixel's size the rims of the tiles lie flat, and cast nothing.
-        block.pixel_ray_dx = block.pixel_ray_dy = glm::vec4(0);
         frame_block.write(std::as_bytes(std::span(&block, 1)));
         frame_block.bind_uniform(kFrameBinding);
 

@@ -43,7 +43,8 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
     if (options.depth)
         programs.push_back({"depth", shader::stitch(core,
                                                     {.vertex_main = "terrain.vert.glsl",
-                                                     .fragment_main = "depth.frag.glsl"},
+                                                     .fragment_main = "depth.frag.glsl",
+                                                     .defines = {{"TERRAIN_DEPTH", ""}}},
                                                     input)});
     for (const std::string name : {"sky", "post", "edges", "antialias"}) {
         if (name == "post" && options.shown) continue;
