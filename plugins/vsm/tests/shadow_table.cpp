@@ -1,5 +1,6 @@
 // Shadows that are drawn against shadows that are marched: shadow_table [--elevations 1,2,5]
-// [--azimuths 0,45] [--set vsm.bleed=0.1] DEM...
+// [--azimuths 0,45] [--set vsm.bleed=0.1] [--pictures FOLDER] DEM...; with --comparison FILE.png a
+// picture of the first sun instead of a table
 #include <chrono>
 #include <cstdio>
 
@@ -31,6 +32,46 @@ void write_errors(const std::filesystem::path& folder, double elevation, double 
     relevo::image::write(folder / fmt::format("errors_{}_{}.png", elevation, azimuth), picture, {}, true);
 }
 
+/// A part of the DEM from above, three times: depth compared texel by texel, as drawn, and marched.
+void write_comparison(const std::filesystem::path& file, const relevo::dem::Heightfield& dem,
+                      double elevation, double azimuth) {
+    using namespace relevo;
+    using namespace relevo::shadow;
+    constexpr int kPosts = 220, kScale = 2, kGap = 8;
+    const std::filesystem::path scratch = std::filesystem::temp_directory_path() /
+                                          fmt::format("relevo_shadow_comparison_{}", getpid());
+    const glm::dvec3 to_sun = direction(azimuth, elevation);
+    // "Hard": no blur, no deviation and no bias, so that a texel is either nearer or not.
+    Drawn hard(dem, scratch,
+               {"vsm.blur=0", "vsm.softness=0", "vsm.bias=0", "vsm.bleed=0.9", "vsm.size=1024"});
+    Drawn drawn(dem, scratch);
+    const Truth truth(dem, drawn.ground().frame);
+    const Truth::Mask mask = truth.cast(to_sun);
+    const Array2d<float> panels[] = {hard.at_posts(to_sun, truth.posts()),
+                                     drawn.at_posts(to_sun, truth.posts())};
+    const glm::ivec2 first((dem.grid.columns() - kPosts) / 2, (dem.grid.rows() - kPosts) / 2);
+    image::Image8 picture(3 * kPosts * kScale + 2 * kGap, kPosts * kScale, 3);
+    std::fill(picture.values.begin(), picture.values.end(), std::uint8_t{255});
+    for (int panel = 0; panel < 3; ++panel) {
+        for (int y = 0; y < kPosts * kScale; ++y) {
+            for (int x = 0; x < kPosts * kScale; ++x) {
+                const int i = first.x + x / kScale, j = first.y + y / kScale;
+                const auto& posts = truth.posts();
+                glm::dvec3 n = cross(posts.at(i + 1, j) - posts.at(i - 1, j),
+                                     posts.at(i, j - 1) - posts.at(i, j + 1));
+                n = normalize(n.z < 0 ? -n : n);
+                const double lit = panel == 2 ? 1 - mask.shaded.at(i, j) : panels[panel].at(i, j);
+                const double light = 0.16 * n.z + 1.5 * lit * std::max(dot(n, to_sun), 0.0);
+                const auto grey = static_cast<std::uint8_t>(
+                    255 * std::pow(std::clamp(light, 0.0, 1.0), 1 / 2.2));
+                std::uint8_t* pixel = picture.row(y) + 3 * (x + panel * (kPosts * kScale + kGap));
+                pixel[0] = pixel[1] = pixel[2] = grey;
+            }
+        }
+    }
+    image::write(file, picture, {}, true);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -39,7 +80,7 @@ int main(int argc, char** argv) {
     std::vector<double> elevations{1, 2, 5, 10, 20, 40},
         azimuths{0, 45, 90, 135, 180, 225, 270, 315};
     std::vector<std::string> dems, settings;
-    std::filesystem::path pictures;
+    std::filesystem::path pictures, comparison;
     double pixel_error = 2;
     const auto numbers = [](const std::string& text) {
         std::vector<double> result;
@@ -57,6 +98,8 @@ int main(int argc, char** argv) {
             settings.emplace_back(argv[++i]);
         else if (word == "--pictures")
             pictures = argv[++i];
+        else if (word == "--comparison")
+            comparison = argv[++i];
         else if (word == "--pixel-error")
             pixel_error = std::stod(argv[++i]);
         else
@@ -65,6 +108,10 @@ int main(int argc, char** argv) {
     try {
         for (const std::string& path : dems) {
             const dem::Heightfield dem = dem::load(path);
+            if (!comparison.empty()) {
+                write_comparison(comparison, dem, elevations[0], azimuths[0]);
+                continue;
+            }
             Drawn drawn(dem,
                         std::filesystem::temp_directory_path() /
                             fmt::format("relevo_shadow_table_{}", getpid()),
