@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Takes the pictures of docs/paper.md: the paper's figures 1, 3, 4, 5 and 7 on the real terrain that comes along,
+"""Takes the pictures of docs/paper.md: the paper's figures 1 and 3 to 7 on the real terrain that comes along,
 and the one of the haze's README.
 
 Usage: paper_figures.py [BUILD] [--only 4,haze] [--size 960x600]      BUILD: build/release (default)
@@ -27,6 +27,7 @@ FIGURES = {
     "3": {"paper_3a_abrupt": f"{EDGE} --set bump.correction=abrupt", "paper_3b_smooth": f"{EDGE} --set bump.correction=smooth"},
     "4": {"paper_4a_disc": DISC, "paper_4b_sky": WIDE, "paper_4c_paper": f"{WIDE} --preset paper"},
     "5": {"paper_5a_dry": GROUND, "paper_5b_wet": f"{GROUND} --enable wet"},
+    "6": {"paper_6_shadows": "--view az=205,el=32,zoom=2.2 --time 2026-06-21T20:05-04:00 --ab vsm"},
     "7": {"paper_7a_day": f"{RIDGES} --time 2026-03-20T13:00-04:00", "paper_7b_sunset": f"{RIDGES} --time 2026-03-20T07:55-04:00",
           "paper_7c_night": f"{RIDGES} --time 2026-03-20T05:30-04:00"},
     "haze": {"haze_ab": f"{RIDGES} --time 2026-03-20T09:00-04:00 --ab haze"},

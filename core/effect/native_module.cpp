@@ -71,8 +71,7 @@ std::optional<Trial> run(const std::filesystem::path& program, std::vector<std::
         argv.push_back(argument.data());
     argv.push_back(nullptr);
     pid_t child = 0;
-    const int error =
-        posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
+    const int error = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);
     if (error != 0) {
@@ -119,24 +118,23 @@ void try_at_a_distance(const std::filesystem::path& library, const std::string& 
     if (WIFSIGNALED(trial->status)) {
         const int signal = WTERMSIG(trial->status);
         const char* name = signal_name(signal);
-        fail(library,
-             fmt::format("its registration ended in {}",
-                         name ? std::string(name) : fmt::format("signal {}", signal)));
+        fail(library, fmt::format("its registration ended in {}",
+                                  name ? std::string(name) : fmt::format("signal {}", signal)));
     }
     if (WEXITSTATUS(trial->status) != 0 || trial->output != "good")
         fail(library, trial->output.empty() ? "its registration ended the process" : trial->output);
 }
 
 const void* log_service(const relevo_host*, const char* name, uint32_t version) {
-    static const relevo_log_1 table{
-        sizeof(relevo_log_1), nullptr, [](void*, int32_t level, const char* text) {
-            if (level == RELEVO_LOG_WARNING)
-                log::warning(text);
-            else if (level == RELEVO_LOG_INFO)
-                log::info(text);
-            else
-                log::debug(text);
-        }};
+    static const relevo_log_1 table{sizeof(relevo_log_1), nullptr,
+                                    [](void*, int32_t level, const char* text) {
+                                        if (level == RELEVO_LOG_WARNING)
+                                            log::warning(text);
+                                        else if (level == RELEVO_LOG_INFO)
+                                            log::info(text);
+                                        else
+                                            log::debug(text);
+                                    }};
     return std::strcmp(name, "relevo.log") == 0 && version == 1 ? &table : nullptr;
 }
 
@@ -158,8 +156,7 @@ std::filesystem::path module_file(const Manifest& manifest) {
     if (std::filesystem::is_regular_file(own, ignored)) return own;
     if (std::filesystem::is_regular_file(shipped, ignored)) return shipped;
     bad_input(fmt::format("{}: {}: module {} is in neither {} nor {}; build it", kWho,
-                          manifest.file.string(), manifest.module, own.string(),
-                          shipped.string()));
+                          manifest.file.string(), manifest.module, own.string(), shipped.string()));
 }
 
 NativeModule NativeModule::load(const Manifest& manifest) {

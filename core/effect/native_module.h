@@ -27,7 +27,7 @@ class NativeModule {
     NativeModule& operator=(NativeModule&&) noexcept;
     ~NativeModule();
 
-    const std::string& id() const { return id_; }  ///< of its plugin
+    const std::string& id() const { return id_; }                    ///< of its plugin
     const std::filesystem::path& folder() const { return folder_; }  ///< its plugin's
     const std::filesystem::path& library() const { return library_; }
     const relevo_module& functions() const { return functions_; }

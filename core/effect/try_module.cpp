@@ -1,7 +1,7 @@
 // Loads a native module and calls its registration, so that what goes wrong there goes wrong here.
 //
-// try_module LIBRARY ID: on standard output "good" and status 0, or the reason why it will not do, if
-// it can still say it. Links with nothing, so that it starts in a millisecond.
+// try_module LIBRARY ID: on standard output "good" and status 0, or the reason why it will not do,
+// if it can still say it. Links with nothing, so that it starts in a millisecond.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

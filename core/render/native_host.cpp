@@ -149,9 +149,9 @@ struct NativeHost::Impl {
     static const void* service(const relevo_host* h, const char* name, std::uint32_t version) {
         Impl& impl = of(h);
         const std::pair<std::string_view, const void*> tables[] = {
-            {"relevo.log", &impl.log_table},         {"relevo.params", &impl.params_table},
-            {"relevo.frame", &impl.frame_table},     {"relevo.texture", &impl.texture_table},
-            {"relevo.draw", &impl.draw_table},       {"relevo.terrain", &impl.terrain_table},
+            {"relevo.log", &impl.log_table},     {"relevo.params", &impl.params_table},
+            {"relevo.frame", &impl.frame_table}, {"relevo.texture", &impl.texture_table},
+            {"relevo.draw", &impl.draw_table},   {"relevo.terrain", &impl.terrain_table},
         };
         if (version != 1) return nullptr;
         for (const auto& [known, table] : tables)
@@ -194,30 +194,30 @@ struct NativeHost::Impl {
                          else
                              log::debug(text);
                      }};
-        params_table = {sizeof params_table, this,
-                        [](void* self, const char* address, double value[4]) {
-                            return serve(self, [&](Impl& impl) {
-                                const shader::ParamValue known = impl.values.value(address);
-                                std::copy(known.begin(), known.end(), value);
-                            });
-                        },
-                        [](void* self, const char* address, const double value[4]) {
-                            return serve(self, [&](Impl& impl) {
-                                const shader::ParamValue wanted{value[0], value[1], value[2],
-                                                                value[3]};
-                                if (impl.values.value(address) == wanted) return;
-                                impl.values.write_host(address, wanted);
-                                impl.changed = true;
-                            });
-                        }};
+        params_table = {
+            sizeof params_table, this,
+            [](void* self, const char* address, double value[4]) {
+                return serve(self, [&](Impl& impl) {
+                    const shader::ParamValue known = impl.values.value(address);
+                    std::copy(known.begin(), known.end(), value);
+                });
+            },
+            [](void* self, const char* address, const double value[4]) {
+                return serve(self, [&](Impl& impl) {
+                    const shader::ParamValue wanted{value[0], value[1], value[2], value[3]};
+                    if (impl.values.value(address) == wanted) return;
+                    impl.values.write_host(address, wanted);
+                    impl.changed = true;
+                });
+            }};
         frame_table = {sizeof frame_table, this, [](void* self, relevo_frame* out) {
                            return serve(self, [&](Impl& impl) { impl.describe_frame(out); });
                        }};
         texture_table = {
-            sizeof texture_table, this,
+            sizeof texture_table,
+            this,
             [](void* self, const relevo_texture_info* info, relevo_texture* out) {
-                return serve(self,
-                             [&](Impl& impl) { *out = impl.make_texture(copy_in(info)); });
+                return serve(self, [&](Impl& impl) { *out = impl.make_texture(copy_in(info)); });
             },
             [](void* self, relevo_texture name) { of(self).textures.erase(name); },
             [](void* self, relevo_texture name) {
@@ -225,8 +225,7 @@ struct NativeHost::Impl {
             },
             [](void* self, relevo_texture name, std::int32_t layer, float* out,
                std::uint64_t count) {
-                return serve(self,
-                             [&](Impl& impl) { impl.read_texture(name, layer, out, count); });
+                return serve(self, [&](Impl& impl) { impl.read_texture(name, layer, out, count); });
             }};
         draw_table = {sizeof draw_table, this,
                       [](void* self, const char* file, relevo_program* out) {
@@ -235,27 +234,28 @@ struct NativeHost::Impl {
                       [](void* self, const relevo_draw* draw) {
                           return serve(self, [&](Impl& impl) { impl.run(copy_in(draw)); });
                       }};
-        terrain_table = {
-            sizeof terrain_table, this,
-            [](void* self, relevo_box* box) {
-                return serve(self, [&](Impl& impl) {
-                    if (!impl.fill_box(box, nullptr, 0)) impl.refuse("this DEM has no ground");
-                });
-            },
-            [](void* self, double nearer_than_m, relevo_box* box) {
-                bool any = false;
-                const relevo_status status = serve(self, [&](Impl& impl) {
-                    any = impl.fill_box(box, &impl.now().picture, nearer_than_m);
-                });
-                return any ? status : RELEVO_FAILED;
-            },
-            [](void* self, const relevo_box* box, double tolerance_m, relevo_texture target,
-               std::int32_t* level) {
-                return serve(self, [&](Impl& impl) {
-                    const int drawn = impl.draw_depth(copy_in(box), tolerance_m, target);
-                    if (level) *level = drawn;
-                });
-            }};
+        terrain_table = {sizeof terrain_table, this,
+                         [](void* self, relevo_box* box) {
+                             return serve(self, [&](Impl& impl) {
+                                 if (!impl.fill_box(box, nullptr, 0))
+                                     impl.refuse("this DEM has no ground");
+                             });
+                         },
+                         [](void* self, double nearer_than_m, relevo_box* box) {
+                             bool any = false;
+                             const relevo_status status = serve(self, [&](Impl& impl) {
+                                 any = impl.fill_box(box, &impl.now().picture, nearer_than_m);
+                             });
+                             return any ? status : RELEVO_FAILED;
+                         },
+                         [](void* self, const relevo_box* box, double tolerance_m,
+                            relevo_texture target, std::int32_t* level) {
+                             return serve(self, [&](Impl& impl) {
+                                 const int drawn =
+                                     impl.draw_depth(copy_in(box), tolerance_m, target);
+                                 if (level) *level = drawn;
+                             });
+                         }};
     }
 
     // ---- services
@@ -285,15 +285,16 @@ struct NativeHost::Impl {
         const int most = context.info().max_texture_size;
         if (info.width < 1 || info.height < 1 || info.width > most || info.height > most ||
             info.layers < 0 || info.layers > context.info().max_array_layers)
-            refuse(fmt::format("expected a texture of up to {0} x {0} but got {1} x {2}, {3} layers",
-                               most, info.width, info.height, info.layers));
+            refuse(
+                fmt::format("expected a texture of up to {0} x {0} but got {1} x {2}, {3} layers",
+                            most, info.width, info.height, info.layers));
         Texture made;
         made.resource = info.name ? module.id() + '.' + info.name : std::string();
         made.floats = row->floats;
-        made.texture = gl::Texture(
-            info.layers > 0 ? gl::TextureKind::D2Array : gl::TextureKind::D2, row->format,
-            {info.width, info.height, std::max(info.layers, 1)}, info.levels,
-            made.resource.empty() ? module.id() : made.resource);
+        made.texture =
+            gl::Texture(info.layers > 0 ? gl::TextureKind::D2Array : gl::TextureKind::D2,
+                        row->format, {info.width, info.height, std::max(info.layers, 1)},
+                        info.levels, made.resource.empty() ? module.id() : made.resource);
         made.texture.set_sampling(info.filter == RELEVO_FILTER_NEAREST  ? gl::Filter::Nearest
                                   : info.filter == RELEVO_FILTER_LINEAR ? gl::Filter::Linear
                                                                         : gl::Filter::Mipmap,
@@ -312,8 +313,8 @@ struct NativeHost::Impl {
                                       static_cast<unsigned>(extent.height) *
                                       static_cast<unsigned>(from.floats);
         const gl::Format format = from.texture.format();
-        const bool floats = gl::texel_bytes(format) == 4 * from.floats &&
-                            format != gl::Format::RGBA8;
+        const bool floats =
+            gl::texel_bytes(format) == 4 * from.floats && format != gl::Format::RGBA8;
         if (!floats) refuse("only textures of 32-bit floats can be read");
         if (layer < 0 || layer >= extent.depth || count < a_layer)
             refuse(fmt::format("expected room for {} floats and a layer below {} but got {} and {}",
@@ -332,8 +333,9 @@ struct NativeHost::Impl {
             "                       gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);\n"
             "}\n";
         const std::string fragment =
-            fmt::format("#version 450 core\nlayout(location = 0) uniform vec4 values[{}];\n#line 1\n",
-                        RELEVO_MOST_VALUES) +
+            fmt::format(
+                "#version 450 core\nlayout(location = 0) uniform vec4 values[{}];\n#line 1\n",
+                RELEVO_MOST_VALUES) +
             read_text(path, "render");
         gl::Program::Failure failure;
         auto program = gl::Program::build(vertex, fragment, path.filename().string(), failure);
@@ -369,8 +371,8 @@ struct NativeHost::Impl {
     bool fill_box(relevo_box* out, const TileSelection* selection, double nearer_than_m) const {
         const FrameState& state = now();
         relevo_box box = copy_in(out);
-        const auto extent = state.terrain.extent(axes_of(box), state.inputs.exaggeration, selection,
-                                                 nearer_than_m);
+        const auto extent =
+            state.terrain.extent(axes_of(box), state.inputs.exaggeration, selection, nearer_than_m);
         if (!extent) return false;
         write_vector(extent->low, box.low);
         write_vector(extent->high, box.high);
@@ -450,7 +452,6 @@ NativeHost::NativeHost(const effect::NativeModule& module, gl::Context& context,
 NativeHost::NativeHost(NativeHost&&) noexcept = default;
 NativeHost& NativeHost::operator=(NativeHost&&) noexcept = default;
 NativeHost::~NativeHost() = default;
-
 
 void NativeHost::prepare(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                          const FrameBlock& block, const TileSelection& picture) {

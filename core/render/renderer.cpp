@@ -55,7 +55,7 @@ struct Renderer::Impl {
     EffectTextures effect_textures;
     gl::Buffer frame_block;
     shader::ParamStore values;  // as given; native modules write host parameters
-    double exposure = 1;  // of the last frame
+    double exposure = 1;        // of the last frame
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
     TileSelection tiles;  // of the last frame
@@ -140,9 +140,9 @@ struct Renderer::Impl {
         const shader::FolderTexts core(share_dir() / "shaders");
         const bool vertex_normals = input.values && input.values->find(kNormalAddress) &&
                                     input.values->value(kNormalAddress)[0] == 1;
-        return stitch_programs(core, input, {.vertex_normals = vertex_normals,
-                                             .depth = !effects.modules.empty(),
-                                             .shown = shown});
+        return stitch_programs(
+            core, input,
+            {.vertex_normals = vertex_normals, .depth = !effects.modules.empty(), .shown = shown});
     }
 
     const ProgramText& text(const std::string& name) const {

@@ -78,7 +78,8 @@ class Terrain {
                                  const TileSelection* selection = nullptr,
                                  double nearer_than_m = 0);
 
-    /// From now on pictures have surface pages beside the normal pages: for programs that read them.
+    /// From now on pictures have surface pages beside the normal pages: for programs that read
+    /// them.
     void keep_surface();
 
     const gl::Texture& height_pages() const { return height_pages_.texture(); }

@@ -212,7 +212,8 @@ class Vsm : public Instance {
         moments_program_.draw(rows_, 0, 0, {&depth_}, {plane, value(lowest_m, 0, 0, 0), weights});
         blur_program_.draw(moments_, static_cast<int>(layer), 0, {&rows_}, {weights});
         log_.debug("vsm: map " + std::to_string(layer) + " drawn, texels of " +
-                   std::to_string(texel_m.x) + " x " + std::to_string(texel_m.y) + " m, ground of level " + std::to_string(level));
+                   std::to_string(texel_m.x) + " x " + std::to_string(texel_m.y) +
+                   " m, ground of level " + std::to_string(level));
     }
 
     void write_params(const relevo_frame& frame) const {

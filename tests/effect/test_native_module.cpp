@@ -111,8 +111,7 @@ TEST(NativeModule, ABadOneIsOffAndSoIsWhatRequiresIt) {
     EXPECT_EQ(plugins.relative(chosen.selection.notices[0]),
               "native is off: effect::load: plugins/native/native.so: its registration ended in a "
               "segmentation fault");
-    EXPECT_EQ(chosen.selection.notices[1],
-              "glow is off: it requires magic, native is off");
+    EXPECT_EQ(chosen.selection.notices[1], "glow is off: it requires magic, native is off");
 }
 
 TEST(NativeModule, ABadOneThatIsAskedForIsANoticeToo) {

@@ -100,11 +100,11 @@ typedef struct relevo_frame {
     uint32_t size;
     int32_t width_px, height_px; /* of the picture */
     double eye_m[3];
-    double forward[3];      /* unit */
-    double pixel_rad;       /* angle of a pixel in the middle of the picture */
-    double sun[3];          /* towards the sun at the DEM's centre, without refraction, unit */
-    double sun_apparent[3]; /* with refraction */
-    double exaggeration;    /* factor on heights */
+    double forward[3];          /* unit */
+    double pixel_rad;           /* angle of a pixel in the middle of the picture */
+    double sun[3];              /* towards the sun at the DEM's centre, without refraction, unit */
+    double sun_apparent[3];     /* with refraction */
+    double exaggeration;        /* factor on heights */
     double lowest_m, highest_m; /* heights of the DEM, not exaggerated */
     double post_spacing_m;      /* of the DEM at its centre */
     uint64_t ground;            /* another number: other ground, or another shape of it */

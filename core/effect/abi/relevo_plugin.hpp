@@ -236,14 +236,13 @@ struct Module {
 }  // namespace relevo::plugin
 
 /// Exports a class that derives from Instance and is made of a `const Host&`.
-#define RELEVO_PLUGIN(plugin_id, type)                                                      \
-    extern "C" RELEVO_PLUGIN_EXPORT const std::uint32_t relevo_plugin_abi =                 \
-        RELEVO_ABI_VERSION;                                                                 \
-    extern "C" RELEVO_PLUGIN_EXPORT relevo_status relevo_plugin_register(const relevo_host*, \
-                                                                         relevo_module* m) { \
-        m->id = plugin_id;                                                                  \
-        m->create = &relevo::plugin::Module<type>::create;                                  \
-        m->destroy = &relevo::plugin::Module<type>::destroy;                                \
-        m->prepare = &relevo::plugin::Module<type>::prepare;                                \
-        return RELEVO_OK;                                                                   \
+#define RELEVO_PLUGIN(plugin_id, type)                                                          \
+    extern "C" RELEVO_PLUGIN_EXPORT const std::uint32_t relevo_plugin_abi = RELEVO_ABI_VERSION; \
+    extern "C" RELEVO_PLUGIN_EXPORT relevo_status relevo_plugin_register(const relevo_host*,    \
+                                                                         relevo_module* m) {    \
+        m->id = plugin_id;                                                                      \
+        m->create = &relevo::plugin::Module<type>::create;                                      \
+        m->destroy = &relevo::plugin::Module<type>::destroy;                                    \
+        m->prepare = &relevo::plugin::Module<type>::prepare;                                    \
+        return RELEVO_OK;                                                                       \
     }

@@ -21,7 +21,8 @@ void write_errors(const std::filesystem::path& folder, double elevation, double 
         for (int x = 0; x < lit.width(); ++x) {
             const bool shaded = mask.shaded.at(x, y), said = lit.at(x, y) < 0.5f;
             std::uint8_t* pixel = picture.row(y) + 3 * x;
-            const auto grey = static_cast<std::uint8_t>((mask.facing.at(x, y) ? 255 : 128) * (shaded ? 0.4 : 1));
+            const auto grey =
+                static_cast<std::uint8_t>((mask.facing.at(x, y) ? 255 : 128) * (shaded ? 0.4 : 1));
             pixel[0] = pixel[1] = pixel[2] = grey;
             if (!mask.facing.at(x, y) || shaded == said) continue;
             pixel[0] = shaded ? 255 : 0;
@@ -29,7 +30,8 @@ void write_errors(const std::filesystem::path& folder, double elevation, double 
             pixel[2] = shaded ? 0 : 255;
         }
     }
-    relevo::image::write(folder / fmt::format("errors_{}_{}.png", elevation, azimuth), picture, {}, true);
+    relevo::image::write(folder / fmt::format("errors_{}_{}.png", elevation, azimuth), picture, {},
+                         true);
 }
 
 /// A part of the DEM from above, three times: depth compared texel by texel, as drawn, and marched.
@@ -62,8 +64,8 @@ void write_comparison(const std::filesystem::path& file, const relevo::dem::Heig
                 n = normalize(n.z < 0 ? -n : n);
                 const double lit = panel == 2 ? 1 - mask.shaded.at(i, j) : panels[panel].at(i, j);
                 const double light = 0.16 * n.z + 1.5 * lit * std::max(dot(n, to_sun), 0.0);
-                const auto grey = static_cast<std::uint8_t>(
-                    255 * std::pow(std::clamp(light, 0.0, 1.0), 1 / 2.2));
+                const auto grey =
+                    static_cast<std::uint8_t>(255 * std::pow(std::clamp(light, 0.0, 1.0), 1 / 2.2));
                 std::uint8_t* pixel = picture.row(y) + 3 * (x + panel * (kPosts * kScale + kGap));
                 pixel[0] = pixel[1] = pixel[2] = grey;
             }
@@ -120,21 +122,26 @@ int main(int argc, char** argv) {
             fmt::print("\n{}: {} x {} posts\n\n", std::filesystem::path(path).filename().string(),
                        dem.grid.columns(), dem.grid.rows());
             double worst = 1, worst_beyond = 1;
-            fmt::print("| sun | azimuth | shaded | balanced accuracy | beyond two texels | lit cells right | shaded cells right | texel |\n");
+            fmt::print(
+                "| sun | azimuth | shaded | balanced accuracy | beyond two texels | lit cells "
+                "right | shaded cells right | texel |\n");
             fmt::print("|---|---|---|---|---|---|---|---|\n");
             for (const double elevation : elevations) {
                 for (const double azimuth : azimuths) {
                     const glm::dvec3 to_sun = direction(azimuth, elevation);
                     const Truth::Mask mask = truth.cast(to_sun);
                     const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
-                    const Score s = score(truth, mask, lit, drawn.texel_m(), to_sun,
-                                          drawn.spacing_m());
-                    fmt::print("| {} | {} | {:.1f} % | {:.2f} % | {:.2f} % | {:.2f} % | {:.2f} % | {:.1f} x {:.2f} m |\n", elevation,
-                               azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond,
-                               100 * s.lit_right, 100 * s.shaded_right, s.texel_m.x, s.texel_m.y);
+                    const Score s =
+                        score(truth, mask, lit, drawn.texel_m(), to_sun, drawn.spacing_m());
+                    fmt::print(
+                        "| {} | {} | {:.1f} % | {:.2f} % | {:.2f} % | {:.2f} % | {:.2f} % | {:.1f} "
+                        "x {:.2f} m |\n",
+                        elevation, azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond,
+                        100 * s.lit_right, 100 * s.shaded_right, s.texel_m.x, s.texel_m.y);
                     std::fflush(stdout);
                     worst = s.shaded_share < 0.01 ? worst : std::min(worst, s.balanced);
-                    worst_beyond = s.shaded_share < 0.01 ? worst_beyond : std::min(worst_beyond, s.beyond);
+                    worst_beyond =
+                        s.shaded_share < 0.01 ? worst_beyond : std::min(worst_beyond, s.beyond);
                     if (!pictures.empty()) write_errors(pictures, elevation, azimuth, mask, lit);
                 }
             }

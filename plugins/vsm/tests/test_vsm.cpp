@@ -157,9 +157,10 @@ TEST(Vsm, ShadowsAreThoseOfRaysOverTheSamePosts) {
         const Truth::Mask mask = truth.cast(to_sun);
         const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
         const Score s = score(truth, mask, lit, drawn.texel_m(), to_sun, drawn.spacing_m());
-        fmt::print("[ shadow ] sun at {} degrees from {}: {:.1f} % shaded, balanced accuracy "
-                   "{:.2f} %, {:.2f} % beyond two texels\n",
-                   elevation, azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond);
+        fmt::print(
+            "[ shadow ] sun at {} degrees from {}: {:.1f} % shaded, balanced accuracy "
+            "{:.2f} %, {:.2f} % beyond two texels\n",
+            elevation, azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond);
         EXPECT_GT(s.shaded_share, 0.01);
         EXPECT_GE(s.balanced, 0.95);
         EXPECT_GE(s.beyond, 0.99);
@@ -168,8 +169,7 @@ TEST(Vsm, ShadowsAreThoseOfRaysOverTheSamePosts) {
 
 TEST(Vsm, TruthOfAWallIsItsTangent) {
     // A wall 100 m high along a column of level ground, the sun 10 degrees high beyond it.
-    const dem::Heightfield dem =
-        field(61, 41, [](int x, int) { return x == 50 ? 100.0 : 0.0; });
+    const dem::Heightfield dem = field(61, 41, [](int x, int) { return x == 50 ? 100.0 : 0.0; });
     const render::Ground ground = render::make_ground(dem);
     const Truth truth(dem, ground.frame);
     const Truth::Mask mask = truth.cast(direction(90, 10));
@@ -210,9 +210,9 @@ TEST(Vsm, ASlowMoveOfTheCameraChangesNoShadow) {
     std::int64_t compared = 0, changed = 0, shaded = 0;
     float worst = 0;
     for (int frame = 0; frame < 6; ++frame) {
-        drawn.inputs().camera = scene::orbit_camera({200 + 0.4 * frame, 65, 2.5 + 0.02 * frame},
-                                                    points, radians(40),
-                                                    double(drawn.size().x) / drawn.size().y);
+        drawn.inputs().camera =
+            scene::orbit_camera({200 + 0.4 * frame, 65, 2.5 + 0.02 * frame}, points, radians(40),
+                                double(drawn.size().x) / drawn.size().y);
         const Array2d<float> now = drawn.at_posts(to_sun, truth.posts());
         const Array2d<float> spread = drawn.spread();
         for (int y = 0; frame > 0 && y < now.height(); ++y) {
@@ -229,9 +229,10 @@ TEST(Vsm, ASlowMoveOfTheCameraChangesNoShadow) {
         before = now;
         before_spread = spread;
     }
-    fmt::print("[ shadow ] {} points compared from frame to frame, {} in shadow: {} changed by "
-               "more than 1/255, the worst by {:.1f}/255\n",
-               compared, shaded, changed, 255 * worst);
+    fmt::print(
+        "[ shadow ] {} points compared from frame to frame, {} in shadow: {} changed by "
+        "more than 1/255, the worst by {:.1f}/255\n",
+        compared, shaded, changed, 255 * worst);
     EXPECT_GT(shaded, 10000);
     EXPECT_LE(static_cast<double>(changed), 0.0002 * static_cast<double>(compared));
     EXPECT_LE(worst, 3 / 255.0f);

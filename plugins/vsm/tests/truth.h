@@ -44,7 +44,8 @@ class Truth {
         });
         for (int y = 0; y < rows; ++y)
             for (int x = 0; x < columns; ++x)
-                if (!std::isnan(posts_.at(x, y).z)) highest_m_ = std::max(highest_m_, posts_.at(x, y).z);
+                if (!std::isnan(posts_.at(x, y).z))
+                    highest_m_ = std::max(highest_m_, posts_.at(x, y).z);
     }
 
     const Array2d<glm::dvec3>& posts() const { return posts_; }
@@ -156,8 +157,10 @@ class Drawn {
         std::ofstream(scratch / "probe/plugin.json")
             << R"({"format": 1, "id": "probe", "name": "Probe", "version": "1"})";
         std::ofstream(scratch / "probe/probe.glsl")
-            << "vec3 probe_on_brdf(in Surface s, in vec3 to_sun, in vec3 to_eye) { return vec3(1.0); }\n"
-               "void probe_on_ambient(in Surface s, inout vec3 irradiance) { irradiance = vec3(0.0); }\n";
+            << "vec3 probe_on_brdf(in Surface s, in vec3 to_sun, in vec3 to_eye) { return "
+               "vec3(1.0); }\n"
+               "void probe_on_ambient(in Surface s, inout vec3 irradiance) { irradiance = "
+               "vec3(0.0); }\n";
         registry_ = effect::Registry::load({test::source_dir() / "plugins/vsm", scratch}, {});
         values_.declare([&] {
             std::vector<shader::Param> params = registry_.params();
@@ -173,9 +176,10 @@ class Drawn {
         const double pixels = std::clamp(2600.0 / dem.grid.columns(), 2.0, 8.0);
         size_ = {static_cast<int>(pixels * dem.grid.columns()) + 8,
                  static_cast<int>(pixels * dem.grid.rows()) + 8};
-        terrain_.emplace(dem_, ground_.frame,
-                         render::TerrainOptions{.pixel_error = pixel_error,
-                                                .max_array_layers = context_.info().max_array_layers});
+        terrain_.emplace(
+            dem_, ground_.frame,
+            render::TerrainOptions{.pixel_error = pixel_error,
+                                   .max_array_layers = context_.info().max_array_layers});
         inputs_.camera = scene::orbit_camera({180, 90, 1}, render::points_to_show(dem, ground_, 1),
                                              radians(8), double(size_.x) / size_.y);
         shadowed_ = select({"probe", "vsm"});
@@ -211,7 +215,8 @@ class Drawn {
                            std::max(without.at(pixel.x + i, pixel.y + j, 1), 1e-6f);
                 };
                 float least = 1e9f, most = -1e9f;
-                const glm::ivec2 first = glm::max(pixel - 1, 0), last = glm::min(pixel + 2, size_ - 1);
+                const glm::ivec2 first = glm::max(pixel - 1, 0),
+                                 last = glm::min(pixel + 2, size_ - 1);
                 for (int j = first.y; j <= last.y; ++j)
                     for (int i = first.x; i <= last.x; ++i) {
                         least = std::min(least, ratio(i - pixel.x, j - pixel.y));
@@ -251,9 +256,12 @@ class Drawn {
         inputs.stitch.values = &values_;
         for (const effect::NativeModule& module : chosen.native.modules)
             inputs.modules.push_back(&module);
-        if (chosen.native.selection.effects.size() != only.size()) failed(chosen.native.selection.notices.at(0));
+        if (chosen.native.selection.effects.size() != only.size())
+            failed(chosen.native.selection.notices.at(0));
         chosen.renderer = std::make_unique<render::Renderer>(
-            context_, inputs, render::RendererOptions{.width_px = size_.x, .height_px = size_.y, .antialias = false, .radiance = true});
+            context_, inputs,
+            render::RendererOptions{
+                .width_px = size_.x, .height_px = size_.y, .antialias = false, .radiance = true});
         return chosen;
     }
 
@@ -316,7 +324,8 @@ inline Array2d<std::uint8_t> near_line(const Truth& truth, const Truth::Mask& ma
                 const bool own = mask.shaded.at(x, y) != 0;
                 bool near = false;
                 for (int j = std::max(0, y - window); j <= std::min(rows - 1, y + window); ++j)
-                    for (int i = std::max(0, x - window); i <= std::min(columns - 1, x + window); ++i)
+                    for (int i = std::max(0, x - window); i <= std::min(columns - 1, x + window);
+                         ++i)
                         near = near || ((mask.shaded.at(i, j) != 0) != own &&
                                         is_near(here, mask.light_m.at(i, j)));
                 // Where on the four grid lines the change is.
@@ -368,8 +377,10 @@ inline Score score(const Truth& truth, const Truth::Mask& mask, const Array2d<fl
     s.shaded_share = static_cast<double>(all[0][1]) / static_cast<double>(all[0][0] + all[0][1]);
     s.balanced = balanced(right[0][0], all[0][0], right[0][1], all[0][1]);
     s.beyond = balanced(right[1][0], all[1][0], right[1][1], all[1][1]);
-    s.lit_right = static_cast<double>(right[0][0]) / static_cast<double>(std::max<std::int64_t>(all[0][0], 1));
-    s.shaded_right = static_cast<double>(right[0][1]) / static_cast<double>(std::max<std::int64_t>(all[0][1], 1));
+    s.lit_right = static_cast<double>(right[0][0]) /
+                  static_cast<double>(std::max<std::int64_t>(all[0][0], 1));
+    s.shaded_right = static_cast<double>(right[0][1]) /
+                     static_cast<double>(std::max<std::int64_t>(all[0][1], 1));
     s.texel_m = texel_m;
     return s;
 }
