@@ -315,7 +315,7 @@ TEST(Load, LargerThanTheMemoryAllowedIsReduced) {
     EXPECT_EQ(f.grid.affine()(0, 0), glm::dvec2(500030, 5199970));
     EXPECT_THAT(
         f.about.assumptions,
-        Contains("reduced from 100 x 60 to 50 x 30 posts, means of 2.0 x 2.0, to keep within "
+        Contains("reduced from 100 x 60 to 50 x 30 posts, means of 2 x 2, to keep within "
                  "the memory allowed"));
 }
 
