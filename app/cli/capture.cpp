@@ -110,9 +110,10 @@ void capture(const Arguments& arguments) {
     // The DEM is read on a thread of its own while the device starts and the programs are compiled.
     auto loading = std::async(std::launch::async, [&] {
         const auto began = Clock::now();
-        dem::Heightfield field = dem::load(arguments.dem.paths, arguments.dem.options);
+        dem::Source source = dem::Source::open(arguments.dem.paths, arguments.dem.options);
+        dem::Heightfield field = dem::load(source, arguments.dem.options.max_posts);
         timings.add("load", began);
-        return field;
+        return std::pair(std::move(source), std::move(field));
     });
     const auto device_began = Clock::now();
     const bool compared = !arguments.ab.empty();
@@ -131,15 +132,16 @@ void capture(const Arguments& arguments) {
     if (!arguments.dump_shaders.empty())
         render::dump_programs(renderer.texts(), arguments.dump_shaders);
     timings.add("compile", compile_began);
-    const dem::Heightfield dem = loading.get();
+    const auto [source, dem] = loading.get();
     if (arguments.time.given() && !given_time)
         given_time = arguments.time.parse([&]() -> const dem::Heightfield& { return dem; });
 
     const auto upload_began = Clock::now();
     const render::Ground ground = render::make_ground(dem);
-    render::Terrain terrain(dem, ground.frame,
-                            {.pixel_error = arguments.pixel_error,
-                             .max_array_layers = context.info().max_array_layers});
+    render::Terrain terrain(
+        dem, ground.frame,
+        {.pixel_error = arguments.pixel_error, .max_array_layers = context.info().max_array_layers},
+        &source);
     timings.add("upload", upload_began);
 
     const geo::Geodetic place = ground.frame.origin();

@@ -14,6 +14,12 @@
 
 namespace relevo::cli {
 
+namespace {
+
+constexpr std::int64_t kBytesAPost = sizeof(float);
+
+}  // namespace
+
 void DemArguments::add_to(CLI::App& verb) {
     verb.add_option("DEM", paths, "Elevation rasters: anything GDAL opens; several are one DEM")
         ->required();
@@ -50,6 +56,13 @@ void DemArguments::add_to(CLI::App& verb) {
                 options.bounds = dem::parse_bounds(text, "--bounds");
             },
             "Edges of the raster instead of its georeference: W,S,E,N in degrees")
+        ->group("DEM");
+    verb.add_option_function<int>(
+            "--memory",
+            [this](int mib) { options.max_posts = (std::int64_t{mib} << 20) / kBytesAPost; },
+            "MiB of heights that are kept; a larger DEM is averaged, and drawn in detail where it "
+            "is near (1024)")
+        ->check(CLI::Range(1, 1 << 20))
         ->group("DEM");
 }
 

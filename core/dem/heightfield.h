@@ -66,6 +66,7 @@ struct Heightfield {
     Array2d<float> height_m;  ///< metres, NaN for holes; row 0 is the first row of the file
     Grid grid;                ///< as many columns and rows
     Description about;
+    int reduction = 1;  ///< posts of the file that a post here is the mean of, each way
 
     /// The height between posts, bilinear [m]; NaN outside of the grid and where a hole takes part.
     double height_at(double column, double row) const;

@@ -1,7 +1,6 @@
 #include "dem/load.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -16,24 +15,27 @@ Heightfield load(const std::string& path, const LoadOptions& options) {
 }
 
 Heightfield load(std::span<const std::string> paths, const LoadOptions& options) {
-    const Source source = Source::open(paths, options);
-    const Grid& full = source.grid();
-    const Window all{0, 0, full.columns(), full.rows()};
-    Description about = source.description();
+    return load(Source::open(paths, options), options.max_posts);
+}
 
-    int columns = all.columns;
-    int rows = all.rows;
-    const double posts = static_cast<double>(columns) * rows;
-    if (posts > static_cast<double>(options.max_posts)) {
-        const double factor = std::sqrt(posts / static_cast<double>(options.max_posts));
-        columns = std::clamp(static_cast<int>(columns / factor), 2, columns);
-        rows = std::clamp(static_cast<int>(rows / factor), 2, rows);
+Heightfield load(const Source& source, std::int64_t max_posts) {
+    const Grid& full = source.grid();
+    Description about = source.description();
+    int reduction = 1;
+    const auto reduced_posts = [&] {
+        return std::int64_t{full.columns() / reduction} * (full.rows() / reduction);
+    };
+    while (reduced_posts() > max_posts &&
+           std::min(full.columns(), full.rows()) / (2 * reduction) >= 2)
+        reduction *= 2;
+    const int columns = full.columns() / reduction, rows = full.rows() / reduction;
+    // What is left over at the last row and column is less than one mean.
+    const Window all{0, 0, columns * reduction, rows * reduction};
+    if (reduction > 1)
         about.assumptions.push_back(fmt::format(
-            "reduced from {} x {} to {} x {} posts, means of {:.1f} x {:.1f}, to keep "
-            "within the memory allowed",
-            all.columns, all.rows, columns, rows, all.columns / static_cast<double>(columns),
-            all.rows / static_cast<double>(rows)));
-    }
+            "reduced from {} x {} to {} x {} posts, means of {} x {}, to keep within the memory "
+            "allowed",
+            full.columns(), full.rows(), columns, rows, reduction, reduction));
     Array2d<float> height_m = source.read(all, columns, rows);
     about.statistics = statistics(height_m);
     const Statistics& s = about.statistics;
@@ -60,8 +62,8 @@ Heightfield load(std::span<const std::string> paths, const LoadOptions& options)
                         frame->height_m, frame->step_m,
                         (static_cast<double>(frame->height_m) - about.offset) / about.scale /
                             about.unit.metres));
-    Grid grid = columns == all.columns && rows == all.rows ? full : full.part(all, columns, rows);
-    return {std::move(height_m), std::move(grid), std::move(about)};
+    Grid grid = reduction == 1 ? full : full.part(all, columns, rows);
+    return {std::move(height_m), std::move(grid), std::move(about), reduction};
 }
 
 }  // namespace relevo::dem

@@ -16,4 +16,7 @@ Heightfield load(const std::string& path, const LoadOptions& options = {});
 /// @throws Error (BadInput) also where there are none, or where they cannot be joined
 Heightfield load(std::span<const std::string> paths, const LoadOptions& options = {});
 
+/// The same for what is open already.
+Heightfield load(const Source& source, std::int64_t max_posts);
+
 }  // namespace relevo::dem

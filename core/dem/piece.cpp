@@ -117,7 +117,7 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
         about.nodata = options.nodata;
         about.assumptions.push_back(fmt::format("{} marks a hole, as given", *options.nodata));
         piece.knows_holes = piece.knows_holes && declared;
-    } else if (!declared && !piece.has_mask) {
+    } else if (!declared && !piece.has_mask && piece.alpha_band == 0) {
         const Undeclared found = find_undeclared(sample_of(band, sampled_pieces), meaning.scale);
         if (found.beyond)
             guess(about,
@@ -130,6 +130,7 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
                                      *found.nodata));
         piece.knows_holes = !found.nodata && !found.beyond;
     }
+    if (piece.alpha_band > 0) piece.knows_holes = false;
     meaning.nodata = about.nodata;
 }
 
@@ -155,10 +156,15 @@ Dataset resampled(const Piece& piece, Dataset dataset, const GdalMessages& messa
     const std::string band = fmt::format("{}", piece.about.band);
     const std::string nodata =
         piece.meaning.nodata ? fmt::format("{}", *piece.meaning.nodata) : std::string("none");
-    CPLStringList one_band;
+    CPLStringList one_band, onto;
     for (const std::string& word : {std::string("-of"), std::string("VRT"), std::string("-b"), band,
                                     std::string("-a_nodata"), nodata})
         one_band.AddString(word.c_str());
+    if (piece.alpha_band > 0) {
+        one_band.AddString("-b");
+        one_band.AddString(fmt::format("{}", piece.alpha_band).c_str());
+        onto.AddString("-srcalpha");
+    }
     if (piece.has_mask) {
         one_band.AddString("-mask");
         one_band.AddString(fmt::format("mask,{}", band).c_str());
@@ -172,7 +178,6 @@ Dataset resampled(const Piece& piece, Dataset dataset, const GdalMessages& messa
     const Affine& a = piece.resampling->affine;
     const double west = a.x0 - a.x_column / 2, north = a.y0 - a.y_row / 2;
     const auto text = [](double value) { return fmt::format("{:.17g}", value); };
-    CPLStringList onto;
     for (const std::string& word : {std::string("-of"),
                                     std::string("VRT"),
                                     std::string("-r"),
@@ -271,6 +276,10 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
     piece.wide = !fits_float(type);
     const int mask = GDALGetMaskFlags(band);
     piece.has_mask = (mask & (GMF_PER_DATASET | GMF_ALPHA)) != 0 && (mask & GMF_NODATA) == 0;
+    for (int i = 1; i <= piece.about.bands && !piece.has_mask; ++i)
+        if (i != piece.about.band &&
+            GDALGetRasterColorInterpretation(GDALGetRasterBand(dataset.get(), i)) == GCI_AlphaBand)
+            piece.alpha_band = i;
     settle_nodata(band, options, files > kManyFiles ? 3 : 5, piece);
     piece.levels = levels_of(band);
     if (!piece.knows_holes) piece.levels.resize(1);
@@ -328,6 +337,12 @@ void Piece::read(void* dataset, const Level& level, const Window& w, float* heig
     } else {
         fetch(band, height_m, GDT_Float32);
         to_metres(meaning, height_m, n, height_m);
+    }
+    if (alpha_band > 0 && !resampling) {
+        std::vector<float> alpha(n);
+        fetch(band_of(alpha_band), alpha.data(), GDT_Float32);
+        for (std::size_t i = 0; i < n; ++i)
+            if (alpha[i] == 0) height_m[i] = kHole;
     }
     if (has_mask && !resampling) {
         std::vector<unsigned char> mask(n);

@@ -43,6 +43,7 @@ struct Piece {
     Meaning meaning;
     Encoding encoding = Encoding::None;
     bool has_mask = false;     ///< a mask or an alpha band says where the holes are
+    int alpha_band = 0;        ///< GDAL makes no mask of it, which it does of 8 and 16 bits alone
     bool wide = false;         ///< stored numbers need doubles
     bool threads_pay = false;  ///< the driver decodes blocks one by one, whichever handle asks
     bool knows_holes = true;   ///< overviews were made by who knew which numbers are heights

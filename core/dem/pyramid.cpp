@@ -1,10 +1,15 @@
 #include "dem/pyramid.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include <glm/common.hpp>
 
 #include "base/parallel_for.h"
 
@@ -12,6 +17,10 @@ namespace relevo::dem {
 namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint8_t kWhole = 255;
+
+/// Pieces of a DEM, each way, whose posts are read to learn how far the levels are from them.
+constexpr int kSamples = 3;
 
 /// Nodes of the next coarser level along a side.
 int coarser(int nodes) {
@@ -20,12 +29,12 @@ int coarser(int nodes) {
 
 }  // namespace
 
-Pyramid::Pyramid(const Array2d<float>& posts_m) : posts_m_(&posts_m) {
-    const Array2d<float>& height_m = posts_m;
+Pyramid::Pyramid(const Array2d<float>& posts_m)
+    : posts_m_(&posts_m), sizes_{{posts_m.width(), posts_m.height()}} {
     std::atomic<bool> holes = false;
-    parallel_for(0, height_m.height(), 64, [&](int first, int last) {
+    parallel_for(0, rows(), 64, [&](int first, int last) {
         for (int row = first; row < last; ++row)
-            for (const float h : height_m.row(row))
+            for (const float h : posts_m.row(row))
                 if (std::isnan(h)) {
                     holes = true;
                     return;
@@ -34,22 +43,39 @@ Pyramid::Pyramid(const Array2d<float>& posts_m) : posts_m_(&posts_m) {
     has_holes_ = holes;
     Level level;
     if (has_holes_) {
-        level.coverage = Array2d<std::uint8_t>(height_m.width(), height_m.height());
-        for (int row = 0; row < height_m.height(); ++row)
-            for (int column = 0; column < height_m.width(); ++column)
-                level.coverage.at(column, row) = std::isnan(height_m.at(column, row)) ? 0 : 255;
+        level.coverage = Array2d<std::uint8_t>(columns(), rows());
+        for (int row = 0; row < rows(); ++row)
+            for (int column = 0; column < columns(); ++column)
+                level.coverage.at(column, row) = std::isnan(posts_m.at(column, row)) ? 0 : kWhole;
     }
     levels_.push_back(std::move(level));
-    bound_tiles(0);
-    while (std::max(size(levels() - 1).x, size(levels() - 1).y) > kTileQuads + 1) {
+    make_coarser_levels();
+}
+
+Pyramid::Pyramid(const Heightfield& means, const Source& source)
+    : source_(&source), sizes_{{source.grid().columns(), source.grid().rows()}} {
+    assert(means.reduction >= 2);
+    first_ = std::bit_width(static_cast<unsigned>(means.reduction));
+    levels_.resize(static_cast<std::size_t>(first_));
+    for (int level = 0; level < first_; ++level)
+        sizes_.emplace_back(coarser(sizes_.back().x), coarser(sizes_.back().y));
+    // A mean says nothing of single posts without a height: that there may be some costs little.
+    has_holes_ = true;
+    levels_.push_back(nodes_of_means(means.height_m, {0, 0}, first_, {0, 0}, sizes_.back()));
+    sample_errors();
+    make_coarser_levels();
+}
+
+void Pyramid::make_coarser_levels() {
+    bound_tiles(first_);
+    while (std::max(sizes_.back().x, sizes_.back().y) > kTileQuads + 1) {
         make_level();
         bound_tiles(levels() - 1);
     }
 }
 
 glm::ivec2 Pyramid::size(int level) const {
-    const Array2d<float>& h = heights(level);
-    return {h.width(), h.height()};
+    return sizes_[static_cast<std::size_t>(level)];
 }
 
 glm::ivec2 Pyramid::post(int level, glm::ivec2 node) const {
@@ -124,9 +150,26 @@ void Pyramid::make_level() {
         }
     });
     levels_.push_back(std::move(coarse));
+    sizes_.emplace_back(columns, rows);
 }
 
 namespace {
+
+/// Of the eight neighbours and the node itself, those that have a height; 0 if none has.
+template <typename HeightAt>
+float mean_around(const HeightAt& height_at) {
+    float sum = 0;
+    int count = 0;
+    for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+            const float neighbour = height_at(dx, dy);
+            if (std::isnan(neighbour)) continue;
+            sum += neighbour;
+            ++count;
+        }
+    }
+    return count ? sum / static_cast<float>(count) : 0.0f;
+}
 
 Pyramid::Place place_in_coarser(int level, int node, int posts, int coarse_nodes) {
     const auto post = [&](int n, int l) { return std::min(n << l, posts - 1); };
@@ -148,6 +191,7 @@ Pyramid::Place Pyramid::row_in_coarser(int level, int row) const {
 }
 
 Pyramid::Block Pyramid::block(int level, glm::ivec2 first, int columns, int rows) const {
+    if (level < first_) return read_block(level, first, columns, rows);
     Block block{Array2d<float>(columns, rows), Array2d<float>(columns, rows, 1.0f)};
     const Array2d<float>& h = heights(level);
     for (int y = 0; y < rows; ++y) {
@@ -163,20 +207,130 @@ Pyramid::Block Pyramid::block(int level, glm::ivec2 first, int columns, int rows
             const glm::ivec2 node = first + glm::ivec2(x, y);
             block.coverage.at(x, y) = coverage(level, node.x, node.y);
             if (!std::isnan(block.height_m.at(x, y))) continue;
-            float sum = 0;
-            int count = 0;
-            for (int dy = -1; dy <= 1; ++dy) {
-                for (int dx = -1; dx <= 1; ++dx) {
-                    const float neighbour = height(level, node.x + dx, node.y + dy);
-                    if (std::isnan(neighbour)) continue;
-                    sum += neighbour;
-                    ++count;
-                }
-            }
-            block.height_m.at(x, y) = count ? sum / static_cast<float>(count) : 0.0f;
+            block.height_m.at(x, y) = mean_around(
+                [&](int dx, int dy) { return height(level, node.x + dx, node.y + dy); });
         }
     }
     return block;
+}
+
+Pyramid::Level Pyramid::nodes_of_means(const Array2d<float>& means, glm::ivec2 first_mean,
+                                       int level, glm::ivec2 first, glm::ivec2 count) const {
+    // A node lies where two means meet, half a post towards the second; their weights put the
+    // middle of what they cover on it.
+    const int side = 1 << (level - 1);  // of a mean [posts]
+    const float before = 0.5f * static_cast<float>(side - 1) / static_cast<float>(side);
+    const std::array<float, 2> weight{before, 1 - before};
+    Level nodes{Array2d<float>(count.x, count.y), Array2d<std::uint8_t>(count.x, count.y), {}};
+    parallel_for(0, count.y, 64, [&](int begin, int end) {
+        for (int y = begin; y < end; ++y) {
+            for (int x = 0; x < count.x; ++x) {
+                float sum = 0, covered = 0, whole = 0;
+                for (int j = 0; j < 2; ++j) {
+                    const int row = 2 * (first.y + y) - 1 + j - first_mean.y;
+                    if (row < 0 || row >= means.height()) continue;
+                    for (int i = 0; i < 2; ++i) {
+                        const int column = 2 * (first.x + x) - 1 + i - first_mean.x;
+                        if (column < 0 || column >= means.width()) continue;
+                        const float w = weight[static_cast<std::size_t>(i)] *
+                                        weight[static_cast<std::size_t>(j)];
+                        const float h = means.at(column, row);
+                        whole += w;
+                        if (std::isnan(h)) continue;
+                        sum += w * h;
+                        covered += w;
+                    }
+                }
+                nodes.height_m.at(x, y) = covered > 0 ? sum / covered : kHole;
+                nodes.coverage.at(x, y) =
+                    static_cast<std::uint8_t>(whole > 0 ? std::lrint(kWhole * covered / whole) : 0);
+            }
+        }
+    });
+    return nodes;
+}
+
+Pyramid::Block Pyramid::read_block(int level, glm::ivec2 first, int columns, int rows) const {
+    // One node more on each side, for the means beside holes; then nodes on the DEM alone.
+    const glm::ivec2 last = size(level) - 1;
+    const glm::ivec2 from = glm::clamp(first - 1, glm::ivec2(0), last);
+    const glm::ivec2 to = glm::clamp(first + glm::ivec2(columns, rows), glm::ivec2(0), last);
+    const glm::ivec2 count = to - from + 1;
+    const glm::ivec2 posts = size(0);
+
+    Level nodes;
+    if (level < 2) {
+        // Posts, or their means with weights 1 2 1.
+        const glm::ivec2 low = glm::max((from << level) - level, glm::ivec2(0));
+        const glm::ivec2 high = glm::min((to << level) + level, posts - 1);
+        const Window window{low.x, low.y, high.x - low.x + 1, high.y - low.y + 1};
+        const Array2d<float> read = source_->read(window, window.columns, window.rows);
+        nodes = {Array2d<float>(count.x, count.y), Array2d<std::uint8_t>(count.x, count.y), {}};
+        for (int y = 0; y < count.y; ++y) {
+            for (int x = 0; x < count.x; ++x) {
+                const glm::ivec2 at = post(level, from + glm::ivec2(x, y)) - low;
+                float sum = 0, covered = 0, whole = 0;
+                for (int dy = -level; dy <= level; ++dy) {
+                    for (int dx = -level; dx <= level; ++dx) {
+                        const glm::ivec2 p = at + glm::ivec2(dx, dy);
+                        if (p.x < 0 || p.y < 0 || p.x >= read.width() || p.y >= read.height())
+                            continue;
+                        const auto w = static_cast<float>((2 - std::abs(dx)) * (2 - std::abs(dy)));
+                        const float h = read.at(p.x, p.y);
+                        whole += w;
+                        if (std::isnan(h)) continue;
+                        sum += w * h;
+                        covered += w;
+                    }
+                }
+                nodes.height_m.at(x, y) = covered > 0 ? sum / covered : kHole;
+                nodes.coverage.at(x, y) =
+                    static_cast<std::uint8_t>(std::lrint(kWhole * covered / whole));
+            }
+        }
+    } else {
+        const int side = 1 << (level - 1);
+        const glm::ivec2 means = posts / side;
+        const glm::ivec2 low = glm::clamp(2 * from - 1, glm::ivec2(0), means - 1);
+        const glm::ivec2 high = glm::clamp(2 * to, low, means - 1);
+        const glm::ivec2 size = high - low + 1;
+        const Array2d<float> read = source_->read(
+            {low.x * side, low.y * side, size.x * side, size.y * side}, size.x, size.y);
+        nodes = nodes_of_means(read, low, level, from, count);
+    }
+
+    Block block{Array2d<float>(columns, rows), Array2d<float>(columns, rows)};
+    for (int y = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x) {
+            const glm::ivec2 at = glm::clamp(first + glm::ivec2(x, y), glm::ivec2(0), last) - from;
+            block.coverage.at(x, y) = static_cast<float>(nodes.coverage.at(at.x, at.y)) / kWhole;
+            const float h = nodes.height_m.at(at.x, at.y);
+            block.height_m.at(x, y) = !std::isnan(h) ? h : mean_around([&](int dx, int dy) {
+                return nodes.height_m.at(std::clamp(at.x + dx, 0, count.x - 1),
+                                         std::clamp(at.y + dy, 0, count.y - 1));
+            });
+        }
+    }
+    return block;
+}
+
+void Pyramid::sample_errors() {
+    sampled_.resize(static_cast<std::size_t>(first_ + 1));
+    const glm::ivec2 posts = size(0);
+    const glm::ivec2 side = glm::min(glm::ivec2((kTileQuads << first_) + 1), posts);
+    for (int j = 0; j < kSamples; ++j) {
+        for (int i = 0; i < kSamples; ++i) {
+            const glm::ivec2 at = (posts - side) * glm::ivec2(i, j) / (kSamples - 1);
+            const Array2d<float> read = source_->read({at.x, at.y, side.x, side.y}, side.x, side.y);
+            const Pyramid part(read);
+            for (int level = 0; level < std::min(part.levels(), first_ + 1); ++level) {
+                Bounds& sampled = sampled_[static_cast<std::size_t>(level)];
+                sampled.error_m =
+                    std::max(sampled.error_m, part.error_m(level, &Bounds::error_m, 1));
+                sampled.rms_m = std::max(sampled.rms_m, part.error_m(level, &Bounds::rms_m, 1));
+            }
+        }
+    }
 }
 
 glm::ivec2 Pyramid::tiles(int level) const {
@@ -185,19 +339,29 @@ glm::ivec2 Pyramid::tiles(int level) const {
             std::max(1, (nodes.y - 2) / kTileQuads + 1)};
 }
 
-const Pyramid::Bounds& Pyramid::bounds(int level, glm::ivec2 tile) const {
-    return levels_[static_cast<std::size_t>(level)].tiles.at(tile.x, tile.y);
+Pyramid::Bounds Pyramid::bounds(int level, glm::ivec2 tile) const {
+    if (level >= first_) return levels_[static_cast<std::size_t>(level)].tiles.at(tile.x, tile.y);
+    const int up = first_ - level;
+    const glm::ivec2 last = tiles(first_) - 1;
+    Bounds bounds = levels_[static_cast<std::size_t>(first_)].tiles.at(
+        std::min(tile.x >> up, last.x), std::min(tile.y >> up, last.y));
+    const Bounds& sampled = sampled_[static_cast<std::size_t>(level)];
+    bounds.error_m = sampled.error_m;
+    bounds.rms_m = sampled.rms_m;
+    return bounds;
 }
 
 void Pyramid::bound_tiles(int level) {
     const glm::ivec2 count = tiles(level);
     levels_[static_cast<std::size_t>(level)].tiles =
         Array2d<Bounds>(count.x, count.y, {.lowest_m = 1, .highest_m = 0});
-    if (level > 0) {
+    if (level > first_) {
         measure_errors(level);
         return;
     }
-    const Array2d<float>& posts = heights(0);
+    // Posts lie above and below their means by no more than the sample has shown.
+    const Bounds off = first_ > 0 ? sampled_.back() : Bounds{};
+    const Array2d<float>& posts = heights(level);
     parallel_for(0, count.y, 1, [&](int first, int last) {
         for (int ty = first; ty < last; ++ty) {
             for (int tx = 0; tx < count.x; ++tx) {
@@ -212,7 +376,10 @@ void Pyramid::bound_tiles(int level) {
                     }
                 }
                 if (low <= high)
-                    levels_.front().tiles.at(tx, ty) = {.lowest_m = low, .highest_m = high};
+                    levels_.back().tiles.at(tx, ty) = {.lowest_m = low - off.error_m,
+                                                       .highest_m = high + off.error_m,
+                                                       .error_m = off.error_m,
+                                                       .rms_m = off.rms_m};
             }
         }
     });
@@ -237,7 +404,7 @@ void Pyramid::measure_errors(int level) {
                 int children = 0;
                 for (int y = 2 * ty; y <= std::min(2 * ty + 1, finer.y - 1); ++y) {
                     for (int x = 2 * tx; x <= std::min(2 * tx + 1, finer.x - 1); ++x) {
-                        const Bounds& child = this->bounds(level - 1, {x, y});
+                        const Bounds child = this->bounds(level - 1, {x, y});
                         if (child.empty()) continue;
                         bounds.lowest_m = std::min(bounds.lowest_m, child.lowest_m);
                         bounds.highest_m = std::max(bounds.highest_m, child.highest_m);
@@ -287,6 +454,7 @@ void Pyramid::measure_errors(int level) {
 }
 
 float Pyramid::error_m(int level, float Bounds::*measure, double share) const {
+    if (level < first_) return sampled_[static_cast<std::size_t>(level)].*measure;
     std::vector<float> errors;
     for (const Bounds& bounds : levels_[static_cast<std::size_t>(level)].tiles)
         if (!bounds.empty()) errors.push_back(bounds.*measure);

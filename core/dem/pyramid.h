@@ -8,6 +8,7 @@
 
 #include "base/array2d.h"
 #include "dem/heightfield.h"
+#include "dem/source.h"
 
 namespace relevo::dem {
 
@@ -19,15 +20,26 @@ namespace relevo::dem {
 /// over those that have a height; its coverage is the share of that weight that has one. Coverage
 /// averages like area: where holes are cut at a coverage of one half, they keep their size whatever
 /// the level, and heights next to them are those of their neighbours alone.
+///
+/// Of a DEM that memory does not hold, the finer levels are read when a block of them is asked for,
+/// as means that a file's overviews speed up, and what is known of their tiles comes from the
+/// coarser levels and from a sample of the posts.
 class Pyramid {
   public:
     /// Makes all coarser levels down to one of at most 65 x 65 nodes.
     /// @param posts_m  level 0, NaN for holes; it must outlive this
     explicit Pyramid(const Array2d<float>& posts_m);
 
-    int levels() const { return static_cast<int>(levels_.size()); }
-    int columns() const { return posts_m_->width(); }  ///< of posts
-    int rows() const { return posts_m_->height(); }
+    /// Of a DEM of which only means are in memory.
+    /// @param means   as load() makes them of the source: a power of two posts to each
+    /// @param source  where finer levels are read from; both must outlive this
+    /// @throws Error (BadInput) where the file is damaged, also from block()
+    Pyramid(const Heightfield& means, const Source& source);
+
+    int levels() const { return static_cast<int>(sizes_.size()); }
+    int columns() const { return sizes_.front().x; }  ///< of posts
+    int rows() const { return sizes_.front().y; }
+    int first_in_memory() const { return first_; }  ///< the finest level that is not read
     bool has_holes() const { return has_holes_; }
 
     /// Nodes of a level, columns and rows.
@@ -35,11 +47,13 @@ class Pyramid {
     /// The post that a node lies on.
     glm::ivec2 post(int level, glm::ivec2 node) const;
 
-    /// Height of a node [m], NaN where its coverage is 0. Indices beyond the rim repeat it.
+    /// Height of a node [m] of a level in memory, NaN where its coverage is 0. Indices beyond the
+    /// rim repeat it.
     float height(int level, int column, int row) const;
-    /// 0 to 1.
+    /// 0 to 1; likewise.
     float coverage(int level, int column, int row) const;
 
+    /// Of a level in memory.
     const Array2d<float>& heights(int level) const {
         return level == 0 ? *posts_m_ : levels_[static_cast<std::size_t>(level)].height_m;
     }
@@ -51,6 +65,7 @@ class Pyramid {
         Array2d<float> coverage;  ///< 0 to 1
     };
     /// @param first  its first node; nodes beyond the rim repeat it
+    /// Safe on several threads at once.
     Block block(int level, glm::ivec2 first, int columns, int rows) const;
 
     /// Where a node lies among those of the next coarser level: `share` of the way from node `from`
@@ -81,7 +96,7 @@ class Pyramid {
     /// Tiles of a level, columns and rows.
     glm::ivec2 tiles(int level) const;
     /// Of tile (x, y), which covers the nodes 64 x to 64 x + 64 and likewise y.
-    const Bounds& bounds(int level, glm::ivec2 tile) const;
+    Bounds bounds(int level, glm::ivec2 tile) const;
 
     /// The error that a share of a level's tiles does not exceed [m].
     /// @param measure  &Bounds::error_m or &Bounds::rms_m
@@ -95,12 +110,21 @@ class Pyramid {
         Array2d<Bounds> tiles;
     };
 
+    void make_coarser_levels();
     void make_level();
     void bound_tiles(int level);
     void measure_errors(int level);
+    Level nodes_of_means(const Array2d<float>& means, glm::ivec2 first_mean, int level,
+                         glm::ivec2 first, glm::ivec2 count) const;
+    Block read_block(int level, glm::ivec2 first, int columns, int rows) const;
+    void sample_errors();
 
-    const Array2d<float>* posts_m_;
-    std::vector<Level> levels_;  // the heights of the first are posts_m_
+    const Array2d<float>* posts_m_ = nullptr;
+    const Source* source_ = nullptr;
+    int first_ = 0;
+    std::vector<glm::ivec2> sizes_;  // of all levels
+    std::vector<Level> levels_;      // empty below first_; the heights of level 0 are posts_m_
+    std::vector<Bounds> sampled_;    // errors of levels 0 to first_, the largest of the sample
     bool has_holes_ = false;
 };
 

@@ -23,8 +23,8 @@ struct LoadOptions {
     bool no_nodata = false;
     Encoding encoding = Encoding::None;  ///< `--encoding`: heights in the colours of a picture
     std::optional<Bounds> bounds = {};   ///< `--bounds`: instead of the file's georeference
-    /// The most posts that load() keeps; a larger raster is averaged down and the description says
-    /// by how much. The default is 1 GiB of heights.
+    /// The most posts that load() keeps; a larger raster is averaged down by a power of two and the
+    /// description says by which. The default is 1 GiB of heights.
     std::int64_t max_posts = std::int64_t{1} << 28;
 };
 

@@ -129,7 +129,6 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     block.exposure =
         static_cast<float>(sun::natural_exposure(elevation) * std::exp2(inputs.exposure_ev));
     block.footprint_limit = static_cast<float>(footprint_limit);
-    block.normal_texels_per_m = static_cast<float>(1 / ground.normal_spacing_m);
 
     const glm::dvec3 eye_up = ground.frame.up(eye.lat_rad, eye.lon_rad);
     const double above_sea_m = std::max(eye.height_m, 0.0);

@@ -76,9 +76,9 @@ struct Ground {
 
     glm::dvec2 south_west_m{-1, -1};  ///< corner of the DEM's posts in the local frame
     glm::dvec2 north_east_m{1, 1};    ///< likewise
-    double normal_spacing_m = 30;     ///< from texel to texel of the normal pages
 };
 
+/// All but what the terrain knows of its pages.
 /// @param footprint_limit  see frame.glsl
 FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int width_px,
                             int height_px, double footprint_limit);

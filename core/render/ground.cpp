@@ -17,8 +17,6 @@ Ground make_ground(const dem::Heightfield& dem) {
     Ground ground{.frame = geo::LocalFrame(dem.grid.center())};
     ground.lowest_m = dem.about.statistics.min_m;
     ground.highest_m = dem.about.statistics.max_m;
-    const glm::dvec2 spacing = dem.grid.post_spacing_m();
-    ground.normal_spacing_m = std::sqrt(spacing.x * spacing.y);
     const double columns = dem.grid.columns() - 1, rows = dem.grid.rows() - 1;
     ground.south_west_m = glm::dvec2(1e300);
     ground.north_east_m = glm::dvec2(-1e300);

@@ -99,7 +99,7 @@ TileTree::TileTree(const dem::Pyramid& pyramid, const dem::Grid& grid, const geo
         const glm::ivec2 count = pyramid.tiles(level);
         for (int y = 0; y < count.y; ++y) {
             for (int x = 0; x < count.x; ++x) {
-                const dem::Pyramid::Bounds& bounds = pyramid.bounds(level, {x, y});
+                const dem::Pyramid::Bounds bounds = pyramid.bounds(level, {x, y});
                 if (!bounds.empty())
                     relief_m = std::max(relief_m, double{bounds.highest_m} - bounds.lowest_m);
             }
@@ -126,7 +126,7 @@ const PatchNet& TileTree::net(const TileKey& key) {
 Box TileTree::box(const TileKey& key, double exaggeration) {
     Node& n = node(key);
     if (n.exaggeration == exaggeration) return n.box;
-    const dem::Pyramid::Bounds& bounds = pyramid_->bounds(key.level, key.at);
+    const dem::Pyramid::Bounds bounds = pyramid_->bounds(key.level, key.at);
     Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
     for (const double u : {0.0, 0.5, 1.0}) {
         for (const double v : {0.0, 0.5, 1.0}) {

@@ -172,6 +172,7 @@ struct Renderer::Impl {
 
     void draw(Terrain& ground, const FrameInputs& inputs, FrameBlock block, PassTimes* times) {
         block.normal_levels = static_cast<float>(ground.normal_levels());
+        block.normal_texels_per_m = static_cast<float>(1 / ground.normal_spacing_m());
         frame_block.write(std::as_bytes(std::span(&block, 1)));
         frame_block.bind_uniform(kFrameBinding);
         if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);

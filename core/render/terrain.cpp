@@ -96,10 +96,11 @@ std::vector<std::byte> bytes_of(const std::vector<T>& values) {
 }  // namespace
 
 Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
-                 const TerrainOptions& options)
+                 const TerrainOptions& options, const dem::Source* finer)
     : options_(options),
-      pyramid_(heightfield.height_m),
-      grid_(heightfield.grid),
+      pyramid_(finer && heightfield.reduction > 1 ? dem::Pyramid(heightfield, *finer)
+                                                  : dem::Pyramid(heightfield.height_m)),
+      grid_(finer && heightfield.reduction > 1 ? finer->grid() : heightfield.grid),
       frame_(frame),
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),

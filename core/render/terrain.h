@@ -47,9 +47,12 @@ class TileSelection {
 class Terrain {
   public:
     /// @param heightfield  must outlive this
+    /// @param finer        where a heightfield of means was made from: its posts are drawn where
+    /// they
+    ///                     are near enough to be seen; null if there is none
     /// @param frame        the DEM's local frame; every position below is in it; must outlive this
     Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
-            const TerrainOptions& options);
+            const TerrainOptions& options, const dem::Source* finer = nullptr);
 
     /// Chooses the tiles of a view and makes their height pages.
     TileSelection select(const LodView& view);
@@ -66,7 +69,8 @@ class Terrain {
     const gl::Texture& normal_pages() const { return normal_pages_.texture(); }
     const gl::Texture& page_table() const { return page_table_; }
     bool has_holes() const { return pyramid_.has_holes(); }
-    int normal_levels() const { return normal_levels_; }  ///< of normal pages
+    int normal_levels() const { return normal_levels_; }           ///< of normal pages
+    double normal_spacing_m() const { return normal_spacing_m_; }  ///< of the finest of them
 
   private:
     void prepare_normals(const LodView& view, int width_px);

@@ -154,17 +154,19 @@ TEST(Dialect, AFrameAroundATurnedRasterIsMentioned) {
 }
 
 TEST(Dialect, AlphaMarksHoles) {
-    Raster raster;
-    raster.type = "UInt16";
-    raster.bands = 2;
-    raster.options = {"ALPHA=YES"};
-    raster.value = [](int column, int row, int band) {
-        return band == 1 ? 100.0 + column + 10 * row : column == 3 ? 0 : 65535;
-    };
-    const Heightfield f = loaded("alpha.tif", raster);
-    EXPECT_EQ(f.about.statistics, (Statistics{100, 135, 20, 4, 0}));
-    EXPECT_TRUE(std::isnan(f.height_m.at(3, 1)));
-    EXPECT_THAT(f.about.assumptions, Not(Contains(testing::HasSubstr("--band"))));
+    for (const char* type : {"UInt16", "Float32", "Int16"}) {
+        Raster raster;
+        raster.type = type;
+        raster.bands = 2;
+        raster.options = {"ALPHA=YES"};
+        raster.value = [](int column, int row, int band) {
+            return band == 1 ? 100.0 + column + 10 * row : column == 3 ? 0 : 255;
+        };
+        const Heightfield f = loaded("alpha.tif", raster);
+        EXPECT_EQ(f.about.statistics, (Statistics{100, 135, 20, 4, 0})) << type;
+        EXPECT_TRUE(std::isnan(f.height_m.at(3, 1))) << type;
+        EXPECT_THAT(f.about.assumptions, Not(Contains(testing::HasSubstr("--band"))));
+    }
 }
 
 TEST(Dialect, UnitsBecomeMetres) {

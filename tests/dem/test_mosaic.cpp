@@ -151,6 +151,26 @@ TEST(Mosaic, MasksOfAResampledFileMarkHoles) {
     EXPECT_FALSE(std::isnan(f.height_m.at(25, 10)));
 }
 
+TEST(Mosaic, AlphaOfAResampledFileMarksHoles) {
+    // GDAL makes a mask of an alpha band of 16 bits and none of one of floats.
+    for (const char* type : {"UInt16", "Float32"}) {
+        Raster other = tile(10, 0, 20, 20);
+        other.crs = "EPSG:25832";
+        other.type = type;
+        other.bands = 2;
+        other.options = {"ALPHA=YES"};
+        other.value = [height = other.value](int c, int r, int b) {
+            const bool hole = c >= 8 && c < 12 && r >= 8 && r < 12;
+            return b == 1 ? std::round(height(c, r, b)) : hole ? 0 : 65535;
+        };
+        const Heightfield f = load(Paths{write_raster(folder() / "utm.tif", tile(0, 0, 10, 20)),
+                                         write_raster(folder() / "alpha.tif", other)});
+        EXPECT_EQ(f.grid.columns(), 30);
+        EXPECT_TRUE(std::isnan(f.height_m.at(20, 10))) << type;
+        EXPECT_NEAR(f.height_m.at(25, 10), plane_m(500765, 5199685), 0.6) << type;
+    }
+}
+
 TEST(Mosaic, AcrossTheAntimeridian) {
     Raster east;
     east.crs = "EPSG:4326";

@@ -4,12 +4,17 @@
 
 #include <fmt/format.h>
 
+#include "dem/fixture.h"
 #include "dem/load.h"
 #include "dem/pyramid.h"
 #include "support/support.h"
 
 namespace relevo::dem {
 namespace {
+
+float plane_m(int column, int row) {
+    return 500.0f + 0.5f * static_cast<float>(column) - 0.25f * static_cast<float>(row);
+}
 
 Array2d<float> field(int columns, int rows, const std::function<float(int, int)>& height) {
     Array2d<float> h(columns, rows);
@@ -163,6 +168,74 @@ TEST(Pyramid, ErrorsAreUpperBoundsOfTheDistanceToThePosts) {
         EXPECT_LT(highest_rms, 1.34);
     }
     EXPECT_EQ(pyramid.error_m(0, &Pyramid::Bounds::error_m, 1), 0);
+}
+
+/// A DEM of which only means of 4 x 4 posts are in memory, beside the same that is there whole.
+TEST(Pyramid, LevelsThatAreReadAreThoseInMemory) {
+    const std::string path = (test::source_dir() / "data/dem/jacksboro.tif").string();
+    const Source source = Source::open(path);
+    const Heightfield whole = load(path);
+    const Heightfield means =
+        load(source, std::int64_t{whole.grid.columns()} * whole.grid.rows() / 16);
+    ASSERT_EQ(means.reduction, 4);
+    const Pyramid in_memory(whole.height_m), read(means, source);
+    ASSERT_EQ(read.first_in_memory(), 3);
+    ASSERT_EQ(read.levels(), in_memory.levels());
+    for (int level = 0; level < read.levels(); ++level) {
+        ASSERT_EQ(read.size(level), in_memory.size(level));
+        // Levels 0 and 1 are read as they are averaged in memory. Coarser ones are means of
+        // squares, not of tents, and differ by a part of what the level is off.
+        double squares = 0;
+        const glm::ivec2 size = read.size(level);
+        for (const glm::ivec2 first : {glm::ivec2(-1, -1), size / 2, size - 40}) {
+            const auto a = read.block(level, first, 41, 41);
+            const auto b = in_memory.block(level, first, 41, 41);
+            for (int y = 0; y < 41; ++y) {
+                for (int x = 0; x < 41; ++x) {
+                    const double d = a.height_m.at(x, y) - b.height_m.at(x, y);
+                    squares += d * d / (3 * 41 * 41);
+                    ASSERT_EQ(a.coverage.at(x, y), 1);
+                }
+            }
+        }
+        const double rms_m = std::sqrt(squares);
+        const float off_m = in_memory.error_m(level, &Pyramid::Bounds::rms_m, 1);
+        fmt::print(
+            "[ pyramid ] level {}: read and in memory {:.2f} m apart, {:.2f} m off the "
+            "posts, known as {:.2f} m\n",
+            level, rms_m, off_m, read.error_m(level, &Pyramid::Bounds::rms_m, 1));
+        if (level < 2) {
+            EXPECT_LT(rms_m, 1e-3);
+        } else {
+            EXPECT_LT(rms_m, 0.6 * off_m);
+        }
+        EXPECT_GT(read.error_m(level, &Pyramid::Bounds::rms_m, 1), 0.7 * off_m);
+        EXPECT_LE(read.error_m(level, &Pyramid::Bounds::rms_m, 1), 1.5 * off_m + 1e-6);
+    }
+}
+
+TEST(Pyramid, NodesOfMeansLieOnTheirPosts) {
+    // On a plane every mean is exact where its posts have their middle.
+    const std::string path =
+        test::write_raster(test::scratch_dir("pyramid") / "plane.tif",
+                           {.columns = 1000, .rows = 700, .value = [](int column, int row, int) {
+                                return plane_m(column, row);
+                            }});
+    const Source source = Source::open(path);
+    const Heightfield means = load(source, 1000 * 700 / 64);
+    ASSERT_EQ(means.reduction, 8);
+    const Pyramid pyramid(means, source);
+    for (int level = 0; level < pyramid.levels() - 1; ++level) {
+        const glm::ivec2 size = pyramid.size(level);
+        const auto block = pyramid.block(level, {0, 0}, size.x, size.y);
+        for (int y = 2; y < size.y - 2; ++y) {
+            for (int x = 2; x < size.x - 2; ++x) {
+                const glm::ivec2 post = pyramid.post(level, {x, y});
+                ASSERT_NEAR(block.height_m.at(x, y), plane_m(post.x, post.y), 0.01)
+                    << level << " " << x << " " << y;
+            }
+        }
+    }
 }
 
 }  // namespace
