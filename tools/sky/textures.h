@@ -12,9 +12,9 @@ namespace relevo::skymaker {
 /// ground: the mean luminance over the hemisphere, weighted with the sine of the elevation, is 1.
 /// The aureole itself is left out of the radiance.
 struct Layout {
-    static constexpr int kAround = 48;  ///< s = 0.5 + 0.5 cos(azimuth from the sun), 0..1
-    static constexpr int kUp = 64;    ///< t, by sine_of; 0 and 1 included
-    static constexpr int kSuns = 40;  ///< slices: sines of the sun's elevation, by slice_of
+    static constexpr int kAround = 48;   ///< s = 0.5 + 0.5 cos(azimuth from the sun), 0..1
+    static constexpr int kUp = 64;       ///< t, by sine_of; 0 and 1 included
+    static constexpr int kSuns = 40;     ///< slices: sines of the sun's elevation, by slice_of
     static constexpr int kNormals = 12;  ///< of the light on slopes: the same s; t = normal's z
     static constexpr double kFold = 0.14;
     static constexpr double kLowestSun_deg = -18;

@@ -83,8 +83,8 @@ TEST(Wet, TheShoreIsWetUpToItsHeightAndDriesAbove) {
 }
 
 TEST(Wet, WaterMirrorsAsFresnelSays) {
-    // Fresnel's equations for unpolarised light and an index of 1.33. Schlick's is within 0.04 up to
-    // 75 degrees; from 79 on the plugin holds it at 0.35.
+    // Fresnel's equations for unpolarised light and an index of 1.33. Schlick's is within 0.04 up
+    // to 75 degrees; from 79 on the plugin holds it at 0.35.
     test::GpuSnippet gpu("wet");
     const auto results = gpu.run("result = vec4(wet_mirrored(cos(radians(float(x)))));", 76, 1);
     for (int deg = 0; deg <= 75; ++deg) {
