@@ -33,14 +33,14 @@ struct EffectInputs {
 /// Core's own parameters, beside those of plugins: `terrain.normal`, fragment or vertex.
 std::vector<shader::Param> core_params();
 
-/// Milliseconds of the stages of one frame, by their names: "select", "geometry", "terrain", "sky",
-/// "post", "antialias".
+/// Milliseconds of the stages of one frame, by their names: "select", "geometry", "terrain",
+/// "background", "post", "antialias".
 using PassTimes = std::vector<std::pair<std::string, double>>;
 
 /// Draws frames of one size with one selection of effects.
 ///
 /// A frame is a row of passes: geometry (what is where, once for every pixel), terrain (its light),
-/// sky, post (tone mapping, sRGB) and antialias.
+/// background, post (tone mapping, sRGB; only with the radiance) and antialias.
 class Renderer {
   public:
     /// Stitches and compiles the programs, and loads the textures they read.
