@@ -132,7 +132,9 @@ void capture(const Arguments& arguments) {
     if (!arguments.dump_shaders.empty())
         render::dump_programs(renderer.texts(), arguments.dump_shaders);
     timings.add("compile", compile_began);
-    const auto [source, dem] = loading.get();
+    const auto loaded = loading.get();
+    const dem::Source& source = loaded.first;
+    const dem::Heightfield& dem = loaded.second;
     if (arguments.time.given() && !given_time)
         given_time = arguments.time.parse([&]() -> const dem::Heightfield& { return dem; });
 
@@ -160,7 +162,12 @@ void capture(const Arguments& arguments) {
     inputs.sun = render::make_sun_light(position, air, ground, dem.grid);
     inputs.exposure_ev = arguments.exposure_ev;
     inputs.exaggeration = arguments.view.exaggeration;
-    inputs.camera = scene::make_camera(view, dem, ground.frame,
+    const auto ground_height_m = [&](const geo::Geodetic& at) {
+        if (dem.reduction > 1) return source.height_at(at);
+        const glm::dvec2 post = dem.grid.post(at);
+        return dem.height_at(post.x, post.y);
+    };
+    inputs.camera = scene::make_camera(view, ground_height_m, ground.frame,
                                        render::points_to_show(dem, ground, inputs.exaggeration),
                                        static_cast<double>(size.x) / size.y, inputs.exaggeration);
 

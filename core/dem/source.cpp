@@ -326,4 +326,15 @@ Array2d<float> Source::read() const {
     return impl_->read_stored({0, 0, grid().columns(), grid().rows()});
 }
 
+double Source::height_at(const geo::Geodetic& place) const {
+    const glm::dvec2 post = grid().post(place);
+    if (!(post.x >= 0 && post.y >= 0 && post.x <= grid().columns() - 1 &&
+          post.y <= grid().rows() - 1))
+        return std::numeric_limits<double>::quiet_NaN();
+    const Window four{std::min(static_cast<int>(post.x), grid().columns() - 2),
+                      std::min(static_cast<int>(post.y), grid().rows() - 2), 2, 2};
+    const Heightfield field{read(four, 2, 2), grid().part(four, 2, 2), description()};
+    return field.height_at(post.x - four.column, post.y - four.row);
+}
+
 }  // namespace relevo::dem

@@ -72,6 +72,9 @@ class Source {
     /// All posts, as stored.
     Array2d<float> read() const;
 
+    /// The height at a place, as Heightfield::height_at() has it: four posts are read.
+    double height_at(const geo::Geodetic& place) const;
+
   private:
     struct Impl;
     explicit Source(std::unique_ptr<Impl> impl);

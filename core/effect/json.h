@@ -22,7 +22,7 @@ struct Json {
     int line = 0;                                       ///< of a member: its key's
 };
 
-/// What a value is, for messages: `"haze"`, `12`, `a list`, `an object`.
+/// What a value is, for messages: `"text"`, `12`, `a list`, `an object`.
 std::string describe(const Json& value);
 
 /// @param who   as messages begin: "effect::load"

@@ -46,11 +46,11 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
                                                      .fragment_main = "depth.frag.glsl",
                                                      .defines = {{"TERRAIN_DEPTH", ""}}},
                                                     input)});
-    for (const std::string name : {"sky", "post", "edges", "antialias"}) {
+    for (const std::string name : {"background", "post", "edges", "antialias"}) {
         if (name == "post" && options.shown) continue;
         shader::ProgramRecipe recipe{.vertex_main = "fullscreen.vert.glsl",
                                      .fragment_main = name + ".frag.glsl"};
-        if (name == "sky" || name == "post") recipe.defines = ends;
+        if (name == "background" || name == "post") recipe.defines = ends;
         programs.push_back({name, shader::stitch(core, recipe, input)});
     }
     return programs;

@@ -12,7 +12,7 @@ namespace relevo::render {
 /// One of the programs of a frame as text.
 struct ProgramText {
     std::string
-        name;  ///< "geometry", "terrain", "sky", "post" (not if shown), "edges", "antialias"
+        name;  ///< "geometry", "terrain", "background", "post" (not if shown), "edges", "antialias"
     shader::Stitched stitched;
 };
 

@@ -49,7 +49,7 @@ struct Renderer::Impl {
     RendererOptions options;
     double anisotropy;
     std::vector<ProgramText> texts;
-    LinkedProgram geometry, terrain, sky;
+    LinkedProgram geometry, terrain, background;
     std::optional<LinkedProgram> post;
     LinkedProgram edges, antialias, depth_only;
     EffectTextures effect_textures;
@@ -75,7 +75,7 @@ struct Renderer::Impl {
           texts(stitch(effects, c.info().max_texture_units, !o.radiance)),
           geometry(link("geometry")),
           terrain(link("terrain")),
-          sky(link("sky")),
+          background(link("background")),
           post(o.radiance ? std::optional(link("post")) : std::nullopt),
           edges(link("edges")),
           antialias(link("antialias")),
@@ -247,10 +247,10 @@ struct Renderer::Impl {
         passed("terrain");
         light_target.bind();
         glDepthFunc(GL_EQUAL);
-        bind(sky, ground);
+        bind(background, ground);
         draw_fullscreen();
         glDisable(GL_DEPTH_TEST);
-        passed("sky");
+        passed("background");
 
         if (post) {
             post_target.bind();

@@ -37,13 +37,13 @@ struct EffectInputs {
 std::vector<shader::Param> core_params();
 
 /// Milliseconds of the stages of one frame, by their names: "select", the id of each native effect,
-/// "geometry", "terrain", "sky", "post", "antialias".
+/// "geometry", "terrain", "background", "post", "antialias".
 using PassTimes = std::vector<std::pair<std::string, double>>;
 
 /// Draws frames of one size with one selection of effects.
 ///
 /// A frame is a row of passes: geometry (what is where, once for every pixel), terrain (its light),
-/// sky, post (tone mapping, sRGB) and antialias.
+/// background, post (tone mapping, sRGB; only with the radiance) and antialias.
 class Renderer {
   public:
     /// Stitches and compiles the programs, and loads the textures they read.

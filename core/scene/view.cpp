@@ -16,19 +16,13 @@ namespace {
 
 constexpr double kClearance_m = 2;  // of a camera above the ground
 
-/// Height of the ground below a place, NaN where the DEM has none.
-double ground_height_m(const dem::Heightfield& dem, const geo::Geodetic& place) {
-    const glm::dvec2 post = dem.grid.post(place);
-    return dem.height_at(post.x, post.y);
-}
-
 /// A standpoint in the local frame, the DEM's exaggeration included.
 glm::dvec3 position_of(const Standpoint& standpoint, std::string_view option,
-                       const dem::Heightfield& dem, const geo::LocalFrame& frame,
+                       const GroundHeight& ground_height_m, const geo::LocalFrame& frame,
                        double exaggeration) {
     geo::Geodetic place = standpoint.place;
     if (standpoint.above_ground) {
-        const double ground_m = ground_height_m(dem, place);
+        const double ground_m = ground_height_m(place);
         if (std::isnan(ground_m))
             bad_input(fmt::format("{}: {}: the DEM has no ground there; give a height without agl",
                                   option, geo::degrees_text(place)));
@@ -64,8 +58,9 @@ Orbit parse_orbit(std::string_view text) {
     return orbit;
 }
 
-Camera make_camera(const View& view, const dem::Heightfield& dem, const geo::LocalFrame& frame,
-                   std::span<const glm::dvec3> points, double aspect, double exaggeration) {
+Camera make_camera(const View& view, const GroundHeight& ground_height_m,
+                   const geo::LocalFrame& frame, std::span<const glm::dvec3> points, double aspect,
+                   double exaggeration) {
     const double fov_y_rad = view.fov_y_rad > 0 ? view.fov_y_rad
                              : view.focal_length_mm > 0
                                  ? fov_y_of_focal_length(view.focal_length_mm, aspect)
@@ -74,14 +69,14 @@ Camera make_camera(const View& view, const dem::Heightfield& dem, const geo::Loc
         Camera camera = orbit_camera(view.orbit, points, fov_y_rad, aspect);
         // Zoomed in, the camera may come to stand inside a mountain: then it stands on it.
         const geo::Geodetic place = frame.to_geodetic(camera.eye_m);
-        const double ground_m = ground_height_m(dem, place) * exaggeration;
+        const double ground_m = ground_height_m(place) * exaggeration;
         if (!std::isnan(ground_m) && place.height_m < ground_m + kClearance_m)
             camera.eye_m = frame.to_local({place.lat_rad, place.lon_rad, ground_m + kClearance_m});
         return camera;
     }
-    const glm::dvec3 eye_m = position_of(*view.eye, "--eye", dem, frame, exaggeration);
+    const glm::dvec3 eye_m = position_of(*view.eye, "--eye", ground_height_m, frame, exaggeration);
     const geo::Geodetic place = frame.to_geodetic(eye_m);
-    const double ground_m = ground_height_m(dem, place) * exaggeration;
+    const double ground_m = ground_height_m(place) * exaggeration;
     if (place.height_m < ground_m)
         log::warning(fmt::format(
             "--eye: it is {:.0f} m below the ground, which is at {:.0f} m there; a height "
@@ -89,9 +84,9 @@ Camera make_camera(const View& view, const dem::Heightfield& dem, const geo::Loc
             ground_m - place.height_m, ground_m / exaggeration));
     const geo::Axes axes = frame.axes(place.lat_rad, place.lon_rad);
     if (view.look_at)
-        return look_at_camera(eye_m,
-                              position_of(*view.look_at, "--look-at", dem, frame, exaggeration),
-                              axes.up, fov_y_rad);
+        return look_at_camera(
+            eye_m, position_of(*view.look_at, "--look-at", ground_height_m, frame, exaggeration),
+            axes.up, fov_y_rad);
     return heading_camera(eye_m, axes, view.heading_deg, view.pitch_deg, fov_y_rad);
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "dem/heightfield.h"
 #include "geo/geodetic.h"
 #include "scene/camera.h"
 
@@ -35,12 +35,16 @@ Orbit parse_orbit(std::string_view text);
 /// Height of the eye above the ground where none is given [m]: a person's.
 inline constexpr double kEyeHeight_m = 1.7;
 
-/// The camera of a view of this DEM.
+/// The DEM's height at a place [m]; NaN where it has no ground.
+using GroundHeight = std::function<double(const geo::Geodetic& place)>;
+
+/// The camera of a view of a DEM.
 /// @param frame   the DEM's local frame
 /// @param points  ground that an orbit has to show, in that frame
 /// @param aspect  width / height of the picture
 /// @throws Error (BadInput) for a standpoint above the ground where the DEM has none
-Camera make_camera(const View& view, const dem::Heightfield& dem, const geo::LocalFrame& frame,
-                   std::span<const glm::dvec3> points, double aspect, double exaggeration);
+Camera make_camera(const View& view, const GroundHeight& ground_height_m,
+                   const geo::LocalFrame& frame, std::span<const glm::dvec3> points, double aspect,
+                   double exaggeration);
 
 }  // namespace relevo::scene

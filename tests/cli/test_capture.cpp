@@ -96,7 +96,7 @@ TEST_F(Capture, TimingsNameEveryStage) {
     const nlohmann::json json = nlohmann::json::parse(read_text(file, "test"));
     for (const char* stage : {"load", "device", "compile", "upload", "passes", "readback", "write"})
         EXPECT_GT(json["stages_ms"][stage].get<double>(), 0) << stage;
-    for (const char* pass : {"geometry", "terrain", "sky", "antialias"})
+    for (const char* pass : {"geometry", "terrain", "background", "antialias"})
         EXPECT_GT(json["passes_ms"][pass].get<double>(), 0) << pass;
     EXPECT_EQ(json["frames"]["count"], 3);
     EXPECT_LE(json["frames"]["min_ms"], json["frames"]["median_ms"]);

@@ -52,6 +52,7 @@ class Toggles : public testing::Test {
 
 TEST_F(Toggles, OnlyHazePullsInTheSkyAndSaysSo) {
     SKIP_WITHOUT_PLUGIN("haze");
+    SKIP_WITHOUT_PLUGIN("sky");
     const Result run = take("a.png", {"--only", "haze"});
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(notices(run), "relevo: haze requires sky: sky is switched on too\n");
@@ -61,6 +62,7 @@ TEST_F(Toggles, OnlyHazePullsInTheSkyAndSaysSo) {
 
 TEST_F(Toggles, DisablingTheSkyTurnsTheHazeOffAndSaysSo) {
     SKIP_WITHOUT_PLUGIN("haze");
+    SKIP_WITHOUT_PLUGIN("sky");
     const Result run = take("a.png", {"--disable", "sky"});
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(notices(run), "relevo: haze is off: it requires sky, sky is disabled\n");
@@ -145,6 +147,7 @@ TEST_F(Toggles, AnOverlaysColoursAreTheLegendsWhateverTheLight) {
 
 TEST_F(Toggles, AbIsWithOnTheLeftAndWithoutOnTheRight) {
     SKIP_WITHOUT_PLUGIN("haze");
+    SKIP_WITHOUT_PLUGIN("sky");
     ASSERT_EQ(take("ab.png", {"--ab", "haze"}).status, 0);
     take("with.png", {});
     take("without.png", {"--disable", "haze"});

@@ -148,10 +148,11 @@ INSTANTIATE_TEST_SUITE_P(
                    "is KTX version 1, expected version 2; convert it with ktx2ktx2"},
         BrokenFile{"format",
                    12,
-                   {97},
-                   "texel format 97, expected one of 9 (VK_FORMAT_R8_UNORM), 16 "
+                   {109},
+                   "texel format 109, expected one of 9 (VK_FORMAT_R8_UNORM), 16 "
                    "(VK_FORMAT_R8G8_UNORM), 37 (VK_FORMAT_R8G8B8A8_UNORM), 43 "
-                   "(VK_FORMAT_R8G8B8A8_SRGB), 70 (VK_FORMAT_R16_UNORM)"},
+                   "(VK_FORMAT_R8G8B8A8_SRGB), 70 (VK_FORMAT_R16_UNORM), 97 "
+                   "(VK_FORMAT_R16G16B16A16_SFLOAT)"},
         BrokenFile{
             "type_size", 16, {2}, "type size of VK_FORMAT_R8G8B8A8_UNORM, expected 1 but got 2"},
         BrokenFile{"width", 20, {0}, "size 0 x 4 x 0, expected 1 to 32768 a side"},

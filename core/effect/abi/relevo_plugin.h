@@ -18,8 +18,7 @@
  *
  * relevo_plugin.hpp makes all this pleasant in C++. docs/plugin-guide.md has an example.
  */
-#ifndef RELEVO_PLUGIN_H
-#define RELEVO_PLUGIN_H
+#pragma once
 
 #include <stdint.h>
 
@@ -210,6 +209,4 @@ typedef struct relevo_terrain_1 {
 
 #ifdef __cplusplus
 }
-#endif
-
 #endif
