@@ -2,7 +2,7 @@
 """How long `relevo capture` takes, and on what: a DEM of 1200 x 640 posts made of the bundled one, a picture of
 1280 x 1024.
 
-Usage: bench_capture.py [BUILD] [--runs N] [--device NAME]      BUILD: build/release (default)
+Usage: bench_capture.py [BUILD] [--runs N] [--device NAME] [--only EFFECTS]      BUILD: build/release (default)
 
 Prints the whole process's time (minimum, median, maximum of the runs after one that warms the driver's
 shader cache), the median of each stage and its share. Stages overlap: the DEM is read while the device starts.
@@ -33,13 +33,14 @@ def main():
     parser.add_argument("build", nargs="?", default=ROOT / "build/release", type=pathlib.Path)
     parser.add_argument("--runs", type=int, default=7)
     parser.add_argument("--device", default="auto")
+    parser.add_argument("--only", help="effects to draw with; all that are on by default if not given")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         dem = make_dem(folder, 1200, 640)
         timings = folder / "timings.json"
         command = [arguments.build / "bin/relevo", "-q", "capture", dem, "-o", folder / "out.png", "--overwrite",
-                   "--device", arguments.device]
+                   "--device", arguments.device, *(["--only", arguments.only] if arguments.only else [])]
         walls, stages, wholes = [], {}, []
         for run in range(arguments.runs + 1):
             began = time.perf_counter()
