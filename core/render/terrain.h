@@ -18,8 +18,9 @@
 namespace relevo::render {
 
 struct TerrainOptions {
-    /// Largest error of the drawn surface in the picture [px]. 0 draws every post.
-    double pixel_error = 2;
+    /// Error of the drawn surface in the picture [px], as TileTree counts it: four times the root
+    /// mean square, which is so one pixel. 0 draws every post.
+    double pixel_error = 4;
     /// Vertices in a frame above which the error is let grow.
     int vertex_budget = 250000;
     int max_array_layers = 2048;  ///< the device's
