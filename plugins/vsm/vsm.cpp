@@ -36,9 +36,8 @@ constexpr double kTooLarge = 4;
 /// anew for nearly the same view.
 constexpr double kSizesADoubling = 32;
 /// The drawn ground may be off by so many rows: four times its root mean square error, so that most
-/// of it stays within the bias. Above 20 degrees of sun, where little is shaded and that by cliffs,
-/// by more, in proportion to the sine: every level is a quarter of the triangles.
-constexpr double kTolerance_rows = 1.5, kHighSine = 0.342;
+/// of it stays within the bias.
+constexpr double kTolerance_rows = 1.5;
 
 glm::dvec3 vector_of(const double (&v)[3]) {
     return {v[0], v[1], v[2]};
@@ -198,8 +197,7 @@ class Vsm : public Instance {
             view.high[i] = rectangle.high[i];
         }
         const glm::dvec2 texel_m = rectangle.size() / double(size_);
-        const double tolerance_rows = kTolerance_rows * std::max(1.0, axes_.towards.z / kHighSine);
-        const int level = terrain_.draw_depth(view, tolerance_rows * texel_m.y, depth_);
+        const int level = terrain_.draw_depth(view, kTolerance_rows * texel_m.y, depth_);
 
         const double along = dot(axes_.rise, axes_.up), deep = dot(axes_.rise, axes_.towards);
         const auto value = [](double a, double b, double c, double d) {
