@@ -209,8 +209,9 @@ class Vsm : public Instance {
                   along * view.low[1] + deep * view.low[2] - middle_m_);
         const double lowest_m = frame.lowest_m * frame.exaggeration - middle_m_;
         const Program::Value weights = value(1 - blur_, blur_ / 2, 0, 0);
-        moments_program_.draw(rows_, 0, 0, {&depth_}, {plane, value(lowest_m, 0, 0, 0), weights});
-        blur_program_.draw(moments_, static_cast<int>(layer), 0, {&rows_}, {weights});
+        const Program::Value below = value(lowest_m, 1.0 / size_, 1.0 / size_, 0);
+        moments_program_.draw(rows_, 0, 0, {&depth_}, {plane, below, weights});
+        blur_program_.draw(moments_, static_cast<int>(layer), 0, {&rows_}, {weights, below});
         log_.debug("vsm: map " + std::to_string(layer) + " drawn, texels of " +
                    std::to_string(texel_m.x) + " x " + std::to_string(texel_m.y) +
                    " m, ground of level " + std::to_string(level));

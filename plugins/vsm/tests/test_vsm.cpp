@@ -20,7 +20,9 @@ dem::Heightfield jacksboro() {
 }
 
 /// Heights at the posts of a UTM grid of 30 m.
-dem::Heightfield field(int columns, int rows, const std::function<double(int, int)>& height_m) {
+/// @param to_south  the way the rows run
+dem::Heightfield field(int columns, int rows, const std::function<double(int, int)>& height_m,
+                       bool to_south = true) {
     Array2d<float> heights(columns, rows);
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x)
@@ -28,7 +30,7 @@ dem::Heightfield field(int columns, int rows, const std::function<double(int, in
     dem::Description about;
     about.statistics = dem::statistics(heights);
     return {std::move(heights),
-            dem::Grid(columns, rows, {400000, 30, 0, 5000000, 0, -30},
+            dem::Grid(columns, rows, {400000, 30, 0, 5000000, 0, to_south ? -30.0 : 30.0},
                       geo::Crs::parse("EPSG:32631", "test")),
             about};
 }
@@ -95,7 +97,7 @@ glm::dvec2 blurred(const std::array<glm::dvec2, 3>& m, double blur) {
 }
 
 TEST(Vsm, BlurOnTheGpuIsTheReferences) {
-    constexpr int kSide = 96;
+    constexpr int kSide = 97;
     constexpr double kBlur = 0.3, kFloor_m = -700;
     const gl::Context context({.device = "software", .debug = true});
     std::mt19937 random(3);
@@ -106,9 +108,10 @@ TEST(Vsm, BlurOnTheGpuIsTheReferences) {
     depth.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
     depth.write(0, {0, 0, 0}, {kSide, kSide, 1}, std::as_bytes(std::span(depths)));
     const glm::vec4 plane(0, 6.5, 900, -800), weights(1 - kBlur, kBlur / 2, 0, 0);
-    const gl::Texture rows =
-        filtered("moments.frag.glsl", depth, {plane, {kFloor_m, 0, 0, 0}, weights});
-    const gl::Texture both = filtered("blur.frag.glsl", rows, {weights});
+    const glm::vec4 below(kFloor_m, 1.0f / kSide, 1.0f / kSide, 0);
+    gl::Texture rows = filtered("moments.frag.glsl", depth, {plane, below, weights});
+    rows.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+    const gl::Texture both = filtered("blur.frag.glsl", rows, {weights, below});
     std::vector<glm::vec2> found(kSide * kSide);
     both.read(0, std::as_writable_bytes(std::span(found)));
 
@@ -195,6 +198,33 @@ TEST(Vsm, TheRimAndHolesCastNothing) {
                     shaded += lit.at(x, y) < 0.98f;
             EXPECT_EQ(shaded, 0) << elevation << " degrees from " << azimuth;
         }
+    }
+}
+
+TEST(Vsm, ShadowsAreTheSameWhicheverWayTheRowsRun) {
+    // A pyramid 600 m high.
+    const auto height_m = [](int x, int y) {
+        return std::max(0.0, 600 - 20.0 * std::max(std::abs(x - 60), std::abs(y - 40)));
+    };
+    std::array<Array2d<float>, 2> lit;
+    for (const double azimuth : {30.0, 160.0}) {
+        for (const bool to_south : {true, false}) {
+            const dem::Heightfield dem = field(121, 81, height_m, to_south);
+            Drawn drawn(dem, test::scratch_dir("vsm_rows"));
+            lit[to_south] =
+                drawn.at_posts(direction(azimuth, 10), Truth(dem, drawn.ground().frame).posts());
+        }
+        int shaded = 0, different = 0;
+        for (int y = 0; y < 81; ++y) {
+            for (int x = 0; x < 121; ++x) {
+                const bool here = lit[1].at(x, y) < 0.5f;
+                shaded += here;
+                different += here != (lit[0].at(x, 80 - y) < 0.5f);
+            }
+        }
+        EXPECT_GT(shaded, 1000);
+        // Quads are cut along the other diagonal.
+        EXPECT_LT(different, 0.03 * shaded) << azimuth;
     }
 }
 
