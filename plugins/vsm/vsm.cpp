@@ -109,7 +109,7 @@ class Vsm : public Instance {
             axes_ = Axes(to_sun);
             whole_ = box();
             terrain_.bounds(whole_);
-            middle_m_ = 0.5 * (frame.lowest_m + frame.highest_m) * frame.exaggeration;
+            measure_heights();
             layers_.clear();
             if (size != size_) columns_ = 0;
             size_ = size;
@@ -126,7 +126,7 @@ class Vsm : public Instance {
         }
         layers_.resize(needed.size());
         for (std::size_t i = 0; i < needed.size(); ++i)
-            if (is_stale(i, needed[i])) draw(i, fitted(needed[i]), frame);
+            if (is_stale(i, needed[i])) draw(i, fitted(needed[i]));
         write_params(frame);
     }
 
@@ -137,6 +137,18 @@ class Vsm : public Instance {
         write(axes_.up, box.up);
         write(axes_.towards, box.towards);
         return box;
+    }
+
+    /// Along the rise: far from the DEM's centre the round Earth lies lower than its heights say.
+    void measure_heights() {
+        relevo_box upright = box();
+        const glm::dvec3 rise = normalize(axes_.rise);
+        write(cross(rise, axes_.right), upright.up);
+        write(rise, upright.towards);
+        terrain_.bounds(upright);
+        lowest_m_ = upright.low[2] * length(axes_.rise);
+        highest_m_ = upright.high[2] * length(axes_.rise);
+        middle_m_ = 0.5 * (lowest_m_ + highest_m_);
     }
 
     bool is_stale(std::size_t layer, const Rectangle& needed) const {
@@ -222,7 +234,7 @@ class Vsm : public Instance {
         texture_layers_ = layers;
     }
 
-    void draw(std::size_t layer, const Rectangle& rectangle, const relevo_frame& frame) {
+    void draw(std::size_t layer, const Rectangle& rectangle) {
         layers_[layer] = rectangle;
         relevo_box view = whole_;
         for (int i = 0; i < 2; ++i) {
@@ -240,9 +252,8 @@ class Vsm : public Instance {
         const Program::Value plane =
             value(0, along * texel_m.y, deep * (view.high[2] - view.low[2]),
                   along * view.low[1] + deep * view.low[2] - middle_m_);
-        const double lowest_m = frame.lowest_m * frame.exaggeration - middle_m_;
         const Program::Value weights = value(1 - blur_, blur_ / 2, 0, 0);
-        const Program::Value below = value(lowest_m, 1.0 / columns_, 1.0 / size_, 0);
+        const Program::Value below = value(lowest_m_ - middle_m_, 1.0 / columns_, 1.0 / size_, 0);
         moments_program_.draw(rows_, 0, 0, {&depth_}, {plane, below, weights});
         blur_program_.draw(moments_, static_cast<int>(layer), 0, {&rows_}, {weights, below});
         log_.debug("vsm: map " + std::to_string(layer) + " drawn, texels of " +
@@ -277,8 +288,8 @@ class Vsm : public Instance {
         params_.set("vsm.row_m", rounding);
         params_.set("vsm.texel_m", {all.size().x / columns_, all.size().y / size_, 0, 0});
         const double sine = std::max(axes_.towards.z, kLeastSine);
-        params_.set("vsm.reach", {1 / sine / all.size().x, 1 / sine / all.size().y,
-                                  frame.highest_m * frame.exaggeration - middle_m_, 0});
+        params_.set("vsm.reach",
+                    {1 / sine / all.size().x, 1 / sine / all.size().y, highest_m_ - middle_m_, 0});
     }
 
     Host host_;
@@ -292,7 +303,8 @@ class Vsm : public Instance {
 
     // What the maps were drawn with.
     int size_ = 0, columns_ = 0;
-    double blur_ = -1, exaggeration_ = 0, middle_m_ = 0;
+    double blur_ = -1, exaggeration_ = 0;
+    double lowest_m_ = 0, middle_m_ = 0, highest_m_ = 0;
     std::uint64_t ground_ = 0;
     Axes axes_;
     relevo_box whole_{};

@@ -19,10 +19,10 @@ dem::Heightfield jacksboro() {
     return dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
 }
 
-/// Heights at the posts of a UTM grid of 30 m.
-/// @param to_south  the way the rows run
+/// Heights at the posts of a UTM grid.
+/// @param row_m  from row to row, to the north; columns are as far apart
 dem::Heightfield field(int columns, int rows, const std::function<double(int, int)>& height_m,
-                       bool to_south = true) {
+                       double row_m = -30) {
     Array2d<float> heights(columns, rows);
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x)
@@ -30,7 +30,7 @@ dem::Heightfield field(int columns, int rows, const std::function<double(int, in
     dem::Description about;
     about.statistics = dem::statistics(heights);
     return {std::move(heights),
-            dem::Grid(columns, rows, {400000, 30, 0, 5000000, 0, to_south ? -30.0 : 30.0},
+            dem::Grid(columns, rows, {400000, std::abs(row_m), 0, 5000000, 0, row_m},
                       geo::Crs::parse("EPSG:32631", "test")),
             about};
 }
@@ -201,6 +201,34 @@ TEST(Vsm, TheRimAndHolesCastNothing) {
     }
 }
 
+TEST(Vsm, TheRimOfALargeDemIsLit) {
+    // 480 km of level ground: the round Earth has its rim 4500 m below its middle.
+    const dem::Heightfield dem = field(
+        97, 97, [](int, int) { return 500.0; }, -5000);
+    Drawn drawn(dem, test::scratch_dir("vsm_large"));
+    const Truth truth(dem, drawn.ground().frame);
+    for (const double elevation : {20.0, 50.0}) {
+        for (const double azimuth : {0.0, 100.0, 225.0}) {
+            const Array2d<float> lit = drawn.at_posts(direction(azimuth, elevation), truth.posts());
+            EXPECT_GT(*std::min_element(lit.begin(), lit.end()), 0.98f)
+                << elevation << " degrees from " << azimuth;
+        }
+    }
+}
+
+TEST(Vsm, GroundOfThePicturesTrianglesAloneIsNotInItsOwnShadow) {
+    // Normals per vertex leave no place for columns and rows, and so no way to the DEM's own
+    // ground.
+    const dem::Heightfield dem = jacksboro();
+    Drawn drawn(dem, test::scratch_dir("vsm_vertex"), {"terrain.normal=vertex"}, 8);
+    const Truth truth(dem, drawn.ground().frame);
+    for (const double azimuth : {60.0, 200.0}) {
+        const Array2d<float> lit = drawn.at_posts(direction(azimuth, 50), truth.posts());
+        const auto shaded = std::count_if(lit.begin(), lit.end(), [](float l) { return l < 0.5f; });
+        EXPECT_LT(static_cast<double>(shaded), 0.001 * static_cast<double>(lit.size()));
+    }
+}
+
 TEST(Vsm, ShadowsAreTheSameWhicheverWayTheRowsRun) {
     // A pyramid 600 m high.
     const auto height_m = [](int x, int y) {
@@ -209,7 +237,7 @@ TEST(Vsm, ShadowsAreTheSameWhicheverWayTheRowsRun) {
     std::array<Array2d<float>, 2> lit;
     for (const double azimuth : {30.0, 160.0}) {
         for (const bool to_south : {true, false}) {
-            const dem::Heightfield dem = field(121, 81, height_m, to_south);
+            const dem::Heightfield dem = field(121, 81, height_m, to_south ? -30 : 30);
             Drawn drawn(dem, test::scratch_dir("vsm_rows"));
             lit[to_south] =
                 drawn.at_posts(direction(azimuth, 10), Truth(dem, drawn.ground().frame).posts());
