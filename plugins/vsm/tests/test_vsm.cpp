@@ -150,24 +150,50 @@ TEST(Vsm, ASlopeHasNoDeviationAndAnEdgeHas) {
 
 // ---- against rays
 
-TEST(Vsm, ShadowsAreThoseOfRaysOverTheSamePosts) {
-    const dem::Heightfield dem = jacksboro();
-    Drawn drawn(dem, test::scratch_dir("vsm_truth"));
+/// Suns (elevation and azimuth) over one DEM, drawn and marched.
+std::vector<Score> scores(const dem::Heightfield& dem, const std::string& scratch,
+                          const std::vector<glm::dvec2>& suns) {
+    Drawn drawn(dem, test::scratch_dir(scratch));
     const Truth truth(dem, drawn.ground().frame);
-    for (const auto& [elevation, azimuth] :
-         {std::pair{1.0, 315.0}, {2.0, 0.0}, {5.0, 135.0}, {10.0, 225.0}, {20.0, 90.0}}) {
-        const glm::dvec3 to_sun = direction(azimuth, elevation);
+    std::vector<Score> result;
+    for (const glm::dvec2& sun : suns) {
+        const glm::dvec3 to_sun = direction(sun.y, sun.x);
         const Truth::Mask mask = truth.cast(to_sun);
         const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
-        const Score s = score(truth, mask, lit, drawn.texel_m(), to_sun, drawn.spacing_m());
+        result.push_back(score(truth, mask, lit, drawn.texel_m(), to_sun, drawn.spacing_m()));
+        const Score& s = result.back();
         fmt::print(
             "[ shadow ] sun at {} degrees from {}: {:.1f} % shaded, balanced accuracy "
-            "{:.2f} %, {:.2f} % beyond two texels\n",
-            elevation, azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond);
+            "{:.2f} %, {:.2f} % beyond two texels, {:.2f} % of what is lit falsely shaded\n",
+            sun.x, sun.y, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond,
+            100 * (1 - s.lit_right));
+    }
+    return result;
+}
+
+TEST(Vsm, ShadowsAreThoseOfRaysOverTheSamePosts) {
+    for (const Score& s :
+         scores(jacksboro(), "vsm_truth", {{1, 315}, {2, 0}, {5, 135}, {10, 225}, {20, 90}})) {
         EXPECT_GT(s.shaded_share, 0.01);
         EXPECT_GE(s.balanced, 0.95);
         EXPECT_GE(s.beyond, 0.99);
     }
+}
+
+TEST(Vsm, ShadowsOfAHighSunOverSteepGroundAreThoseOfRays) {
+    for (const Score& s :
+         scores(times_as_high(jacksboro(), 4), "vsm_steep", {{30, 225}, {40, 45}})) {
+        EXPECT_GT(s.shaded_share, 0.05);
+        EXPECT_GE(s.balanced, 0.95);
+        EXPECT_GE(s.beyond, 0.99);
+    }
+}
+
+TEST(Vsm, AHighSunShadesNothingThatItShinesOn) {
+    for (const double factor : {1.0, 2.0})
+        for (const Score& s :
+             scores(times_as_high(jacksboro(), factor), "vsm_noon", {{60, 45}, {60, 225}}))
+            EXPECT_GE(s.lit_right, 0.999);
 }
 
 TEST(Vsm, TruthOfAWallIsItsTangent) {
@@ -180,6 +206,18 @@ TEST(Vsm, TruthOfAWallIsItsTangent) {
     for (int x = 0; x < 49; ++x)
         EXPECT_EQ(mask.shaded.at(x, 20) != 0, 50 - x < reach_posts) << x;
     EXPECT_FALSE(mask.shaded.at(55, 20));
+}
+
+TEST(Vsm, TruthOfASteepSlopeIsThatItsUpperPartShadesNothingAwayFromTheSun) {
+    // A slope of 45 degrees that the sun, 60 degrees high, shines on from its foot.
+    const dem::Heightfield dem = field(41, 41, [](int x, int) { return 30.0 * x; });
+    const render::Ground ground = render::make_ground(dem);
+    const Truth truth(dem, ground.frame);
+    const Truth::Mask mask = truth.cast(direction(270, 60));
+    for (int x = 1; x < 40; ++x) {
+        EXPECT_TRUE(mask.facing.at(x, 20));
+        EXPECT_FALSE(mask.shaded.at(x, 20)) << x;
+    }
 }
 
 TEST(Vsm, TheRimAndHolesCastNothing) {
