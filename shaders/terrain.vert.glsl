@@ -45,7 +45,7 @@ void main() {
     vec2 at = vertex / limit;
     vec4 levels = texelFetch(height_pages, texel, 0);
 #ifdef TERRAIN_DEPTH
-    const float morph = 0.0;  // parallel light sees all of the ground at one level
+    const float morph = 0.0;  // parallel light sees a tile at one level
 #else
     float distance_m = length(placed(at, levels.r));
     float morph = clamp((distance_m - net_vv.w) * net_uvv.w, 0.0, 1.0);

@@ -90,11 +90,9 @@ TileTree::TileTree(const dem::Pyramid& pyramid, const dem::Grid& grid, const geo
     }
     lowest_m_ = pyramid.bounds(pyramid.levels() - 1, {0, 0}).lowest_m;
     for (int level = 0; level < pyramid.levels(); ++level) {
-        const double side_m = longest_spacing_m_ * (kTileQuads << level);
-        const double net_m =
-            kNetError * side_m * side_m * side_m / (kEquatorialRadius_m * kEquatorialRadius_m);
-        error_m_.push_back(
-            kSigmas * pyramid.error_m(level, &dem::Pyramid::Bounds::rms_m, kVouchedShare) + net_m);
+        error_m_.push_back(kSigmas *
+                               pyramid.error_m(level, &dem::Pyramid::Bounds::rms_m, kVouchedShare) +
+                           net_error_m(level));
         double relief_m = 0;
         const glm::ivec2 count = pyramid.tiles(level);
         for (int y = 0; y < count.y; ++y) {
@@ -106,6 +104,11 @@ TileTree::TileTree(const dem::Pyramid& pyramid, const dem::Grid& grid, const geo
         }
         relief_m_.push_back(relief_m);
     }
+}
+
+double TileTree::net_error_m(int level) const {
+    const double side_m = longest_spacing_m_ * (kTileQuads << level);
+    return kNetError * side_m * side_m * side_m / (kEquatorialRadius_m * kEquatorialRadius_m);
 }
 
 TileTree::Node& TileTree::node(const TileKey& key) {
@@ -188,11 +191,6 @@ LodRanges TileTree::ranges(const LodView& view) {
             continue;
         }
         const double error_m = error_m_[k + 1] * view.exaggeration;
-        if (!view.eye_m) {
-            // One level for all: the coarsest that is good enough.
-            level.range_m = level.morph_start_m = error_m > view.tolerance ? kInfinity : 0;
-            continue;
-        }
         level.range_m = error_m / view.tolerance / kMorphStart;
         if (k > 0 && ranges.levels[k - 1].range_m > 0) {
             const double side_m = longest_spacing_m_ * (kTileQuads << (k - 1));
@@ -206,14 +204,30 @@ LodRanges TileTree::ranges(const LodView& view) {
     return ranges;
 }
 
+std::vector<TileDraw> TileTree::select_in_parallel(const LodView& view) {
+    std::vector<TileDraw> draws;
+    const auto take = [&](auto&& self, const TileKey& key) -> void {
+        const dem::Pyramid::Bounds bounds = pyramid_->bounds(key.level, key.at);
+        if (bounds.empty() || hidden(box(key, view.exaggeration), view)) return;
+        const double error_m = kSigmas * bounds.rms_m + net_error_m(key.level);
+        if (key.level == 0 || error_m * view.exaggeration <= view.tolerance)
+            draws.push_back({key});
+        else
+            for_children(key, [&](const TileKey& child, int) { self(self, child); });
+    };
+    take(take, root());
+    return draws;
+}
+
 std::vector<TileDraw> TileTree::select(const LodView& view) {
+    if (!view.eye_m) return select_in_parallel(view);
     const LodRanges ranges = this->ranges(view);
     std::vector<TileDraw> draws;
     // True where the tile is dealt with, false where it is left to its parent's level.
     const auto take = [&](auto&& self, const TileKey& key) -> bool {
         if (pyramid_->bounds(key.level, key.at).empty()) return true;
         const Box b = box(key, view.exaggeration);
-        const double distance_m = view.eye_m ? b.distance(*view.eye_m) : 0;
+        const double distance_m = b.distance(*view.eye_m);
         if (distance_m >= ranges.levels[static_cast<std::size_t>(key.level)].range_m) {
             return hidden(b, view);
         }

@@ -50,7 +50,7 @@ struct Box {
 struct LodView {
     /// Half-spaces whose intersection holds all that can be seen.
     std::vector<glm::dvec4> planes;
-    /// From where; none for parallel light, which sees all of the ground at one level.
+    /// From where; none for parallel light, which sees each tile as coarse as it alone may be.
     std::optional<glm::dvec3> eye_m;
     /// Largest angle [rad] by which a point of the picture may be displaced, or with no eye the
     /// largest distance [m]. 0: every post is drawn.
@@ -90,10 +90,12 @@ class TileTree {
     /// Holds all of a tile's posts.
     Box box(const TileKey& key, double exaggeration);
 
-    /// Ranges that keep a view's tolerance, and are far enough apart for levels to meet.
+    /// Ranges that keep the tolerance of a view from an eye, and are far enough apart for levels to
+    /// meet.
     LodRanges ranges(const LodView& view);
 
-    /// The tiles to draw, nearest first. Every visible post is covered exactly once.
+    /// The tiles to draw, nearest first. Every visible post is covered exactly once. In parallel
+    /// light levels do not meet: rims have to hang down to the lowest ground.
     std::vector<TileDraw> select(const LodView& view);
 
     /// Tiles that can be seen at no more than `nearest` levels from the top; for pages that are
@@ -131,6 +133,8 @@ class TileTree {
     }
 
     Node& node(const TileKey& key);
+    double net_error_m(int level) const;
+    std::vector<TileDraw> select_in_parallel(const LodView& view);
     bool hidden(const Box& box, const LodView& view) const;
     bool below_horizon(const Box& box, const glm::dvec3& eye_m) const;
 

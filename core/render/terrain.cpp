@@ -197,15 +197,17 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
         return bytes_of(height_page(pyramid_, key.level, key.at));
     });
 
-    const LodRanges ranges = tree_.ranges(view);
+    const LodRanges ranges = view.eye_m ? tree_.ranges(view) : LodRanges{};
     TileSelection selection;
     selection.tolerance_ = view.tolerance;
     for (const TileDraw& draw : draws) {
-        const LodRanges::Level& level = ranges.levels[static_cast<std::size_t>(draw.key.level)];
         TileSelection::Tile tile{draw, static_cast<float>(height_pages_.layer(draw.key))};
-        if (view.eye_m && std::isfinite(level.range_m)) {
-            tile.morph_start_m = static_cast<float>(level.morph_start_m);
-            tile.per_morph_m = static_cast<float>(1 / (level.range_m - level.morph_start_m));
+        if (view.eye_m) {
+            const LodRanges::Level& level = ranges.levels[static_cast<std::size_t>(draw.key.level)];
+            if (std::isfinite(level.range_m)) {
+                tile.morph_start_m = static_cast<float>(level.morph_start_m);
+                tile.per_morph_m = static_cast<float>(1 / (level.range_m - level.morph_start_m));
+            }
         }
         selection.tiles_.push_back(tile);
         for (int q = 0; q < 4; ++q)
