@@ -79,13 +79,14 @@ float vsm_lit_by_disc(in vec2 first, in float height, in float rough_m) {
     float half_sun = tan(0.5 * vsm_sun_diameter);
     // Nothing in the way is farther than where the ray leaves the highest ground behind.
     vec2 search = half_sun * vsm_reach.xy * max(vsm_reach.z - height, 0.0);
-    float above = 0.0, found = 0.0;
+    // The receiver's own ground is found too, hardly above it: what is higher counts for more.
+    float above = 0.0, squares = 0.0;
     for (int tap = 0; tap < vsm_taps; ++tap) {
         float here = textureLod(vsm_moments, vsm_place(first + search * vsm_disc(tap)), 0.0).r - height;
         above += max(here, 0.0);
-        found += here > 0.0 ? 1.0 : 0.0;
+        squares += max(here, 0.0) * max(here, 0.0);
     }
-    vec2 spread = half_sun * vsm_reach.xy * above / max(found, 1.0);
+    vec2 spread = half_sun * vsm_reach.xy * squares / max(above, 1e-3);
     float lit = 0.0;
     for (int tap = 0; tap < vsm_taps; ++tap)
         lit += vsm_lit(vsm_place(first + spread * vsm_disc(tap)), height, rough_m);

@@ -294,6 +294,63 @@ TEST(Vsm, ShadowsAreTheSameWhicheverWayTheRowsRun) {
     }
 }
 
+// ---- the penumbra
+
+/// Share of the sun's disc above a level edge.
+/// @param above  of the disc's centre over the edge, in its radii
+double share_of_disc(double above) {
+    const double x = std::clamp(above, -1.0, 1.0);
+    return 0.5 + (std::asin(x) + x * std::sqrt(1 - x * x)) / kPi;
+}
+
+TEST(Vsm, ThePenumbraIsAsWideAsTheSunMakesIt) {
+    // A wall 600 m high along a column of level ground, posts 10 m apart.
+    constexpr int kColumns = 480, kRows = 60, kWall = 430;
+    constexpr double kHeight_m = 600, kPost_m = 10;
+    const double radius = radians(0.533) / 2;
+    const dem::Heightfield dem = field(
+        kColumns, kRows, [](int x, int) { return x == kWall ? kHeight_m : 0.0; }, -kPost_m);
+    for (const bool penumbra : {true, false}) {
+        Drawn drawn(dem, test::scratch_dir("vsm_penumbra"),
+                    {fmt::format("vsm.penumbra={}", penumbra)});
+        const Truth truth(dem, drawn.ground().frame);
+        for (const double elevation : {10.0, 16.0, 25.0}) {
+            const Array2d<float> lit = drawn.at_posts(direction(90, elevation), truth.posts());
+            // Distance from the wall where a share of the light is reached.
+            const auto reaches = [&](double share, const auto& light) {
+                for (int x = kWall - 2; x > 1; --x) {
+                    const double here = light(x), next = light(x - 1);
+                    if (here < share && next >= share)
+                        return kPost_m * (kWall - x + (share - here) / (next - here));
+                }
+                return 0.0;
+            };
+            const auto drawn_light = [&](int x) {
+                double sum = 0;
+                for (int y = 15; y < 45; ++y)
+                    sum += lit.at(x, y);
+                return sum / 30;
+            };
+            const auto true_light = [&](int x) {
+                const double edge = std::atan2(kHeight_m, kPost_m * (kWall - x));
+                return share_of_disc((radians(elevation) - edge) / radius);
+            };
+            const double width = reaches(0.8, drawn_light) - reaches(0.2, drawn_light);
+            const double expected = reaches(0.8, true_light) - reaches(0.2, true_light);
+            const double middle = reaches(0.5, drawn_light) - reaches(0.5, true_light);
+            fmt::print(
+                "[ shadow ] sun at {} degrees, penumbra {}: {:.1f} m from a fifth to four fifths "
+                "of the light where {:.1f} m are true, its middle off by {:.1f} m\n",
+                elevation, penumbra ? "on" : "off", width, expected, middle);
+            EXPECT_LT(std::abs(middle), 5);
+            if (penumbra)
+                EXPECT_NEAR(width, expected, 0.12 * expected);
+            else
+                EXPECT_LT(width, 0.5 * expected);
+        }
+    }
+}
+
 // ---- while the camera moves
 
 TEST(Vsm, ASlowMoveOfTheCameraChangesNoShadow) {

@@ -159,8 +159,10 @@ class Drawn {
   public:
     /// @param scratch   a folder that may be written
     /// @param settings  "vsm.bleed=0.1"
+    /// @param size      of the pictures [px]; 0: from above, 2 to 8 pixels a post
     Drawn(const dem::Heightfield& dem, const std::filesystem::path& scratch,
-          const std::vector<std::string>& settings = {}, double pixel_error = 2)
+          const std::vector<std::string>& settings = {}, double pixel_error = 2,
+          glm::ivec2 size = glm::ivec2(0))
         : dem_(dem), ground_(render::make_ground(dem)), context_({.device = "software"}) {
         // A surface that sends the sun's light on as it comes, and none of the sky's.
         std::filesystem::create_directories(scratch / "probe");
@@ -184,8 +186,9 @@ class Drawn {
         }
         // A post is a corner of the ground: between pixels far apart its light is blurred.
         const double pixels = std::clamp(2600.0 / dem.grid.columns(), 2.0, 8.0);
-        size_ = {static_cast<int>(pixels * dem.grid.columns()) + 8,
-                 static_cast<int>(pixels * dem.grid.rows()) + 8};
+        size_ = size.x > 0 ? size
+                           : glm::ivec2(static_cast<int>(pixels * dem.grid.columns()) + 8,
+                                        static_cast<int>(pixels * dem.grid.rows()) + 8);
         terrain_.emplace(
             dem_, ground_.frame,
             render::TerrainOptions{.pixel_error = pixel_error,
@@ -201,10 +204,21 @@ class Drawn {
     glm::ivec2 size() const { return size_; }
     render::FrameInputs& inputs() { return inputs_; }
 
+    /// For every pixel; NaN where there is no ground or none that faces the sun.
+    Array2d<float> picture(const glm::dvec3& to_sun) {
+        shine(to_sun);
+        const image::ImageF with = draw(shadowed_);
+        const image::ImageF without = draw(plain_);
+        Array2d<float> lit(size_.x, size_.y);
+        for (int y = 0; y < size_.y; ++y)
+            for (int x = 0; x < size_.x; ++x)
+                lit.at(x, y) = without.at(x, y, 1) > 1e-6f ? with.at(x, y, 1) / without.at(x, y, 1)
+                                                           : std::nanf("");
+        return lit;
+    }
+
     Array2d<float> at_posts(const glm::dvec3& to_sun, const Array2d<glm::dvec3>& posts) {
-        sun::Position position{};
-        position.direction = to_sun;
-        inputs_.sun = render::make_sun_light(position, sun::Refraction::none(), ground_, dem_.grid);
+        shine(to_sun);
         const image::ImageF with = draw(shadowed_);
         const image::ImageF without = draw(plain_);
         Array2d<float> lit(posts.width(), posts.height());
@@ -244,6 +258,38 @@ class Drawn {
     /// Of the last picture: by how much the 16 pixels around each post differ; 1 outside of it.
     const Array2d<float>& spread() const { return spread_; }
 
+    /// Which map of the last picture a point is in: 0 of all that is seen, 1 and 2 nearer ones; and
+    /// how far inside the rim of the nearer map that is nearest to it, as a share of its sides,
+    /// negative outside. As vsm_place() of vsm.glsl.
+    struct Place {
+        int map = 0;
+        double inside = -1;
+    };
+    Place place(const glm::dvec3& point) const {
+        const auto& values = shadowed_.renderer->values();
+        const glm::dvec4 at(point - inputs_.camera.eye_m, 1);
+        const auto vector = [&](const char* address) {
+            const auto v = values.value(address);
+            return glm::dvec4(v[0], v[1], v[2], v[3]);
+        };
+        const glm::dvec2 first(dot(vector("vsm.across"), at), dot(vector("vsm.along"), at));
+        Place result;
+        int map = 0;
+        for (const char* address : {"vsm.nearer", "vsm.nearest"}) {
+            const glm::dvec4 v = vector(address);
+            const glm::dvec2 in =
+                glm::min(first * glm::dvec2(v.x, v.y) + glm::dvec2(v.z, v.w),
+                         1.0 - first * glm::dvec2(v.x, v.y) - glm::dvec2(v.z, v.w)) -
+                0.004;
+            ++map;
+            if (v.x == 0) continue;
+            const double inside = std::min(in.x, in.y);
+            if (inside >= 0) result.map = map;
+            if (std::abs(inside) < std::abs(result.inside)) result.inside = inside;
+        }
+        return result;
+    }
+
     /// Across and up [m]: a texel of the map that the last picture was drawn with.
     glm::dvec2 texel_m() const {
         const auto value = shadowed_.renderer->values().value("vsm.texel_m");
@@ -255,6 +301,12 @@ class Drawn {
         effect::NativeSelection native;
         std::unique_ptr<render::Renderer> renderer;
     };
+
+    void shine(const glm::dvec3& to_sun) {
+        sun::Position position{};
+        position.direction = to_sun;
+        inputs_.sun = render::make_sun_light(position, sun::Refraction::none(), ground_, dem_.grid);
+    }
 
     Chosen select(const std::vector<std::string>& only) {
         effect::Switches switches;
