@@ -27,10 +27,10 @@ uniform float sky_disc = 30.0; //@ range(0, 10000) label("Disc") description("Br
 uniform float sky_disc_edge = 8.0; //@ range(1, 100) label("Edge of the disc") description("How sharply the disc ends; 1, a soft spot, in the paper")
 
 uniform bool sky_earth = true; //@ static label("Earth") description("Below the horizon the Earth: plain ground, lit as the terrain is, seen through its air. Else the colour of the horizon, as in the paper")
-uniform vec3 sky_earth_albedo = vec3(0.19, 0.18, 0.15); //@ range(0, 1) label("Albedo of the Earth") description("Of the ground beyond the DEM")
+uniform vec3 sky_earth_albedo = vec3(0.19, 0.18, 0.15); //@ range(0, 1) label("Albedo of the Earth") description("Of the ground beyond the DEM, and around a slope")
 uniform float sky_earth_depth = 0.12; //@ range(0, 10) label("Air above the Earth") description("Optical depth of the air over the ground beyond the DEM, straight down")
 
-uniform bool sky_slopes = true; //@ static label("Light by direction") description("A slope gets the light of the part of the sky that it faces; else all ground gets the same")
+uniform bool sky_slopes = true; //@ static label("Light by direction") description("A slope gets the light of the part of the sky that it faces, and of the ground around it; else all ground gets the same")
 
 const float sky_fold = 0.14;       // tools/sky/textures.h: how heights of the sun are spread ...
 const float sky_lowest = 0.68822;  // ... over the slices: folded(sin 18 deg)
@@ -83,10 +83,20 @@ vec3 sky_air_light(in float cosine) {
     return 0.2 * phase * frame.sun_light[0].rgb + 0.5 * frame.sky_irradiance.rgb;
 }
 
+/// What level ground sends upwards.
+vec3 sky_ground(in float sun_sine) {
+    return sky_earth_albedo * (frame.sky_irradiance.rgb + max(sun_sine, 0.0) * frame.sun_light[0].rgb);
+}
+
 /// Plain ground beyond the DEM, through the air above it. @param below  sine, counted from the horizon down
-vec3 sky_ground(in vec3 air_light, in float sun_sine, in float below) {
-    vec3 ground = sky_earth_albedo * (frame.sky_irradiance.rgb + max(sun_sine, 0.0) * frame.sun_light[0].rgb);
-    return mix(air_light, ground, exp(-sky_earth_depth / max(below, 1e-3)));
+vec3 sky_ground_seen(in vec3 air_light, in float sun_sine, in float below) {
+    return mix(air_light, sky_ground(sun_sine), exp(-sky_earth_depth / max(below, 1e-3)));
+}
+
+/// Light of the ground around on a slope, of which a slope sees the more the steeper it is.
+/// @param cosine  of the slope
+vec3 sky_bounce(in float cosine, in float sun_sine) {
+    return (0.5 - 0.5 * cosine) * sky_ground(sun_sine);
 }
 
 /// Equation 1 without its narrowest term. @param cosine  L . V
@@ -166,7 +176,7 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     if (sky_earth) {
         // The light of the horizon comes from far away; what is seen lower has nearer air before it.
         vec3 air_light = mix(radiance, sky_air_light(cosine), smoothstep(0.0, 0.02, -above));
-        radiance = with_disc && above < 0.0 ? sky_ground(air_light, sun_sine, -above) : air_light;
+        radiance = with_disc && above < 0.0 ? sky_ground_seen(air_light, sun_sine, -above) : air_light;
     }
     return radiance;
 }
@@ -177,7 +187,8 @@ void sky_on_ambient(in Surface s, inout vec3 irradiance) {
         vec3 at = vec3(sky_s(to_sun, s.normal, s.up), clamp(dot(s.normal, s.up), 0.0, 1.0),
                        sky_slice(dot(to_sun, s.up)));
         irradiance = sky_luminance() *
-                     textureLod(sky_light, sky_texel(at, sky_light_size), 0.0).rgb;
+                         textureLod(sky_light, sky_texel(at, sky_light_size), 0.0).rgb +
+                     sky_bounce(dot(s.normal, s.up), dot(to_sun, s.up));
     } else {
         irradiance = frame.sky_irradiance.rgb;
     }
