@@ -18,6 +18,8 @@ namespace relevo::cli {
 void PlaceArguments::add_to(CLI::App& verb) {
     verb.add_option("--at", at, "Place: LAT,LON[,H]")->required();
     verb.add_option("--name", name, "Name of the place, for titles");
+    verb.add_option("--eye-height", eye_height_m, "Of the eye above the ground, m")
+        ->check(CLI::Range(0.0, 10000.0));
 }
 
 geo::PlaceText PlaceArguments::parse() const {
@@ -28,6 +30,10 @@ void DaysArguments::add_to(CLI::App& verb) {
     verb.add_option("--date", date, "Day: 2026-06-21");
     verb.add_option("--from", from, "First day of a range");
     verb.add_option("--to", to, "Last day of it");
+    add_year_to(verb);
+}
+
+void DaysArguments::add_year_to(CLI::App& verb) {
     verb.add_option("--year", year, "All days of a year, 1900 to 2100");
     verb.add_option("--tz", zone, "Time zone that days are counted by: Europe/Zurich, +05:30");
 }
@@ -74,11 +80,9 @@ void LightArguments::add_to(CLI::App& verb) {
     refraction_option_ = verb.get_option("--refraction");
     verb.add_option("--limb", limb, "Part of the sun that counts: upper, center, lower")
         ->check(CLI::IsMember({"upper", "center", "lower"}));
-    verb.add_option("--eye-height", eye_height_m, "Of the eye above the ground, m")
-        ->check(CLI::Range(0.0, 10000.0));
 }
 
-void LightArguments::add_rule_to(CLI::App& verb) {
+void LightArguments::add_dip_to(CLI::App& verb) {
     verb.add_option("--dip", dip_deg,
                     "Of a flat horizon below the level one, degrees; otherwise by --eye-height")
         ->check(CLI::Range(0.0, 5.0));
@@ -95,7 +99,8 @@ sun::Limb limb_of(const std::optional<std::string>& text, sun::Limb otherwise) {
 
 }  // namespace
 
-sun::RiseRule LightArguments::rule(const geo::Geodetic& place) const {
+sun::RiseRule LightArguments::rule(const geo::Geodetic& place,
+                                   const std::optional<double>& eye_height_m) const {
     const bool refraction_given = refraction_option_->count() > 0 || refraction.off;
     if (!limb && !refraction_given && !eye_height_m && !dip_deg) return {};
     if (dip_deg && eye_height_m)
@@ -105,15 +110,17 @@ sun::RiseRule LightArguments::rule(const geo::Geodetic& place) const {
     return sun::RiseRule::seen(part, refraction.at(place), eye_height_m.value_or(0));
 }
 
-light::LightOptions LightArguments::light(const geo::Geodetic& place) const {
+light::LightOptions LightArguments::light(const geo::Geodetic& place,
+                                          const std::optional<double>& eye_height_m) const {
     light::LightOptions options;
     options.limb = limb_of(limb, sun::Limb::Center);
     options.refraction = refraction.at(place);
-    options.flat.rule = rule(place);
+    options.flat.rule = rule(place, eye_height_m);
     return options;
 }
 
-void HorizonArguments::add_to(CLI::App& verb) {
+void TerrainArguments::add_to(CLI::App& verb) {
+    dem.add_to(verb);
     verb.add_option("-k,--terrestrial-refraction", refraction,
                     "Curvature of a line of sight over the ground, in units of the Earth's (0.13)")
         ->check(CLI::Range(-1.0, 0.9))
@@ -124,18 +131,18 @@ void HorizonArguments::add_to(CLI::App& verb) {
         ->group("Horizon");
 }
 
-light::HorizonOptions HorizonArguments::options(const geo::PlaceText& at,
-                                                const std::optional<double>& eye_height_m) const {
-    if (at.has_height && eye_height_m)
+std::unique_ptr<TerrainView> TerrainArguments::view_from(const PlaceArguments& place) const {
+    const geo::PlaceText at = place.parse();
+    if (at.has_height && place.eye_height_m)
         bad_usage("--eye-height and a height in --at exclude each other; give one of them");
     light::HorizonOptions options;
     options.refraction = refraction;
-    options.eye_height_m = at.has_height ? at.place.height_m : eye_height_m.value_or(0);
+    options.eye_height_m = at.has_height ? at.place.height_m : place.eye_height_m.value_or(0);
     options.eye_above_ground = at.above_ground || !at.has_height;
-    return options;
+    return std::make_unique<TerrainView>(dem::load(dem.paths, dem.options), at.place, options);
 }
 
-std::vector<light::OpenSector> HorizonArguments::check(
+std::vector<light::OpenSector> TerrainArguments::check(
     const light::TerrainHorizon& horizon, const std::vector<light::HorizonPoint>& profile) const {
     const double high_m = highest_m.value_or(horizon.field().about.statistics.max_m);
     std::vector<light::OpenSector> sectors = horizon.open_sectors(profile, high_m);
@@ -200,23 +207,29 @@ void OutputArguments::check() const {
     check_output_file(path, overwrite, "-o");
 }
 
-void OutputArguments::write(const light::Drawing& drawing) const {
-    if (ending() == "svg")
-        write_text(path, light::to_svg(drawing), overwrite, "-o");
-    else
+void OutputArguments::deliver(const Forms& forms) const {
+    const auto json_text = [&] { return forms.json().dump(2) + "\n"; };
+    const std::string form = ending();
+    if (form == "svg")
+        write_text(path, light::to_svg(forms.drawing()), overwrite, "-o");
+    else if (form == "csv")
+        write_text(path, forms.csv(), overwrite, "-o");
+    else if (form == "json")
+        write_text(path, json_text(), overwrite, "-o");
+    else if (form == "png") {
+        const light::Drawing drawing = forms.drawing();
         image::write(path, light::to_image(drawing, scale),
                      {{"Software", "Relevo " RELEVO_VERSION},
                       {"Title", drawing.title()},
                       {"Description", drawing.description()}},
                      overwrite);
-}
-
-void OutputArguments::write(const std::string& text) const {
-    write_text(path, text, overwrite, "-o");
-}
-
-void OutputArguments::write(const nlohmann::ordered_json& object) const {
-    write(object.dump(2) + "\n");
+    }
+    if (json)
+        fmt::print("{}", json_text());
+    else if (csv)
+        fmt::print("{}", forms.csv());
+    else if (path.empty())
+        forms.print();
 }
 
 nlohmann::ordered_json place_json(const geo::Geodetic& place) {
