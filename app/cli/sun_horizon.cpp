@@ -164,7 +164,7 @@ void add_sun_horizon(CLI::App& sun_verb) {
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     verb.add_option("--step", arguments->step_deg, "Degrees from direction to direction (0.1)")
-        ->check(CLI::Range(0.01, 90.0));
+        ->check(in_range(0.01, 90.0));
     arguments->days.add_to(verb);
     arguments->light.add_to(verb);
     arguments->light.add_dip_to(verb);

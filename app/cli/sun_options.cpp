@@ -19,7 +19,7 @@ void PlaceArguments::add_to(CLI::App& verb) {
     verb.add_option("--at", at, "Place: LAT,LON[,H]")->required();
     verb.add_option("--name", name, "Name of the place, for titles");
     verb.add_option("--eye-height", eye_height_m, "Of the eye above the ground, m")
-        ->check(CLI::Range(0.0, 10000.0));
+        ->check(in_range(0.0, 10000.0));
 }
 
 geo::PlaceText PlaceArguments::parse() const {
@@ -85,7 +85,7 @@ void LightArguments::add_to(CLI::App& verb) {
 void LightArguments::add_dip_to(CLI::App& verb) {
     verb.add_option("--dip", dip_deg,
                     "Of a flat horizon below the level one, degrees; otherwise by --eye-height")
-        ->check(CLI::Range(0.0, 5.0));
+        ->check(in_range(0.0, 5.0));
 }
 
 namespace {
@@ -123,11 +123,11 @@ void TerrainArguments::add_to(CLI::App& verb) {
     dem.add_to(verb);
     verb.add_option("-k,--terrestrial-refraction", refraction,
                     "Curvature of a line of sight over the ground, in units of the Earth's (0.13)")
-        ->check(CLI::Range(-1.0, 0.9))
+        ->check(in_range(-1.0, 0.9))
         ->group("Horizon");
     verb.add_option("--highest", highest_m,
                     "Terrain beyond the DEM is no higher than this, m (the DEM's highest)")
-        ->check(CLI::Range(-12000.0, 9000.0))
+        ->check(in_range(-12000.0, 9000.0))
         ->group("Horizon");
 }
 
@@ -184,7 +184,7 @@ void OutputArguments::add_to(CLI::App& verb, const std::vector<std::string>& end
     verb.add_option("-o,--output", path, fmt::format("Write {}", fmt::join(endings, ", ")));
     verb.add_flag("--overwrite", overwrite, "Replace an existing file");
     verb.add_option("--scale", scale, "Pixels of a PNG for each unit of the drawing (1.5)")
-        ->check(CLI::Range(0.25, 8.0));
+        ->check(in_range(0.25, 8.0));
     CLI::Option* csv_flag = verb.add_flag("--csv", csv, "CSV on standard output");
     verb.add_flag("--json", json, "One JSON object on standard output")->excludes(csv_flag);
 }

@@ -131,10 +131,10 @@ void add_sun_when(CLI::App& sun_verb) {
         ->required();
     verb.add_option("--summit-radius", arguments->summit_radius_m,
                     "How far around LAT,LON the summit may be, m (100)")
-        ->check(CLI::Range(0.0, 10000.0));
+        ->check(in_range(0.0, 10000.0));
     verb.add_option("--tolerance", arguments->tolerance_deg,
                     "How near the sun's centre must come, degrees (0.5)")
-        ->check(CLI::Range(0.001, 45.0));
+        ->check(in_range(0.001, 45.0));
     arguments->days.add_to(verb);
     arguments->refraction.add_to(verb);
     arguments->output.add_to(verb, {"csv", "json"});
