@@ -261,7 +261,7 @@ void print_day(const Result& result) {
                        lit.end.midnight ? "midnight" : clock_text(lit.end.utc, zone),
                        degrees(lit.begin.azimuth_rad), degrees(lit.end.azimuth_rad));
         if (light.lit.empty()) fmt::print("direct sun          none\n");
-        fmt::print("direct sun, whole   {}\n", hours_text(light.lit_s));
+        fmt::print("direct sun, total   {}\n", hours_text(light.lit_s));
     }
     print_seasons(result);
     print_definitions(result);
