@@ -146,11 +146,12 @@ std::vector<light::OpenSector> TerrainArguments::check(
     const light::TerrainHorizon& horizon, const std::vector<light::HorizonPoint>& profile) const {
     const double high_m = highest_m.value_or(horizon.field().about.statistics.max_m);
     std::vector<light::OpenSector> sectors = horizon.open_sectors(profile, high_m);
-    // Directions that follow each other but for less than two degrees are one for a reader.
+    if (sectors.empty()) return sectors;
+    // Directions that follow each other but for less than five degrees are one for a reader.
     std::vector<light::OpenSector> merged;
     for (const light::OpenSector& sector : sectors) {
         if (!merged.empty() &&
-            sector.from_azimuth_rad - merged.back().to_azimuth_rad < radians(2)) {
+            sector.from_azimuth_rad - merged.back().to_azimuth_rad < radians(5)) {
             light::OpenSector& last = merged.back();
             last.to_azimuth_rad = sector.to_azimuth_rad;
             last.reach_m = std::min(last.reach_m, sector.reach_m);
@@ -159,23 +160,20 @@ std::vector<light::OpenSector> TerrainArguments::check(
             merged.push_back(sector);
         }
     }
-    constexpr std::size_t kMost = 6;
-    for (std::size_t i = 0; i < std::min(merged.size(), kMost); ++i) {
-        const light::OpenSector& s = merged[i];
+    std::vector<std::string> parts;
+    for (const light::OpenSector& s : merged) {
         const double from_deg = degrees(s.from_azimuth_rad), to_deg = degrees(s.to_azimuth_rad);
-        log::warning(fmt::format(
-            "the blocking ridge may lie beyond the DEM from azimuth {:.0f} ({}) to {:.0f} ({}): "
-            "the "
-            "DEM reaches {:.1f} km there, and terrain of {:.0f} m would stand over this horizon as "
-            "far as {:.0f} km away; use a DEM that goes so far, or --highest with the height that "
-            "terrain has there at most",
-            from_deg, compass_point(from_deg), to_deg, compass_point(to_deg), s.reach_m / 1000,
-            high_m, s.needed_m / 1000));
+        parts.push_back(fmt::format(
+            "from azimuth {:.0f} ({}) to {:.0f} ({}) as far as {:.0f} km away, where the DEM "
+            "reaches {:.1f} km",
+            from_deg, compass_point(from_deg), to_deg, compass_point(to_deg), s.needed_m / 1000,
+            s.reach_m / 1000));
     }
-    if (merged.size() > kMost)
-        log::warning(
-            fmt::format("likewise in {} further directions; relevo sun horizon --json lists all",
-                        merged.size() - kMost));
+    log::warning(fmt::format(
+        "the blocking ridge may lie beyond the DEM, as terrain of {:.0f} m would stand over this "
+        "horizon {}; use a DEM that goes so far, or --highest with the height that terrain has "
+        "there at most",
+        high_m, fmt::join(parts, ", and ")));
     return sectors;
 }
 

@@ -90,7 +90,7 @@ struct TerrainArguments {
     bool given() const { return !dem.paths.empty(); }
     /// Loads the DEM. @throws Error as dem::load and light::TerrainHorizon
     std::unique_ptr<TerrainView> view_from(const PlaceArguments& place) const;
-    /// Warns of directions in which the blocking ridge may lie beyond the DEM.
+    /// Warns, once, of directions in which the blocking ridge may lie beyond the DEM.
     std::vector<light::OpenSector> check(const light::TerrainHorizon& horizon,
                                          const std::vector<light::HorizonPoint>& profile) const;
 };
