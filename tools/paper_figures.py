@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Takes the pictures of docs/paper.md: the paper's figures 1 and 3 to 7 on the real terrain that comes along,
-and the one of the haze's README.
+and those of the READMEs of haze and sky.
 
 Usage: paper_figures.py [BUILD] [--only 4,haze] [--size 960x600]      BUILD: build/release (default)
 
@@ -30,6 +30,7 @@ FIGURES = {
     "6": {"paper_6_shadows": "--view az=205,el=32,zoom=2.2 --time 2026-06-21T20:05-04:00 --ab vsm"},
     "7": {"paper_7a_day": f"{RIDGES} --time 2026-03-20T13:00-04:00", "paper_7b_sunset": f"{RIDGES} --time 2026-03-20T07:55-04:00",
           "paper_7c_night": f"{RIDGES} --time 2026-03-20T05:30-04:00"},
+    "stars": {"stars": "--eye 36.40,-84.30,1100 --heading 190 --pitch 26 --fov 62 --time 2026-01-15T22:30-05:00"},
     "haze": {"haze_ab": f"{RIDGES} --time 2026-03-20T09:00-04:00 --ab haze"},
 }
 
