@@ -1,10 +1,10 @@
-//! provides  the sky: its colours, the sun in it, and its light on slopes
+//! provides  the sky: its colours, the sun and the stars in it, and its light on slopes
 //! hook      background_radiance, ambient
 //! reads     direction of the view, of the sun with refraction, height of the eye [m]
 //! writes    radiance, linear sRGB; irradiance
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), equations 1 to 3; the textures are
-//!           made by tools/sky, which names its model
+//!           made by tools/sky, which names its model; stars: the Bright Star Catalogue
 
 uniform sampler3D sky_radiance;  // by s, t and height of the sun
 uniform sampler3D sky_light;     // irradiance of slopes, likewise
