@@ -29,6 +29,10 @@ uniform float sky_disc_edge = 8.0; //@ range(1, 100) label("Edge of the disc") d
 
 uniform float sky_stars = 1.0; //@ range(0, 1000) label("Stars") description("Brightness, as a multiple of the true one; 0 switches them off")
 
+uniform bool sky_earth = true; //@ static label("Earth") description("Below the horizon the Earth: plain ground, lit as the terrain is, seen through its air. Else the colour of the horizon, as in the paper")
+uniform vec3 sky_earth_albedo = vec3(0.19, 0.18, 0.15); //@ range(0, 1) label("Albedo of the Earth") description("Of the ground beyond the DEM")
+uniform float sky_earth_depth = 0.12; //@ range(0, 10) label("Air above the Earth") description("Optical depth of the air over the ground beyond the DEM, straight down")
+
 uniform bool sky_slopes = true; //@ static label("Light by direction") description("A slope gets the light of the part of the sky that it faces; else all ground gets the same")
 
 const float sky_fold = 0.14;       // tools/sky/textures.h: how heights of the sun are spread ...
@@ -56,8 +60,36 @@ float sky_exponent(in float eye_height_m) {
 }
 
 /// Equation 3: 0 on the horizon and below, 1 in the zenith.
-float sky_t(in vec3 direction, in vec3 up, in float exponent) {
-    return pow(clamp(dot(direction, up), 0.0, 1.0), exponent);
+/// @param sine  of the elevation
+float sky_t(in float sine, in float exponent) {
+    return pow(clamp(sine, 0.0, 1.0), exponent);
+}
+
+/// The sine of an elevation that counts from the horizon, which lies the lower the higher the eye.
+float sky_above_horizon(in float sine) {
+    return (sine - frame.eye_up.w) / (1.0 - frame.eye_up.w);
+}
+
+/// How high the air stands above the horizon, as a sine: for a high eye, air 17 km thick as far away as
+/// the horizon is. In it the sky's colours come gradually, which equation 3 there has in no angle at all.
+float sky_band() {
+    float dip = max(-frame.eye_up.w, 1e-4);
+    return min(dip, 0.0027 / dip);
+}
+
+/// Light that the air between eye and ground scatters towards the eye, of air that lets none through.
+/// @param cosine  of the angle between the view and the sun
+vec3 sky_air_light(in float cosine) {
+    // The mean of a phase function over all directions is 1; this is 2 towards the sun, 0.5 away from it.
+    float phase = 0.5 + 0.375 * (1.0 + cosine) * (1.0 + cosine);
+    // A quarter: white ground spreads light over a half space, weighted with the cosine, air over all of it.
+    return 0.2 * phase * frame.sun_light[0].rgb + 0.5 * frame.sky_irradiance.rgb;
+}
+
+/// Plain ground beyond the DEM, through the air above it. @param below  sine, counted from the horizon down
+vec3 sky_ground(in vec3 air_light, in float sun_sine, in float below) {
+    vec3 ground = sky_earth_albedo * (frame.sky_irradiance.rgb + max(sun_sine, 0.0) * frame.sun_light[0].rgb);
+    return mix(air_light, ground, exp(-sky_earth_depth / max(below, 1e-3)));
 }
 
 /// Equation 1 without its narrowest term. @param cosine  L . V
@@ -198,7 +230,10 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     vec3 up = frame.eye_up.xyz;
     vec3 to_sun = frame.eye_sun.xyz;
     float sun_sine = dot(to_sun, up);
-    vec2 at = vec2(sky_s(to_sun, direction, up), sky_t(direction, up, sky_exponent(frame.eye_m.w)));
+    float sine = dot(direction, up);
+    float above = sky_earth ? sky_above_horizon(sine) : sine;
+    vec2 at = vec2(sky_s(to_sun, direction, up), sky_t(above, sky_exponent(frame.eye_m.w)));
+    if (sky_earth) at.y *= smoothstep(0.0, sky_band(), above);
     vec3 colour;
     if (sky_colours == 0) {
         colour = textureLod(sky_radiance, sky_texel(vec3(at, sky_slice(sun_sine)), sky_size), 0.0).rgb;
@@ -210,17 +245,24 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
                  blend.z * textureLod(sky_night, texel, 0.0).rgb;
     }
     vec3 radiance = sky_brightness * sky_luminance() * colour;
-#if HAS_night
-    if (with_disc && dot(direction, up) > frame.eye_up.w) radiance += sky_starlight(direction, up);
-#endif
     float haze = sky_air_mass ? sky_air_mass_of(sun_sine) : 1.0;
-    float sun = sky_aureole * haze * sky_glow(dot(to_sun, direction));
-    // What has set is behind the Earth, whose edge lies lower the higher the eye.
-    if (with_disc && dot(direction, up) > frame.eye_up.w) {
+    float cosine = dot(to_sun, direction);
+    float sun = sky_aureole * haze * sky_glow(cosine);
+    // What has set is behind the Earth.
+    if (with_disc && sine > frame.eye_up.w) {
         vec3 apart = to_sun - direction;
         sun += sky_disc * sky_sun(dot(apart, apart));
+#if HAS_night
+        radiance += sky_starlight(direction, up);
+#endif
     }
-    return radiance + sun * frame.eye_sun_light.rgb;
+    radiance += sun * frame.eye_sun_light.rgb;
+    if (sky_earth) {
+        // The light of the horizon comes from far away; what is seen lower has nearer air before it.
+        vec3 air_light = mix(radiance, sky_air_light(cosine), smoothstep(0.0, 0.02, -above));
+        radiance = with_disc && above < 0.0 ? sky_ground(air_light, sun_sine, -above) : air_light;
+    }
+    return radiance;
 }
 
 void sky_on_ambient(in Surface s, inout vec3 irradiance) {
