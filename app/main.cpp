@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <exception>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,21 +29,37 @@ std::string command_of(const CLI::App* app) {
 }
 
 /// CLI11 would only say that a command is missing.
-void check_verb(const CLI::App& app, const std::string& word) {
-    if (word.empty() || word[0] == '-') return;
-    std::vector<std::string> verbs;
-    for (const CLI::App* verb : app.get_subcommands({}))
-        verbs.push_back(verb->get_name());
-    if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return;
-    const std::optional<std::string> near = relevo::nearest(word, verbs);
+/// @param words  of the command line, from the one on that should be a verb of `app`
+void check_verb(const CLI::App& app, std::span<const char* const> words) {
+    const std::string word = words.empty() ? "" : words.front();
+    const std::vector<const CLI::App*> verbs = app.get_subcommands({});
+    if (word.empty() || word[0] == '-' || verbs.empty()) return;
+    std::vector<std::string> names;
+    for (const CLI::App* verb : verbs) {
+        if (verb->get_name() == word) return check_verb(*verb, words.subspan(1));
+        names.push_back(verb->get_name());
+    }
+    const std::optional<std::string> near = relevo::nearest(word, names);
     relevo::bad_usage(fmt::format("{}: no such command; {}", word,
                                   near ? fmt::format("did you mean {}?", *near)
-                                       : fmt::format("there are {}", fmt::join(verbs, ", "))));
+                                       : fmt::format("there are {}", fmt::join(names, ", "))));
 }
+
+/// --help-all with the verbs of verbs, which CLI11 only names.
+class HelpOfAll : public CLI::Formatter {
+  public:
+    std::string make_expanded(const CLI::App* verb) const override {
+        std::string text = CLI::Formatter::make_expanded(verb);
+        for (const CLI::App* inner : verb->get_subcommands({}))
+            text += "\n" + verb->get_name() + " " + make_expanded(inner);
+        return text;
+    }
+};
 
 int run(int argc, char** argv) {
     CLI::App app{"Relevo: any DEM under the sun of a date", "relevo"};
     app.require_subcommand(1);
+    app.formatter(std::make_shared<HelpOfAll>());
     app.set_version_flag("--version", "relevo " RELEVO_VERSION);
     app.set_help_all_flag("--help-all", "Help of every command");
     app.failure_message([](const CLI::App* verb, const CLI::Error& error) {
@@ -59,7 +77,7 @@ int run(int argc, char** argv) {
     relevo::cli::add_sun(app);
     relevo::cli::add_plugins(app);
     relevo::cli::add_doctor(app);
-    if (argc > 1) check_verb(app, argv[1]);
+    check_verb(app, std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

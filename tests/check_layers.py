@@ -61,6 +61,9 @@ def check_core(root):
 
 
 def check_plugins(root):
+    for path in sorted((root / "plugins").glob("*/plugin.json")):
+        if not (path.parent / "README.md").exists():
+            yield f"{path.parent.relative_to(root)}: no README.md"
     allowed = {"base", "geo", "sun", "shader", "effect"}
     for path in sorted((root / "plugins").rglob("*")):
         if path.suffix not in {".h", ".cpp"} or "tests" in path.parts:

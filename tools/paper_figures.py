@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Takes the pictures of docs/paper.md: the paper's figures 1 and 3 to 7 on the real terrain that comes along,
-and the one of the haze's README.
+those of plugins' READMEs, and the one on the front page.
+=======
+and those of the READMEs of haze and sky.
 
 Usage: paper_figures.py [BUILD] [--only 4,haze] [--size 960x600]      BUILD: build/release (default)
 
@@ -22,7 +24,10 @@ WIDE = "--eye 36.35,-84.38,1000 --heading 95 --pitch 8 --fov 60 --time 2026-03-2
 GROUND = f"--eye 36.3513,-84.2290,2agl --heading 75 --pitch -10 --fov 50 --time 2026-06-21T08:40-04:00 {ROCK}"
 RIDGES = "--eye 36.35,-84.38,1000 --heading 95 --pitch 0 --fov 40"
 
+HILLS = "--view az=200,el=28,zoom=2 --time 2026-06-21T18:00-04:00"
+
 FIGURES = {
+    "front": {"jacksboro": "--eye 36.22,-84.30,1500 --heading 340 --pitch -8 --fov 45 --time 2026-06-21T19:40-04:00"},
     "1": {"paper_1_dawn": DAWN},
     "3": {"paper_3a_abrupt": f"{EDGE} --set bump.correction=abrupt", "paper_3b_smooth": f"{EDGE} --set bump.correction=smooth"},
     "4": {"paper_4a_disc": DISC, "paper_4b_sky": WIDE, "paper_4c_paper": f"{WIDE} --preset paper"},
@@ -30,6 +35,8 @@ FIGURES = {
     "6": {"paper_6_shadows": "--view az=205,el=32,zoom=2.2 --time 2026-06-21T20:05-04:00 --ab vsm"},
     "7": {"paper_7a_day": f"{RIDGES} --time 2026-03-20T13:00-04:00", "paper_7b_sunset": f"{RIDGES} --time 2026-03-20T07:55-04:00",
           "paper_7c_night": f"{RIDGES} --time 2026-03-20T05:30-04:00"},
+    "layering": {"layering_range": f"{HILLS} --set layering.limits=normalised", "layering_climate": HILLS},
+    "stars": {"stars": "--eye 36.40,-84.30,1100 --heading 190 --pitch 26 --fov 62 --time 2026-01-15T22:30-05:00"},
     "haze": {"haze_ab": f"{RIDGES} --time 2026-03-20T09:00-04:00 --ab haze"},
 }
 
@@ -37,7 +44,7 @@ FIGURES = {
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", nargs="?", default=ROOT / "build/release", type=pathlib.Path)
-    parser.add_argument("--only", default=",".join(FIGURES), help="figures, by number")
+    parser.add_argument("--only", default=",".join(FIGURES), help="figures, by number or name")
     parser.add_argument("--size", default="960x600")
     arguments = parser.parse_args()
     for number in arguments.only.split(","):

@@ -19,6 +19,7 @@
 #include "render/ground.h"
 #include "render/renderer.h"
 #include "scene/moment.h"
+#include "sun/celestial.h"
 #include "sun/position.h"
 
 namespace relevo::cli {
@@ -120,7 +121,7 @@ void capture(const Arguments& arguments) {
     const std::unique_ptr<ActiveEffects> effects =
         (compared ? arguments.effects.with(arguments.ab) : arguments.effects).active();
     const std::unique_ptr<ActiveEffects> others =
-        compared ? arguments.effects.without(arguments.ab).active() : nullptr;
+        compared ? arguments.effects.without(arguments.ab).active(/*aloud=*/false) : nullptr;
     gl::Context context({.device = arguments.device});
     timings.add("device", device_began);
     const auto compile_began = Clock::now();
@@ -151,15 +152,13 @@ void capture(const Arguments& arguments) {
     const sun::Position position = sun::position(utc, place);
     const sun::Refraction air =
         arguments.refraction.at({place.lat_rad, place.lon_rad, ground.air_height_m()});
-    const std::string sun_text =
-        fmt::format("sun at azimuth {:.2f}, elevation {:.2f} ({:.2f} with refraction)",
-                    degrees(position.azimuth_rad), degrees(position.elevation_rad),
-                    degrees(air.apparent_rad(position.elevation_rad)));
-    log::info(fmt::format("{}, {}: {}{}", geo::degrees_text(place), sun::to_iso(utc), sun_text,
+    const std::string sun = "sun at " + sun_text(position, air);
+    log::info(fmt::format("{}, {}: {}{}", geo::degrees_text(place), sun::to_iso(utc), sun,
                           given_time ? "" : "; no --time given, so a summer morning was taken"));
 
     render::FrameInputs inputs;
     inputs.sun = render::make_sun_light(position, air, ground, dem.grid);
+    inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
     inputs.exposure_ev = arguments.exposure_ev;
     inputs.exaggeration = arguments.view.exaggeration;
     const auto ground_height_m = [&](const geo::Geodetic& at) {
@@ -181,7 +180,7 @@ void capture(const Arguments& arguments) {
     const image::Metadata metadata{
         {"Software", "Relevo " RELEVO_VERSION},
         {"Description",
-         fmt::format("{}; {}; {}", geo::degrees_text(place), sun::to_iso(utc), sun_text)}};
+         fmt::format("{}; {}; {}", geo::degrees_text(place), sun::to_iso(utc), sun)}};
     const auto readback_began = Clock::now();
     if (image::holds_linear_light(output)) {
         image::ImageF picture = renderer.read_radiance();
@@ -235,11 +234,11 @@ void add_capture(CLI::App& app) {
         ->delimiter(',')
         ->group("Effects");
     verb.add_option("--exposure", arguments->exposure_ev, "Stops brighter than natural, EV")
-        ->check(CLI::Range(-20.0, 20.0));
+        ->check(in_range(-20.0, 20.0));
     verb.add_option("--pixel-error", arguments->pixel_error,
                     "Largest error of the ground's shape in the picture, pixels; 0 draws every "
                     "post")
-        ->check(CLI::Range(0.0, 100.0));
+        ->check(in_range(0.0, 100.0));
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
     CLI::Option* timings =

@@ -66,11 +66,9 @@ EffectArguments EffectArguments::without(const std::vector<std::string>& ids) co
     return changed;
 }
 
-std::unique_ptr<ActiveEffects> EffectArguments::active() const {
+std::unique_ptr<ActiveEffects> EffectArguments::active(bool aloud) const {
     auto active = std::make_unique<ActiveEffects>();
     active->registry = effect::Registry::load_installed({plugin_path.begin(), plugin_path.end()});
-    for (const effect::BrokenEffect& broken : active->registry.broken())
-        log::warning(broken.error);
     std::vector<effect::Preset> loaded;
     for (const std::string& preset : presets)
         loaded.push_back(effect::load_preset(preset));
@@ -94,6 +92,9 @@ std::unique_ptr<ActiveEffects> EffectArguments::active() const {
         given.push_back(effect::parse_setting(setting));
     const std::vector<std::string> notices =
         effect::apply_settings(active->values, active->registry, active->selection, loaded, given);
+    if (!aloud) return active;
+    for (const effect::BrokenEffect& broken : active->registry.broken())
+        log::warning(broken.error);
     for (const std::string& notice : active->selection.notices)
         log::info(notice);
     for (const std::string& notice : notices)

@@ -29,8 +29,9 @@ struct EffectArguments {
     CLI::Option* only_option = nullptr;
 
     void add_to(CLI::App& verb);
-    /// Loads the plugins and switches them; says on standard error what is not as asked.
-    std::unique_ptr<ActiveEffects> active() const;
+    /// Loads the plugins and switches them.
+    /// @param aloud  says on standard error what is not as asked
+    std::unique_ptr<ActiveEffects> active(bool aloud = true) const;
     /// The same with these effects on, or off, whatever was asked of them.
     EffectArguments with(const std::vector<std::string>& ids) const;
     EffectArguments without(const std::vector<std::string>& ids) const;

@@ -18,21 +18,11 @@
 namespace relevo::cli {
 namespace {
 
-struct Sun {
-    sun::Instant utc;
-    double azimuth_deg = 0;
-    double elevation_deg = 0;
-    double apparent_deg = 0;
-};
-
-Sun sun_over(const dem::Summary& summary, sun::Instant utc) {
-    const geo::Geodetic& place = summary.center;
-    const sun::Position position = sun::position(utc, place);
+/// The air over the middle of a DEM.
+sun::Refraction air_over(const dem::Summary& summary) {
     // The air over a sea floor begins at the sea; outliers have none.
     const double middle_m = std::clamp(0.5 * (summary.min_m + summary.max_m), 0.0, 9000.0);
-    const sun::Refraction air = sun::Refraction::standard({place.lat_rad, place.lon_rad, middle_m});
-    return {utc, degrees(position.azimuth_rad), degrees(position.elevation_rad),
-            degrees(air.apparent_rad(position.elevation_rad))};
+    return sun::Refraction::standard({summary.center.lat_rad, summary.center.lon_rad, middle_m});
 }
 
 /// How far the net that terrain is drawn on is from the places themselves.
@@ -92,25 +82,23 @@ void add_info(CLI::App& app) {
             arguments->time.given() ? arguments->time.parse().utc : sun::Instant::now();
         const dem::Heightfield field = dem::load(arguments->dem.paths, arguments->dem.options);
         const dem::Summary summary = dem::summarize(field);
-        const Sun sun = sun_over(summary, utc);
+        const sun::Position sun = sun::position(utc, summary.center);
+        const sun::Refraction air = air_over(summary);
         const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
         if (arguments->json) {
             const NetError net = net_error(field);
             auto json = nlohmann::ordered_json::parse(dem::to_json(summary));
-            json["sun"] = {{"utc", sun::to_iso(sun.utc)},
-                           {"azimuth_deg", sun.azimuth_deg},
-                           {"elevation_deg", sun.elevation_deg},
-                           {"apparent_elevation_deg", sun.apparent_deg}};
+            json["sun"] = {
+                {"utc", sun::to_iso(utc)},
+                {"azimuth_deg", degrees(sun.azimuth_rad)},
+                {"elevation_deg", degrees(sun.elevation_rad)},
+                {"apparent_elevation_deg", degrees(air.apparent_rad(sun.elevation_rad))}};
             json["position_net"] = {{"piece_posts", net.posts}, {"error_m", net.worst_m}};
             fmt::print("{}\n", json.dump(2));
             return;
         }
         fmt::print("{}", dem::to_text(summary));
-        const std::string with_air = sun.elevation_deg < -2
-                                         ? "below the horizon"
-                                         : fmt::format("{:.2f} with refraction", sun.apparent_deg);
-        fmt::print("{:<10} azimuth {:.2f}, elevation {:.2f} ({}) at {}\n", "sun", sun.azimuth_deg,
-                   sun.elevation_deg, with_air, sun::to_iso(sun.utc));
+        fmt::print("{:<10} {} at {}\n", "sun", sun_text(sun, air), sun::to_iso(utc));
         if (log::level() == log::Level::Debug) {
             const NetError net = net_error(field);
             fmt::print(

@@ -10,10 +10,17 @@
 namespace relevo::cli {
 namespace {
 
+/// The parameters that --set takes: not those that the plugin's own code writes.
+std::vector<shader::Param> settable(const effect::Effect& effect) {
+    std::vector<shader::Param> params = effect.params();
+    std::erase_if(params, [](const shader::Param& param) { return param.is_host; });
+    return params;
+}
+
 nlohmann::ordered_json json_of(const effect::Effect& effect) {
     const effect::Manifest& manifest = effect.manifest;
     nlohmann::ordered_json params = nlohmann::ordered_json::array();
-    for (const shader::Param& param : effect.params())
+    for (const shader::Param& param : settable(effect))
         params.push_back({{"address", param.address},
                           {"type", shader::glsl_name(param.type)},
                           {"default", shader::format_value(param, param.initial)},
@@ -66,7 +73,7 @@ void info(const effect::Effect& effect, bool json) {
         fmt::print("provides  {}\n", fmt::join(manifest.provides, ", "));
     if (!manifest.needs.empty()) fmt::print("requires  {}\n", fmt::join(manifest.needs, ", "));
     if (!manifest.wants.empty()) fmt::print("wants     {}\n", fmt::join(manifest.wants, ", "));
-    for (const shader::Param& param : effect.params()) {
+    for (const shader::Param& param : settable(effect)) {
         fmt::print("\n{} = {}\n    {}", param.address, shader::format_value(param, param.initial),
                    param.label);
         fmt::print("{}{}\n", param.description.empty() ? "" : ": ", param.description);

@@ -62,7 +62,7 @@ void DemArguments::add_to(CLI::App& verb) {
             [this](int mib) { options.max_posts = (std::int64_t{mib} << 20) / kBytesAPost; },
             "MiB of heights that are kept; a larger DEM is averaged, and drawn in detail where it "
             "is near (1024)")
-        ->check(CLI::Range(1, 1 << 20))
+        ->check(in_range(1, 1 << 20))
         ->group("DEM");
 }
 
@@ -72,6 +72,17 @@ void TimeArguments::add_to(CLI::App& verb) {
                     "event at a place, sunset-30min@46.55,8.56, together with --date and --tz");
     verb.add_option("--date", date, "Day of the event in --time: 2026-06-21");
     verb.add_option("--tz", zone, "Time zone: Europe/Zurich, +05:30");
+}
+
+bool TimeArguments::given() const {
+    if (time.empty() && !date.empty())
+        bad_usage(
+            fmt::format("--date: goes with an event in --time, such as sunrise@46.55,8.56; "
+                        "a time of day is written --time {}T18:30",
+                        date));
+    if (time.empty() && !zone.empty())
+        bad_usage("--tz: goes with --time, such as --time 2026-06-21T18:30");
+    return !time.empty();
 }
 
 bool TimeArguments::needs_dem() const {
@@ -109,10 +120,19 @@ sun::Refraction RefractionArguments::at(const geo::Geodetic& place) const {
     return sun::Refraction::standard(place);
 }
 
+std::string sun_text(const sun::Position& position, const sun::Refraction& air) {
+    const double elevation_deg = degrees(position.elevation_rad);
+    return fmt::format(
+        "azimuth {:.2f}, elevation {:.2f} ({})", degrees(position.azimuth_rad), elevation_deg,
+        elevation_deg < -2 ? "below the horizon"
+                           : fmt::format("{:.2f} with refraction",
+                                         degrees(air.apparent_rad(position.elevation_rad))));
+}
+
 void ViewArguments::add_to(CLI::App& verb) {
     verb.add_option(
             "--view", view,
-            "Orbit: where the camera stands as seen from the DEM's centre, az=225,el=25,zoom=1")
+            "Orbit: where the camera stands as seen from the DEM's centre, az=210,el=30,zoom=1")
         ->group("View");
     verb.add_option("--eye", eye,
                     "Camera at LAT,LON[,H]; H in metres, with suffix agl above the ground")
@@ -123,16 +143,16 @@ void ViewArguments::add_to(CLI::App& verb) {
                     "Direction from --eye, degrees clockwise from true north")
         ->group("View");
     verb.add_option("--pitch", pitch_deg, "Degrees above the horizontal")
-        ->check(CLI::Range(-90.0, 90.0))
+        ->check(in_range(-90.0, 90.0))
         ->group("View");
     verb.add_option("--fov", fov_deg, "Angle of view from bottom to top, degrees (40)")
-        ->check(CLI::Range(0.1, 170.0))
+        ->check(in_range(0.1, 170.0))
         ->group("View");
     verb.add_option("--focal-length", focal_length_mm, "Lens instead of --fov, mm on 35 mm film")
-        ->check(CLI::Range(1.0, 10000.0))
+        ->check(in_range(1.0, 10000.0))
         ->group("View");
     verb.add_option("--exaggerate", exaggeration, "Factor on heights")
-        ->check(CLI::Range(0.01, 1000.0))
+        ->check(in_range(0.01, 1000.0))
         ->group("View");
 }
 
@@ -163,6 +183,16 @@ scene::View ViewArguments::view_of() const {
     if (fov_deg) result.fov_y_rad = radians(*fov_deg);
     result.focal_length_mm = focal_length_mm.value_or(0);
     return result;
+}
+
+CLI::Validator in_range(double min, double max) {
+    return {[min, max](const std::string& text) {
+                const std::optional<double> value = parse_number(text);
+                return value && *value >= min && *value <= max
+                           ? std::string()
+                           : fmt::format("expected {:.10g} to {:.10g} but got {}", min, max, text);
+            },
+            fmt::format("{:.10g} to {:.10g}", min, max)};
 }
 
 glm::ivec2 parse_size(const std::string& text) {

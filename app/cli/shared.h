@@ -12,6 +12,7 @@
 
 #include "dem/load.h"
 #include "scene/view.h"
+#include "sun/position.h"
 #include "sun/refraction.h"
 #include "sun/zone.h"
 
@@ -32,7 +33,8 @@ struct TimeArguments {
     std::string time, date, zone;
 
     void add_to(CLI::App& verb);
-    bool given() const { return !time.empty(); }
+    /// @throws Error (Usage) for --date or --tz without --time, which would say nothing
+    bool given() const;
     /// First and last light hang on the terrain; all other times are known without it.
     bool needs_dem() const;
     /// Tells the user where a wall time was skipped or came twice.
@@ -50,6 +52,10 @@ struct RefractionArguments {
     sun::Refraction at(const geo::Geodetic& place) const;
 };
 
+/// "azimuth 114.27, elevation 65.12 (65.13 with refraction)", in degrees; what is well below the
+/// horizon has no refraction that anyone could see.
+std::string sun_text(const sun::Position& position, const sun::Refraction& air);
+
 /// Where the camera stands.
 struct ViewArguments {
     std::string view, eye, look_at;
@@ -60,6 +66,9 @@ struct ViewArguments {
     /// Reads what can be read before any work is done. @throws Error (Usage)
     scene::View view_of() const;
 };
+
+/// A number with both ends included; else "expected 0.1 to 170 but got 500".
+CLI::Validator in_range(double min, double max);
 
 /// "1280x1024" as width and height. @throws Error (Usage)
 glm::ivec2 parse_size(const std::string& text);

@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
-#include "dem/load.h"
 #include "geo/format.h"
 #include "light/carpet.h"
 #include "light/carpet_chart.h"
@@ -18,12 +17,11 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Arguments {
-    DemArguments dem;
+    TerrainArguments terrain;
     PlaceArguments place;
-    int year = 0;
-    std::string zone, step = "3min";
+    DaysArguments days;
+    std::string step = "3min";
     LightArguments light;
-    HorizonArguments horizon;
     OutputArguments output;
 };
 
@@ -118,43 +116,33 @@ void print_text(const light::Carpet& carpet, const light::TerrainHorizon& horizo
 void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
     output.check();
-    DaysArguments days;
-    days.year = arguments.year;
-    days.zone = arguments.zone;
-    const DaysArguments::Days asked = days.parse();
+    const DaysArguments::Days asked = arguments.days.parse();
     const auto step_s = sun::parse_duration_s(arguments.step);
     if (!step_s || *step_s != std::round(*step_s) || *step_s < 1 || *step_s > 86400)
         bad_usage(
             fmt::format("--step: {}: no duration, expected whole seconds up to a day such "
                         "as 3min, 10min or 30s",
                         arguments.step));
-    const geo::PlaceText at = arguments.place.parse();
-    const dem::Heightfield dem = dem::load(arguments.dem.paths, arguments.dem.options);
-    const light::TerrainHorizon horizon(
-        dem, at.place, arguments.horizon.options(at, arguments.light.eye_height_m));
-    const light::DirectLight direct(horizon, arguments.light.light(horizon.place()));
+    const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
+    const light::TerrainHorizon& horizon = view->horizon;
+    const light::DirectLight direct(
+        horizon, arguments.light.light(horizon.place(), arguments.place.eye_height_m));
     const light::Carpet carpet =
         light::carpet(direct, asked.first.year, asked.zone, static_cast<int>(std::lround(*step_s)));
-    arguments.horizon.check(horizon, horizon.profile(1440));
+    arguments.terrain.check(horizon, horizon.profile(1440));
 
-    if (output.is_drawing()) {
-        light::CarpetChart chart;
-        chart.carpet = &carpet;
-        chart.place = horizon.place();
-        chart.place_name = arguments.place.name;
-        chart.horizon_definition = horizon.description();
-        output.write(chart.draw());
-    } else if (output.ending() == "csv") {
-        output.write(csv_of(carpet, horizon));
-    } else if (output.ending() == "json") {
-        output.write(json_of(carpet, horizon));
-    }
-    if (output.json)
-        fmt::print("{}\n", json_of(carpet, horizon).dump(2));
-    else if (output.csv)
-        fmt::print("{}", csv_of(carpet, horizon));
-    else if (output.path.empty())
-        print_text(carpet, horizon);
+    output.deliver({.drawing =
+                        [&] {
+                            light::CarpetChart chart;
+                            chart.carpet = &carpet;
+                            chart.place = horizon.place();
+                            chart.place_name = arguments.place.name;
+                            chart.horizon_definition = horizon.description();
+                            return chart.draw();
+                        },
+                    .csv = [&] { return csv_of(carpet, horizon); },
+                    .json = [&] { return json_of(carpet, horizon); },
+                    .print = [&] { print_text(carpet, horizon); }});
 }
 
 }  // namespace
@@ -163,14 +151,12 @@ void add_sun_carpet(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb =
         *sun_verb.add_subcommand("carpet", "A year of direct light at a point, day by time of day");
-    arguments->dem.add_to(verb);
+    arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
-    verb.add_option("--year", arguments->year, "Year, 1900 to 2100")->required();
-    verb.add_option("--tz", arguments->zone,
-                    "Time zone that days are counted by: Europe/Zurich, +05:30");
+    arguments->days.add_year_to(verb);
+    verb.get_option("--year")->required();
     verb.add_option("--step", arguments->step, "Of the time of day (3min); divides a day");
     arguments->light.add_to(verb);
-    arguments->horizon.add_to(verb);
     arguments->output.add_to(verb, {"png", "svg", "csv", "json"});
     verb.callback([arguments] { run(*arguments); });
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <tuple>
@@ -8,7 +9,6 @@
 #include "base/units.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
-#include "dem/load.h"
 #include "geo/format.h"
 #include "light/sun_path_diagram.h"
 #include "sun/position.h"
@@ -31,11 +31,10 @@ constexpr const char* kTwilights =
     "without refraction";
 
 struct Arguments {
-    DemArguments dem;
+    TerrainArguments terrain;
     PlaceArguments place;
     DaysArguments days;
     LightArguments light;
-    HorizonArguments horizon;
     OutputArguments output;
 };
 
@@ -186,30 +185,10 @@ std::string spans_text(const std::vector<sun::TimeSpan>& spans, const sun::Zone&
     return text.empty() ? "none" : text;
 }
 
-const char* word_of(EventKind kind) {
-    switch (kind) {
-        case EventKind::AstronomicalDawn:
-            return "astronomical dawn";
-        case EventKind::NauticalDawn:
-            return "nautical dawn";
-        case EventKind::CivilDawn:
-            return "civil dawn";
-        case EventKind::Sunrise:
-            return "sunrise";
-        case EventKind::Transit:
-            return "transit";
-        case EventKind::Sunset:
-            return "sunset";
-        case EventKind::CivilDusk:
-            return "civil dusk";
-        case EventKind::NauticalDusk:
-            return "nautical dusk";
-        case EventKind::AstronomicalDusk:
-            return "astronomical dusk";
-        case EventKind::LowerTransit:
-            return "lower transit";
-    }
-    return "";
+std::string word_of(EventKind kind) {
+    std::string word(sun::name_of(kind));
+    std::replace(word.begin(), word.end(), '_', ' ');
+    return word;
 }
 
 void print_seasons(const Result& result) {
@@ -282,7 +261,7 @@ void print_day(const Result& result) {
                        lit.end.midnight ? "midnight" : clock_text(lit.end.utc, zone),
                        degrees(lit.begin.azimuth_rad), degrees(lit.end.azimuth_rad));
         if (light.lit.empty()) fmt::print("direct sun          none\n");
-        fmt::print("direct sun, whole   {}\n", hours_text(light.lit_s));
+        fmt::print("direct sun, total   {}\n", hours_text(light.lit_s));
     }
     print_seasons(result);
     print_definitions(result);
@@ -322,34 +301,33 @@ void run(const Arguments& arguments) {
     output.check();
     Result result;
     result.asked = arguments.days.parse();
-    const geo::PlaceText at = arguments.place.parse();
-    std::optional<dem::Heightfield> dem;
-    std::optional<light::TerrainHorizon> horizon;
+    const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
+    std::unique_ptr<TerrainView> view;
     std::optional<light::DirectLight> direct;
-    if (!arguments.dem.paths.empty()) {
-        dem = dem::load(arguments.dem.paths, arguments.dem.options);
-        horizon.emplace(*dem, at.place,
-                        arguments.horizon.options(at, arguments.light.eye_height_m));
-        result.place = horizon->place();
-        direct.emplace(*horizon, arguments.light.light(result.place));
-        arguments.horizon.check(*horizon, horizon->profile(1440));
+    if (arguments.terrain.given()) {
+        view = arguments.terrain.view_from(arguments.place);
+        const light::TerrainHorizon& horizon = view->horizon;
+        result.place = horizon.place();
+        direct.emplace(horizon, arguments.light.light(result.place, eye_height_m));
+        arguments.terrain.check(horizon, horizon.profile(1440));
         result.light = direct->days(result.asked.first, result.asked.last, result.asked.zone);
         for (const light::LightDay& day : result.light)
             result.days.push_back(day.flat);
         result.light_definition = direct->definition();
-        result.horizon_definition = horizon->description();
+        result.horizon_definition = horizon.description();
     } else {
+        const geo::PlaceText at = arguments.place.parse();
         if (at.above_ground)
             bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
         result.place = at.place;
         sun::DayOptions options;
-        options.rule = arguments.light.rule(at.place);
+        options.rule = arguments.light.rule(at.place, eye_height_m);
         result.days = sun::day_events(result.asked.first, result.asked.last, result.asked.zone,
                                       at.place, options);
     }
-    result.definition = arguments.light.rule(result.place).description();
+    result.definition = arguments.light.rule(result.place, eye_height_m).description();
 
-    if (output.is_drawing()) {
+    const auto draw = [&] {
         light::SunPathDiagram diagram;
         diagram.place = result.place;
         diagram.place_name = arguments.place.name;
@@ -363,22 +341,13 @@ void run(const Arguments& arguments) {
             if (result.asked.single) diagram.light = result.light.front();
             diagram.light_definition = result.light_definition;
         }
-        output.write(diagram.draw());
-    } else if (output.ending() == "csv") {
-        output.write(csv_of(result));
-    } else if (output.ending() == "json") {
-        output.write(json_of(result));
-    }
-    if (output.json)
-        fmt::print("{}\n", json_of(result).dump(2));
-    else if (output.csv)
-        fmt::print("{}", csv_of(result));
-    else if (!output.path.empty())
-        return;
-    else if (result.asked.single)
-        print_day(result);
-    else
-        print_days(result);
+        return diagram.draw();
+    };
+    output.deliver(
+        {.drawing = draw,
+         .csv = [&] { return csv_of(result); },
+         .json = [&] { return json_of(result); },
+         .print = [&] { result.asked.single ? print_day(result) : print_days(result); }});
 }
 
 }  // namespace
@@ -387,13 +356,12 @@ void add_sun_day(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb = *sun_verb.add_subcommand(
         "day", "Sunrise, twilights, transit, day length; with a DEM also direct light");
-    arguments->dem.add_to(verb);
+    arguments->terrain.add_to(verb);
     verb.get_option("DEM")->required(false);
     arguments->place.add_to(verb);
     arguments->days.add_to(verb);
     arguments->light.add_to(verb);
-    arguments->light.add_rule_to(verb);
-    arguments->horizon.add_to(verb);
+    arguments->light.add_dip_to(verb);
     arguments->output.add_to(verb, {"svg", "png", "csv", "json"});
     verb.callback([arguments] { run(*arguments); });
 }

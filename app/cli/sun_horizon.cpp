@@ -8,7 +8,6 @@
 #include "base/units.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
-#include "dem/load.h"
 #include "geo/format.h"
 #include "light/panorama.h"
 
@@ -18,11 +17,10 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Arguments {
-    DemArguments dem;
+    TerrainArguments terrain;
     PlaceArguments place;
     DaysArguments days;
     LightArguments light;
-    HorizonArguments horizon;
     OutputArguments output;
     double step_deg = 0.1;
 };
@@ -101,10 +99,32 @@ void print_text(const light::TerrainHorizon& horizon,
     fmt::print("\n{}\n", horizon.description());
 }
 
+/// @param asked  the day or the year whose sun the panorama shows
+light::Drawing draw(const Arguments& arguments, const std::optional<DaysArguments::Days>& asked,
+                    const light::TerrainHorizon& horizon,
+                    const std::vector<light::HorizonPoint>& profile) {
+    light::HorizonPanorama panorama;
+    panorama.horizon = &horizon;
+    panorama.profile = &profile;
+    panorama.place_name = arguments.place.name;
+    std::optional<light::DirectLight> direct;
+    if (asked) {
+        panorama.year = asked->first.year;
+        panorama.zone = asked->zone;
+        panorama.refraction = arguments.light.refraction.at(horizon.place());
+        if (asked->single) {
+            direct.emplace(horizon,
+                           arguments.light.light(horizon.place(), arguments.place.eye_height_m));
+            panorama.day = direct->day(asked->first, asked->zone);
+            panorama.light_definition = direct->definition();
+        }
+    }
+    return panorama.draw();
+}
+
 void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
     output.check();
-    const geo::PlaceText at = arguments.place.parse();
     std::optional<DaysArguments::Days> asked;
     if (arguments.days.given()) {
         asked = arguments.days.parse();
@@ -123,41 +143,16 @@ void run(const Arguments& arguments) {
             fmt::format("--step: {:.10g} degrees: no even part of a turn, expected one such "
                         "as 0.1, 0.5 or 1",
                         arguments.step_deg));
-    const dem::Heightfield dem = dem::load(arguments.dem.paths, arguments.dem.options);
-    const light::TerrainHorizon horizon(
-        dem, at.place, arguments.horizon.options(at, arguments.light.eye_height_m));
+    const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
+    const light::TerrainHorizon& horizon = view->horizon;
     const std::vector<light::HorizonPoint> profile =
         horizon.profile(static_cast<int>(std::lround(directions)));
-    const std::vector<light::OpenSector> sectors = arguments.horizon.check(horizon, profile);
+    const std::vector<light::OpenSector> sectors = arguments.terrain.check(horizon, profile);
 
-    if (output.is_drawing()) {
-        light::HorizonPanorama panorama;
-        panorama.horizon = &horizon;
-        panorama.profile = &profile;
-        panorama.place_name = arguments.place.name;
-        std::optional<light::DirectLight> direct;
-        if (asked) {
-            panorama.year = asked->first.year;
-            panorama.zone = asked->zone;
-            panorama.refraction = arguments.light.refraction.at(horizon.place());
-            if (asked->single) {
-                direct.emplace(horizon, arguments.light.light(horizon.place()));
-                panorama.day = direct->day(asked->first, asked->zone);
-                panorama.light_definition = direct->definition();
-            }
-        }
-        output.write(panorama.draw());
-    } else if (output.ending() == "csv") {
-        output.write(csv_of(horizon, profile));
-    } else if (output.ending() == "json") {
-        output.write(json_of(horizon, profile, sectors));
-    }
-    if (output.json)
-        fmt::print("{}\n", json_of(horizon, profile, sectors).dump(2));
-    else if (output.csv)
-        fmt::print("{}", csv_of(horizon, profile));
-    else if (output.path.empty())
-        print_text(horizon, profile);
+    output.deliver({.drawing = [&] { return draw(arguments, asked, horizon, profile); },
+                    .csv = [&] { return csv_of(horizon, profile); },
+                    .json = [&] { return json_of(horizon, profile, sectors); },
+                    .print = [&] { print_text(horizon, profile); }});
 }
 
 }  // namespace
@@ -166,14 +161,13 @@ void add_sun_horizon(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb = *sun_verb.add_subcommand(
         "horizon", "The terrain horizon of a point; as a panorama also the sun's paths over it");
-    arguments->dem.add_to(verb);
+    arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     verb.add_option("--step", arguments->step_deg, "Degrees from direction to direction (0.1)")
-        ->check(CLI::Range(0.01, 90.0));
-    arguments->horizon.add_to(verb);
+        ->check(in_range(0.01, 90.0));
     arguments->days.add_to(verb);
     arguments->light.add_to(verb);
-    arguments->light.add_rule_to(verb);
+    arguments->light.add_dip_to(verb);
     arguments->output.add_to(verb, {"csv", "json", "svg", "png"});
     verb.callback([arguments] { run(*arguments); });
 }

@@ -18,6 +18,8 @@ namespace relevo::cli {
 void PlaceArguments::add_to(CLI::App& verb) {
     verb.add_option("--at", at, "Place: LAT,LON[,H]")->required();
     verb.add_option("--name", name, "Name of the place, for titles");
+    verb.add_option("--eye-height", eye_height_m, "Of the eye above the ground, m")
+        ->check(in_range(0.0, 10000.0));
 }
 
 geo::PlaceText PlaceArguments::parse() const {
@@ -28,6 +30,10 @@ void DaysArguments::add_to(CLI::App& verb) {
     verb.add_option("--date", date, "Day: 2026-06-21");
     verb.add_option("--from", from, "First day of a range");
     verb.add_option("--to", to, "Last day of it");
+    add_year_to(verb);
+}
+
+void DaysArguments::add_year_to(CLI::App& verb) {
     verb.add_option("--year", year, "All days of a year, 1900 to 2100");
     verb.add_option("--tz", zone, "Time zone that days are counted by: Europe/Zurich, +05:30");
 }
@@ -74,14 +80,12 @@ void LightArguments::add_to(CLI::App& verb) {
     refraction_option_ = verb.get_option("--refraction");
     verb.add_option("--limb", limb, "Part of the sun that counts: upper, center, lower")
         ->check(CLI::IsMember({"upper", "center", "lower"}));
-    verb.add_option("--eye-height", eye_height_m, "Of the eye above the ground, m")
-        ->check(CLI::Range(0.0, 10000.0));
 }
 
-void LightArguments::add_rule_to(CLI::App& verb) {
+void LightArguments::add_dip_to(CLI::App& verb) {
     verb.add_option("--dip", dip_deg,
                     "Of a flat horizon below the level one, degrees; otherwise by --eye-height")
-        ->check(CLI::Range(0.0, 5.0));
+        ->check(in_range(0.0, 5.0));
 }
 
 namespace {
@@ -95,7 +99,8 @@ sun::Limb limb_of(const std::optional<std::string>& text, sun::Limb otherwise) {
 
 }  // namespace
 
-sun::RiseRule LightArguments::rule(const geo::Geodetic& place) const {
+sun::RiseRule LightArguments::rule(const geo::Geodetic& place,
+                                   const std::optional<double>& eye_height_m) const {
     const bool refraction_given = refraction_option_->count() > 0 || refraction.off;
     if (!limb && !refraction_given && !eye_height_m && !dip_deg) return {};
     if (dip_deg && eye_height_m)
@@ -105,45 +110,48 @@ sun::RiseRule LightArguments::rule(const geo::Geodetic& place) const {
     return sun::RiseRule::seen(part, refraction.at(place), eye_height_m.value_or(0));
 }
 
-light::LightOptions LightArguments::light(const geo::Geodetic& place) const {
+light::LightOptions LightArguments::light(const geo::Geodetic& place,
+                                          const std::optional<double>& eye_height_m) const {
     light::LightOptions options;
     options.limb = limb_of(limb, sun::Limb::Center);
     options.refraction = refraction.at(place);
-    options.flat.rule = rule(place);
+    options.flat.rule = rule(place, eye_height_m);
     return options;
 }
 
-void HorizonArguments::add_to(CLI::App& verb) {
+void TerrainArguments::add_to(CLI::App& verb) {
+    dem.add_to(verb);
     verb.add_option("-k,--terrestrial-refraction", refraction,
                     "Curvature of a line of sight over the ground, in units of the Earth's (0.13)")
-        ->check(CLI::Range(-1.0, 0.9))
+        ->check(in_range(-1.0, 0.9))
         ->group("Horizon");
     verb.add_option("--highest", highest_m,
                     "Terrain beyond the DEM is no higher than this, m (the DEM's highest)")
-        ->check(CLI::Range(-12000.0, 9000.0))
+        ->check(in_range(-12000.0, 9000.0))
         ->group("Horizon");
 }
 
-light::HorizonOptions HorizonArguments::options(const geo::PlaceText& at,
-                                                const std::optional<double>& eye_height_m) const {
-    if (at.has_height && eye_height_m)
+std::unique_ptr<TerrainView> TerrainArguments::view_from(const PlaceArguments& place) const {
+    const geo::PlaceText at = place.parse();
+    if (at.has_height && place.eye_height_m)
         bad_usage("--eye-height and a height in --at exclude each other; give one of them");
     light::HorizonOptions options;
     options.refraction = refraction;
-    options.eye_height_m = at.has_height ? at.place.height_m : eye_height_m.value_or(0);
+    options.eye_height_m = at.has_height ? at.place.height_m : place.eye_height_m.value_or(0);
     options.eye_above_ground = at.above_ground || !at.has_height;
-    return options;
+    return std::make_unique<TerrainView>(dem::load(dem.paths, dem.options), at.place, options);
 }
 
-std::vector<light::OpenSector> HorizonArguments::check(
+std::vector<light::OpenSector> TerrainArguments::check(
     const light::TerrainHorizon& horizon, const std::vector<light::HorizonPoint>& profile) const {
     const double high_m = highest_m.value_or(horizon.field().about.statistics.max_m);
     std::vector<light::OpenSector> sectors = horizon.open_sectors(profile, high_m);
-    // Directions that follow each other but for less than two degrees are one for a reader.
+    if (sectors.empty()) return sectors;
+    // Directions that follow each other but for less than five degrees are one for a reader.
     std::vector<light::OpenSector> merged;
     for (const light::OpenSector& sector : sectors) {
         if (!merged.empty() &&
-            sector.from_azimuth_rad - merged.back().to_azimuth_rad < radians(2)) {
+            sector.from_azimuth_rad - merged.back().to_azimuth_rad < radians(5)) {
             light::OpenSector& last = merged.back();
             last.to_azimuth_rad = sector.to_azimuth_rad;
             last.reach_m = std::min(last.reach_m, sector.reach_m);
@@ -152,23 +160,20 @@ std::vector<light::OpenSector> HorizonArguments::check(
             merged.push_back(sector);
         }
     }
-    constexpr std::size_t kMost = 6;
-    for (std::size_t i = 0; i < std::min(merged.size(), kMost); ++i) {
-        const light::OpenSector& s = merged[i];
+    std::vector<std::string> parts;
+    for (const light::OpenSector& s : merged) {
         const double from_deg = degrees(s.from_azimuth_rad), to_deg = degrees(s.to_azimuth_rad);
-        log::warning(fmt::format(
-            "the blocking ridge may lie beyond the DEM from azimuth {:.0f} ({}) to {:.0f} ({}): "
-            "the "
-            "DEM reaches {:.1f} km there, and terrain of {:.0f} m would stand over this horizon as "
-            "far as {:.0f} km away; use a DEM that goes so far, or --highest with the height that "
-            "terrain has there at most",
-            from_deg, compass_point(from_deg), to_deg, compass_point(to_deg), s.reach_m / 1000,
-            high_m, s.needed_m / 1000));
+        parts.push_back(fmt::format(
+            "from azimuth {:.0f} ({}) to {:.0f} ({}) as far as {:.0f} km away, where the DEM "
+            "reaches {:.1f} km",
+            from_deg, compass_point(from_deg), to_deg, compass_point(to_deg), s.needed_m / 1000,
+            s.reach_m / 1000));
     }
-    if (merged.size() > kMost)
-        log::warning(
-            fmt::format("likewise in {} further directions; relevo sun horizon --json lists all",
-                        merged.size() - kMost));
+    log::warning(fmt::format(
+        "the blocking ridge may lie beyond the DEM, as terrain of {:.0f} m would stand over this "
+        "horizon {}; use a DEM that goes so far, or --highest with the height that terrain has "
+        "there at most",
+        high_m, fmt::join(parts, ", and ")));
     return sectors;
 }
 
@@ -177,7 +182,7 @@ void OutputArguments::add_to(CLI::App& verb, const std::vector<std::string>& end
     verb.add_option("-o,--output", path, fmt::format("Write {}", fmt::join(endings, ", ")));
     verb.add_flag("--overwrite", overwrite, "Replace an existing file");
     verb.add_option("--scale", scale, "Pixels of a PNG for each unit of the drawing (1.5)")
-        ->check(CLI::Range(0.25, 8.0));
+        ->check(in_range(0.25, 8.0));
     CLI::Option* csv_flag = verb.add_flag("--csv", csv, "CSV on standard output");
     verb.add_flag("--json", json, "One JSON object on standard output")->excludes(csv_flag);
 }
@@ -200,23 +205,29 @@ void OutputArguments::check() const {
     check_output_file(path, overwrite, "-o");
 }
 
-void OutputArguments::write(const light::Drawing& drawing) const {
-    if (ending() == "svg")
-        write_text(path, light::to_svg(drawing), overwrite, "-o");
-    else
+void OutputArguments::deliver(const Forms& forms) const {
+    const auto json_text = [&] { return forms.json().dump(2) + "\n"; };
+    const std::string form = ending();
+    if (form == "svg")
+        write_text(path, light::to_svg(forms.drawing()), overwrite, "-o");
+    else if (form == "csv")
+        write_text(path, forms.csv(), overwrite, "-o");
+    else if (form == "json")
+        write_text(path, json_text(), overwrite, "-o");
+    else if (form == "png") {
+        const light::Drawing drawing = forms.drawing();
         image::write(path, light::to_image(drawing, scale),
                      {{"Software", "Relevo " RELEVO_VERSION},
                       {"Title", drawing.title()},
                       {"Description", drawing.description()}},
                      overwrite);
-}
-
-void OutputArguments::write(const std::string& text) const {
-    write_text(path, text, overwrite, "-o");
-}
-
-void OutputArguments::write(const nlohmann::ordered_json& object) const {
-    write(object.dump(2) + "\n");
+    }
+    if (json)
+        fmt::print("{}", json_text());
+    else if (csv)
+        fmt::print("{}", forms.csv());
+    else if (path.empty())
+        forms.print();
 }
 
 nlohmann::ordered_json place_json(const geo::Geodetic& place) {

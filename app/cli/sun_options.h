@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,16 +10,19 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/shared.h"
+#include "dem/heightfield.h"
 #include "light/direct_light.h"
 #include "light/drawing.h"
+#include "light/horizon.h"
 #include "sun/events.h"
 
 /// What the verbs under `relevo sun` share.
 namespace relevo::cli {
 
-/// --at and --name.
+/// --at, --name and --eye-height.
 struct PlaceArguments {
     std::string at, name;
+    std::optional<double> eye_height_m;
 
     void add_to(CLI::App& verb);
     /// @throws Error (Usage)
@@ -30,6 +35,8 @@ struct DaysArguments {
     std::optional<int> year;
 
     void add_to(CLI::App& verb);
+    /// --year and --tz alone, for what takes a whole year.
+    void add_year_to(CLI::App& verb);
     bool given() const { return !date.empty() || !from.empty() || !to.empty() || year; }
 
     struct Days {
@@ -42,35 +49,58 @@ struct DaysArguments {
     Days parse() const;
 };
 
-/// --limb, --refraction, --eye-height, --dip: what rising and shining mean.
+/// --limb, --refraction, --dip: what rising and shining mean.
 struct LightArguments {
     RefractionArguments refraction;
     std::optional<std::string> limb;
-    std::optional<double> eye_height_m, dip_deg;
+    std::optional<double> dip_deg;
 
-    /// @param terrain  the verb takes a DEM, and a dip only counts beside it
     void add_to(CLI::App& verb);
-    void add_rule_to(CLI::App& verb);
+    /// --dip, where rising over a level horizon is asked for.
+    void add_dip_to(CLI::App& verb);
 
     /// Over a level horizon: the Naval Observatory's, unless an option says otherwise.
-    sun::RiseRule rule(const geo::Geodetic& place) const;
-    light::LightOptions light(const geo::Geodetic& place) const;
+    /// @param eye_height_m  --eye-height
+    /// @throws Error (Usage) for --dip together with --eye-height
+    sun::RiseRule rule(const geo::Geodetic& place, const std::optional<double>& eye_height_m) const;
+    light::LightOptions light(const geo::Geodetic& place,
+                              const std::optional<double>& eye_height_m) const;
 
   private:
     CLI::Option* refraction_option_ = nullptr;
 };
 
-/// -k, --highest and the eye, for verbs that look at the terrain.
-struct HorizonArguments {
+/// The DEM, and the horizon of a place on it.
+struct TerrainView {
+    TerrainView(dem::Heightfield field, const geo::Geodetic& place,
+                const light::HorizonOptions& options)
+        : dem(std::move(field)), horizon(dem, place, options) {}
+
+    const dem::Heightfield dem;
+    const light::TerrainHorizon horizon;  // refers to dem
+};
+
+/// DEM..., -k and --highest, for verbs that look at the terrain from a place.
+struct TerrainArguments {
+    DemArguments dem;
     double refraction = 0.13;
     std::optional<double> highest_m;
 
     void add_to(CLI::App& verb);
-    light::HorizonOptions options(const geo::PlaceText& at,
-                                  const std::optional<double>& eye_height_m) const;
-    /// Warns of directions in which the blocking ridge may lie beyond the DEM.
+    bool given() const { return !dem.paths.empty(); }
+    /// Loads the DEM. @throws Error as dem::load and light::TerrainHorizon
+    std::unique_ptr<TerrainView> view_from(const PlaceArguments& place) const;
+    /// Warns, once, of directions in which the blocking ridge may lie beyond the DEM.
     std::vector<light::OpenSector> check(const light::TerrainHorizon& horizon,
                                          const std::vector<light::HorizonPoint>& profile) const;
+};
+
+/// What a verb has to say, in each of its forms; each is made only where it is asked for.
+struct Forms {
+    std::function<light::Drawing()> drawing;
+    std::function<std::string()> csv;
+    std::function<nlohmann::ordered_json()> json;
+    std::function<void()> print;  ///< on standard output, for people
 };
 
 /// -o, --overwrite, --scale, --csv, --json.
@@ -88,9 +118,9 @@ struct OutputArguments {
     std::string ending() const;
     bool is_drawing() const { return ending() == "svg" || ending() == "png"; }
 
-    void write(const light::Drawing& drawing) const;
-    void write(const std::string& text) const;
-    void write(const nlohmann::ordered_json& object) const;
+    /// Writes the file that -o names, and on standard output what --csv or --json ask for; without
+    /// any of them the text for people.
+    void deliver(const Forms& forms) const;
 };
 
 /// "46.55,8.56" as --at takes it, whole.

@@ -7,7 +7,6 @@
 #include "base/units.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
-#include "dem/load.h"
 #include "geo/format.h"
 #include "light/alignment.h"
 
@@ -17,14 +16,12 @@ namespace {
 using nlohmann::ordered_json;
 
 struct Arguments {
-    DemArguments dem;
+    TerrainArguments terrain;
     PlaceArguments place;
     std::string over;
     DaysArguments days;
     RefractionArguments refraction;
-    std::optional<double> eye_height_m;
     double tolerance_deg = 0.5, summit_radius_m = 100;
-    HorizonArguments horizon;
     OutputArguments output;
 };
 
@@ -100,15 +97,13 @@ void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
     output.check();
     const DaysArguments::Days asked = arguments.days.parse();
-    const geo::PlaceText at = arguments.place.parse();
     const geo::PlaceText over = geo::parse_place(arguments.over, "--over");
-    const dem::Heightfield dem = dem::load(arguments.dem.paths, arguments.dem.options);
-    const light::TerrainHorizon horizon(dem, at.place,
-                                        arguments.horizon.options(at, arguments.eye_height_m));
+    const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
+    const light::TerrainHorizon& horizon = view->horizon;
     geo::Geodetic target = over.place;
     if (!over.has_height || over.above_ground) {
-        target =
-            light::summit_near(dem, over.place, over.has_height ? 0 : arguments.summit_radius_m);
+        target = light::summit_near(view->dem, over.place,
+                                    over.has_height ? 0 : arguments.summit_radius_m);
         target.height_m += over.place.height_m;
     }
     light::AlignmentOptions options;
@@ -117,16 +112,10 @@ void run(const Arguments& arguments) {
     const light::Alignments found =
         light::alignments(horizon, target, asked.first, asked.last, asked.zone, options);
 
-    if (output.ending() == "csv")
-        output.write(csv_of(found, asked.zone));
-    else if (output.ending() == "json")
-        output.write(json_of(found, horizon, asked.zone));
-    if (output.json)
-        fmt::print("{}\n", json_of(found, horizon, asked.zone).dump(2));
-    else if (output.csv)
-        fmt::print("{}", csv_of(found, asked.zone));
-    else if (output.path.empty())
-        print_text(found, horizon, asked.zone);
+    output.deliver({.drawing = {},
+                    .csv = [&] { return csv_of(found, asked.zone); },
+                    .json = [&] { return json_of(found, horizon, asked.zone); },
+                    .print = [&] { print_text(found, horizon, asked.zone); }});
 }
 
 }  // namespace
@@ -135,22 +124,19 @@ void add_sun_when(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb =
         *sun_verb.add_subcommand("when", "When the sun stands over a summit, as seen from a place");
-    arguments->dem.add_to(verb);
+    arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     verb.add_option("--over", arguments->over,
                     "Summit: LAT,LON; the highest post nearby is taken. With a height: that point")
         ->required();
     verb.add_option("--summit-radius", arguments->summit_radius_m,
                     "How far around LAT,LON the summit may be, m (100)")
-        ->check(CLI::Range(0.0, 10000.0));
+        ->check(in_range(0.0, 10000.0));
     verb.add_option("--tolerance", arguments->tolerance_deg,
                     "How near the sun's centre must come, degrees (0.5)")
-        ->check(CLI::Range(0.001, 45.0));
+        ->check(in_range(0.001, 45.0));
     arguments->days.add_to(verb);
     arguments->refraction.add_to(verb);
-    verb.add_option("--eye-height", arguments->eye_height_m, "Of the eye above the ground, m")
-        ->check(CLI::Range(0.0, 10000.0));
-    arguments->horizon.add_to(verb);
     arguments->output.add_to(verb, {"csv", "json"});
     verb.callback([arguments] { run(*arguments); });
 }

@@ -27,6 +27,24 @@ int coarser(int nodes) {
     return (nodes - 1 + 1) / 2 + 1;
 }
 
+/// Weighted mean of the heights that are none of the holes, and the share that they are.
+class NodeMean {
+  public:
+    void add(float weight, float height_m) {
+        whole_ += weight;
+        if (std::isnan(height_m)) return;
+        sum_ += weight * height_m;
+        covered_ += weight;
+    }
+    float height_m() const { return covered_ > 0 ? sum_ / covered_ : kHole; }
+    std::uint8_t coverage() const {
+        return static_cast<std::uint8_t>(whole_ > 0 ? std::lrint(kWhole * covered_ / whole_) : 0);
+    }
+
+  private:
+    float sum_ = 0, covered_ = 0, whole_ = 0;
+};
+
 }  // namespace
 
 Pyramid::Pyramid(const Array2d<float>& posts_m)
@@ -227,7 +245,7 @@ Pyramid::Level Pyramid::nodes_of_means(const Array2d<float>& means, glm::ivec2 f
     parallel_for(0, count.y, 64, [&](int begin, int end) {
         for (int y = begin; y < end; ++y) {
             for (int x = 0; x < count.x; ++x) {
-                float sum = 0, covered = 0, whole = 0;
+                NodeMean mean;
                 for (int j = 0; j < 2; ++j) {
                     const int row = std::min(2 * (first.y + y) - 1 + j, last_mean.y) - first_mean.y;
                     if (row < 0 || row >= means.height()) continue;
@@ -235,18 +253,13 @@ Pyramid::Level Pyramid::nodes_of_means(const Array2d<float>& means, glm::ivec2 f
                         const int column =
                             std::min(2 * (first.x + x) - 1 + i, last_mean.x) - first_mean.x;
                         if (column < 0 || column >= means.width()) continue;
-                        const float w = weight[static_cast<std::size_t>(i)] *
-                                        weight[static_cast<std::size_t>(j)];
-                        const float h = means.at(column, row);
-                        whole += w;
-                        if (std::isnan(h)) continue;
-                        sum += w * h;
-                        covered += w;
+                        mean.add(weight[static_cast<std::size_t>(i)] *
+                                     weight[static_cast<std::size_t>(j)],
+                                 means.at(column, row));
                     }
                 }
-                nodes.height_m.at(x, y) = covered > 0 ? sum / covered : kHole;
-                nodes.coverage.at(x, y) =
-                    static_cast<std::uint8_t>(whole > 0 ? std::lrint(kWhole * covered / whole) : 0);
+                nodes.height_m.at(x, y) = mean.height_m();
+                nodes.coverage.at(x, y) = mean.coverage();
             }
         }
     });
@@ -272,23 +285,18 @@ Pyramid::Block Pyramid::read_block(int level, glm::ivec2 first, int columns, int
         for (int y = 0; y < count.y; ++y) {
             for (int x = 0; x < count.x; ++x) {
                 const glm::ivec2 at = post(level, from + glm::ivec2(x, y)) - low;
-                float sum = 0, covered = 0, whole = 0;
+                NodeMean mean;
                 for (int dy = -level; dy <= level; ++dy) {
                     for (int dx = -level; dx <= level; ++dx) {
                         const glm::ivec2 p = at + glm::ivec2(dx, dy);
                         if (p.x < 0 || p.y < 0 || p.x >= read.width() || p.y >= read.height())
                             continue;
-                        const auto w = static_cast<float>((2 - std::abs(dx)) * (2 - std::abs(dy)));
-                        const float h = read.at(p.x, p.y);
-                        whole += w;
-                        if (std::isnan(h)) continue;
-                        sum += w * h;
-                        covered += w;
+                        mean.add(static_cast<float>((2 - std::abs(dx)) * (2 - std::abs(dy))),
+                                 read.at(p.x, p.y));
                     }
                 }
-                nodes.height_m.at(x, y) = covered > 0 ? sum / covered : kHole;
-                nodes.coverage.at(x, y) =
-                    static_cast<std::uint8_t>(std::lrint(kWhole * covered / whole));
+                nodes.height_m.at(x, y) = mean.height_m();
+                nodes.coverage.at(x, y) = mean.coverage();
             }
         }
     } else {

@@ -5,6 +5,9 @@
 #include <cassert>
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include "base/error.h"
 
 namespace relevo::gl {
 namespace {
@@ -68,6 +71,17 @@ GLenum target(TextureKind kind) {
     return GL_TEXTURE_2D;
 }
 
+/// GL refuses memory in silence, and the first to notice would be a framebuffer.
+void check_memory(Format format, Extent extent, int samples, std::string_view label) {
+    if (glGetError() != GL_OUT_OF_MEMORY) return;
+    const double mib = double{1.0 / (1 << 20)} * info(format).bytes * samples * extent.width *
+                       extent.height * extent.depth;
+    failed(
+        fmt::format("gl::Texture: {}: the device has no {:.0f} MiB for {} x {} x {} texels; "
+                    "take a smaller picture or a device with more",
+                    label, mib, extent.width, extent.height, extent.depth));
+}
+
 unsigned create(TextureKind kind, std::string_view label) {
     GLuint name = 0;
     glCreateTextures(target(kind), 1, &name);
@@ -103,6 +117,7 @@ Texture::Texture(TextureKind kind, Format format, Extent extent, int levels, std
                            extent.depth);
     else
         glTextureStorage2D(name(), levels_, info(format).internal, extent.width, extent.height);
+    check_memory(format, extent, 1, label);
 }
 
 Texture Texture::multisampled(Format format, Extent extent, int samples, std::string_view label) {
@@ -114,6 +129,7 @@ Texture Texture::multisampled(Format format, Extent extent, int samples, std::st
     texture.samples_ = samples;
     glTextureStorage2DMultisample(texture.name(), samples, info(format).internal, extent.width,
                                   extent.height, GL_TRUE);
+    check_memory(format, extent, samples, label);
     return texture;
 }
 

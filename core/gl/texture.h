@@ -44,8 +44,9 @@ class Texture {
   public:
     Texture() = default;
     /// @param levels  of the mip chain; 0 for the whole chain
+    /// @throws Error (Failed) where the device has no memory for it
     Texture(TextureKind kind, Format format, Extent extent, int levels, std::string_view label);
-    /// A multisampled target of `samples` samples a pixel.
+    /// A multisampled target of `samples` samples a pixel. @throws Error as above
     static Texture multisampled(Format format, Extent extent, int samples, std::string_view label);
 
     /// Replaces a box of one level. Texels are tightly packed, rows in the order of t.

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "base/error.h"
+#include "base/sign_change.h"
 #include "base/units.h"
 #include "sun/position.h"
 #include "sun/position_table.h"
@@ -140,31 +140,11 @@ class LightSearch {
     }
 
     /// Where the light changes between two moments.
-    Moment edge(Moment a, Moment b) const {
-        double fa = clearance(a), fb = clearance(b);
+    Moment edge(const Moment& a, const Moment& b) const {
+        const double fa = clearance(a), fb = clearance(b);
         if ((fa > 0) == (fb > 0)) return a;  // the table and the exact horizon differ by a hair
-        // False position with the Illinois rule (Dowell and Jarratt, BIT 11, 1971).
-        int side = 0;
-        for (int i = 0; i < 60 && b.t_s - a.t_s > kRoot_s; ++i) {
-            const double t = (a.t_s * fb - b.t_s * fa) / (fb - fa);
-            const Moment c = moment(std::clamp(t, a.t_s, b.t_s));
-            const double fc = clearance(c);
-            if (fc == 0) return c;
-            const double moved_s = std::min(c.t_s - a.t_s, b.t_s - c.t_s);
-            if ((fc > 0) == (fb > 0)) {
-                b = c;
-                fb = fc;
-                if (side == -1) fa /= 2;
-                side = -1;
-            } else {
-                a = c;
-                fa = fc;
-                if (side == 1) fb /= 2;
-                side = 1;
-            }
-            if (moved_s < kRoot_s / 10) return c;
-        }
-        return b;
+        const auto clearance_at = [&](double t_s) { return clearance(moment(t_s)); };
+        return moment(sign_change(clearance_at, a.t_s, fa, b.t_s, fb, kRoot_s));
     }
 
     void turn(const Moment& at) {

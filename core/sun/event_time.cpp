@@ -61,7 +61,10 @@ std::optional<double> parse_duration_s(std::string_view text) {
 }
 
 bool is_event_time(std::string_view text) {
-    return text.find('@') != std::string_view::npos;
+    return text.find('@') != std::string_view::npos ||
+           std::any_of(kNames.begin(), kNames.end(), [&](const Name& name) {
+               return text.find(name.name) != std::string_view::npos;
+           });
 }
 
 EventTime parse_event_time(std::string_view text) {

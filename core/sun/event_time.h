@@ -24,7 +24,7 @@ struct EventTime {
 /// "1h30min", "45s", "90min" in seconds; nothing where it is no duration.
 std::optional<double> parse_duration_s(std::string_view text);
 
-/// Whether a time is given so: by an `@`.
+/// Whether a time is given so: by an `@`, or by an event whose place is missing.
 bool is_event_time(std::string_view text);
 
 /// Reads `[DATE ]EVENT[+OFFSET|-OFFSET]@LAT,LON[,H]`. Events: sunrise, sunset, noon (transit),

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/error.h"
+#include "base/sign_change.h"
 #include "sun/position.h"
 
 namespace relevo::sun {
@@ -23,32 +24,6 @@ constexpr double kAstronomical_rad = radians(-18.0);
 constexpr double kSample_s = 1800;
 constexpr double kRoot_s = 1e-4;
 constexpr double kExtreme_s = 0.5;
-
-/// The place where `f` changes its sign between a and b, by the Illinois variant of false position
-/// (Dowell and Jarratt, BIT 11, 1971), which never leaves the bracket.
-template <typename F>
-double root(F&& f, double a, double fa, double b, double fb) {
-    int side = 0;
-    for (int i = 0; i < 100 && std::abs(b - a) > kRoot_s; ++i) {
-        const double c = (a * fb - b * fa) / (fb - fa);
-        const double fc = f(c);
-        if (fc == 0) return c;
-        const double moved = std::min(std::abs(c - a), std::abs(c - b));
-        if ((fc > 0) == (fb > 0)) {
-            b = c;
-            fb = fc;
-            if (side == -1) fa /= 2;
-            side = -1;
-        } else {
-            a = c;
-            fa = fc;
-            if (side == 1) fb /= 2;
-            side = 1;
-        }
-        if (moved < kRoot_s / 10) return c;
-    }
-    return (a + b) / 2;
-}
 
 /// The highest (or, with sign -1, lowest) point of f between a and c, by golden section.
 template <typename F>
@@ -123,7 +98,8 @@ class Path {
         for (std::size_t i = 0; i + 1 < samples_.size(); ++i) {
             const double a = height(samples_[i]), b = height(samples_[i + 1]);
             if ((b > 0) == above) continue;
-            const double t = root(height_at, samples_[i].t_s, a, samples_[i + 1].t_s, b);
+            const double t =
+                sign_change(height_at, samples_[i].t_s, a, samples_[i + 1].t_s, b, kRoot_s);
             above = b > 0;
             (above ? found.rising_s : found.setting_s).push_back(t);
             if (above)
@@ -147,7 +123,7 @@ class Path {
             const Sample &a = samples_[i], &b = samples_[i + 1];
             if ((a.east_au > 0) == (b.east_au > 0)) continue;
             add(events, a.east_au > 0 ? EventKind::Transit : EventKind::LowerTransit,
-                root(east, a.t_s, a.east_au, b.t_s, b.east_au));
+                sign_change(east, a.t_s, a.east_au, b.t_s, b.east_au, kRoot_s));
         }
     }
 

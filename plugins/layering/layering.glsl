@@ -8,6 +8,7 @@
 uniform sampler2DArray layering_albedo;
 uniform sampler3D layering_noise;
 uniform sampler2D layering_patches;
+uniform sampler2D layering_regions;  // the same less 0.5, in floats
 
 uniform int layering_limits = 2; //@ enum(normalised, metres, climate) static label("Limits") description("Where materials change: the paper's share of the DEM's range, heights in metres, or tree and snow line of the latitude")
 
@@ -155,11 +156,11 @@ void layering_on_albedo(inout Surface s) {
         vec3 scale = 1.0 / layering_patch_m;
         vec2 gx = s.ground_dx_m.xy, gy = s.ground_dy_m.xy;
         small = textureGrad(layering_patches, s.ground_m.xy * scale.x, gx * scale.x, gy * scale.x);
-        vec4 region = textureGrad(layering_patches, s.ground_m.yx * scale.z, gx.yx * scale.z, gy.yx * scale.z);
+        vec4 region = textureGrad(layering_regions, s.ground_m.yx * scale.z, gx.yx * scale.z, gy.yx * scale.z);
         // Regions push the broad patches about, so that those do not show as tiles from afar.
         broad = textureGrad(layering_patches, layering_turn * s.ground_m.xy * scale.y + 2.4 * region.rg,
                             layering_turn * gx * scale.y, layering_turn * gy * scale.y);
-        broad.rg += 0.6 * (region.ra - 0.5);
+        broad.rg += 0.6 * region.ra;
         // As strong as the volume's, which need not be read then.
         noise = 1.2 * (broad.r - 0.5) + 0.7 * (broad.a - 0.5) + 0.4 * (small.r - 0.5);
     } else {

@@ -20,8 +20,8 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-Result relevo(const std::vector<std::string>& arguments,
-              const std::vector<std::string>& environment) {
+Result run(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+           const std::vector<std::string>& environment) {
     static int count = 0;
     const std::filesystem::path dir = build_dir() / "scratch";
     std::filesystem::create_directories(dir);
@@ -32,18 +32,23 @@ Result relevo(const std::vector<std::string>& arguments,
     std::string command = "env ";
     for (const std::string& variable : environment)
         command += quoted(variable) + " ";
-    command += quoted((build_dir() / "bin/relevo").string());
+    command += quoted(program.string());
     for (const std::string& argument : arguments)
         command += " " + quoted(argument);
     command += " >" + quoted(out.string()) + " 2>" + quoted(err.string());
     const int status = std::system(command.c_str());
-    Result run;
-    run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    run.out = read_text(out, "test");
-    run.err = read_text(err, "test");
+    Result result;
+    result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    result.out = read_text(out, "test");
+    result.err = read_text(err, "test");
     std::filesystem::remove(out);
     std::filesystem::remove(err);
-    return run;
+    return result;
+}
+
+Result relevo(const std::vector<std::string>& arguments,
+              const std::vector<std::string>& environment) {
+    return run(build_dir() / "bin/relevo", arguments, environment);
 }
 
 std::string bundled_dem() {

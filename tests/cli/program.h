@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,11 @@ struct Result {
     std::string out;  ///< standard output
     std::string err;  ///< standard error
 };
+
+/// Runs a program.
+/// @param environment  "NAME=value", besides what there is
+Result run(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+           const std::vector<std::string>& environment = {});
 
 /// Runs `relevo` of the build under test. The device is the software renderer wherever one is drawn
 /// with.

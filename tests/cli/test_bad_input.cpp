@@ -78,6 +78,15 @@ TEST(BadTime, EachHasItsMessage) {
         "2026-06-21T18:30+02:00, or pass --tz Europe/Zurich");
     expect_failure(capture_at({"--time", "2026-06-21T18:30", "--tz", "Europe/Zurick"}), 3,
                    "sun::Zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
+    expect_failure(capture_at({"--time", "sunset-30min", "--date", "2026-06-21", "--tz", "UTC"}), 3,
+                   "sun::parse_event_time: sunset-30min: no place, expected one after an @ such as "
+                   "sunrise@46.55,8.56");
+    // Without --time they would be left out of account, and the picture be of another day.
+    expect_failure(capture_at({"--date", "2026-12-21"}), 2,
+                   "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
+                   "day is written --time 2026-12-21T18:30");
+    expect_failure(capture_at({"--tz", "Europe/Zurich"}), 2,
+                   "--tz: goes with --time, such as --time 2026-06-21T18:30");
 }
 
 TEST(BadPlace, Latitude91) {
@@ -145,7 +154,11 @@ TEST(BadDevice, AMachineWithoutAnyDriverSaysWhatToInstall) {
 
 TEST(BadUsage, EachHasItsMessage) {
     expect_failure({"captur"}, 2, "captur: no such command; did you mean capture?");
+    expect_failure({"sun", "carpt"}, 2, "carpt: no such command; did you mean carpet?");
+    expect_failure({"plugins", "x"}, 2, "x: no such command; there are list, info");
     expect_failure({"capture"}, 2, "DEM is required; see relevo capture --help");
+    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--fov", "500"}, 2,
+                   "--fov: expected 0.1 to 170 but got 500; see relevo capture --help");
     expect_failure({"capture", bundled_dem(), "-o", out_png(), "--foo"}, 2,
                    "The following argument was not expected: --foo; see relevo capture --help");
     expect_failure(

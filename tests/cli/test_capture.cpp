@@ -65,6 +65,21 @@ TEST_F(Capture, NoEffectsIsNotLayering) {
     EXPECT_LT(image::compare(paper, layered).psnr_db, 35);
 }
 
+TEST_F(Capture, ComparingSaysNothingOfTheHalfWithoutTheEffect) {
+    const std::filesystem::path folder = dir_ / "tide";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "plugin.json")
+        << R"({"format": 1, "id": "tide", "name": "Tide", "version": "1"})";
+    std::ofstream(folder / "tide.glsl")
+        << "uniform float tide_tone = 0.3; //@ range(0, 1)\n"
+           "void tide_on_albedo(inout Surface s) { s.diffuse = vec3(tide_tone); }\n";
+    const Result run = relevo({"capture", bundled_dem(), "-o", (dir_ / "ab.png").string(),
+                               "--overwrite", "--size", "64x48", "--only", "", "--plugin-path",
+                               folder.string(), "--ab", "tide", "--set", "tide.tone=0.9"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err.find("tide"), std::string::npos) << run.err;
+}
+
 TEST_F(Capture, OtherFormatsHoldTheSamePicture) {
     const image::Image8 png = image::read(take("a.png"));
     EXPECT_EQ(image::compare(png, image::read(take("a.tif"))).worst, 0);

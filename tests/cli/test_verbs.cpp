@@ -1,3 +1,7 @@
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -5,6 +9,38 @@
 
 namespace relevo::test {
 namespace {
+
+TEST(Help, OfAllListsEveryOptionOfEveryVerb) {
+    const Result all = relevo({"--help-all"});
+    EXPECT_EQ(all.status, 0);
+    for (const std::vector<std::string>& verb :
+         std::vector<std::vector<std::string>>{{"capture"},
+                                               {"info"},
+                                               {"doctor"},
+                                               {"plugins", "info"},
+                                               {"sun", "position"},
+                                               {"sun", "day"},
+                                               {"sun", "horizon"},
+                                               {"sun", "carpet"},
+                                               {"sun", "when"}}) {
+        std::vector<std::string> arguments = verb;
+        arguments.emplace_back("--help");
+        std::string name = verb.front();
+        if (verb.size() > 1) name += " " + verb.back();
+        const std::size_t begin = all.out.find("\n" + name + "\n");
+        ASSERT_NE(begin, std::string::npos) << name;
+        const std::string of_verb = all.out.substr(begin, all.out.find("\n\n", begin + 1) - begin);
+        std::istringstream help(relevo(arguments).out);
+        for (std::string line; std::getline(help, line);) {
+            std::istringstream words(line);
+            std::string option;
+            words >> option;
+            if (!line.starts_with("  -") || option.starts_with("-h") || option == "--help-all")
+                continue;
+            EXPECT_NE(of_verb.find("    " + option), std::string::npos) << name << " " << option;
+        }
+    }
+}
 
 TEST(InfoVerb, SpeaksJsonAsDocumented) {
     const Result run = relevo({"info", bundled_dem(), "--json"});
@@ -57,6 +93,22 @@ TEST(PluginsVerb, ListsWhatIsThereWithItsParameters) {
         for (const nlohmann::json& param : plugin["parameters"])
             EXPECT_NE(info.out.find(param["address"].get<std::string>()), std::string::npos);
     }
+}
+
+TEST(PluginsVerb, LeavesOutWhatOnlyThePluginsCodeWrites) {
+    const std::filesystem::path folder = scratch_dir("cli_plugins") / "tide";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "plugin.json")
+        << R"({"format": 1, "id": "tide", "name": "Tide", "version": "1"})";
+    std::ofstream(folder / "tide.glsl") << "uniform float tide_range_m = 3.0; //@ range(0, 20)\n"
+                                           "uniform float tide_level_m = 0.0; //@ host\n"
+                                           "void tide_on_albedo(inout Surface s) {}\n";
+    const Result run =
+        relevo({"plugins", "info", "tide", "--json", "--plugin-path", folder.string()});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json parameters = nlohmann::json::parse(run.out)["parameters"];
+    ASSERT_EQ(parameters.size(), 1u);
+    EXPECT_EQ(parameters[0]["address"], "tide.range_m");
 }
 
 }  // namespace

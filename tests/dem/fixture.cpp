@@ -86,6 +86,15 @@ std::string write_raster(const std::filesystem::path& path, const Raster& raster
     return path.string();
 }
 
+void add_overviews(const std::string& path, std::vector<int> factors) {
+    GDALDatasetH dataset = GDALOpen(path.c_str(), GA_Update);
+    must(dataset, "cannot be opened");
+    must(GDALBuildOverviews(dataset, "AVERAGE", static_cast<int>(factors.size()), factors.data(), 0,
+                            nullptr, GDALDummyProgress, nullptr) == CE_None,
+         "overviews");
+    GDALClose(dataset);
+}
+
 void cut_short(const std::string& path, std::uintmax_t bytes) {
     std::filesystem::resize_file(path, bytes);
 }

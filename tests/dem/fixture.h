@@ -39,6 +39,9 @@ struct Raster {
 /// Writes a raster. @returns the path
 std::string write_raster(const std::filesystem::path& path, const Raster& raster);
 
+/// Adds overviews, averages of so many posts each way, to a raster.
+void add_overviews(const std::string& path, std::vector<int> factors);
+
 /// Keeps the first `bytes` of a file.
 void cut_short(const std::string& path, std::uintmax_t bytes);
 

@@ -16,6 +16,7 @@
 namespace relevo::dem {
 namespace {
 
+using test::add_overviews;
 using test::Raster;
 using test::write_raster;
 using testing::Contains;
@@ -109,7 +110,7 @@ TEST(Dialect, OverviewsMadeWithoutKnowledgeOfTheHolesAreLeftAlone) {
     Raster raster = with_mark("Int16", -32768);
     raster.columns = raster.rows = 64;
     const std::string path = write_raster(folder() / "overview.tif", raster);
-    ASSERT_EQ(std::system(("gdaladdo -q -r average " + path + " 2 4").c_str()), 0);
+    add_overviews(path, {2, 4});
     const Source source = Source::open(path);
     const Array2d<float> half = source.read({0, 0, 64, 64}, 32, 32);
     // Posts (2..3, 0..1) and (2..3, 2..3): the mean of four heights, and no -32768 has part in it.
@@ -379,7 +380,7 @@ TEST(Dialect, EncodedColoursAreHeights) {
 TEST(Dialect, OverviewsOfColoursAreLeftAlone) {
     const std::string path =
         write_raster(folder() / "coded_overview.tif", coded(Encoding::TerrainRgb));
-    ASSERT_EQ(std::system(("gdaladdo -q -r average " + path + " 2").c_str()), 0);
+    add_overviews(path, {2});
     const Source source = Source::open(path, {.encoding = Encoding::TerrainRgb});
     EXPECT_FLOAT_EQ(source.read({0, 0, 16, 16}, 8, 8).at(2, 3), -50 + 17.5F * 4.5F + 6.5F);
 }

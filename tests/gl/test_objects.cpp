@@ -2,6 +2,7 @@
 #include <type_traits>
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include "gl/buffer.h"
 #include "gl/context.h"
@@ -53,6 +54,18 @@ TEST_F(GlObjects, TexturesKeepTheirTexels) {
     std::array<float, 4> back{};
     texture.read(0, std::as_writable_bytes(std::span(back)));
     EXPECT_EQ(back, texels);
+}
+
+TEST(Texture, LargerThanTheDevicesMemorySaysHowLarge) {
+    const Context context{ContextOptions{}};
+    const int layers = context.info().max_array_layers;
+    const auto too_large = [&] {
+        Texture(TextureKind::D2Array, Format::RGBA32F, {16384, 16384, layers}, 1, "sky");
+    };
+    EXPECT_EQ(test::error_of(too_large),
+              fmt::format("exit 1: gl::Texture: sky: the device has no {} MiB for 16384 x 16384 x "
+                          "{} texels; take a smaller picture or a device with more",
+                          4096 * layers, layers));
 }
 
 constexpr const char* kFullscreen =

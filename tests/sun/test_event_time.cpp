@@ -48,8 +48,9 @@ TEST(EventTime, KnowsEveryEvent) {
     }
 }
 
-TEST(EventTime, IsToldByItsAt) {
+TEST(EventTime, IsToldByItsAtOrItsEvent) {
     EXPECT_TRUE(is_event_time("sunrise@46.55,8.56"));
+    EXPECT_TRUE(is_event_time("2026-06-21 civil-dusk+10min"));
     EXPECT_FALSE(is_event_time("2026-06-21T18:30+02:00"));
 }
 

@@ -128,7 +128,7 @@ TEST(Sky, Equation3IsAPowerOfTheHeight) {
     std::vector<double> errors;
     for (const double h : {0.05, 0.3, 0.5, 1.0, 2.0}) {
         const auto results = gpu.run(
-            fmt::format("{}result = vec4(sky_t(view, up, {:.2f}));", kDirection, h), 1, 181);
+            fmt::format("{}result = vec4(sky_t(dot(view, up), {:.2f}));", kDirection, h), 1, 181);
         for (int y = 0; y <= 180; ++y) {
             if (y == 90) continue;  // 0^h: a float's sin 0 is not the double's
             errors.push_back(std::abs(results[static_cast<std::size_t>(y)].x -
@@ -136,6 +136,100 @@ TEST(Sky, Equation3IsAPowerOfTheHeight) {
         }
     }
     EXPECT_LT(worst(errors, "sky equation 3, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(Sky, TheHorizonOfAHighEyeLiesLowerAndIsWhereTheColoursBegin) {
+    // Eyes at the sea, on a mountain, in an aeroplane, at 200 km.
+    for (const double height_m : {0.0, 2000.0, 11000.0, 200e3}) {
+        const double dip = std::sqrt(1 - std::pow(6371e3 / (6371e3 + height_m), 2));
+        test::GpuSnippet gpu("sky");
+        gpu.frame().eye_up = {0, 0, 1, static_cast<float>(-dip)};
+        const auto results = gpu.run(
+            "float sine = float(x) / 500.0 - 1.0;\n"
+            "result = vec4(sky_above_horizon(sine), sky_band(), 0.0, 0.0);",
+            1001, 1);
+        std::vector<double> errors;
+        for (int x = 0; x <= 1000; ++x)
+            errors.push_back(std::abs(results[static_cast<std::size_t>(x)].x -
+                                      (x / 500.0 - 1 + dip) / (1 + dip)));
+        EXPECT_LT(worst(errors, "sky above the horizon, GPU against double", 1e-3), 1e-3);
+        // Air 17 km thick, as far away as the horizon; never more than the dip.
+        const double distance_m = std::sqrt(2 * 6371e3 * height_m);
+        const double expected = height_m > 0 ? std::min(dip, 17e3 / distance_m) : 1e-4;
+        EXPECT_NEAR(results[0].y, expected, 0.05 * expected) << height_m;
+    }
+}
+
+TEST(Sky, AirScattersWhatSunAndSkyShedOnIt) {
+    test::GpuSnippet gpu("sky");
+    gpu.frame().sun_light[0] = {0.9f, 0.8f, 0.6f, 0};
+    gpu.frame().sky_irradiance = {0.05f, 0.07f, 0.12f, 0};
+    const auto results =
+        gpu.run("result = vec4(sky_air_light(cos(radians(float(x)))), 0.0);", 181, 1);
+    const glm::dvec3 sun(0.9, 0.8, 0.6), sky(0.05, 0.07, 0.12);
+    std::vector<double> errors;
+    double all = 0, solid_angle = 0;
+    for (int deg = 0; deg <= 180; ++deg) {
+        const double cosine = std::cos(radians(deg));
+        const double phase = 0.5 + 0.375 * std::pow(1 + cosine, 2);
+        const glm::vec4 found = results[static_cast<std::size_t>(deg)];
+        for (int c = 0; c < 3; ++c)
+            errors.push_back(std::abs(found[c] - (0.2 * phase * sun[c] + 0.5 * sky[c])));
+        all += std::sin(radians(deg)) * (found.x - 0.5 * sky.x) / (0.2 * sun.x);
+        solid_angle += std::sin(radians(deg));
+    }
+    EXPECT_LT(worst(errors, "light of the air, GPU against double", 1e-3), 1e-3);
+    EXPECT_NEAR(all / solid_angle, 1, 1e-3);  // a phase function's mean
+}
+
+TEST(Sky, GroundBeyondTheDemIsLitAsTheTerrainAndFadesIntoTheAir) {
+    test::GpuSnippet gpu("sky");
+    gpu.frame().sun_light[0] = {0.9f, 0.8f, 0.6f, 0};
+    gpu.frame().sky_irradiance = {0.05f, 0.07f, 0.12f, 0};
+    const auto results = gpu.run(
+        "result = vec4(sky_ground_seen(vec3(0.3, 0.2, 0.1), float(y) / 10.0 - 0.5,\n"
+        "                              float(x) / 100.0), 0.0);",
+        101, 11);
+    const glm::dvec3 sun(0.9, 0.8, 0.6), sky(0.05, 0.07, 0.12), albedo(0.19, 0.18, 0.15);
+    const glm::dvec3 air(0.3, 0.2, 0.1);
+    std::vector<double> errors;
+    for (int y = 0; y <= 10; ++y) {
+        for (int x = 0; x <= 100; ++x) {
+            const double seen = std::exp(-0.12 / std::max(x / 100.0, 1e-3));
+            const glm::vec4 found = results[static_cast<std::size_t>(y * 101 + x)];
+            for (int c = 0; c < 3; ++c) {
+                const double ground = albedo[c] * (sky[c] + std::max(y / 10.0 - 0.5, 0.0) * sun[c]);
+                errors.push_back(std::abs(found[c] - (air[c] + seen * (ground - air[c]))));
+            }
+        }
+    }
+    EXPECT_LT(worst(errors, "ground beyond the DEM, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(Sky, SlopesGetTheLightOfTheGroundThatTheySee) {
+    test::GpuSnippet gpu("sky");
+    gpu.frame().sun_light[0] = {0.9f, 0.8f, 0.6f, 0};
+    gpu.frame().sky_irradiance = {0.05f, 0.07f, 0.12f, 0};
+    const auto results =
+        gpu.run("result = vec4(sky_bounce(cos(radians(float(x))), 0.5), 0.0);", 181, 1);
+    // The share of the sphere's cosine-weighted half that lies below the horizon, by integration.
+    std::vector<double> errors;
+    for (int deg = 0; deg <= 180; deg += 15) {
+        const glm::dvec3 normal(std::sin(radians(deg)), 0, std::cos(radians(deg)));
+        double below = 0;
+        for (int e = 0; e < 180; ++e) {
+            for (int a = 0; a < 360; ++a) {
+                const glm::dvec3 to = direction(radians(a + 0.5), radians(e - 89.5));
+                if (to.z < 0)
+                    below += std::max(dot(to, normal), 0.0) * std::cos(radians(e - 89.5)) *
+                             radians(1) * radians(1) / kPi;
+            }
+        }
+        const double expected = below * 0.19 * (0.05 + 0.5 * 0.9);
+        errors.push_back(std::abs(results[static_cast<std::size_t>(deg)].x - expected));
+    }
+    EXPECT_LT(worst(errors, "light of the ground on slopes, GPU against double", 1e-3), 1e-3);
+    EXPECT_EQ(results[0].x, 0);  // level ground sees none
 }
 
 TEST(Sky, TheExponentFallsWithTheEyesHeight) {
@@ -193,6 +287,118 @@ TEST(Sky, AirMassIsRozenbergs) {
         errors.push_back(std::abs(results[static_cast<std::size_t>(deg)].x / expected - 1));
     }
     EXPECT_LT(worst(errors, "sky air mass, relative", 1e-3), 1e-3);
+}
+
+// Stars. tools/sky/stars.h has their texture, tests/golden/test_stars.cpp their places in pictures.
+
+TEST(SkyStars, AreBentByBennettsRefraction) {
+    // By a quarter of a degree, from half a degree below the horizon.
+    test::GpuSnippet gpu("sky");
+    const auto results = gpu.run(
+        "float h = radians(0.25 * float(x) - 0.5);\n"
+        "result = vec4(sky_bend(sin(h)) * cos(h));",
+        362, 1);
+    std::vector<double> errors;
+    for (int x = 0; x < 362; ++x) {
+        const double deg = 0.25 * x - 0.5, h = radians(deg);
+        const double refraction =
+            radians(1 / std::tan(radians(deg + 7.31 / (deg + 4.4))) / 60);  // Bennett
+        const double expected = std::sin(refraction) / std::cos(h - refraction) * std::cos(h);
+        errors.push_back(std::abs(results[static_cast<std::size_t>(x)].x - expected) /
+                         kArcsecond_rad);
+    }
+    EXPECT_LT(worst(errors, "sky refraction of stars [arcsec], against Bennett", 1), 1);
+}
+
+TEST(SkyStars, AreLookedUpWhereTheCatalogueHasThem) {
+    // A rotation about an odd axis, an odd velocity, air of strength 1.1: as in the frame block.
+    const glm::dvec3 axis = normalize(glm::dvec3(0.3, -0.5, 0.8));
+    const glm::dvec3 velocity(3e-5, -8e-5, 4e-5);
+    const auto turned = [&](const glm::dvec3& v) {
+        const double c = std::cos(2.0), s = std::sin(2.0);
+        return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
+    };
+    test::GpuSnippet gpu("sky");
+    const glm::dvec3 columns[3] = {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
+    for (int i = 0; i < 3; ++i)
+        gpu.frame().celestial[static_cast<std::size_t>(i)] =
+            glm::vec4(columns[0][i], columns[1][i], columns[2][i], velocity[i]);
+    gpu.frame().eye_sun_light.a = 1.1f;
+    const auto results = gpu.run(
+        std::string(kDirection) + "result = vec4(sky_catalogued(view, up), 0.0);", 360, 181);
+    std::vector<double> errors;
+    for (int y = 90; y <= 180; ++y) {
+        for (int x = 0; x < 360; x += 7) {
+            const glm::dvec3 view = direction(radians(x), radians(y - 90.0));
+            const double bent = 1.1 * 0.00029043 / (view.z + 0.0022149 / (view.z + 0.0765018));
+            const glm::dvec3 expected =
+                normalize(turned(normalize(view - bent * glm::dvec3(0, 0, 1))) - velocity);
+            errors.push_back(
+                distance(glm::dvec3(results[static_cast<std::size_t>(y * 360 + x)]), expected) /
+                kArcsecond_rad);
+        }
+    }
+    EXPECT_LT(worst(errors, "sky place in the catalogue [arcsec], GPU against double", 0.5), 0.5);
+}
+
+TEST(SkyStars, CellsAreThoseOfTheGenerator) {
+    // tools/sky/stars.cpp, StarLayout: an octahedron unfolded onto 96 x 96 cells.
+    const auto sign = [](double v) { return v < 0 ? -1.0 : 1.0; };
+    test::GpuSnippet gpu("sky");
+    const auto centres = gpu.run("result = vec4(sky_star_centre(ivec2(x, y)), 0.0);", 96, 96);
+    const auto cells = gpu.run(
+        "result = vec4(vec2(sky_star_cell(sky_star_centre(ivec2(x, y)))), 0.0, 0.0);", 96, 96);
+    std::vector<double> errors;
+    for (int y = 0; y < 96; ++y) {
+        for (int x = 0; x < 96; ++x) {
+            const glm::dvec2 p((2 * x + 1) / 96.0 - 1, (2 * y + 1) / 96.0 - 1);
+            glm::dvec3 centre(p, 1 - std::abs(p.x) - std::abs(p.y));
+            if (centre.z < 0) {
+                centre.x = (1 - std::abs(p.y)) * sign(p.x);
+                centre.y = (1 - std::abs(p.x)) * sign(p.y);
+            }
+            const auto at = static_cast<std::size_t>(y * 96 + x);
+            errors.push_back(distance(glm::dvec3(centres[at]), normalize(centre)) / kArcsecond_rad);
+            EXPECT_EQ(cells[at].x, x);
+            EXPECT_EQ(cells[at].y, y);
+        }
+    }
+    EXPECT_LT(worst(errors, "sky middle of a star's cell [arcsec], GPU against double", 0.2), 0.2);
+}
+
+TEST(SkyStars, BrightnessIsPogsonsAndColourOfLuminanceOne) {
+    test::GpuSnippet gpu("sky");
+    const auto results =
+        gpu.run("result = vec4(sky_star_colour(float(1 + 16 * y + x)), 0.0);", 16, 128);
+    std::vector<double> errors;
+    for (int y = 0; y < 128; ++y) {
+        for (int x = 0; x < 16; ++x) {
+            const double flux = std::pow(10, -0.4 * (0.0625 * y - 1.5)), b_v = 0.15 * x - 0.35;
+            const double red = 0.7829 + 0.3121 * b_v + 0.0325 * b_v * b_v;
+            const double blue = 1.567 - 0.9949 * b_v + 0.2023 * b_v * b_v;
+            const double green = (1 - 0.2126 * red - 0.0722 * blue) / 0.7152;
+            const glm::dvec3 found(results[static_cast<std::size_t>(y * 16 + x)]);
+            errors.push_back(distance(found / flux, glm::dvec3(red, green, blue)));
+        }
+    }
+    EXPECT_LT(worst(errors, "sky light of a star, relative, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(SkyStars, AreOfTheSameSizeAllOverThePicture) {
+    // A star off the axis by this angle: the picture is scaled by 1 / cos^2 outwards and 1 / cos
+    // across, so that its area is 0.6^2 square pixels everywhere.
+    test::GpuSnippet gpu("sky");
+    gpu.frame().pixel_ray_dx = {0.001f, 0, 0, 0};
+    gpu.frame().pixel_ray_dy = {0, 0, 0.001f, 0};  // up is z, so the camera looks north
+    const auto results = gpu.run(
+        "float off = radians(0.5 * float(x));\n"
+        "result = vec4(1e6 * sky_star_spread(vec3(sin(off), cos(off), 0.0)));",
+        120, 1);
+    std::vector<double> errors;
+    for (int x = 0; x < 120; ++x)
+        errors.push_back(std::abs(results[static_cast<std::size_t>(x)].x -
+                                  0.36 * std::pow(std::cos(radians(0.5 * x)), 3)));
+    EXPECT_LT(worst(errors, "sky size of a star, GPU against double", 1e-3), 1e-3);
 }
 
 }  // namespace
