@@ -81,6 +81,15 @@ struct Rectangle {
     }
 };
 
+/// The part of a box that is in another, which may hold less: both are around tiles of some level.
+relevo_box within(relevo_box box, const relevo_box& other) {
+    for (int i = 0; i < 3; ++i) {
+        box.low[i] = std::max(box.low[i], other.low[i]);
+        box.high[i] = std::min(box.high[i], other.high[i]);
+    }
+    return box;
+}
+
 Rectangle rectangle_of(const relevo_box& box) {
     return {{box.low[0], box.low[1]}, {box.high[0], box.high[1]}};
 }
@@ -117,6 +126,7 @@ class Vsm : public Instance {
         if (params_.get("vsm.keep") == 0) layers_.clear();
         relevo_box seen = box();
         if (!terrain_.visible_bounds(1e300, seen)) seen = whole_;
+        seen = within(seen, whole_);
         if (columns_ == 0 || layers_.empty() || is_stale(0, rectangle_of(seen)))
             choose_columns(seen, frame);
         const std::vector<Rectangle> needed = needed_rectangles(rectangle_of(seen), frame);
@@ -188,12 +198,13 @@ class Vsm : public Instance {
     std::vector<Rectangle> needed_rectangles(const Rectangle& seen,
                                              const relevo_frame& frame) const {
         std::vector<Rectangle> result{seen};
-        while (static_cast<int>(result.size()) < kMostLayers) {
+        const auto most = static_cast<std::size_t>(params_.get("vsm.maps"));
+        while (result.size() < most) {
             const double texel_m = ground_texel_m(fitted(result.back()));
             if (texel_m <= kEnoughPosts * frame.post_spacing_m) break;
             relevo_box near = box();
             if (!terrain_.visible_bounds(texel_m / (kEnough_px * frame.pixel_rad), near)) break;
-            const Rectangle rectangle = rectangle_of(near);
+            const Rectangle rectangle = rectangle_of(within(near, whole_));
             if (rectangle.area() > kWorthwhileShare * result.back().area()) break;
             result.push_back(rectangle);
         }

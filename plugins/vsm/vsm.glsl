@@ -8,6 +8,7 @@
 //@ include lib/surface.glsl
 
 uniform int vsm_size = 2048;      //@ range(256, 8192) unit(px) label("Size of a map") description("Texels along each side.")
+uniform int vsm_maps = 3;         //@ range(1, 3) label("Maps") description("At most: one of all that is seen, and nearer ones where that is too coarse.")
 uniform float vsm_blur = 0.08;    //@ range(0, 0.6) label("Blur") description("Share of a texel's neighbours in it, each way.")
 uniform float vsm_bleed = 0.2;    //@ range(0, 0.9) label("Light bleed cut") description("What Chebyshev's bound lets through where shadows overlap, and is taken as none.")
 uniform float vsm_bias = 0.5;     //@ range(0, 4) label("Bias") description("How far ground may lie below the map without a shadow, in standard deviations.")

@@ -4,6 +4,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include "base/log.h"
 #include "base/text.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
@@ -351,7 +352,127 @@ TEST(Vsm, ThePenumbraIsAsWideAsTheSunMakesIt) {
     }
 }
 
+// ---- nearer maps
+
+TEST(Vsm, NearerMapsResolveWhatIsNearAndMeetTheFirst) {
+    // 16 x 12 km of hills and hummocks at posts 10 m apart, seen low from beside its south end.
+    const dem::Heightfield dem = field(
+        1200, 1600,
+        [](int x, int y) {
+            return 24 * std::sin(0.27 * x + 0.04 * y) * std::cos(0.21 * y) +
+                   6 * std::sin(1.1 * x - 0.3 * y) * std::sin(0.9 * y + 0.2 * x);
+        },
+        -40);
+    const glm::dvec3 to_sun = direction(110, 5);
+    constexpr double kBand = 0.05;  // on either side of a nearer map's rim, of its sides
+    Array2d<Drawn::Place> places(dem.grid.columns(), dem.grid.rows());
+    std::array<double, 2> right{};  // of what is in a nearer map: with it, without
+    for (const int maps : {3, 1}) {
+        Drawn drawn(dem, test::scratch_dir("vsm_near"),
+                    {"vsm.size=1024", fmt::format("vsm.maps={}", maps)}, 0.5, {450, 300});
+        const Truth truth(dem, drawn.ground().frame);
+        const Truth::Mask mask = truth.cast(to_sun);
+        std::vector<glm::dvec3> points;
+        for (const glm::ivec2 at : {glm::ivec2(520, 1440), {680, 1440}, {520, 1560}, {680, 1560}})
+            points.push_back(truth.posts().at(at.x, at.y));
+        drawn.inputs().camera = scene::orbit_camera({180, 18, 1}, points, radians(40), 1.5);
+        const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
+        std::int64_t near = 0, near_right = 0;
+        std::array<double, 2> off{}, count{};  // outside and inside, beside the rim
+        for (int y = 0; y < lit.height(); ++y) {
+            for (int x = 0; x < lit.width(); ++x) {
+                if (maps == 3) places.at(x, y) = drawn.place(truth.posts().at(x, y));
+                if (!mask.facing.at(x, y) || drawn.spread().at(x, y) > 1.5f) continue;
+                const Drawn::Place& place = places.at(x, y);
+                const double light = lit.at(x, y), error = light - (1 - mask.shaded.at(x, y));
+                // Farther away hills hide posts behind them.
+                const double away_m = length(truth.posts().at(x, y) - drawn.inputs().camera.eye_m);
+                if (place.map > 0 && away_m < 9000) {
+                    ++near;
+                    near_right += std::abs(error) <= 0.5;
+                }
+                if (std::abs(place.inside) < kBand) {
+                    off[place.inside > 0] += error;
+                    ++count[place.inside > 0];
+                }
+            }
+        }
+        right[maps == 1] = static_cast<double>(near_right) / static_cast<double>(near);
+        fmt::print(
+            "[ shadow ] {} maps at most: {:.2f} % of {} posts right in the nearer one; light "
+            "too much by {:.4f} within it and {:.4f} without, on {} and {} posts beside its rim\n",
+            maps, 100 * right[maps == 1], near, off[1] / count[1], off[0] / count[0], count[1],
+            count[0]);
+        EXPECT_GT(near, 10000);
+        if (maps == 1) continue;
+        EXPECT_GT(std::min(count[0], count[1]), 500);
+        EXPECT_LT(std::abs(off[1] / count[1] - off[0] / count[0]), 0.04);
+    }
+    EXPECT_GE(right[0], 0.95);
+    EXPECT_GE(right[0], right[1] + 0.02);
+}
+
 // ---- while the camera moves
+
+TEST(Vsm, MapsAreDrawnOnceForASunAndForAViewThatHardlyMoves) {
+    const dem::Heightfield dem = jacksboro();
+    Drawn drawn(dem, test::scratch_dir("vsm_kept"), {}, 4, {320, 256});
+    const auto points = render::points_to_show(dem, drawn.ground(), 1);
+    int maps = 0;
+    log::set_sink([&](log::Level, std::string_view text) {
+        maps += text.find("vsm: map") != std::string_view::npos;
+    });
+    const log::Level before = log::level();
+    log::set_level(log::Level::Debug);
+    for (const glm::dvec2& sun : {glm::dvec2(3, 290), {7, 66}, {18, 74}, {40, 200}, {77, 172}}) {
+        maps = 0;
+        for (const double turn_deg : {0.0, 0.0, 0.2, 0.4}) {
+            drawn.inputs().camera =
+                scene::orbit_camera({225 + turn_deg, 25, 1}, points, radians(40), 1.25);
+            drawn.picture(direction(sun.y, sun.x));
+        }
+        EXPECT_EQ(maps, 1) << sun.x << " degrees from " << sun.y;
+    }
+    log::set_level(before);
+    log::set_sink({});
+}
+
+TEST(Vsm, ShadowsFarAwayAreThoseOfAFinerPicture) {
+    const dem::Heightfield dem = jacksboro();
+    constexpr int kFiner = 4;
+    const glm::ivec2 size(640, 512);
+    const auto picture = [&](int finer, double turn_deg) {
+        Drawn drawn(dem, test::scratch_dir("vsm_far"), {}, 2, finer * size);
+        drawn.inputs().camera =
+            scene::orbit_camera({200 + turn_deg, 8, 1},
+                                render::points_to_show(dem, drawn.ground(), 1), radians(40), 1.25);
+        return drawn.picture(direction(110, 8));
+    };
+    const Array2d<float> once = picture(1, 0), finer = picture(kFiner, 0),
+                         turned = picture(1, 0.02);
+    double squares = 0;
+    int count = 0, flipped = 0;
+    for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+            double mean = 0;
+            for (int j = 0; j < kFiner; ++j)
+                for (int i = 0; i < kFiner; ++i)
+                    mean += finer.at(kFiner * x + i, kFiner * y + j) / (kFiner * kFiner);
+            const double off = once.at(x, y) - mean;
+            if (std::isnan(off)) continue;
+            squares += off * off;
+            ++count;
+            flipped += std::abs(once.at(x, y) - turned.at(x, y)) > 0.5;
+        }
+    }
+    const double rms = std::sqrt(squares / count);
+    fmt::print(
+        "[ shadow ] light of a pixel off by {:.4f} root mean square from that of its {} parts; "
+        "turned by 0.02 degrees, {:.3f} % of pixels change by more than half\n",
+        rms, kFiner * kFiner, 100.0 * flipped / count);
+    EXPECT_LT(rms, 0.08);
+    EXPECT_LT(flipped, 0.001 * count);
+}
 
 TEST(Vsm, ASlowMoveOfTheCameraChangesNoShadow) {
     const dem::Heightfield dem = jacksboro();

@@ -226,8 +226,10 @@ class Drawn {
         for (int y = 0; y < posts.height(); ++y) {
             for (int x = 0; x < posts.width(); ++x) {
                 lit.at(x, y) = 1;
-                spread_.at(x, y) = 1;
+                spread_.at(x, y) = 2;
                 if (std::isnan(posts.at(x, y).z)) continue;
+                if (dot(posts.at(x, y) - inputs_.camera.eye_m, inputs_.camera.forward) <= 0)
+                    continue;
                 // Between the middles of the four pixels around.
                 const glm::dvec2 at = project(posts.at(x, y)) - 0.5;
                 const glm::ivec2 pixel(floor(at));
@@ -255,7 +257,7 @@ class Drawn {
         return lit;
     }
 
-    /// Of the last picture: by how much the 16 pixels around each post differ; 1 outside of it.
+    /// Of the last picture: by how much the 16 pixels around each post differ; 2 outside of it.
     const Array2d<float>& spread() const { return spread_; }
 
     /// Which map of the last picture a point is in: 0 of all that is seen, 1 and 2 nearer ones; and
