@@ -96,6 +96,16 @@ TEST(BadPlace, Latitude91) {
         "perhaps 10,91");
 }
 
+TEST(BadPlace, AnEyeWithoutGroundUnderIt) {
+    const Result run = relevo({"-q", "capture", bundled_dem(), "-o", out_png(), "--eye", "10.5,7"});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_EQ(run.err,
+              "relevo: error: --eye: 10.50000 N 7.00000 E: outside of the DEM or in a hole of it, "
+              "no ground to count the height from; give one above the DEM's zero, as in "
+              "10.5,7,500\n");
+    EXPECT_FALSE(std::filesystem::exists(out_png()));
+}
+
 TEST(BadEffect, EachHasItsMessage) {
     const std::vector<std::string> capture{"capture", bundled_dem(), "-o", out_png()};
     const auto with = [&](std::vector<std::string> more) {
