@@ -337,15 +337,6 @@ TEST(EventTimes, AreTakenWhereATimeIs) {
     }
 }
 
-/// Status and whole message of a run that fails.
-void expect_failure(const std::vector<std::string>& arguments, int status,
-                    const std::string& message) {
-    const Result run = relevo(arguments);
-    EXPECT_EQ(run.status, status) << run.err;
-    EXPECT_EQ(run.err, "relevo: error: " + message + "\n");
-    EXPECT_EQ(run.out, "");
-}
-
 TEST(BadSunInput, EachHasItsMessage) {
     const auto day = [](std::vector<std::string> options) {
         std::vector<std::string> arguments{"sun", "day", "--at", "46.95,7.44"};
