@@ -9,11 +9,14 @@ const float kEdge = 0.03;  // smallest step that is an edge, as a share of the d
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     ivec2 last = ivec2(frame.viewport.xy) - 1;
-    float here = texelFetch(depth, pixel, 0).r;
-    float right = texelFetch(depth, min(pixel + ivec2(1, 0), last), 0).r;
-    float above = texelFetch(depth, min(pixel + ivec2(0, 1), last), 0).r;
-    float left = texelFetch(depth, max(pixel - ivec2(1, 0), ivec2(0)), 0).r;
-    float below = texelFetch(depth, max(pixel - ivec2(0, 1), ivec2(0)), 0).r;
-    vec2 bend = abs(vec2(right + left, above + below) - 2.0 * here);
-    if (max(bend.x, bend.y) <= kEdge * max(here, max(max(right, left), max(above, below)))) discard;
+    float here = texelFetch(depth, min(pixel, last), 0).r;
+    // Of the four neighbours two lie in the same block of 2 x 2 pixels, which derivatives reach
+    // without a read.
+    ivec2 odd = pixel & 1;
+    ivec2 outwards = 2 * odd - 1;
+    vec2 outer = vec2(texelFetch(depth, ivec2(clamp(pixel.x + outwards.x, 0, last.x), pixel.y), 0).r,
+                      texelFetch(depth, ivec2(pixel.x, clamp(pixel.y + outwards.y, 0, last.y)), 0).r);
+    vec2 inner = here - vec2(outwards) * vec2(dFdxFine(here), dFdyFine(here));
+    vec2 bend = abs(outer + inner - 2.0 * here);
+    if (max(bend.x, bend.y) <= kEdge * max(here, max(max(outer.x, outer.y), max(inner.x, inner.y)))) discard;
 }

@@ -132,7 +132,7 @@ std::string sun_text(const sun::Position& position, const sun::Refraction& air) 
 void ViewArguments::add_to(CLI::App& verb) {
     verb.add_option(
             "--view", view,
-            "Orbit: where the camera stands as seen from the DEM's centre, az=225,el=25,zoom=1")
+            "Orbit: where the camera stands as seen from the DEM's centre, az=210,el=30,zoom=1")
         ->group("View");
     verb.add_option("--eye", eye,
                     "Camera at LAT,LON[,H]; H in metres, with suffix agl above the ground")

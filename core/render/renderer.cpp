@@ -226,7 +226,6 @@ struct Renderer::Impl {
         geometry_target.bind();
         glEnable(GL_DEPTH_TEST);
         glDepthMask(GL_TRUE);  // clearing obeys it too
-        geometry_target.clear_colour_uint(0, glm::uvec4(0));
         geometry_target.clear_depth(0);
         glDepthFunc(GL_GREATER);
         if (ground.has_holes()) glEnable(GL_CLIP_DISTANCE0);

@@ -22,8 +22,8 @@ inline constexpr double kDefaultFov_deg = 40;
 
 /// A camera that circles a target.
 struct Orbit {
-    double azimuth_deg = 225;  ///< where the camera stands as seen from the target, from true north
-    double elevation_deg = 25;  ///< how high it stands, -90 to 90
+    double azimuth_deg = 210;  ///< where the camera stands as seen from the target, from true north
+    double elevation_deg = 30;  ///< how high it stands, -90 to 90
     double zoom = 1;            ///< 1 shows the whole of the ground; 2 from half as far
 };
 

@@ -28,7 +28,7 @@ struct View {
     double focal_length_mm = 0;  ///< 35 mm equivalent; 0: none given
 };
 
-/// Reads `az=225,el=25,zoom=1`; what is left out stays as it is in Orbit.
+/// Reads `az=210,el=30,zoom=1`; what is left out stays as it is in Orbit.
 /// @throws Error (Usage) `--view: text: what, expected E but got G`
 Orbit parse_orbit(std::string_view text);
 

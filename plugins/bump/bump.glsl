@@ -8,7 +8,7 @@
 uniform sampler2DArray bump_normals;
 
 uniform float bump_strength = 1.0; //@ range(0, 4) label("Strength") description("Factor on the slopes of the bumps")
-uniform int bump_correction = 2; //@ enum(none, abrupt, smooth) label("Correction") description("Light only where ground and bump both face the sun: not at all, the paper's figure 3a, and 3b")
+uniform int bump_correction = 2; //@ enum(none, abrupt, smooth) static label("Correction") description("Light only where ground and bump both face the sun: not at all, the paper's figure 3a, and 3b")
 uniform float bump_softness = 0.12; //@ range(0.001, 1) label("Softness") description("Cosine of the sun's angle of incidence from which on ground is fully lit; of the smooth correction")
 
 /// Slopes of a material's map: how far its normal leans along tangent and bitangent, and its z.
@@ -23,8 +23,10 @@ vec3 bump_normal(in vec3 map, in vec3 tangent, in vec3 bitangent, in vec3 normal
 }
 
 void bump_on_normal(inout Surface s) {
-    vec3 map = s.material_weight.x * bump_read(s, s.material.x) +
-               s.material_weight.y * bump_read(s, s.material.y);
+    vec3 map = vec3(0.0);
+    int count = s.material_weight.y > 0.0 ? 2 : 1;  // as in layering.glsl, a read less in most places
+    for (int i = 0; i < count; ++i)
+        map += s.material_weight[i] * bump_read(s, s.material[i]);
     s.normal = bump_normal(map, s.tangent, s.bitangent, s.geometric_normal);
 }
 

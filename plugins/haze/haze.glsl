@@ -21,7 +21,8 @@ float haze_extinction() {
 /// Optical depth of the air between two points in green light: the mean of exp(-height / H) along
 /// the straight line between them, times its length.
 float haze_depth(in float eye_height_m, in float height_m, in float distance_m) {
-    float a = eye_height_m / haze_scale_height, b = height_m / haze_scale_height;
+    // No air lies below the sea: its floor is seen as it would be from the surface.
+    float a = max(eye_height_m, 0.0) / haze_scale_height, b = max(height_m, 0.0) / haze_scale_height;
     float rise = b - a;
     float middle = exp(-0.5 * (a + b));
     float mean = abs(rise) < 0.1 ? middle * (1.0 + rise * rise / 24.0) : (exp(-a) - exp(-b)) / rise;

@@ -8,8 +8,9 @@
 uniform sampler2DArray layering_albedo;
 uniform sampler3D layering_noise;
 uniform sampler2D layering_patches;
+uniform sampler2D layering_regions;  // the same less 0.5, in floats
 
-uniform int layering_limits = 2; //@ enum(normalised, metres, climate) label("Limits") description("Where materials change: the paper's share of the DEM's range, heights in metres, or tree and snow line of the latitude")
+uniform int layering_limits = 2; //@ enum(normalised, metres, climate) static label("Limits") description("Where materials change: the paper's share of the DEM's range, heights in metres, or tree and snow line of the latitude")
 
 uniform vec2 layering_sand_grass = vec2(0.20, 0.25); //@ range(0, 1) label("Sand to grass, normalised")
 uniform vec2 layering_grass_rock = vec2(0.40, 0.45); //@ range(0, 1) label("Grass to rock, normalised")
@@ -22,16 +23,16 @@ uniform vec2 layering_rock_snow_m = vec2(2700.0, 3000.0); //@ range(-12000, 9000
 uniform vec3 layering_noise_amount_m = vec3(2.0, 180.0, 180.0); //@ range(0, 2000) unit(m) label("Noise on limits") description("On the limits from sand to grass, to rock, to snow")
 uniform float layering_snow_shift_m = 0.0; //@ range(-9000, 9000) unit(m) label("Snow line shift") description("Added to the climate's snow line: negative in a cold season")
 
-uniform bool layering_slope = true; //@ label("Rock on steep ground")
+uniform bool layering_slope = true; //@ static label("Rock on steep ground")
 uniform vec2 layering_slope_deg = vec2(33.0, 47.0); //@ range(0, 90) unit(deg) label("Steep from, to")
 
-uniform bool layering_metres = true; //@ label("Scales in metres") description("Else a number of repeats over the DEM, as in the paper")
+uniform bool layering_metres = true; //@ static label("Scales in metres") description("Else a number of repeats over the DEM, as in the paper")
 uniform float layering_texture_m = 12.0; //@ range(0.1, 100000) unit(m) label("Texture size")
 uniform float layering_noise_m = 2400.0; //@ range(1, 1000000) unit(m) label("Noise size")
 uniform float layering_texture_repeats = 64.0; //@ range(1, 100000) label("Texture repeats")
 uniform float layering_noise_repeats = 8.0; //@ range(1, 1000) label("Noise repeats")
 uniform float layering_variation = 0.35; //@ range(0, 1) label("Variation") description("How much broad patches differ in brightness; 0 in the paper")
-uniform bool layering_nature = true; //@ label("Natural ground") description("Textures without repeats, dry and lush ground, shrubs, bands of rock; not in the paper")
+uniform bool layering_nature = true; //@ static label("Natural ground") description("Textures without repeats, dry and lush ground, shrubs, bands of rock; not in the paper")
 uniform vec3 layering_patch_m = vec3(230.0, 5300.0, 67000.0); //@ range(1, 10000000) unit(m) label("Patch sizes") description("Of the small and the broad patches of natural ground, and of its regions")
 
 // Coefficients of sand, grass, rock, snow.
@@ -91,12 +92,19 @@ vec4 layering_weights(in layering_Limits limits, in float elevation, in vec3 noi
     return weights / dot(weights, vec4(1.0));
 }
 
+/// The angle of a cosine of 0 to 1 [deg], to 0.003 degrees.
+/// source: the form is Abramowitz and Stegun's, Handbook of Mathematical Functions, 1964, 4.4.45
+float layering_angle_deg(in float cosine) {
+    float c = clamp(cosine, 0.0, 1.0);
+    return sqrt(1.0 - c) * (89.997823 + c * (-12.196846 + c * (4.405885 - 1.197018 * c)));
+}
+
 /// How much of a slope shows rock: 0 on flat ground, 1 on cliffs.
 /// @param cosine  of the angle between the ground's normal and the vertical
 float layering_steepness(in float cosine, in float noise) {
     if (!layering_slope) return 0.0;
-    float slope_deg = degrees(acos(clamp(cosine, 0.0, 1.0)));
-    return smoothstep(layering_slope_deg.x, layering_slope_deg.y, slope_deg + 12.0 * noise);
+    return smoothstep(layering_slope_deg.x, layering_slope_deg.y,
+                      layering_angle_deg(cosine) + 12.0 * noise);
 }
 
 vec4 layering_read(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
@@ -106,16 +114,15 @@ vec4 layering_read(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
 /// Turns by 37 degrees: patterns read both ways do not line up.
 const mat2 layering_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
 
-/// A material without visible repeats: the same texture, turned and several times as large, shades it.
-/// @returns albedo, and in `a` the gloss
+/// Takes the visible repeats from a material: the same texture, turned and several times as large.
+/// @returns factor on its albedo
 /// @param dx, dy  change of `at` from pixel to pixel
-vec4 layering_unrepeated(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
+vec3 layering_unrepeated(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
     const float larger = 0.23;
     vec3 mean = texelFetch(layering_albedo, ivec3(0, 0, material), layering_last_level).rgb;
     vec3 wide = layering_read(layering_turn * at * larger, layering_turn * dx * larger,
                               layering_turn * dy * larger, material).rgb;
-    vec4 near = layering_read(at, dx, dy, material);
-    return vec4(near.rgb * (0.35 + 0.65 * wide / mean), near.a);
+    return 0.35 + 0.65 * wide / mean;
 }
 
 /// What places do to a material's colour: factors on its albedo.
@@ -149,11 +156,11 @@ void layering_on_albedo(inout Surface s) {
         vec3 scale = 1.0 / layering_patch_m;
         vec2 gx = s.ground_dx_m.xy, gy = s.ground_dy_m.xy;
         small = textureGrad(layering_patches, s.ground_m.xy * scale.x, gx * scale.x, gy * scale.x);
-        vec4 region = textureGrad(layering_patches, s.ground_m.yx * scale.z, gx.yx * scale.z, gy.yx * scale.z);
+        vec4 region = textureGrad(layering_regions, s.ground_m.yx * scale.z, gx.yx * scale.z, gy.yx * scale.z);
         // Regions push the broad patches about, so that those do not show as tiles from afar.
         broad = textureGrad(layering_patches, layering_turn * s.ground_m.xy * scale.y + 2.4 * region.rg,
                             layering_turn * gx * scale.y, layering_turn * gy * scale.y);
-        broad.rg += 0.6 * (region.ra - 0.5);
+        broad.rg += 0.6 * region.ra;
         // As strong as the volume's, which need not be read then.
         noise = 1.2 * (broad.r - 0.5) + 0.7 * (broad.a - 0.5) + 0.4 * (small.r - 0.5);
     } else {
@@ -161,7 +168,8 @@ void layering_on_albedo(inout Surface s) {
                                   s.ground_dy_m * noise_scale).r - 1.0;
     }
 
-    float latitude_deg = degrees(asin(clamp(dot(s.up, frame.polar_axis.xyz), -1.0, 1.0)));
+    // North or south, only how far from the equator counts.
+    float latitude_deg = 90.0 - layering_angle_deg(abs(dot(s.up, frame.polar_axis.xyz)));
     layering_Limits limits = layering_limits_at(latitude_deg);
     bool normalised = layering_limits == 0;
     vec4 weights = layering_weights(limits, normalised ? s.height_unit : s.height_m,
@@ -181,20 +189,19 @@ void layering_on_albedo(inout Surface s) {
 
     vec2 at = s.ground_m.xy * texture_scale.xy;
     vec2 dx = s.ground_dx_m.xy * texture_scale.xy, dy = s.ground_dy_m.xy * texture_scale.xy;
-    vec3 albedo;
-    float gloss;
-    if (layering_nature) {
-        float flatness = dot(s.geometric_normal, s.up);
-        vec4 heavier = layering_unrepeated(at, dx, dy, first);
-        vec4 lighter = layering_read(at, dx, dy, second);
-        albedo = most * heavier.rgb * layering_tint(first, small, broad, flatness) +
-                 next * lighter.rgb * layering_tint(second, small, broad, flatness);
-        gloss = most * heavier.a + next * lighter.a;
-    } else {
-        vec4 read =
-            most * layering_read(at, dx, dy, first) + next * layering_read(at, dx, dy, second);
-        albedo = read.rgb;
-        gloss = read.a;
+    // The heavier material shows no repeats, which is enough. A loop, because a software renderer works
+    // both sides of an "if": most ground has one material, and the second is read only near a limit.
+    vec3 factor = layering_nature ? layering_unrepeated(at, dx, dy, first) : vec3(1.0);
+    float flatness = dot(s.geometric_normal, s.up);
+    vec3 albedo = vec3(0.0);
+    float gloss = 0.0;
+    int count = next > 0.0 ? 2 : 1;
+    for (int i = 0; i < count; ++i) {
+        vec4 read = s.material_weight[i] * layering_read(at, dx, dy, s.material[i]);
+        if (layering_nature) factor *= layering_tint(s.material[i], small, broad, flatness);
+        albedo += read.rgb * factor;
+        gloss += read.a;
+        factor = vec3(1.0);
     }
     albedo *= 1.0 + layering_variation * noise;
 

@@ -26,7 +26,11 @@ uniform float sky_disc_power = 65000.0; //@ range(100, 1000000) label("Power of 
 uniform float sky_disc = 30.0; //@ range(0, 10000) label("Disc") description("Brightness of the sun's disc, as a multiple of its light at the eye")
 uniform float sky_disc_edge = 8.0; //@ range(1, 100) label("Edge of the disc") description("How sharply the disc ends; 1, a soft spot, in the paper")
 
-uniform bool sky_slopes = true; //@ static label("Light by direction") description("A slope gets the light of the part of the sky that it faces; else all ground gets the same")
+uniform bool sky_earth = true; //@ static label("Earth") description("Below the horizon the Earth: plain ground, lit as the terrain is, seen through its air. Else the colour of the horizon, as in the paper")
+uniform vec3 sky_earth_albedo = vec3(0.19, 0.18, 0.15); //@ range(0, 1) label("Albedo of the Earth") description("Of the ground beyond the DEM, and around a slope")
+uniform float sky_earth_depth = 0.12; //@ range(0, 10) label("Air above the Earth") description("Optical depth of the air over the ground beyond the DEM, straight down")
+
+uniform bool sky_slopes = true; //@ static label("Light by direction") description("A slope gets the light of the part of the sky that it faces, and of the ground around it; else all ground gets the same")
 
 const float sky_fold = 0.14;       // tools/sky/textures.h: how heights of the sun are spread ...
 const float sky_lowest = 0.68822;  // ... over the slices: folded(sin 18 deg)
@@ -53,8 +57,46 @@ float sky_exponent(in float eye_height_m) {
 }
 
 /// Equation 3: 0 on the horizon and below, 1 in the zenith.
-float sky_t(in vec3 direction, in vec3 up, in float exponent) {
-    return pow(clamp(dot(direction, up), 0.0, 1.0), exponent);
+/// @param sine  of the elevation
+float sky_t(in float sine, in float exponent) {
+    return pow(clamp(sine, 0.0, 1.0), exponent);
+}
+
+/// The sine of an elevation that counts from the horizon, which lies the lower the higher the eye.
+float sky_above_horizon(in float sine) {
+    return (sine - frame.eye_up.w) / (1.0 - frame.eye_up.w);
+}
+
+/// How high the air stands above the horizon, as a sine: for a high eye, air 17 km thick as far away as
+/// the horizon is. In it the sky's colours come gradually, which equation 3 there has in no angle at all.
+float sky_band() {
+    float dip = max(-frame.eye_up.w, 1e-4);
+    return min(dip, 0.0027 / dip);
+}
+
+/// Light that the air between eye and ground scatters towards the eye, of air that lets none through.
+/// @param cosine  of the angle between the view and the sun
+vec3 sky_air_light(in float cosine) {
+    // The mean of a phase function over all directions is 1; this is 2 towards the sun, 0.5 away from it.
+    float phase = 0.5 + 0.375 * (1.0 + cosine) * (1.0 + cosine);
+    // A quarter: white ground spreads light over a half space, weighted with the cosine, air over all of it.
+    return 0.2 * phase * frame.sun_light[0].rgb + 0.5 * frame.sky_irradiance.rgb;
+}
+
+/// What level ground sends upwards.
+vec3 sky_ground(in float sun_sine) {
+    return sky_earth_albedo * (frame.sky_irradiance.rgb + max(sun_sine, 0.0) * frame.sun_light[0].rgb);
+}
+
+/// Plain ground beyond the DEM, through the air above it. @param below  sine, counted from the horizon down
+vec3 sky_ground_seen(in vec3 air_light, in float sun_sine, in float below) {
+    return mix(air_light, sky_ground(sun_sine), exp(-sky_earth_depth / max(below, 1e-3)));
+}
+
+/// Light of the ground around on a slope, of which a slope sees the more the steeper it is.
+/// @param cosine  of the slope
+vec3 sky_bounce(in float cosine, in float sun_sine) {
+    return (0.5 - 0.5 * cosine) * sky_ground(sun_sine);
 }
 
 /// Equation 1 without its narrowest term. @param cosine  L . V
@@ -107,7 +149,10 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     vec3 up = frame.eye_up.xyz;
     vec3 to_sun = frame.eye_sun.xyz;
     float sun_sine = dot(to_sun, up);
-    vec2 at = vec2(sky_s(to_sun, direction, up), sky_t(direction, up, sky_exponent(frame.eye_m.w)));
+    float sine = dot(direction, up);
+    float above = sky_earth ? sky_above_horizon(sine) : sine;
+    vec2 at = vec2(sky_s(to_sun, direction, up), sky_t(above, sky_exponent(frame.eye_m.w)));
+    if (sky_earth) at.y *= smoothstep(0.0, sky_band(), above);
     vec3 colour;
     if (sky_colours == 0) {
         colour = textureLod(sky_radiance, sky_texel(vec3(at, sky_slice(sun_sine)), sky_size), 0.0).rgb;
@@ -120,13 +165,20 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     }
     vec3 radiance = sky_brightness * sky_luminance() * colour;
     float haze = sky_air_mass ? sky_air_mass_of(sun_sine) : 1.0;
-    float sun = sky_aureole * haze * sky_glow(dot(to_sun, direction));
-    // What has set is behind the Earth, whose edge lies lower the higher the eye.
-    if (with_disc && dot(direction, up) > frame.eye_up.w) {
+    float cosine = dot(to_sun, direction);
+    float sun = sky_aureole * haze * sky_glow(cosine);
+    // What has set is behind the Earth.
+    if (with_disc && sine > frame.eye_up.w) {
         vec3 apart = to_sun - direction;
         sun += sky_disc * sky_sun(dot(apart, apart));
     }
-    return radiance + sun * frame.eye_sun_light.rgb;
+    radiance += sun * frame.eye_sun_light.rgb;
+    if (sky_earth) {
+        // The light of the horizon comes from far away; what is seen lower has nearer air before it.
+        vec3 air_light = mix(radiance, sky_air_light(cosine), smoothstep(0.0, 0.02, -above));
+        radiance = with_disc && above < 0.0 ? sky_ground_seen(air_light, sun_sine, -above) : air_light;
+    }
+    return radiance;
 }
 
 void sky_on_ambient(in Surface s, inout vec3 irradiance) {
@@ -135,7 +187,8 @@ void sky_on_ambient(in Surface s, inout vec3 irradiance) {
         vec3 at = vec3(sky_s(to_sun, s.normal, s.up), clamp(dot(s.normal, s.up), 0.0, 1.0),
                        sky_slice(dot(to_sun, s.up)));
         irradiance = sky_luminance() *
-                     textureLod(sky_light, sky_texel(at, sky_light_size), 0.0).rgb;
+                         textureLod(sky_light, sky_texel(at, sky_light_size), 0.0).rgb +
+                     sky_bounce(dot(s.normal, s.up), dot(to_sun, s.up));
     } else {
         irradiance = frame.sky_irradiance.rgb;
     }

@@ -7,7 +7,7 @@
 //!           Lekner and M. C. Dorf, Why some things are darker when wet, Applied Optics 27 (1988), 1278
 
 uniform float wet_wetness = 1.0; //@ range(0, 1) label("Wetness") description("0 dry, 1 soaked")
-uniform int wet_where = 0; //@ enum(everywhere, shore) label("Where") description("All ground, or only what the sea washes")
+uniform int wet_where = 0; //@ enum(everywhere, shore) static label("Where") description("All ground, or only what the sea washes")
 uniform float wet_shore_m = 2.0; //@ range(-500, 9000) unit(m) label("Shore up to") description("Height below which the ground is wet; of the shore")
 uniform float wet_shore_fade_m = 2.0; //@ range(0.01, 1000) unit(m) label("Fade") description("Height over which it dries above")
 

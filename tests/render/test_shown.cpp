@@ -1,13 +1,34 @@
+#include <algorithm>
+#include <cmath>
+
 #include "base/units.h"
 #include "dem/load.h"
 #include "gl/context.h"
 #include "render/ground.h"
 #include "render/renderer.h"
 #include "sun/zone.h"
+#include "support/gpu_snippet.h"
 #include "support/support.h"
 
 namespace relevo::render {
 namespace {
+
+TEST(Picture, ColoursFollowTheSrgbCurve) {
+    test::GpuSnippet gpu("", "lib/srgb.glsl");
+    const int count = 4096;
+    const auto results =
+        gpu.run("result = vec4(srgb_encoded(vec3(float(x) / 4095.0)), 0.0);", count, 1);
+    std::vector<double> errors;
+    for (int i = 0; i < count; ++i) {
+        const double linear = i / 4095.0;
+        const double encoded =
+            linear < 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+        errors.push_back(255 * std::abs(results[static_cast<std::size_t>(i)].r - encoded));
+    }
+    test::print_accuracy("sRGB, GPU against double", errors, "of 255", 0.1);
+    EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.1);
+    EXPECT_NEAR(results.back().r, 1, 1e-6);  // white stays white
+}
 
 TEST(Picture, IsTheSameWithAndWithoutKeepingItsRadiance) {
     // With it, the light is stored as half floats and tone-mapped by a pass of its own.

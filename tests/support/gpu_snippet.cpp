@@ -41,7 +41,8 @@ shader::Snippet read_snippet(const std::string& plugin) {
 
 }  // namespace
 
-GpuSnippet::GpuSnippet(const std::string& plugin) : plugin_(plugin) {
+GpuSnippet::GpuSnippet(const std::string& plugin, const std::string& include)
+    : plugin_(plugin), include_(include) {
     if (!plugin.empty()) values_.declare(read_snippet(plugin).source.params);
 }
 
@@ -49,9 +50,10 @@ std::vector<glm::vec4> GpuSnippet::run(const std::string& body, int columns, int
     std::optional<shader::Snippet> snippet;
     if (!plugin_.empty()) snippet = read_snippet(plugin_);
     const TextsWithTest texts(source_dir() / "shaders",
-                              "layout(location = 0) out vec4 result;\n"
-                              "void main() {\n"
-                              "    int x = int(gl_FragCoord.x), y = int(gl_FragCoord.y);\n" +
+                              (include_.empty() ? "" : fmt::format("//@ include {}\n", include_)) +
+                                  "layout(location = 0) out vec4 result;\n"
+                                  "void main() {\n"
+                                  "    int x = int(gl_FragCoord.x), y = int(gl_FragCoord.y);\n" +
                                   body + "\n}\n");
     shader::StitchInput input;
     if (snippet) input.snippets = {&*snippet};

@@ -19,7 +19,8 @@ class GpuSnippet {
     /// @param plugin  the id of a plugin of this project, whose GLSL is read from its folder;
     /// empty:
     ///                core's own functions alone
-    explicit GpuSnippet(const std::string& plugin);
+    /// @param include  a file of core's that the body needs besides, "lib/srgb.glsl"
+    explicit GpuSnippet(const std::string& plugin, const std::string& include = "");
 
     shader::ParamStore& values() { return values_; }
     render::FrameBlock& frame() { return frame_; }
@@ -29,7 +30,7 @@ class GpuSnippet {
     std::vector<glm::vec4> run(const std::string& body, int columns, int rows);
 
   private:
-    std::string plugin_;
+    std::string plugin_, include_;
     gl::Context context_{{.device = "software", .debug = true}};
     shader::ParamStore values_;
     render::FrameBlock frame_{};

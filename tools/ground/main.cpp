@@ -47,6 +47,7 @@ void run(const Options& options) {
     const image::TextureData volume = perlin_texture(options.volume_size);
     write_ktx(options.output / "noise" / "perlin.ktx2", volume);
     write_ktx(options.output / "noise" / "patches.ktx2", patches_texture(options.size));
+    write_ktx(options.output / "noise" / "regions.ktx2", regions_texture(options.size / 2));
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     log::debug(fmt::format("all done at {:.2f} s", taken.count()));
 

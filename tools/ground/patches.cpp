@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include <glm/gtc/packing.hpp>
+
 #include "field.h"
 #include "noise.h"
 
@@ -37,10 +39,10 @@ float smoothstep(float low, float high, float x) {
     return t * t * (3 - 2 * t);
 }
 
-}  // namespace
+using Channels = std::array<Field, 4>;
 
-image::TextureData patches_texture(int n) {
-    std::array<Field, 4> channels{
+Channels make_channels(int n) {
+    Channels channels{
         make_field(n, [](float s, float t) { return warped(kSeed, 6, 7, 0.66f, 0.02f, s, t); }),
         make_field(n, [](float s, float t) { return warped(kSeed + 1, 6, 6, 0.58f, 0.03f, s, t); }),
         make_field(n,
@@ -53,12 +55,33 @@ image::TextureData patches_texture(int n) {
     };
     for (const std::size_t c : {0, 1, 3})
         normalise(channels[c]);
+    return channels;
+}
 
+/// The next mip level: means of four.
+void halve(Channels& channels) {
+    for (Field& channel : channels) {
+        const int side = channel.width() / 2;
+        Field coarse(side, side);
+        for (int r = 0; r < side; ++r)
+            for (int c = 0; c < side; ++c)
+                coarse.at(c, r) =
+                    0.25f * (channel.at(2 * c, 2 * r) + channel.at(2 * c + 1, 2 * r) +
+                             channel.at(2 * c, 2 * r + 1) + channel.at(2 * c + 1, 2 * r + 1));
+        channel = std::move(coarse);
+    }
+}
+
+}  // namespace
+
+image::TextureData patches_texture(int n) {
+    Channels channels = make_channels(n);
     image::TextureData texture(image::TextureFormat::Rgba8, n, n, 1, 1,
                                image::full_chain_levels(n, n));
     texture.metadata["relevo.channels"] = "r tone, g hue, b shrubs, a fine tone";
     texture.metadata["relevo.description"] = "How ground varies from place to place";
-    for (int level = 0, side = n;; ++level) {
+    for (int level = 0; level < texture.levels(); ++level) {
+        if (level > 0) halve(channels);
         const auto bytes = texture.writable_level(level);
         for (std::size_t i = 0; i < bytes.size(); ++i) {
             const float value = *(channels[i % 4].data() + i / 4);
@@ -67,18 +90,26 @@ image::TextureData patches_texture(int n) {
             bytes[i] = static_cast<std::byte>(
                 std::clamp(static_cast<int>(std::floor(value * 255.0f + chance)), 0, 255));
         }
-        if (level + 1 == texture.levels()) return texture;
-        side /= 2;
-        for (Field& channel : channels) {
-            Field coarse(side, side);
-            for (int r = 0; r < side; ++r)
-                for (int c = 0; c < side; ++c)
-                    coarse.at(c, r) =
-                        0.25f * (channel.at(2 * c, 2 * r) + channel.at(2 * c + 1, 2 * r) +
-                                 channel.at(2 * c, 2 * r + 1) + channel.at(2 * c + 1, 2 * r + 1));
-            channel = std::move(coarse);
+    }
+    return texture;
+}
+
+image::TextureData regions_texture(int n) {
+    Channels channels = make_channels(n);
+    image::TextureData texture(image::TextureFormat::Rgba16F, n, n, 1, 1,
+                               image::full_chain_levels(n, n));
+    texture.metadata["relevo.channels"] = "as of the patches, less 0.5";
+    texture.metadata["relevo.description"] = "How ground varies from region to region";
+    for (int level = 0; level < texture.levels(); ++level) {
+        if (level > 0) halve(channels);
+        const auto bytes = texture.writable_level(level);
+        for (std::size_t i = 0; i < bytes.size() / 2; ++i) {
+            const std::uint16_t half = glm::packHalf1x16(*(channels[i % 4].data() + i / 4) - 0.5f);
+            bytes[2 * i] = static_cast<std::byte>(half & 0xff);
+            bytes[2 * i + 1] = static_cast<std::byte>(half >> 8);
         }
     }
+    return texture;
 }
 
 }  // namespace relevo::ground

@@ -14,4 +14,8 @@ namespace relevo::ground {
 /// @param n  a power of two, at least 64
 image::TextureData patches_texture(int n);
 
+/// The same in half floats, less 0.5, for what is moved by it and not only coloured: 8 bits are
+/// filtered to steps, and a step of 1/255 is 50 m of ground where regions push patches about.
+image::TextureData regions_texture(int n);
+
 }  // namespace relevo::ground

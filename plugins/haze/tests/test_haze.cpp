@@ -11,9 +11,11 @@ namespace relevo {
 namespace {
 
 /// Optical depth of green light: the integral of the extinction along the straight line, by
-/// Simpson's rule over 2000 steps.
+/// Simpson's rule over 2000 steps. What lies below the sea counts as on it.
 double depth(double per_km, double scale_m, double eye_m, double height_m, double distance_m) {
     constexpr int kSteps = 2000;
+    eye_m = std::max(eye_m, 0.0);
+    height_m = std::max(height_m, 0.0);
     double sum = 0;
     for (int i = 0; i <= kSteps; ++i) {
         const double z = eye_m + (height_m - eye_m) * i / kSteps;

@@ -124,6 +124,19 @@ TEST(Layering, TreeLineFollowsKoerner) {
     EXPECT_NEAR(tree_line(70), -40, 1);    // the coast of the Arctic
 }
 
+TEST(Layering, AnglesAreRightToAFewThousandthsOfADegree) {
+    test::GpuSnippet gpu("layering");
+    const auto results =
+        gpu.run("result = vec4(layering_angle_deg(cos(radians(float(x) / 10.0))));", 901, 1);
+    std::vector<double> errors;
+    for (int tenth = 0; tenth <= 900; ++tenth)
+        errors.push_back(std::abs(results[static_cast<std::size_t>(tenth)].x - tenth / 10.0));
+    test::print_accuracy("Slope, GPU against double", errors, "deg", 0.03);
+    // A float's cosine of a tenth of a degree says no more.
+    EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.03);
+    EXPECT_LT(*std::max_element(errors.begin() + 50, errors.end()), 0.003);
+}
+
 TEST(Layering, SteepGroundShowsRock) {
     test::GpuSnippet gpu("layering");
     const auto results =

@@ -128,7 +128,7 @@ TEST(Sky, Equation3IsAPowerOfTheHeight) {
     std::vector<double> errors;
     for (const double h : {0.05, 0.3, 0.5, 1.0, 2.0}) {
         const auto results = gpu.run(
-            fmt::format("{}result = vec4(sky_t(view, up, {:.2f}));", kDirection, h), 1, 181);
+            fmt::format("{}result = vec4(sky_t(dot(view, up), {:.2f}));", kDirection, h), 1, 181);
         for (int y = 0; y <= 180; ++y) {
             if (y == 90) continue;  // 0^h: a float's sin 0 is not the double's
             errors.push_back(std::abs(results[static_cast<std::size_t>(y)].x -
@@ -136,6 +136,100 @@ TEST(Sky, Equation3IsAPowerOfTheHeight) {
         }
     }
     EXPECT_LT(worst(errors, "sky equation 3, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(Sky, TheHorizonOfAHighEyeLiesLowerAndIsWhereTheColoursBegin) {
+    // Eyes at the sea, on a mountain, in an aeroplane, at 200 km.
+    for (const double height_m : {0.0, 2000.0, 11000.0, 200e3}) {
+        const double dip = std::sqrt(1 - std::pow(6371e3 / (6371e3 + height_m), 2));
+        test::GpuSnippet gpu("sky");
+        gpu.frame().eye_up = {0, 0, 1, static_cast<float>(-dip)};
+        const auto results = gpu.run(
+            "float sine = float(x) / 500.0 - 1.0;\n"
+            "result = vec4(sky_above_horizon(sine), sky_band(), 0.0, 0.0);",
+            1001, 1);
+        std::vector<double> errors;
+        for (int x = 0; x <= 1000; ++x)
+            errors.push_back(std::abs(results[static_cast<std::size_t>(x)].x -
+                                      (x / 500.0 - 1 + dip) / (1 + dip)));
+        EXPECT_LT(worst(errors, "sky above the horizon, GPU against double", 1e-3), 1e-3);
+        // Air 17 km thick, as far away as the horizon; never more than the dip.
+        const double distance_m = std::sqrt(2 * 6371e3 * height_m);
+        const double expected = height_m > 0 ? std::min(dip, 17e3 / distance_m) : 1e-4;
+        EXPECT_NEAR(results[0].y, expected, 0.05 * expected) << height_m;
+    }
+}
+
+TEST(Sky, AirScattersWhatSunAndSkyShedOnIt) {
+    test::GpuSnippet gpu("sky");
+    gpu.frame().sun_light[0] = {0.9f, 0.8f, 0.6f, 0};
+    gpu.frame().sky_irradiance = {0.05f, 0.07f, 0.12f, 0};
+    const auto results =
+        gpu.run("result = vec4(sky_air_light(cos(radians(float(x)))), 0.0);", 181, 1);
+    const glm::dvec3 sun(0.9, 0.8, 0.6), sky(0.05, 0.07, 0.12);
+    std::vector<double> errors;
+    double all = 0, solid_angle = 0;
+    for (int deg = 0; deg <= 180; ++deg) {
+        const double cosine = std::cos(radians(deg));
+        const double phase = 0.5 + 0.375 * std::pow(1 + cosine, 2);
+        const glm::vec4 found = results[static_cast<std::size_t>(deg)];
+        for (int c = 0; c < 3; ++c)
+            errors.push_back(std::abs(found[c] - (0.2 * phase * sun[c] + 0.5 * sky[c])));
+        all += std::sin(radians(deg)) * (found.x - 0.5 * sky.x) / (0.2 * sun.x);
+        solid_angle += std::sin(radians(deg));
+    }
+    EXPECT_LT(worst(errors, "light of the air, GPU against double", 1e-3), 1e-3);
+    EXPECT_NEAR(all / solid_angle, 1, 1e-3);  // a phase function's mean
+}
+
+TEST(Sky, GroundBeyondTheDemIsLitAsTheTerrainAndFadesIntoTheAir) {
+    test::GpuSnippet gpu("sky");
+    gpu.frame().sun_light[0] = {0.9f, 0.8f, 0.6f, 0};
+    gpu.frame().sky_irradiance = {0.05f, 0.07f, 0.12f, 0};
+    const auto results = gpu.run(
+        "result = vec4(sky_ground_seen(vec3(0.3, 0.2, 0.1), float(y) / 10.0 - 0.5,\n"
+        "                              float(x) / 100.0), 0.0);",
+        101, 11);
+    const glm::dvec3 sun(0.9, 0.8, 0.6), sky(0.05, 0.07, 0.12), albedo(0.19, 0.18, 0.15);
+    const glm::dvec3 air(0.3, 0.2, 0.1);
+    std::vector<double> errors;
+    for (int y = 0; y <= 10; ++y) {
+        for (int x = 0; x <= 100; ++x) {
+            const double seen = std::exp(-0.12 / std::max(x / 100.0, 1e-3));
+            const glm::vec4 found = results[static_cast<std::size_t>(y * 101 + x)];
+            for (int c = 0; c < 3; ++c) {
+                const double ground = albedo[c] * (sky[c] + std::max(y / 10.0 - 0.5, 0.0) * sun[c]);
+                errors.push_back(std::abs(found[c] - (air[c] + seen * (ground - air[c]))));
+            }
+        }
+    }
+    EXPECT_LT(worst(errors, "ground beyond the DEM, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(Sky, SlopesGetTheLightOfTheGroundThatTheySee) {
+    test::GpuSnippet gpu("sky");
+    gpu.frame().sun_light[0] = {0.9f, 0.8f, 0.6f, 0};
+    gpu.frame().sky_irradiance = {0.05f, 0.07f, 0.12f, 0};
+    const auto results =
+        gpu.run("result = vec4(sky_bounce(cos(radians(float(x))), 0.5), 0.0);", 181, 1);
+    // The share of the sphere's cosine-weighted half that lies below the horizon, by integration.
+    std::vector<double> errors;
+    for (int deg = 0; deg <= 180; deg += 15) {
+        const glm::dvec3 normal(std::sin(radians(deg)), 0, std::cos(radians(deg)));
+        double below = 0;
+        for (int e = 0; e < 180; ++e) {
+            for (int a = 0; a < 360; ++a) {
+                const glm::dvec3 to = direction(radians(a + 0.5), radians(e - 89.5));
+                if (to.z < 0)
+                    below += std::max(dot(to, normal), 0.0) * std::cos(radians(e - 89.5)) *
+                             radians(1) * radians(1) / kPi;
+            }
+        }
+        const double expected = below * 0.19 * (0.05 + 0.5 * 0.9);
+        errors.push_back(std::abs(results[static_cast<std::size_t>(deg)].x - expected));
+    }
+    EXPECT_LT(worst(errors, "light of the ground on slopes, GPU against double", 1e-3), 1e-3);
+    EXPECT_EQ(results[0].x, 0);  // level ground sees none
 }
 
 TEST(Sky, TheExponentFallsWithTheEyesHeight) {
