@@ -76,7 +76,7 @@ void main() {
     vec3 beside = placed(at + vec2(1.0 / limit.x, 0.0), mix(next.r, next.b, morph));
     next = texelFetch(height_pages, texel + ivec3(0, 1, 0), 0);
     vec3 below = placed(at + vec2(0.0, 1.0 / limit.y), mix(next.r, next.b, morph));
-    vec3 here = placed(at, height.r);
+    vec3 here = placed(at, mix(levels.r, levels.b, morph));  // the rim has its edge's normal
     vec3 crossed = cross(beside - here, below - here);
     vertex_normal = normalize(dot(crossed, v.up) < 0.0 ? -crossed : crossed);
 #endif

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Takes the pictures of docs/paper.md: the paper's figures 1 and 3 to 7 on the real terrain that comes along,
 those of plugins' READMEs, and the one on the front page.
+=======
+and those of the READMEs of haze and sky.
 
 Usage: paper_figures.py [BUILD] [--only 4,haze] [--size 960x600]      BUILD: build/release (default)
 
@@ -34,6 +36,7 @@ FIGURES = {
     "7": {"paper_7a_day": f"{RIDGES} --time 2026-03-20T13:00-04:00", "paper_7b_sunset": f"{RIDGES} --time 2026-03-20T07:55-04:00",
           "paper_7c_night": f"{RIDGES} --time 2026-03-20T05:30-04:00"},
     "layering": {"layering_range": f"{HILLS} --set layering.limits=normalised", "layering_climate": HILLS},
+    "stars": {"stars": "--eye 36.40,-84.30,1100 --heading 190 --pitch 26 --fov 62 --time 2026-01-15T22:30-05:00"},
     "haze": {"haze_ab": f"{RIDGES} --time 2026-03-20T09:00-04:00 --ab haze"},
 }
 

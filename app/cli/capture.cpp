@@ -19,6 +19,7 @@
 #include "render/ground.h"
 #include "render/renderer.h"
 #include "scene/moment.h"
+#include "sun/celestial.h"
 #include "sun/position.h"
 
 namespace relevo::cli {
@@ -156,6 +157,7 @@ void capture(const Arguments& arguments) {
 
     render::FrameInputs inputs;
     inputs.sun = render::make_sun_light(position, air, ground, dem.grid);
+    inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
     inputs.exposure_ev = arguments.exposure_ev;
     inputs.exaggeration = arguments.view.exaggeration;
     const auto ground_height_m = [&](const geo::Geodetic& at) {

@@ -19,6 +19,9 @@ constexpr std::array<std::string_view, 12> kReserved = {"all",   "camera", "core
                                                         "frame", "gl",     "hook",    "none",
                                                         "scene", "stored", "terrain", "varyings"};
 
+// A capability that core provides itself: render/programs.h.
+constexpr std::string_view kNightWord = "night";
+
 const std::vector<std::string>& formats() {
     static const std::vector<std::string> names = {
         "r8", "rg8", "rgba8", "r16f", "rg16f", "rgba16f", "r32f", "rg32f", "rgba32f", "depth32f"};
@@ -94,6 +97,10 @@ class ManifestReader {
                                     kFormat, describe(format)));
         identity(object);
         manifest_.provides = words(object, "provides");
+        if (std::find(manifest_.provides.begin(), manifest_.provides.end(), kNightWord) !=
+            manifest_.provides.end())
+            object.fail(object.line_of("provides"), "provides",
+                        fmt::format("\"{}\" is core's own word; expected another", kNightWord));
         manifest_.needs = words(object, "requires");
         manifest_.wants = words(object, "wants");
         manifest_.after = words(object, "after");

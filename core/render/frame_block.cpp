@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include "base/units.h"
 #include "sun/daylight.h"
@@ -12,9 +13,10 @@
 namespace relevo::render {
 namespace {
 
-constexpr double kEquatorialRadius_m = 6378137.0;  // WGS 84
-constexpr double kFlattening = 1 / 298.257223563;  // WGS 84
-constexpr double kNear_m = 0.5;                    // reversed depth: nothing is lost by a small one
+constexpr double kEquatorialRadius_m = 6378137.0;        // WGS 84
+constexpr double kFlattening = 1 / 298.257223563;        // WGS 84
+constexpr double kBennett45_rad = radians(59.7 / 3600);  // frame.glsl: eye_sun_light.a
+constexpr double kNear_m = 0.5;  // reversed depth: nothing is lost by a small one
 
 /// From view depth 1 to clip space with the far end at infinity: depth = near / distance.
 glm::dmat4 projection(double tan_x, double tan_y) {
@@ -145,8 +147,13 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     const double raise = apparent_cosine > 1e-6 ? std::sin(eye_lift) / apparent_cosine : 0;
     block.eye_sun =
         glm::vec4(normalize(inputs.sun.direction + raise * eye_up), eye_elevation + eye_lift);
-    block.eye_sun_light =
-        glm::vec4(sun::direct_transmittance(eye_elevation + eye_lift, above_sea_m), 0);
+    const double bent =
+        inputs.sun.refraction_rad ? thinned * inputs.sun.refraction_rad(kPi / 4) : 0;
+    block.eye_sun_light = glm::vec4(
+        sun::direct_transmittance(eye_elevation + eye_lift, above_sea_m), bent / kBennett45_rad);
+    const glm::dmat3 rows = glm::transpose(inputs.stars.axes);
+    for (int i = 0; i < 3; ++i)
+        block.celestial[static_cast<std::size_t>(i)] = glm::vec4(rows[i], inputs.stars.velocity[i]);
     return block;
 }
 

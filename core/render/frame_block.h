@@ -10,6 +10,7 @@
 
 #include "geo/local_frame.h"
 #include "scene/camera.h"
+#include "sun/celestial.h"
 
 namespace relevo::render {
 
@@ -33,8 +34,9 @@ struct FrameBlock {
     float normal_texels_per_m;
     float normal_levels;
     glm::vec4 eye_up, eye_sun, eye_sun_light;
+    std::array<glm::vec4, 3> celestial;
 };
-static_assert(sizeof(FrameBlock) == 29 * 16);
+static_assert(sizeof(FrameBlock) == 32 * 16);
 
 /// The sun over a DEM, as the shaders need it.
 struct SunLight {
@@ -61,8 +63,9 @@ SunLightFit fit_sun_light(const SunLight& sun);
 struct FrameInputs {
     scene::Camera camera;
     SunLight sun;
-    double exposure_ev = 0;   ///< stops brighter than the natural exposure of this sun
-    double exaggeration = 1;  ///< factor on heights
+    sun::CelestialFrame stars;  ///< of the DEM's centre
+    double exposure_ev = 0;     ///< stops brighter than the natural exposure of this sun
+    double exaggeration = 1;    ///< factor on heights
 };
 
 /// What does not change from frame to frame.

@@ -425,9 +425,16 @@ struct NativeHost::Impl {
         framebuffer.clear_depth(0);
         glDepthFunc(GL_GREATER);
         glEnable(GL_DEPTH_CLAMP);
-        if (state.terrain.has_holes()) glEnable(GL_CLIP_DISTANCE0);
+        if (state.terrain.has_holes()) {
+            glEnable(GL_CLIP_DISTANCE0);
+        } else {
+            // Light meets the ground's upper side first. Under a hole it may meet the lower one.
+            glEnable(GL_CULL_FACE);
+            glFrontFace(state.terrain.turns_left() ? GL_CCW : GL_CW);
+        }
         use_depth(state.terrain);
         state.terrain.draw(tiles, origin_m);
+        glDisable(GL_CULL_FACE);
         glDisable(GL_CLIP_DISTANCE0);
         glDisable(GL_DEPTH_CLAMP);
         glDisable(GL_DEPTH_TEST);

@@ -18,6 +18,18 @@ bool has_overlay(const shader::StitchInput& input) {
         });
 }
 
+namespace {
+
+bool wants_night(const shader::StitchInput& input) {
+    return std::any_of(
+        input.snippets.begin(), input.snippets.end(), [](const shader::Snippet* snippet) {
+            return std::any_of(snippet->wanted.begin(), snippet->wanted.end(),
+                               [](const auto& wanted) { return wanted.word == kNightWord; });
+        });
+}
+
+}  // namespace
+
 std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
                                          const shader::StitchInput& input,
                                          const ProgramOptions& options) {
@@ -52,6 +64,11 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
                                      .fragment_main = name + ".frag.glsl"};
         if (name == "background" || name == "post") recipe.defines = ends;
         programs.push_back({name, shader::stitch(core, recipe, input)});
+        if (name == "background" && wants_night(input)) {
+            shader::StitchInput night = input;
+            night.capabilities.push_back(kNightWord);
+            programs.push_back({"background_night", shader::stitch(core, recipe, night)});
+        }
     }
     return programs;
 }

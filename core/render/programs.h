@@ -11,8 +11,9 @@ namespace relevo::render {
 
 /// One of the programs of a frame as text.
 struct ProgramText {
-    std::string
-        name;  ///< "geometry", "terrain", "background", "post" (not if shown), "edges", "antialias"
+    /// "geometry", "terrain", "background", "background_night" (if an effect wants `night`), "post"
+    /// (not if shown), "edges", "antialias"
+    std::string name;
     shader::Stitched stitched;
 };
 
@@ -23,6 +24,12 @@ struct ProgramOptions {
     /// "post".
     bool shown = false;
 };
+
+/// A capability word that core provides, to the background alone and while it is night: what is
+/// only in a night's sky then is in a program of its own, and costs a day nothing.
+inline constexpr const char* kNightWord = "night";
+/// Elevation of the sun, seen from the eye, below which it is night [deg].
+inline constexpr double kNight_deg = -3;
 
 /// Whether any of the effects draws over the finished picture.
 bool has_overlay(const shader::StitchInput& input);

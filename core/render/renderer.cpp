@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/units.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/texture.h"
@@ -50,6 +51,7 @@ struct Renderer::Impl {
     double anisotropy;
     std::vector<ProgramText> texts;
     LinkedProgram geometry, terrain, background;
+    std::optional<LinkedProgram> background_night;  // from the first night on
     std::optional<LinkedProgram> post;
     LinkedProgram edges, antialias, depth_only;
     EffectTextures effect_textures;
@@ -145,12 +147,25 @@ struct Renderer::Impl {
             {.vertex_normals = vertex_normals, .depth = !effects.modules.empty(), .shown = shown});
     }
 
-    const ProgramText& text(const std::string& name) const {
+    const ProgramText* find_text(const std::string& name) const {
         const auto found =
             std::find_if(texts.begin(), texts.end(),
                          [&](const ProgramText& program) { return program.name == name; });
-        assert(found != texts.end());
+        return found == texts.end() ? nullptr : &*found;
+    }
+
+    const ProgramText& text(const std::string& name) const {
+        const ProgramText* const found = find_text(name);
+        assert(found);
         return *found;
+    }
+
+    /// @param block  of the frame
+    const LinkedProgram& background_of(const FrameBlock& block) {
+        const ProgramText* const night = find_text("background_night");
+        if (!night || block.eye_sun.w >= radians(kNight_deg)) return background;
+        if (!background_night) background_night = link_program(*night);
+        return *background_night;
     }
 
     LinkedProgram link(const char* name) const { return link_program(text(name)); }
@@ -246,7 +261,7 @@ struct Renderer::Impl {
         passed("terrain");
         light_target.bind();
         glDepthFunc(GL_EQUAL);
-        bind(background, ground);
+        bind(background_of(block), ground);
         draw_fullscreen();
         glDisable(GL_DEPTH_TEST);
         passed("background");

@@ -148,6 +148,11 @@ int TileSelection::finest_level() const {
     return finest;
 }
 
+bool Terrain::turns_left() {
+    const PatchNet& net = tree_.net(tree_.root());
+    return dot(cross(net.position_m[3], net.position_m[1]), net.vertical[0]) > 0;
+}
+
 void Terrain::clear_normals() {
     normal_pages_ = PageCache(gl::Format::RG16Snorm, kNormalPage_px, normal_layers_,
                               gl::Filter::Linear, "normal pages");

@@ -90,6 +90,9 @@ class Terrain {
     /// No two terrains of a process have the same.
     std::uint64_t serial() const { return serial_; }
     bool has_holes() const { return pyramid_.has_holes(); }
+    /// Whether the triangles go round counter-clockwise as seen from above: not so on grids whose
+    /// rows run the other way.
+    bool turns_left();
     int normal_levels() const { return normal_levels_; }           ///< of normal pages
     double normal_spacing_m() const { return normal_spacing_m_; }  ///< of the finest of them
 

@@ -52,4 +52,46 @@ glm::dvec3 SolarEphemeris::apparent_au(const glm::dvec3& from_geocenter_m,
     return distance * glm::dvec3(cirs[0], cirs[1], cirs[2]);
 }
 
+glm::dvec3 SolarEphemeris::icrs(const glm::dvec3& cirs) const {
+    double in[3] = {cirs.x, cirs.y, cirs.z}, out[3];
+    eraTrxp(const_cast<double(*)[3]>(to_cirs_), in, out);
+    return {out[0], out[1], out[2]};
+}
+
+glm::dvec3 SolarEphemeris::earth_velocity_m_s() const {
+    const double* au_d = earth_barycentric_[1];
+    return glm::dvec3(au_d[0], au_d[1], au_d[2]) * (ERFA_DAU / ERFA_DAYSEC);
+}
+
+TurnedEarth::TurnedEarth(const Epoch& epoch)
+    : angle_rad_(eraEra00(epoch.ut1_jd[0], epoch.ut1_jd[1])),
+      pole_x_rad_(epoch.pole_x_rad),
+      pole_y_rad_(epoch.pole_y_rad),
+      sp_rad_(eraSp00(epoch.tt_jd[0], epoch.tt_jd[1])) {
+    double polar[3][3];
+    eraIr(to_itrs_);
+    eraRz(angle_rad_, to_itrs_);
+    eraPom00(pole_x_rad_, pole_y_rad_, sp_rad_, polar);
+    eraRxr(polar, to_itrs_, to_itrs_);
+}
+
+TurnedEarth::Motion TurnedEarth::motion(const geo::Geodetic& place) const {
+    double pv[2][3];
+    eraPvtob(place.lon_rad, place.lat_rad, place.height_m, pole_x_rad_, pole_y_rad_, sp_rad_,
+             angle_rad_, pv);
+    return {{pv[0][0], pv[0][1], pv[0][2]}, {pv[1][0], pv[1][1], pv[1][2]}};
+}
+
+glm::dvec3 TurnedEarth::itrs(const glm::dvec3& cirs) const {
+    double in[3] = {cirs.x, cirs.y, cirs.z}, out[3];
+    eraRxp(const_cast<double(*)[3]>(to_itrs_), in, out);
+    return {out[0], out[1], out[2]};
+}
+
+glm::dvec3 TurnedEarth::cirs(const glm::dvec3& itrs) const {
+    double in[3] = {itrs.x, itrs.y, itrs.z}, out[3];
+    eraTrxp(const_cast<double(*)[3]>(to_itrs_), in, out);
+    return {out[0], out[1], out[2]};
+}
+
 }  // namespace relevo::sun

@@ -3,6 +3,9 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "geo/geodetic.h"
+#include "sun/position.h"
+
 namespace relevo::sun {
 
 /// The moving axes and bodies of a moment of TT, from which the sun's apparent place is taken.
@@ -22,12 +25,39 @@ class SolarEphemeris {
     /// equation of the origins: equinox right ascension = CIRS right ascension - this.
     double equation_of_origins_rad() const { return equation_of_origins_rad_; }
 
+    /// CIRS to the axes of star catalogues (GCRS, which for directions is ICRS), of a vector.
+    glm::dvec3 icrs(const glm::dvec3& cirs) const;
+    /// Of the Earth's centre about that of the solar system, ICRS.
+    glm::dvec3 earth_velocity_m_s() const;
+
   private:
     double earth_barycentric_[2][3];  // au, au/d, BCRS
     double earth_heliocentric_[2][3];
     double to_cirs_[3][3];
     double equation_of_origins_rad_;
     double tt_jd_[2];
+};
+
+/// The Earth as it is turned at a moment, and where that takes its places.
+class TurnedEarth {
+  public:
+    explicit TurnedEarth(const Epoch& epoch);
+
+    double angle_rad() const { return angle_rad_; }  ///< the Earth's rotation angle
+
+    struct Motion {
+        glm::dvec3 position_m{0};    ///< from the Earth's centre, CIRS
+        glm::dvec3 velocity_m_s{0};  ///< likewise
+    };
+    Motion motion(const geo::Geodetic& place) const;
+
+    /// Earth-fixed axes (ITRS) of a vector in CIRS, and back.
+    glm::dvec3 itrs(const glm::dvec3& cirs) const;
+    glm::dvec3 cirs(const glm::dvec3& itrs) const;
+
+  private:
+    double angle_rad_, pole_x_rad_, pole_y_rad_, sp_rad_;
+    double to_itrs_[3][3];
 };
 
 }  // namespace relevo::sun

@@ -121,30 +121,18 @@ double semidiameter_rad(double distance_au) {
 Position position(const Epoch& epoch, const geo::Geodetic& place) {
     const Observer observer(place);
     const SolarEphemeris ephemeris(epoch.tt_jd[0], epoch.tt_jd[1]);
-    const double turned_rad = eraEra00(epoch.ut1_jd[0], epoch.ut1_jd[1]);
-    const double sp_rad = eraSp00(epoch.tt_jd[0], epoch.tt_jd[1]);
-    double pv[2][3];
-    eraPvtob(place.lon_rad, place.lat_rad, place.height_m, epoch.pole_x_rad, epoch.pole_y_rad,
-             sp_rad, turned_rad, pv);
-    const glm::dvec3 cirs =
-        ephemeris.apparent_au({pv[0][0], pv[0][1], pv[0][2]}, {pv[1][0], pv[1][1], pv[1][2]});
-
-    double to_itrs[3][3], polar[3][3];
-    eraIr(to_itrs);
-    eraRz(turned_rad, to_itrs);
-    eraPom00(epoch.pole_x_rad, epoch.pole_y_rad, sp_rad, polar);
-    eraRxr(polar, to_itrs, to_itrs);
-    double in[3] = {cirs.x, cirs.y, cirs.z}, itrs[3];
-    eraRxp(to_itrs, in, itrs);
+    const TurnedEarth earth(epoch);
+    const TurnedEarth::Motion motion = earth.motion(place);
+    const glm::dvec3 cirs = ephemeris.apparent_au(motion.position_m, motion.velocity_m_s);
 
     Position result;
-    result.direction = glm::normalize(observer.enu({itrs[0], itrs[1], itrs[2]}));
+    result.direction = glm::normalize(observer.enu(earth.itrs(cirs)));
     result.azimuth_rad = azimuth_of(result.direction);
     result.elevation_rad = elevation_of(result.direction);
     result.distance_au = glm::length(cirs);
     result.right_ascension_rad = right_ascension_rad(cirs, ephemeris);
     result.declination_rad = declination_rad(cirs);
-    result.hour_angle_rad = eraAnpm(turned_rad + place.lon_rad - std::atan2(cirs.y, cirs.x));
+    result.hour_angle_rad = eraAnpm(earth.angle_rad() + place.lon_rad - std::atan2(cirs.y, cirs.x));
     result.semidiameter_rad = semidiameter_rad(result.distance_au);
     result.equation_of_time_s = geocentric(epoch, ephemeris).equation_of_time_s;
     return result;

@@ -1,16 +1,17 @@
-//! provides  the sky: its colours, the sun in it, and its light on slopes
+//! provides  the sky: its colours, the sun and the stars in it, and its light on slopes
 //! hook      background_radiance, ambient
 //! reads     direction of the view, of the sun with refraction, height of the eye [m]
 //! writes    radiance, linear sRGB; irradiance
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), equations 1 to 3; the textures are
-//!           made by tools/sky, which names its model
+//!           made by tools/sky, which names its model; stars: the Bright Star Catalogue
 
 uniform sampler3D sky_radiance;  // by s, t and height of the sun
 uniform sampler3D sky_light;     // irradiance of slopes, likewise
 uniform sampler2D sky_day;
 uniform sampler2D sky_sunset;
 uniform sampler2D sky_night;
+uniform sampler3D sky_star_cells;  // by direction, unfolded like an octahedron; a column of stars
 
 uniform int sky_colours = 0; //@ enum(model, three) static label("Colours") description("A sky for every height of the sun, or the paper's three, blended")
 uniform float sky_brightness = 1.3; //@ range(0, 10) label("Brightness") description("Of the sky without the sun; above 1 because less of the aureole is drawn than there is")
@@ -25,6 +26,8 @@ uniform bool sky_air_mass = true; //@ static label("Aureole by air mass") descri
 uniform float sky_disc_power = 65000.0; //@ range(100, 1000000) label("Power of the disc") description("65000 falls to one half at 0.265 degrees: the sun's true size")
 uniform float sky_disc = 30.0; //@ range(0, 10000) label("Disc") description("Brightness of the sun's disc, as a multiple of its light at the eye")
 uniform float sky_disc_edge = 8.0; //@ range(1, 100) label("Edge of the disc") description("How sharply the disc ends; 1, a soft spot, in the paper")
+
+uniform float sky_stars = 1.0; //@ range(0, 1000) label("Stars") description("Brightness, as a multiple of the true one; 0 switches them off")
 
 uniform bool sky_earth = true; //@ static label("Earth") description("Below the horizon the Earth: plain ground, lit as the terrain is, seen through its air. Else the colour of the horizon, as in the paper")
 uniform vec3 sky_earth_albedo = vec3(0.19, 0.18, 0.15); //@ range(0, 1) label("Albedo of the Earth") description("Of the ground beyond the DEM, and around a slope")
@@ -141,6 +144,94 @@ vec3 sky_texel(in vec3 at, in vec3 size) {
     return at * (1.0 - 1.0 / size) + 0.5 / size;
 }
 
+const float sky_star_grid = 96.0;  // tools/sky/stars.h: cells across,
+const float sky_star_width = 0.6;  // standard deviation of a star's image [px],
+const float sky_star_scattered = 0.15;  // and the share of its light that is three times as wide
+const float sky_star_reach = 2.8e-5;  // greatest variance [rad2]: a star ends 1 degree from its place
+// Magnitude 0 as a share of the sun's light, whose own is -26.76. source: C. N. A. Willmer, The
+// Absolute Magnitude of the Sun in Several Filters, Astrophys. J. Suppl. 236 (2018) 47
+const float sky_star_light = 1.977e-11;
+// Optical depth of a clear zenith at sea level. source: core/sun/daylight.h, direct_transmittance
+const vec3 sky_depth = vec3(0.176, 0.210, 0.304);
+
+/// How far refraction moves a direction up, as a length along the vertical.
+/// source: fitted to G. G. Bennett, J. Navigation 35 (1982) 255, to 0.5 arcsec from -0.5 degrees up
+/// @param sine  of the apparent elevation, -0.01 or more
+float sky_bend(in float sine) {
+    return 0.00029043 / (sine + 0.0022149 / (sine + 0.0765018));
+}
+
+/// Where a star is catalogued that is seen in a direction of the local frame: ICRS, unit.
+vec3 sky_catalogued(in vec3 direction, in vec3 up) {
+    float sine = max(dot(direction, up), -0.01);
+    vec3 airless = normalize(direction - frame.eye_sun_light.a * sky_bend(sine) * up);
+    return normalize(vec3(dot(frame.celestial[0].xyz, airless) - frame.celestial[0].w,
+                          dot(frame.celestial[1].xyz, airless) - frame.celestial[1].w,
+                          dot(frame.celestial[2].xyz, airless) - frame.celestial[2].w));
+}
+
+/// Turns the lower half of an octahedron outwards; is its own inverse.
+vec2 sky_fold_over(in vec2 p) {
+    return (1.0 - abs(p.yx)) * vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
+}
+
+ivec2 sky_star_cell(in vec3 direction) {
+    vec3 d = direction / (abs(direction.x) + abs(direction.y) + abs(direction.z));
+    vec2 p = d.z < 0.0 ? sky_fold_over(d.xy) : d.xy;
+    return clamp(ivec2((0.5 * p + 0.5) * sky_star_grid), ivec2(0), ivec2(sky_star_grid) - 1);
+}
+
+vec3 sky_star_centre(in ivec2 cell) {
+    vec2 p = (2.0 * vec2(cell) + 1.0) / sky_star_grid - 1.0;
+    float z = 1.0 - abs(p.x) - abs(p.y);
+    return normalize(vec3(z < 0.0 ? sky_fold_over(p) : p, z));
+}
+
+/// Illuminance of a star in multiples of magnitude 0, as a colour. @param code  tools/sky/stars.h
+vec3 sky_star_colour(in float code) {
+    float mag_steps = floor((code - 1.0) / 16.0);
+    float colour_steps = code - 1.0 - 16.0 * mag_steps;
+    float b_v = 0.15 * colour_steps - 0.35;
+    float red = 0.7829 + b_v * (0.3121 + b_v * 0.0325);
+    float blue = 1.567 + b_v * (0.2023 * b_v - 0.9949);
+    float green = (1.0 - 0.2126 * red - 0.0722 * blue) / 0.7152;
+    // 10^(-0.4 m)
+    return exp2(-1.3287712 * (0.0625 * mag_steps - 1.5)) * vec3(red, green, blue);
+}
+
+/// Variance of a star's image [rad2]: of the same size all over the picture, where a pixel is smaller
+/// towards the edges.
+float sky_star_spread(in vec3 direction) {
+    vec3 ahead = cross(frame.pixel_ray_dy.xyz, frame.pixel_ray_dx.xyz);
+    float pixel = length(ahead);  // solid angle of the middle one
+    float cosine = dot(ahead, direction) / pixel;
+    return sky_star_width * sky_star_width * pixel * cosine * cosine * cosine;
+}
+
+/// Light of the stars as the air lets it through.
+vec3 sky_starlight(in vec3 direction, in vec3 up) {
+    vec3 there = sky_catalogued(direction, up);
+    ivec2 cell = sky_star_cell(there);
+    vec3 from_centre = there - sky_star_centre(cell);
+    // A point's image: what is sharp, and what lens and eye scatter, by which one sees how bright it is.
+    float spread = sky_star_spread(direction);
+    float sharp = 0.5 / min(spread, sky_star_reach), soft = 0.5 / min(9.0 * spread, sky_star_reach);
+    int last = textureSize(sky_star_cells, 0).z;
+    vec3 light = vec3(0.0);
+    for (int i = 0; i < last; ++i) {
+        vec4 star = texelFetch(sky_star_cells, ivec3(cell, i), 0);
+        if (star.a == 0.0) break;
+        vec3 apart = from_centre - star.rgb;
+        float apart2 = dot(apart, apart);
+        light += sky_star_colour(star.a) * mix(sharp * exp(-sharp * apart2),
+                                               soft * exp(-soft * apart2), sky_star_scattered);
+    }
+    float mass = sky_air_mass_of(dot(direction, up)) *
+                 exp(-clamp(frame.eye_m.w, 0.0, 20000.0) / 8430.0);
+    // Radiance 1 is an irradiance of 1 shared out over pi, and a Gaussian's peak 1 / (2 pi variance).
+    return sky_stars * sky_star_light * light * exp(-mass * sky_depth);
+}
+
 float sky_luminance() {
     return dot(frame.sky_irradiance.rgb, vec3(0.2126, 0.7152, 0.0722));
 }
@@ -171,6 +262,9 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     if (with_disc && sine > frame.eye_up.w) {
         vec3 apart = to_sun - direction;
         sun += sky_disc * sky_sun(dot(apart, apart));
+#if HAS_night
+        radiance += sky_starlight(direction, up);
+#endif
     }
     radiance += sun * frame.eye_sun_light.rgb;
     if (sky_earth) {

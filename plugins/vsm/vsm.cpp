@@ -8,6 +8,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -25,6 +26,12 @@ constexpr double kLeastSine = 0.02;
 constexpr int kMostLayers = 3;
 /// A texel of a map is fine enough where it covers so many pixels, or so many posts.
 constexpr double kEnough_px = 2, kEnoughPosts = 0.75;
+/// Maps have fewer columns where texels would be finer than that many posts and so many pixels of
+/// the nearest ground. Rows are not spared: how high they are is how shallow a shadow may be.
+constexpr double kNarrow_px = 1.5;
+constexpr int kColumnsStep = 128;
+/// Columns are chosen anew once so small a share of them would do.
+constexpr double kNarrower = 0.7;
 /// A nearer map is worth its while if it has at most this share of the other's area.
 constexpr double kWorthwhileShare = 0.25;
 /// How far a map reaches beyond what is seen, as a share of that, so that it is kept for a while
@@ -102,24 +109,24 @@ class Vsm : public Instance {
             axes_ = Axes(to_sun);
             whole_ = box();
             terrain_.bounds(whole_);
-            middle_m_ = 0.5 * (frame.lowest_m + frame.highest_m) * frame.exaggeration;
+            measure_heights();
             layers_.clear();
-            if (size != size_) {
-                size_ = size;
-                make_textures(1);
-            }
+            if (size != size_) columns_ = 0;
+            size_ = size;
         }
         if (params_.get("vsm.keep") == 0) layers_.clear();
-        const std::vector<Rectangle> needed = needed_rectangles(frame);
+        relevo_box seen = box();
+        if (!terrain_.visible_bounds(1e300, seen)) seen = whole_;
+        if (columns_ == 0 || layers_.empty() || is_stale(0, rectangle_of(seen)))
+            choose_columns(seen, frame);
+        const std::vector<Rectangle> needed = needed_rectangles(rectangle_of(seen), frame);
         if (static_cast<int>(needed.size()) > texture_layers_) {
             make_textures(kMostLayers);
             layers_.clear();
         }
         layers_.resize(needed.size());
         for (std::size_t i = 0; i < needed.size(); ++i)
-            if (!layers_[i].holds(needed[i]) ||
-                layers_[i].area() > kTooLarge * fitted(needed[i]).area())
-                draw(i, fitted(needed[i]), frame);
+            if (is_stale(i, needed[i])) draw(i, fitted(needed[i]));
         write_params(frame);
     }
 
@@ -132,18 +139,55 @@ class Vsm : public Instance {
         return box;
     }
 
+    /// Along the rise: far from the DEM's centre the round Earth lies lower than its heights say.
+    void measure_heights() {
+        relevo_box upright = box();
+        const glm::dvec3 rise = normalize(axes_.rise);
+        write(cross(rise, axes_.right), upright.up);
+        write(rise, upright.towards);
+        terrain_.bounds(upright);
+        lowest_m_ = upright.low[2] * length(axes_.rise);
+        highest_m_ = upright.high[2] * length(axes_.rise);
+        middle_m_ = 0.5 * (lowest_m_ + highest_m_);
+    }
+
+    bool is_stale(std::size_t layer, const Rectangle& needed) const {
+        const Rectangle& drawn = layers_[layer];
+        return !drawn.holds(needed) || drawn.area() > kTooLarge * fitted(needed).area();
+    }
+
+    glm::dvec2 texels() const { return {columns_, size_}; }
+
+    void choose_columns(const relevo_box& seen, const relevo_frame& frame) {
+        const glm::dmat3 axes(axes_.right, axes_.up, axes_.towards);
+        const glm::dvec3 eye = vector_of(frame.eye_m) * axes;
+        const glm::dvec3 apart = glm::max(
+            glm::max(vector_of(seen.low) - eye, eye - vector_of(seen.high)), glm::dvec3(0));
+        const double enough_m = std::min(kEnoughPosts * frame.post_spacing_m,
+                                         kNarrow_px * frame.pixel_rad * length(apart));
+        // As fitted() does, so that no texel is coarser than enough.
+        const double across_m = (1 + 2 * kMargin) * rectangle_of(seen).size().x;
+        const double columns =
+            std::exp2(1 / kSizesADoubling) * across_m / std::max(enough_m, 1e-3) + 1;
+        const int wanted = static_cast<int>(
+            std::min(std::ceil(columns / kColumnsStep) * kColumnsStep, double(size_)));
+        if (wanted <= columns_ && wanted >= kNarrower * columns_) return;
+        columns_ = wanted;
+        make_textures(1);
+        layers_.clear();
+    }
+
     /// Of a texel, on level ground [m].
     double ground_texel_m(const Rectangle& rectangle) const {
-        const glm::dvec2 texel = rectangle.size() / double(size_);
+        const glm::dvec2 texel = rectangle.size() / texels();
         return std::max(texel.x, texel.y / std::max(axes_.towards.z, 5 * kLeastSine));
     }
 
     /// What has to be in each map: first of all that is seen, then of what is near enough to need
     /// finer texels.
-    std::vector<Rectangle> needed_rectangles(const relevo_frame& frame) const {
-        relevo_box seen = box();
-        if (!terrain_.visible_bounds(1e300, seen)) seen = whole_;
-        std::vector<Rectangle> result{rectangle_of(seen)};
+    std::vector<Rectangle> needed_rectangles(const Rectangle& seen,
+                                             const relevo_frame& frame) const {
+        std::vector<Rectangle> result{seen};
         while (static_cast<int>(result.size()) < kMostLayers) {
             const double texel_m = ground_texel_m(fitted(result.back()));
             if (texel_m <= kEnoughPosts * frame.post_spacing_m) break;
@@ -164,18 +208,19 @@ class Vsm : public Instance {
                          glm::min(needed.high + margin, whole.high)};
         Rectangle result;
         for (int i = 0; i < 2; ++i) {
-            const double least_m = std::max(wanted.size()[i], 1.0) / (size_ - 1);
+            const double least_m = std::max(wanted.size()[i], 1.0) / (texels()[i] - 1);
             const double texel_m =
                 std::exp2(std::ceil(std::log2(least_m) * kSizesADoubling) / kSizesADoubling);
             result.low[i] = std::floor(wanted.low[i] / texel_m) * texel_m;
-            result.high[i] = result.low[i] + size_ * texel_m;
+            result.high[i] = result.low[i] + texels()[i] * texel_m;
         }
         return result;
     }
 
     void make_textures(int layers) {
         relevo_texture_info info{};
-        info.width = info.height = size_;
+        info.width = columns_;
+        info.height = size_;
         info.levels = 1;
         info.format = RELEVO_FORMAT_DEPTH32F;
         info.filter = RELEVO_FILTER_NEAREST;
@@ -189,14 +234,14 @@ class Vsm : public Instance {
         texture_layers_ = layers;
     }
 
-    void draw(std::size_t layer, const Rectangle& rectangle, const relevo_frame& frame) {
+    void draw(std::size_t layer, const Rectangle& rectangle) {
         layers_[layer] = rectangle;
         relevo_box view = whole_;
         for (int i = 0; i < 2; ++i) {
             view.low[i] = rectangle.low[i];
             view.high[i] = rectangle.high[i];
         }
-        const glm::dvec2 texel_m = rectangle.size() / double(size_);
+        const glm::dvec2 texel_m = rectangle.size() / texels();
         const int level = terrain_.draw_depth(view, kTolerance_rows * texel_m.y, depth_);
 
         const double along = dot(axes_.rise, axes_.up), deep = dot(axes_.rise, axes_.towards);
@@ -207,10 +252,10 @@ class Vsm : public Instance {
         const Program::Value plane =
             value(0, along * texel_m.y, deep * (view.high[2] - view.low[2]),
                   along * view.low[1] + deep * view.low[2] - middle_m_);
-        const double lowest_m = frame.lowest_m * frame.exaggeration - middle_m_;
         const Program::Value weights = value(1 - blur_, blur_ / 2, 0, 0);
-        moments_program_.draw(rows_, 0, 0, {&depth_}, {plane, value(lowest_m, 0, 0, 0), weights});
-        blur_program_.draw(moments_, static_cast<int>(layer), 0, {&rows_}, {weights});
+        const Program::Value below = value(lowest_m_ - middle_m_, 1.0 / columns_, 1.0 / size_, 0);
+        moments_program_.draw(rows_, 0, 0, {&depth_}, {plane, below, weights});
+        blur_program_.draw(moments_, static_cast<int>(layer), 0, {&rows_}, {weights, below});
         log_.debug("vsm: map " + std::to_string(layer) + " drawn, texels of " +
                    std::to_string(texel_m.x) + " x " + std::to_string(texel_m.y) +
                    " m, ground of level " + std::to_string(level));
@@ -241,10 +286,10 @@ class Vsm : public Instance {
                                          : std::array{0.0, 0.0, -1.0, -1.0});
         }
         params_.set("vsm.row_m", rounding);
-        params_.set("vsm.texel_m", {all.size().x / size_, all.size().y / size_, 0, 0});
+        params_.set("vsm.texel_m", {all.size().x / columns_, all.size().y / size_, 0, 0});
         const double sine = std::max(axes_.towards.z, kLeastSine);
-        params_.set("vsm.reach", {1 / sine / all.size().x, 1 / sine / all.size().y,
-                                  frame.highest_m * frame.exaggeration - middle_m_, 0});
+        params_.set("vsm.reach",
+                    {1 / sine / all.size().x, 1 / sine / all.size().y, highest_m_ - middle_m_, 0});
     }
 
     Host host_;
@@ -257,8 +302,9 @@ class Vsm : public Instance {
     int texture_layers_ = 0;
 
     // What the maps were drawn with.
-    int size_ = 0;
-    double blur_ = -1, exaggeration_ = 0, middle_m_ = 0;
+    int size_ = 0, columns_ = 0;
+    double blur_ = -1, exaggeration_ = 0;
+    double lowest_m_ = 0, middle_m_ = 0, highest_m_ = 0;
     std::uint64_t ground_ = 0;
     Axes axes_;
     relevo_box whole_{};

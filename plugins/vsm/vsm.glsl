@@ -29,6 +29,7 @@ uniform vec4 vsm_texel_m = vec4(0.0);  //@ host description("Across and up, of t
 uniform sampler2DArray vsm_moments;
 
 const float vsm_rounding_m = 1.0;  // deviation that floats, and levels of the ground, make
+const float vsm_mesh_px = 2.0;  // by which triangles lie below the ground at most, and their rim hangs down
 const int vsm_taps = 16;
 
 /// Upper bound on the share of the ground in a texel that is no higher than a height.
@@ -57,10 +58,11 @@ vec3 vsm_place(in vec2 first) {
 }
 
 /// Share of the sun that is seen from a height above a place of a map.
-float vsm_lit(in vec3 place, in float height) {
+/// @param rough_m  deviation of that height
+float vsm_lit(in vec3 place, in float height, in float rough_m) {
     vec2 moments = textureLod(vsm_moments, place, 0.0).rg;
     float row_m = place.z < 0.5 ? vsm_row_m.x : place.z < 1.5 ? vsm_row_m.y : vsm_row_m.z;
-    float least = vsm_softness * row_m + vsm_rounding_m;
+    float least = vsm_softness * row_m + rough_m;
     moments.y = max(moments.y, least * least);
     return vsm_cut(vsm_chebyshev(moments, height + vsm_bias * sqrt(moments.y)), vsm_bleed);
 }
@@ -73,7 +75,7 @@ vec2 vsm_disc(in int tap) {
 
 /// The same over the sun's disc: how much higher the ground in its way lies tells how far it is.
 /// source: R. Fernando, Percentage-Closer Soft Shadows, SIGGRAPH 2005 sketches
-float vsm_lit_by_disc(in vec2 first, in float height) {
+float vsm_lit_by_disc(in vec2 first, in float height, in float rough_m) {
     float half_sun = tan(0.5 * vsm_sun_diameter);
     // Nothing in the way is farther than where the ray leaves the highest ground behind.
     vec2 search = half_sun * vsm_reach.xy * max(vsm_reach.z - height, 0.0);
@@ -86,7 +88,7 @@ float vsm_lit_by_disc(in vec2 first, in float height) {
     vec2 spread = half_sun * vsm_reach.xy * above / max(found, 1.0);
     float lit = 0.0;
     for (int tap = 0; tap < vsm_taps; ++tap)
-        lit += vsm_lit(vsm_place(first + spread * vsm_disc(tap)), height);
+        lit += vsm_lit(vsm_place(first + spread * vsm_disc(tap)), height, rough_m);
     return lit / float(vsm_taps);
 }
 
@@ -94,8 +96,15 @@ void vsm_on_visibility(in Surface s, in vec3 to_sun, inout float factor) {
     vec4 point = vec4(surface_point(s), 1.0);
     vec2 first = vec2(dot(vsm_across, point), dot(vsm_along, point));
     float height = dot(vsm_rise, point);
+    float rough_m = vsm_rounding_m;
+#ifdef TERRAIN_NORMAL_VERTEX
+    // There is no other ground than the picture's triangles.
+    float mesh_m = vsm_mesh_px * length(frame.pixel_ray_dx.xyz) * s.distance_m;
+    rough_m += 0.5 * mesh_m;
+    height += mesh_m;
+#endif
     if (vsm_penumbra)
-        factor *= vsm_lit_by_disc(first, height);
+        factor *= vsm_lit_by_disc(first, height, rough_m);
     else
-        factor *= vsm_lit(vsm_place(first), height);
+        factor *= vsm_lit(vsm_place(first), height, rough_m);
 }

@@ -26,5 +26,8 @@ layout(std140, binding = 0) uniform Frame {
     float normal_levels;      // of normal pages
     vec4 eye_up;              // xyz: vertical at the eye; w: sine of the horizon's elevation, 0 or below
     vec4 eye_sun;             // xyz: towards the sun as the eye sees it, with refraction; w: its elevation [rad]
-    vec4 eye_sun_light;       // rgb: irradiance there on a surface that faces it
+    vec4 eye_sun_light;       // rgb: irradiance there on a surface that faces it; a: how much the air at the eye
+                              // bends light, 1 is 59.7 arcsec at an elevation of 45 degrees
+    vec4 celestial[3];        // xyz: rows of the rotation from the local frame to the axes of star catalogues (ICRS);
+                              // w: velocity of the place there, over that of light
 } frame;

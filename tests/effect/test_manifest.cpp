@@ -150,6 +150,8 @@ INSTANTIATE_TEST_SUITE_P(
             "2: provides: expected a list of texts but got \"air\""},
         Bad{"NumberInAList", with(R"("provides": [7])"),
             "2: provides: expected a list of texts but got 7 in it"},
+        Bad{"CoresWord", with(R"("provides": ["night"])"),
+            "2: provides: \"night\" is core's own word; expected another"},
         Bad{"BadWord", with(R"("wants": ["Shadow map"])"),
             "2: wants: expected words of a-z, 0-9 and _ but got \"Shadow map\""},
         Bad{"WordTwice", with(R"("after": ["a", "a"])"), "2: after: \"a\" is listed twice"},

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -7,6 +9,7 @@
 #include "base/units.h"
 #include "render/frame_block.h"
 #include "sun/daylight.h"
+#include "sun/refraction.h"
 #include "support/support.h"
 
 namespace relevo::render {
@@ -130,6 +133,63 @@ TEST(SunLight, FollowsRefractionAndTransmittanceOverADem) {
         EXPECT_LT(worst_arcsec, centre_deg >= 5 ? 0.2 : 2.0);
         EXPECT_LT(worst_light, 0.01);
     }
+}
+
+/// As plugins/sky/sky.glsl: how far refraction of strength 1 moves a direction along the vertical.
+double bend(double sine) {
+    return 0.00029043 / (sine + 0.0022149 / (sine + 0.0765018));
+}
+
+TEST(FrameBlock, SaysHowMuchTheAirBendsStarlight) {
+    std::vector<double> high_arcsec, low_arcsec;
+    for (const double height_m : {0.0, 1500.0, 4000.0}) {
+        const Ground ground{.frame = geo::LocalFrame(geo::geodetic_deg(46, 11, height_m)),
+                            .lowest_m = 0};
+        const sun::Refraction air = sun::Refraction::standard(ground.frame.origin());
+        FrameInputs inputs = inputs_at({0, -10, 0});
+        inputs.sun.ground_height_m = height_m;
+        inputs.sun.refraction_rad = [&](double elevation_rad) {
+            return air.apparent_rad(elevation_rad) - elevation_rad;
+        };
+        const double strength = make_frame_block(inputs, ground, 640, 512, 4).eye_sun_light.a;
+        for (double deg = 0; deg < 90; deg += 0.25) {
+            const double apparent = radians(deg);
+            const double found = std::atan2(
+                std::sin(apparent) - strength * bend(std::sin(apparent)), std::cos(apparent));
+            (deg < 10 ? low_arcsec : high_arcsec)
+                .push_back(std::abs(found - air.true_rad(apparent)) / kArcsecond_rad);
+        }
+    }
+    test::print_accuracy("refraction of stars from 10 degrees up, against integration", high_arcsec,
+                         "arcsec", 4);
+    test::print_accuracy("refraction of stars below 10 degrees, against integration", low_arcsec,
+                         "arcsec", 40);
+    EXPECT_LT(*std::max_element(high_arcsec.begin(), high_arcsec.end()), 4);
+    EXPECT_LT(*std::max_element(low_arcsec.begin(), low_arcsec.end()), 40);
+}
+
+TEST(FrameBlock, WithoutRefractionNothingIsBent) {
+    const Ground ground{.frame = geo::LocalFrame(geo::geodetic_deg(46, 11, 0))};
+    EXPECT_EQ(make_frame_block(inputs_at({0, -10, 5}), ground, 640, 512, 4).eye_sun_light.a, 0);
+}
+
+TEST(FrameBlock, HasTheRowsOfTheRotationToTheStars) {
+    const Ground ground{.frame = geo::LocalFrame(geo::geodetic_deg(46, 11, 0))};
+    FrameInputs inputs = inputs_at({0, -10, 5});
+    inputs.stars = sun::celestial_frame(sun::Epoch::at(sun::Instant::from_utc({{2026, 1, 15}, 22})),
+                                        ground.frame.origin());
+    const FrameBlock block = make_frame_block(inputs, ground, 640, 512, 4);
+    // The Earth's axis leads to the celestial pole of date, which precession carries away from that
+    // of J2000 by 20 arcsec a year.
+    const glm::vec3 axis(block.polar_axis);
+    const glm::dvec3 pole{dot(glm::vec3(block.celestial[0]), axis),
+                          dot(glm::vec3(block.celestial[1]), axis),
+                          dot(glm::vec3(block.celestial[2]), axis)};
+    EXPECT_NEAR(std::hypot(pole.x, pole.y) / kArcsecond_rad, 20.04 * 26.04, 10);
+    EXPECT_NEAR(pole.z, 1, 1e-5);
+    for (glm::length_t i = 0; i < 3; ++i)
+        EXPECT_EQ(block.celestial[static_cast<std::size_t>(i)].w,
+                  static_cast<float>(inputs.stars.velocity[i]));
 }
 
 }  // namespace

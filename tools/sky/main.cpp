@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/units.h"
+#include "stars.h"
 #include "textures.h"
 
 namespace relevo::skymaker {
@@ -34,10 +35,11 @@ void print_table(const Atmosphere& air) {
 
 int main(int argc, char** argv) {
     using namespace relevo;
-    std::filesystem::path output;
+    std::filesystem::path output, stars;
     bool table = false;
     CLI::App app{"Makes the skies of Relevo"};
     app.add_option("output", output, "Folder to write sky/ into")->required();
+    app.add_option("--stars", stars, "Table of stars, stars.csv")->required();
     app.add_flag("--table", table, "Print the light of the sky for heights of the sun");
     CLI11_PARSE(app, argc, argv);
     try {
@@ -52,6 +54,7 @@ int main(int argc, char** argv) {
              {std::pair{"day", 45.0}, std::pair{"sunset", 0.0}, std::pair{"night", -18.0}})
             write_ktx(folder / fmt::format("{}.ktx2", name),
                       skymaker::single_texture(air, std::sin(radians(deg))));
+        write_ktx(folder / "stars.ktx2", skymaker::star_texture(skymaker::read_stars(stars)));
         return 0;
     } catch (const Error& error) {
         log::error(error.what());

@@ -30,15 +30,6 @@ glm::dvec3 night_radiance(double sine) {
     return kNight * 0.72 * kTint * (glow * glm::exp(-0.2 * kDepth * air) + 0.35);
 }
 
-void write_texel(std::span<std::byte> texels, std::size_t index, const glm::dvec3& colour) {
-    for (std::size_t c = 0; c < 4; ++c) {
-        const double value = c < 3 ? colour[static_cast<glm::length_t>(c)] : 1.0;
-        const std::uint16_t half = glm::packHalf1x16(static_cast<float>(value));
-        texels[8 * index + 2 * c] = static_cast<std::byte>(half & 0xff);
-        texels[8 * index + 2 * c + 1] = static_cast<std::byte>(half >> 8);
-    }
-}
-
 /// The sky at one height of the sun, row by row from the horizon.
 using Picture = std::vector<glm::dvec3>;
 struct Skies {
@@ -129,6 +120,15 @@ double Layout::sun_sine_of(double slice) {
     return kFold * x / (1 - std::abs(x));
 }
 
+void write_texel(std::span<std::byte> texels, std::size_t index, const glm::dvec4& value) {
+    for (std::size_t c = 0; c < 4; ++c) {
+        const std::uint16_t half =
+            glm::packHalf1x16(static_cast<float>(value[static_cast<glm::length_t>(c)]));
+        texels[8 * index + 2 * c] = static_cast<std::byte>(half & 0xff);
+        texels[8 * index + 2 * c + 1] = static_cast<std::byte>(half >> 8);
+    }
+}
+
 double luminance(const glm::dvec3& c) {
     return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
 }
@@ -149,13 +149,14 @@ Textures make_textures(const Atmosphere& air) {
         const Skies skies = make_skies(air, sun_sine);
         const double level = luminance(slope_irradiance(skies.whole, 1, 0));
         for (const glm::dvec3& colour : skies.bare)
-            write_texel(radiance, index++, colour / level);
+            write_texel(radiance, index++, glm::dvec4(colour / level, 1));
         parallel_for(0, n * n, 1, [&](int first, int last) {
             for (int i = first; i < last; ++i)
-                write_texel(
-                    light, static_cast<std::size_t>(slice * n * n + i),
-                    slope_irradiance(skies.whole, i / n / (n - 1.0), 2 * (i % n) / (n - 1.0) - 1) /
-                        level);
+                write_texel(light, static_cast<std::size_t>(slice * n * n + i),
+                            glm::dvec4(slope_irradiance(skies.whole, i / n / (n - 1.0),
+                                                        2 * (i % n) / (n - 1.0) - 1) /
+                                           level,
+                                       1));
         });
     }
     return made;
@@ -167,7 +168,7 @@ image::TextureData single_texture(const Atmosphere& air, double sun_sine) {
     const double level = luminance(slope_irradiance(skies.whole, 1, 0));
     std::size_t index = 0;
     for (const glm::dvec3& colour : skies.bare)
-        write_texel(data.writable_level(0), index++, colour / level);
+        write_texel(data.writable_level(0), index++, glm::dvec4(colour / level, 1));
     return data;
 }
 

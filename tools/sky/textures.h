@@ -1,5 +1,10 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
+
+#include <glm/vec4.hpp>
+
 #include "atmosphere.h"
 #include "image/ktx.h"
 
@@ -46,5 +51,8 @@ image::TextureData single_texture(const Atmosphere& air, double sun_sine);
 glm::dvec3 level_irradiance(const Atmosphere& air, double sun_sine);
 
 double luminance(const glm::dvec3& linear_srgb);
+
+/// Half floats, little-endian, into texel `index` of an Rgba16F texture.
+void write_texel(std::span<std::byte> texels, std::size_t index, const glm::dvec4& value);
 
 }  // namespace relevo::skymaker

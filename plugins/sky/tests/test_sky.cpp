@@ -289,5 +289,117 @@ TEST(Sky, AirMassIsRozenbergs) {
     EXPECT_LT(worst(errors, "sky air mass, relative", 1e-3), 1e-3);
 }
 
+// Stars. tools/sky/stars.h has their texture, tests/golden/test_stars.cpp their places in pictures.
+
+TEST(SkyStars, AreBentByBennettsRefraction) {
+    // By a quarter of a degree, from half a degree below the horizon.
+    test::GpuSnippet gpu("sky");
+    const auto results = gpu.run(
+        "float h = radians(0.25 * float(x) - 0.5);\n"
+        "result = vec4(sky_bend(sin(h)) * cos(h));",
+        362, 1);
+    std::vector<double> errors;
+    for (int x = 0; x < 362; ++x) {
+        const double deg = 0.25 * x - 0.5, h = radians(deg);
+        const double refraction =
+            radians(1 / std::tan(radians(deg + 7.31 / (deg + 4.4))) / 60);  // Bennett
+        const double expected = std::sin(refraction) / std::cos(h - refraction) * std::cos(h);
+        errors.push_back(std::abs(results[static_cast<std::size_t>(x)].x - expected) /
+                         kArcsecond_rad);
+    }
+    EXPECT_LT(worst(errors, "sky refraction of stars [arcsec], against Bennett", 1), 1);
+}
+
+TEST(SkyStars, AreLookedUpWhereTheCatalogueHasThem) {
+    // A rotation about an odd axis, an odd velocity, air of strength 1.1: as in the frame block.
+    const glm::dvec3 axis = normalize(glm::dvec3(0.3, -0.5, 0.8));
+    const glm::dvec3 velocity(3e-5, -8e-5, 4e-5);
+    const auto turned = [&](const glm::dvec3& v) {
+        const double c = std::cos(2.0), s = std::sin(2.0);
+        return c * v + s * cross(axis, v) + (1 - c) * dot(axis, v) * axis;
+    };
+    test::GpuSnippet gpu("sky");
+    const glm::dvec3 columns[3] = {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})};
+    for (int i = 0; i < 3; ++i)
+        gpu.frame().celestial[static_cast<std::size_t>(i)] =
+            glm::vec4(columns[0][i], columns[1][i], columns[2][i], velocity[i]);
+    gpu.frame().eye_sun_light.a = 1.1f;
+    const auto results = gpu.run(
+        std::string(kDirection) + "result = vec4(sky_catalogued(view, up), 0.0);", 360, 181);
+    std::vector<double> errors;
+    for (int y = 90; y <= 180; ++y) {
+        for (int x = 0; x < 360; x += 7) {
+            const glm::dvec3 view = direction(radians(x), radians(y - 90.0));
+            const double bent = 1.1 * 0.00029043 / (view.z + 0.0022149 / (view.z + 0.0765018));
+            const glm::dvec3 expected =
+                normalize(turned(normalize(view - bent * glm::dvec3(0, 0, 1))) - velocity);
+            errors.push_back(
+                distance(glm::dvec3(results[static_cast<std::size_t>(y * 360 + x)]), expected) /
+                kArcsecond_rad);
+        }
+    }
+    EXPECT_LT(worst(errors, "sky place in the catalogue [arcsec], GPU against double", 0.5), 0.5);
+}
+
+TEST(SkyStars, CellsAreThoseOfTheGenerator) {
+    // tools/sky/stars.cpp, StarLayout: an octahedron unfolded onto 96 x 96 cells.
+    const auto sign = [](double v) { return v < 0 ? -1.0 : 1.0; };
+    test::GpuSnippet gpu("sky");
+    const auto centres = gpu.run("result = vec4(sky_star_centre(ivec2(x, y)), 0.0);", 96, 96);
+    const auto cells = gpu.run(
+        "result = vec4(vec2(sky_star_cell(sky_star_centre(ivec2(x, y)))), 0.0, 0.0);", 96, 96);
+    std::vector<double> errors;
+    for (int y = 0; y < 96; ++y) {
+        for (int x = 0; x < 96; ++x) {
+            const glm::dvec2 p((2 * x + 1) / 96.0 - 1, (2 * y + 1) / 96.0 - 1);
+            glm::dvec3 centre(p, 1 - std::abs(p.x) - std::abs(p.y));
+            if (centre.z < 0) {
+                centre.x = (1 - std::abs(p.y)) * sign(p.x);
+                centre.y = (1 - std::abs(p.x)) * sign(p.y);
+            }
+            const auto at = static_cast<std::size_t>(y * 96 + x);
+            errors.push_back(distance(glm::dvec3(centres[at]), normalize(centre)) / kArcsecond_rad);
+            EXPECT_EQ(cells[at].x, x);
+            EXPECT_EQ(cells[at].y, y);
+        }
+    }
+    EXPECT_LT(worst(errors, "sky middle of a star's cell [arcsec], GPU against double", 0.2), 0.2);
+}
+
+TEST(SkyStars, BrightnessIsPogsonsAndColourOfLuminanceOne) {
+    test::GpuSnippet gpu("sky");
+    const auto results =
+        gpu.run("result = vec4(sky_star_colour(float(1 + 16 * y + x)), 0.0);", 16, 128);
+    std::vector<double> errors;
+    for (int y = 0; y < 128; ++y) {
+        for (int x = 0; x < 16; ++x) {
+            const double flux = std::pow(10, -0.4 * (0.0625 * y - 1.5)), b_v = 0.15 * x - 0.35;
+            const double red = 0.7829 + 0.3121 * b_v + 0.0325 * b_v * b_v;
+            const double blue = 1.567 - 0.9949 * b_v + 0.2023 * b_v * b_v;
+            const double green = (1 - 0.2126 * red - 0.0722 * blue) / 0.7152;
+            const glm::dvec3 found(results[static_cast<std::size_t>(y * 16 + x)]);
+            errors.push_back(distance(found / flux, glm::dvec3(red, green, blue)));
+        }
+    }
+    EXPECT_LT(worst(errors, "sky light of a star, relative, GPU against double", 1e-3), 1e-3);
+}
+
+TEST(SkyStars, AreOfTheSameSizeAllOverThePicture) {
+    // A star off the axis by this angle: the picture is scaled by 1 / cos^2 outwards and 1 / cos
+    // across, so that its area is 0.6^2 square pixels everywhere.
+    test::GpuSnippet gpu("sky");
+    gpu.frame().pixel_ray_dx = {0.001f, 0, 0, 0};
+    gpu.frame().pixel_ray_dy = {0, 0, 0.001f, 0};  // up is z, so the camera looks north
+    const auto results = gpu.run(
+        "float off = radians(0.5 * float(x));\n"
+        "result = vec4(1e6 * sky_star_spread(vec3(sin(off), cos(off), 0.0)));",
+        120, 1);
+    std::vector<double> errors;
+    for (int x = 0; x < 120; ++x)
+        errors.push_back(std::abs(results[static_cast<std::size_t>(x)].x -
+                                  0.36 * std::pow(std::cos(radians(0.5 * x)), 3)));
+    EXPECT_LT(worst(errors, "sky size of a star, GPU against double", 1e-3), 1e-3);
+}
+
 }  // namespace
 }  // namespace relevo

@@ -19,8 +19,10 @@ dem::Heightfield jacksboro() {
     return dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
 }
 
-/// Heights at the posts of a UTM grid of 30 m.
-dem::Heightfield field(int columns, int rows, const std::function<double(int, int)>& height_m) {
+/// Heights at the posts of a UTM grid.
+/// @param row_m  from row to row, to the north; columns are as far apart
+dem::Heightfield field(int columns, int rows, const std::function<double(int, int)>& height_m,
+                       double row_m = -30) {
     Array2d<float> heights(columns, rows);
     for (int y = 0; y < rows; ++y)
         for (int x = 0; x < columns; ++x)
@@ -28,7 +30,7 @@ dem::Heightfield field(int columns, int rows, const std::function<double(int, in
     dem::Description about;
     about.statistics = dem::statistics(heights);
     return {std::move(heights),
-            dem::Grid(columns, rows, {400000, 30, 0, 5000000, 0, -30},
+            dem::Grid(columns, rows, {400000, std::abs(row_m), 0, 5000000, 0, row_m},
                       geo::Crs::parse("EPSG:32631", "test")),
             about};
 }
@@ -95,7 +97,7 @@ glm::dvec2 blurred(const std::array<glm::dvec2, 3>& m, double blur) {
 }
 
 TEST(Vsm, BlurOnTheGpuIsTheReferences) {
-    constexpr int kSide = 96;
+    constexpr int kSide = 97;
     constexpr double kBlur = 0.3, kFloor_m = -700;
     const gl::Context context({.device = "software", .debug = true});
     std::mt19937 random(3);
@@ -106,9 +108,10 @@ TEST(Vsm, BlurOnTheGpuIsTheReferences) {
     depth.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
     depth.write(0, {0, 0, 0}, {kSide, kSide, 1}, std::as_bytes(std::span(depths)));
     const glm::vec4 plane(0, 6.5, 900, -800), weights(1 - kBlur, kBlur / 2, 0, 0);
-    const gl::Texture rows =
-        filtered("moments.frag.glsl", depth, {plane, {kFloor_m, 0, 0, 0}, weights});
-    const gl::Texture both = filtered("blur.frag.glsl", rows, {weights});
+    const glm::vec4 below(kFloor_m, 1.0f / kSide, 1.0f / kSide, 0);
+    gl::Texture rows = filtered("moments.frag.glsl", depth, {plane, below, weights});
+    rows.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+    const gl::Texture both = filtered("blur.frag.glsl", rows, {weights, below});
     std::vector<glm::vec2> found(kSide * kSide);
     both.read(0, std::as_writable_bytes(std::span(found)));
 
@@ -147,24 +150,50 @@ TEST(Vsm, ASlopeHasNoDeviationAndAnEdgeHas) {
 
 // ---- against rays
 
-TEST(Vsm, ShadowsAreThoseOfRaysOverTheSamePosts) {
-    const dem::Heightfield dem = jacksboro();
-    Drawn drawn(dem, test::scratch_dir("vsm_truth"));
+/// Suns (elevation and azimuth) over one DEM, drawn and marched.
+std::vector<Score> scores(const dem::Heightfield& dem, const std::string& scratch,
+                          const std::vector<glm::dvec2>& suns) {
+    Drawn drawn(dem, test::scratch_dir(scratch));
     const Truth truth(dem, drawn.ground().frame);
-    for (const auto& [elevation, azimuth] :
-         {std::pair{1.0, 315.0}, {2.0, 0.0}, {5.0, 135.0}, {10.0, 225.0}, {20.0, 90.0}}) {
-        const glm::dvec3 to_sun = direction(azimuth, elevation);
+    std::vector<Score> result;
+    for (const glm::dvec2& sun : suns) {
+        const glm::dvec3 to_sun = direction(sun.y, sun.x);
         const Truth::Mask mask = truth.cast(to_sun);
         const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
-        const Score s = score(truth, mask, lit, drawn.texel_m(), to_sun, drawn.spacing_m());
+        result.push_back(score(truth, mask, lit, drawn.texel_m(), to_sun, drawn.spacing_m()));
+        const Score& s = result.back();
         fmt::print(
             "[ shadow ] sun at {} degrees from {}: {:.1f} % shaded, balanced accuracy "
-            "{:.2f} %, {:.2f} % beyond two texels\n",
-            elevation, azimuth, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond);
+            "{:.2f} %, {:.2f} % beyond two texels, {:.2f} % of what is lit falsely shaded\n",
+            sun.x, sun.y, 100 * s.shaded_share, 100 * s.balanced, 100 * s.beyond,
+            100 * (1 - s.lit_right));
+    }
+    return result;
+}
+
+TEST(Vsm, ShadowsAreThoseOfRaysOverTheSamePosts) {
+    for (const Score& s :
+         scores(jacksboro(), "vsm_truth", {{1, 315}, {2, 0}, {5, 135}, {10, 225}, {20, 90}})) {
         EXPECT_GT(s.shaded_share, 0.01);
         EXPECT_GE(s.balanced, 0.95);
         EXPECT_GE(s.beyond, 0.99);
     }
+}
+
+TEST(Vsm, ShadowsOfAHighSunOverSteepGroundAreThoseOfRays) {
+    for (const Score& s :
+         scores(times_as_high(jacksboro(), 4), "vsm_steep", {{30, 225}, {40, 45}})) {
+        EXPECT_GT(s.shaded_share, 0.05);
+        EXPECT_GE(s.balanced, 0.95);
+        EXPECT_GE(s.beyond, 0.99);
+    }
+}
+
+TEST(Vsm, AHighSunShadesNothingThatItShinesOn) {
+    for (const double factor : {1.0, 2.0})
+        for (const Score& s :
+             scores(times_as_high(jacksboro(), factor), "vsm_noon", {{60, 45}, {60, 225}}))
+            EXPECT_GE(s.lit_right, 0.999);
 }
 
 TEST(Vsm, TruthOfAWallIsItsTangent) {
@@ -177,6 +206,18 @@ TEST(Vsm, TruthOfAWallIsItsTangent) {
     for (int x = 0; x < 49; ++x)
         EXPECT_EQ(mask.shaded.at(x, 20) != 0, 50 - x < reach_posts) << x;
     EXPECT_FALSE(mask.shaded.at(55, 20));
+}
+
+TEST(Vsm, TruthOfASteepSlopeIsThatItsUpperPartShadesNothingAwayFromTheSun) {
+    // A slope of 45 degrees that the sun, 60 degrees high, shines on from its foot.
+    const dem::Heightfield dem = field(41, 41, [](int x, int) { return 30.0 * x; });
+    const render::Ground ground = render::make_ground(dem);
+    const Truth truth(dem, ground.frame);
+    const Truth::Mask mask = truth.cast(direction(270, 60));
+    for (int x = 1; x < 40; ++x) {
+        EXPECT_TRUE(mask.facing.at(x, 20));
+        EXPECT_FALSE(mask.shaded.at(x, 20)) << x;
+    }
 }
 
 TEST(Vsm, TheRimAndHolesCastNothing) {
@@ -195,6 +236,61 @@ TEST(Vsm, TheRimAndHolesCastNothing) {
                     shaded += lit.at(x, y) < 0.98f;
             EXPECT_EQ(shaded, 0) << elevation << " degrees from " << azimuth;
         }
+    }
+}
+
+TEST(Vsm, TheRimOfALargeDemIsLit) {
+    // 480 km of level ground: the round Earth has its rim 4500 m below its middle.
+    const dem::Heightfield dem = field(
+        97, 97, [](int, int) { return 500.0; }, -5000);
+    Drawn drawn(dem, test::scratch_dir("vsm_large"));
+    const Truth truth(dem, drawn.ground().frame);
+    for (const double elevation : {20.0, 50.0}) {
+        for (const double azimuth : {0.0, 100.0, 225.0}) {
+            const Array2d<float> lit = drawn.at_posts(direction(azimuth, elevation), truth.posts());
+            EXPECT_GT(*std::min_element(lit.begin(), lit.end()), 0.98f)
+                << elevation << " degrees from " << azimuth;
+        }
+    }
+}
+
+TEST(Vsm, GroundOfThePicturesTrianglesAloneIsNotInItsOwnShadow) {
+    // Normals per vertex leave no place for columns and rows, and so no way to the DEM's own
+    // ground.
+    const dem::Heightfield dem = jacksboro();
+    Drawn drawn(dem, test::scratch_dir("vsm_vertex"), {"terrain.normal=vertex"}, 8);
+    const Truth truth(dem, drawn.ground().frame);
+    for (const double azimuth : {60.0, 200.0}) {
+        const Array2d<float> lit = drawn.at_posts(direction(azimuth, 50), truth.posts());
+        const auto shaded = std::count_if(lit.begin(), lit.end(), [](float l) { return l < 0.5f; });
+        EXPECT_LT(static_cast<double>(shaded), 0.001 * static_cast<double>(lit.size()));
+    }
+}
+
+TEST(Vsm, ShadowsAreTheSameWhicheverWayTheRowsRun) {
+    // A pyramid 600 m high.
+    const auto height_m = [](int x, int y) {
+        return std::max(0.0, 600 - 20.0 * std::max(std::abs(x - 60), std::abs(y - 40)));
+    };
+    std::array<Array2d<float>, 2> lit;
+    for (const double azimuth : {30.0, 160.0}) {
+        for (const bool to_south : {true, false}) {
+            const dem::Heightfield dem = field(121, 81, height_m, to_south ? -30 : 30);
+            Drawn drawn(dem, test::scratch_dir("vsm_rows"));
+            lit[to_south] =
+                drawn.at_posts(direction(azimuth, 10), Truth(dem, drawn.ground().frame).posts());
+        }
+        int shaded = 0, different = 0;
+        for (int y = 0; y < 81; ++y) {
+            for (int x = 0; x < 121; ++x) {
+                const bool here = lit[1].at(x, y) < 0.5f;
+                shaded += here;
+                different += here != (lit[0].at(x, 80 - y) < 0.5f);
+            }
+        }
+        EXPECT_GT(shaded, 1000);
+        // Quads are cut along the other diagonal.
+        EXPECT_LT(different, 0.03 * shaded) << azimuth;
     }
 }
 

@@ -26,6 +26,14 @@
 /// Shadows computed twice: by marching along rays in double precision, and by drawing pictures.
 namespace relevo::shadow {
 
+/// Ground as steep as a gorge's out of hills.
+inline dem::Heightfield times_as_high(dem::Heightfield dem, double factor) {
+    for (float& height : dem.height_m)
+        height = static_cast<float>(factor * height);
+    dem.about.statistics = dem::statistics(dem.height_m);
+    return dem;
+}
+
 /// Cast shadows of a sun at every post, from the posts alone.
 ///
 /// The plane through a post that holds the sun's rays and is upright at the DEM's centre cuts the
@@ -115,6 +123,7 @@ class Truth {
         };
         for (const int step : {1, -1}) {
             int place = std::min(low[Across], size[Across] - 2);
+            const double own = rise * from.z - sine * from.y;  // level, towards the sun
             // From the first line beyond the point.
             for (int line = (step > 0 ? low : high)[Along] + step; line >= 0 && line < size[Along];
                  line += step) {
@@ -128,9 +137,10 @@ class Truth {
                 const double f = (from.x - a.x) / (b.x - a.x);
                 if (!(f >= 0 && f <= 1)) break;  // left the DEM, or never meets the plane
                 const glm::dvec3 cut = a + f * (b - a);
-                if (cut.z < from.z - 1e-6) break;  // away from the sun
+                const double beyond = rise * cut.z - sine * cut.y - own;
+                if (beyond < -1e-6) break;  // away from the sun
                 if (std::isnan(cut.y)) continue;
-                if (cut.y > from.y && cut.z > from.z + 1e-6) return true;
+                if (cut.y > from.y && beyond > 1e-6) return true;
                 // Where the ray is above all ground there is nothing left to meet.
                 if (rise * from.y + sine * cut.z > highest_m_ + 1) break;
             }
