@@ -334,7 +334,7 @@ TEST(GroundFiles, AreTheSameWhateverTheThreads) {
         EXPECT_EQ(bytes == read_text(dir / "all" / relative, "test"), true) << relative;
         EXPECT_EQ(bytes == read_text(dir / "again" / relative, "test"), true) << relative;
     }
-    EXPECT_EQ(files, 10);
+    EXPECT_EQ(files, 11);
 }
 
 TEST(GroundFiles, AnUnknownGroundIsNamed) {

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <glm/gtc/packing.hpp>
+
 #include "patches.h"
 #include "support/support.h"
 
@@ -30,6 +32,34 @@ TEST(Patches, TonesAndHueKeepTheirMeanOnEveryLevel) {
                 << "channel " << channel << ", level " << level;
         }
     }
+}
+
+TEST(Regions, AreAsThePatchesAndKeepAMeanOfZeroOnEveryLevel) {
+    const image::TextureData regions =
+        image::read_ktx(test::build_dir() / "share/relevo/data/noise/regions.ktx2");
+    const auto at = [&](int level, std::size_t i) {
+        const auto bytes = regions.level(level);
+        return glm::unpackHalf1x16(static_cast<std::uint16_t>(
+            std::to_integer<int>(bytes[2 * i]) | std::to_integer<int>(bytes[2 * i + 1]) << 8));
+    };
+    for (int level = 0; level < regions.levels(); ++level) {
+        const std::size_t values = regions.level(level).size() / 2;
+        for (const std::size_t channel : {0, 1, 3}) {
+            double sum = 0;
+            for (std::size_t i = channel; i < values; i += 4)
+                sum += at(level, i);
+            EXPECT_NEAR(sum / static_cast<double>(values / 4), 0, 0.002)
+                << "channel " << channel << ", level " << level;
+        }
+    }
+    // Texel by texel, where the patches' next level is as large: the rest is what finer noise
+    // averages to.
+    const auto patch = patches().level(1);
+    ASSERT_EQ(patch.size(), regions.level(0).size() / 2);
+    double difference = 0;
+    for (std::size_t i = 0; i < patch.size(); i += 4)
+        difference += std::abs(std::to_integer<int>(patch[i]) / 255.0 - 0.5 - at(0, i));
+    EXPECT_LT(difference / (static_cast<double>(patch.size()) / 4), 0.03);
 }
 
 TEST(Patches, ShrubsCoverAFifthToTwoFifths) {
