@@ -33,11 +33,16 @@ std::string command_of(const CLI::App* app) {
 void check_verb(const CLI::App& app, std::span<const char* const> words) {
     const std::string word = words.empty() ? "" : words.front();
     const std::vector<const CLI::App*> verbs = app.get_subcommands({});
-    if (word.empty() || word[0] == '-' || verbs.empty()) return;
+    if (word.starts_with('-') || verbs.empty()) return;
     std::vector<std::string> names;
     for (const CLI::App* verb : verbs) {
         if (verb->get_name() == word) return check_verb(*verb, words.subspan(1));
         names.push_back(verb->get_name());
+    }
+    if (word.empty()) {
+        if (app.get_require_subcommand_min() == 0) return;
+        relevo::bad_usage(fmt::format("{}: which command? There are {}; each has --help",
+                                      app.get_name(), fmt::join(names, ", ")));
     }
     const std::optional<std::string> near = relevo::nearest(word, names);
     relevo::bad_usage(fmt::format("{}: no such command; {}", word,

@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 DAWN = "--eye 36.40,-84.40,900 --heading 100 --pitch -1 --fov 30 --time 2026-03-20T08:05-04:00"
 ROCK = "--set layering.limits=metres --set layering.grass_rock_m=-100,0"
 EDGE = f"--eye 36.3718,-84.3303,12agl --heading 20 --pitch -22 --fov 30 --time 2026-06-21T06:55-04:00 {ROCK} " \
-       "--set bump.strength=3"
+       "--set bump.strength=3 --disable vsm"
 DISC = "--eye 36.35,-84.38,1000 --heading 90 --pitch 2 --fov 12 --time 2026-03-20T07:53-04:00 --exposure -1.5"
 WIDE = "--eye 36.35,-84.38,1000 --heading 95 --pitch 8 --fov 60 --time 2026-03-20T08:05-04:00"
 GROUND = f"--eye 36.3513,-84.2290,2agl --heading 75 --pitch -10 --fov 50 --time 2026-06-21T08:40-04:00 {ROCK}"

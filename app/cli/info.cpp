@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -78,9 +79,12 @@ void add_info(CLI::App& app) {
     arguments->time.add_to(verb);
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");
     verb.callback([arguments] {
-        const sun::Instant utc =
-            arguments->time.given() ? arguments->time.parse().utc : sun::Instant::now();
+        std::optional<sun::ParsedTime> given_time;
+        if (arguments->time.given() && !arguments->time.needs_dem())
+            given_time = arguments->time.parse();
         const dem::Heightfield field = dem::load(arguments->dem.paths, arguments->dem.options);
+        if (arguments->time.given() && !given_time) given_time = arguments->time.parse_over(field);
+        const sun::Instant utc = given_time ? given_time->utc : sun::Instant::now();
         const dem::Summary summary = dem::summarize(field);
         const sun::Position sun = sun::position(utc, summary.center);
         const sun::Refraction air = air_over(summary);

@@ -69,7 +69,7 @@ void DemArguments::add_to(CLI::App& verb) {
 void TimeArguments::add_to(CLI::App& verb) {
     verb.add_option("--time", time,
                     "Moment: 2026-06-21T18:30+02:00, or without offset together with --tz; or an "
-                    "event at a place, sunset-30min@46.55,8.56, together with --date and --tz");
+                    "event, sunset-30min or sunrise@46.55,8.56, together with --date and --tz");
     verb.add_option("--date", date, "Day of the event in --time: 2026-06-21");
     verb.add_option("--tz", zone, "Time zone: Europe/Zurich, +05:30");
 }
@@ -86,10 +86,13 @@ bool TimeArguments::given() const {
 }
 
 bool TimeArguments::needs_dem() const {
-    return sun::is_event_time(time) && !sun::parse_event_time(time).event;
+    if (!sun::is_event_time(time)) return false;
+    const sun::EventTime event = sun::parse_event_time(time);
+    return !event.event || !event.place;
 }
 
-sun::ParsedTime TimeArguments::parse(const std::function<const dem::Heightfield&()>& dem) const {
+sun::ParsedTime TimeArguments::parse(const std::function<const dem::Heightfield&()>& dem,
+                                     const std::optional<geo::PlaceText>& here) const {
     std::optional<sun::Zone> in_zone;
     if (!zone.empty()) in_zone = sun::Zone::named(zone);
     std::optional<sun::Date> on_date;
@@ -100,7 +103,7 @@ sun::ParsedTime TimeArguments::parse(const std::function<const dem::Heightfield&
                 "day is written 2026-06-21T18:30");
         on_date = sun::parse_date(date);
     }
-    sun::ParsedTime parsed = light::parse_time(time, on_date, in_zone, dem);
+    sun::ParsedTime parsed = light::parse_time(time, on_date, in_zone, dem, here);
     if (!parsed.note.empty()) log::info(parsed.note);
     return parsed;
 }

@@ -35,12 +35,21 @@ struct TimeArguments {
     void add_to(CLI::App& verb);
     /// @throws Error (Usage) for --date or --tz without --time, which would say nothing
     bool given() const;
-    /// First and last light hang on the terrain; all other times are known without it.
+    /// First and last light hang on the terrain, and events without a place happen in its middle;
+    /// all other times are known without it.
     bool needs_dem() const;
     /// Tells the user where a wall time was skipped or came twice.
-    /// @param dem  called once where the time needs it; empty: there is none
     /// @throws Error (Usage, BadInput)
-    sun::ParsedTime parse(const std::function<const dem::Heightfield&()>& dem = {}) const;
+    sun::ParsedTime parse() const { return parse({}); }
+    sun::ParsedTime parse_over(const dem::Heightfield& dem) const {
+        return parse([&]() -> const dem::Heightfield& { return dem; });
+    }
+    /// Events without a place happen there.
+    sun::ParsedTime parse_at(const geo::PlaceText& here) const { return parse({}, here); }
+
+  private:
+    sun::ParsedTime parse(const std::function<const dem::Heightfield&()>& dem,
+                          const std::optional<geo::PlaceText>& here = {}) const;
 };
 
 /// --refraction and --no-refraction.

@@ -43,8 +43,4 @@ void Buffer::bind_uniform(unsigned binding) const {
     glBindBufferBase(GL_UNIFORM_BUFFER, binding, name());
 }
 
-void Buffer::bind_storage(unsigned binding) const {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name());
-}
-
 }  // namespace relevo::gl

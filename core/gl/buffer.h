@@ -28,7 +28,6 @@ class Buffer {
     void read(std::span<std::byte> bytes, std::size_t offset = 0) const;
 
     void bind_uniform(unsigned binding) const;  ///< as a uniform block
-    void bind_storage(unsigned binding) const;  ///< as a shader storage block
 
     std::size_t size() const { return size_; }
     unsigned name() const { return handle_.name(); }

@@ -79,10 +79,4 @@ void Framebuffer::clear_stencil(int value) const {
     glClearNamedFramebufferiv(handle_.name(), GL_STENCIL, 0, &value);
 }
 
-void Framebuffer::resolve_to(const Framebuffer& target) const {
-    glBlitNamedFramebuffer(handle_.name(), target.handle_.name(), 0, 0, extent_.width,
-                           extent_.height, 0, 0, extent_.width, extent_.height, GL_COLOR_BUFFER_BIT,
-                           GL_NEAREST);
-}
-
 }  // namespace relevo::gl

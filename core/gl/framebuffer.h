@@ -33,8 +33,6 @@ class Framebuffer {
     void clear_colour_uint(int index, glm::uvec4 value) const;
     void clear_depth(float value) const;
     void clear_stencil(int value) const;
-    /// Averages the samples of colour target 0 into `target`'s, pixel for pixel.
-    void resolve_to(const Framebuffer& target) const;
 
     Extent extent() const { return extent_; }
 

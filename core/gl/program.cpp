@@ -76,14 +76,4 @@ void Program::use() const {
     glUseProgram(name());
 }
 
-int Program::block_offset(std::string_view member) const {
-    const std::string text(member);
-    const GLuint index = glGetProgramResourceIndex(name(), GL_UNIFORM, text.c_str());
-    if (index == GL_INVALID_INDEX) return -1;
-    const GLenum property = GL_OFFSET;
-    GLint offset = -1;
-    glGetProgramResourceiv(name(), GL_UNIFORM, index, 1, &property, 1, nullptr, &offset);
-    return offset;
-}
-
 }  // namespace relevo::gl

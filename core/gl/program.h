@@ -26,9 +26,6 @@ class Program {
 
     void use() const;
 
-    /// Byte offset of a member in a uniform block, -1 if the program does not use it.
-    int block_offset(std::string_view member) const;
-
     unsigned name() const { return handle_.name(); }
 
   private:

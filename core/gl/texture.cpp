@@ -63,19 +63,15 @@ GLenum target(TextureKind kind) {
             return GL_TEXTURE_2D_ARRAY;
         case TextureKind::D3:
             return GL_TEXTURE_3D;
-        case TextureKind::Cube:
-            return GL_TEXTURE_CUBE_MAP;
-        case TextureKind::D2Multisample:
-            return GL_TEXTURE_2D_MULTISAMPLE;
     }
     return GL_TEXTURE_2D;
 }
 
 /// GL refuses memory in silence, and the first to notice would be a framebuffer.
-void check_memory(Format format, Extent extent, int samples, std::string_view label) {
+void check_memory(Format format, Extent extent, std::string_view label) {
     if (glGetError() != GL_OUT_OF_MEMORY) return;
-    const double mib = double{1.0 / (1 << 20)} * info(format).bytes * samples * extent.width *
-                       extent.height * extent.depth;
+    const double mib =
+        double{1.0 / (1 << 20)} * info(format).bytes * extent.width * extent.height * extent.depth;
     failed(
         fmt::format("gl::Texture: {}: the device has no {:.0f} MiB for {} x {} x {} texels; "
                     "take a smaller picture or a device with more",
@@ -111,26 +107,12 @@ Texture::Texture(TextureKind kind, Format format, Extent extent, int levels, std
       format_(format),
       extent_(extent),
       levels_(levels > 0 ? levels : full_chain(kind, extent)) {
-    assert(kind != TextureKind::D2Multisample);
     if (kind == TextureKind::D2Array || kind == TextureKind::D3)
         glTextureStorage3D(name(), levels_, info(format).internal, extent.width, extent.height,
                            extent.depth);
     else
         glTextureStorage2D(name(), levels_, info(format).internal, extent.width, extent.height);
-    check_memory(format, extent, 1, label);
-}
-
-Texture Texture::multisampled(Format format, Extent extent, int samples, std::string_view label) {
-    Texture texture;
-    texture.handle_ = Handle<&Texture::destroy>(create(TextureKind::D2Multisample, label));
-    texture.kind_ = TextureKind::D2Multisample;
-    texture.format_ = format;
-    texture.extent_ = extent;
-    texture.samples_ = samples;
-    glTextureStorage2DMultisample(texture.name(), samples, info(format).internal, extent.width,
-                                  extent.height, GL_TRUE);
-    check_memory(format, extent, samples, label);
-    return texture;
+    check_memory(format, extent, label);
 }
 
 void Texture::write(int level, Extent offset, Extent extent, std::span<const std::byte> texels) {

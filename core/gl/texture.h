@@ -30,7 +30,7 @@ enum class Format {
 /// Bytes of one texel as the host hands it over: halves travel as halves.
 int texel_bytes(Format format);
 
-enum class TextureKind { D2, D2Array, D3, Cube, D2Multisample };
+enum class TextureKind { D2, D2Array, D3 };
 enum class Wrap { Clamp, Repeat };
 enum class Filter { Nearest, Linear, Mipmap };
 
@@ -46,8 +46,6 @@ class Texture {
     /// @param levels  of the mip chain; 0 for the whole chain
     /// @throws Error (Failed) where the device has no memory for it
     Texture(TextureKind kind, Format format, Extent extent, int levels, std::string_view label);
-    /// A multisampled target of `samples` samples a pixel. @throws Error as above
-    static Texture multisampled(Format format, Extent extent, int samples, std::string_view label);
 
     /// Replaces a box of one level. Texels are tightly packed, rows in the order of t.
     void write(int level, Extent offset, Extent extent, std::span<const std::byte> texels);
@@ -66,7 +64,6 @@ class Texture {
     Format format() const { return format_; }
     Extent extent() const { return extent_; }
     int levels() const { return levels_; }
-    int samples() const { return samples_; }
     unsigned name() const { return handle_.name(); }
 
   private:
@@ -76,7 +73,6 @@ class Texture {
     Format format_ = Format::RGBA8;
     Extent extent_;
     int levels_ = 1;
-    int samples_ = 1;
 };
 
 }  // namespace relevo::gl

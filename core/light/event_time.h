@@ -12,11 +12,13 @@ namespace relevo::light {
 /// Reads a moment in any form there is: a time of day (sun::parse_time), an event of the sun
 /// (sun::parse_event_time), or first or last direct light at a place on a DEM.
 /// @param date  the local day, for events that do not name theirs
-/// @param dem   called once where the terrain matters; empty: there is none
+/// @param dem   called where the terrain or its place matters; empty: there is none
+/// @param here  the place of events that do not name theirs; none: the middle of the DEM
 /// @throws Error (BadInput) as those two, where first or last light is asked for without a DEM,
 ///     and where the sun does not reach the place that day
 sun::ParsedTime parse_time(std::string_view text, const std::optional<sun::Date>& date,
                            const std::optional<sun::Zone>& zone,
-                           const std::function<const dem::Heightfield&()>& dem = {});
+                           const std::function<const dem::Heightfield&()>& dem = {},
+                           const std::optional<geo::PlaceText>& here = {});
 
 }  // namespace relevo::light

@@ -24,8 +24,10 @@ glm::dvec3 position_of(const Standpoint& standpoint, std::string_view option,
     if (standpoint.above_ground) {
         const double ground_m = ground_height_m(place);
         if (std::isnan(ground_m))
-            bad_input(fmt::format("{}: {}: the DEM has no ground there; give a height without agl",
-                                  option, geo::degrees_text(place)));
+            bad_input(fmt::format(
+                "{}: {}: outside of the DEM or in a hole of it, no ground to count "
+                "the height from; give one above the DEM's zero, as in {:.10g},{:.10g},500",
+                option, geo::degrees_text(place), degrees(place.lat_rad), degrees(place.lon_rad)));
         place.height_m += ground_m * exaggeration;
     } else {
         place.height_m *= exaggeration;

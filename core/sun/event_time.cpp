@@ -71,10 +71,8 @@ EventTime parse_event_time(std::string_view text) {
     EventTime time;
     time.text = trimmed(text);
     std::string_view rest = time.text;
-    const std::size_t at = rest.find('@');
-    if (at == std::string_view::npos)
-        refuse(time.text, "no place, expected one after an @ such as sunrise@46.55,8.56");
-    time.place = geo::parse_place(rest.substr(at + 1), "--time");
+    if (const std::size_t at = rest.find('@'); at != std::string_view::npos)
+        time.place = geo::parse_place(rest.substr(at + 1), "--time");
 
     FieldReader reader(time.text, kWho);
     if (const auto date = reader.date()) {
@@ -140,8 +138,10 @@ ParsedTime resolve(const EventTime& time, const std::optional<Date>& given,
                    const std::optional<Zone>& zone) {
     const TimeSpan span = day_of(time, given, zone);
     if (!time.event) refuse(time.text, "first and last light hang on the terrain; expected a DEM");
+    if (!time.place)
+        refuse(time.text, "no place, expected one after an @ such as sunrise@46.55,8.56");
     const Day day =
-        day_events(PositionTable(span.begin, span.end), span, Observer(time.place.place), {});
+        day_events(PositionTable(span.begin, span.end), span, Observer(time.place->place), {});
     const auto utc = day.first(*time.event);
     if (!utc) {
         const Crossing crossing = [&] {

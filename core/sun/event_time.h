@@ -11,23 +11,23 @@
 namespace relevo::sun {
 
 /// A moment named by what the sun does at a place: "sunrise@46.55,8.56",
-/// "2026-06-21 sunset-30min@46.55,8.56", "first-light+1h@46.55,8.56".
+/// "2026-06-21 sunset-30min@46.55,8.56", "first-light+1h"; the last at the place at hand.
 struct EventTime {
     std::optional<Date> date;        ///< where the text begins with one
     std::optional<EventKind> event;  ///< none: first or last light, which needs the terrain
     bool last = false;               ///< of the latter two, last light
     double offset_s = 0;             ///< to be added
-    geo::PlaceText place;
+    std::optional<geo::PlaceText> place;
     std::string text;  ///< as it was given, for messages
 };
 
 /// "1h30min", "45s", "90min" in seconds; nothing where it is no duration.
 std::optional<double> parse_duration_s(std::string_view text);
 
-/// Whether a time is given so: by an `@`, or by an event whose place is missing.
+/// Whether a time is given so: by an `@` or the name of an event.
 bool is_event_time(std::string_view text);
 
-/// Reads `[DATE ]EVENT[+OFFSET|-OFFSET]@LAT,LON[,H]`. Events: sunrise, sunset, noon (transit),
+/// Reads `[DATE ]EVENT[+OFFSET|-OFFSET][@LAT,LON[,H]]`. Events: sunrise, sunset, noon (transit),
 /// midnight (lower transit), civil-dawn, civil-dusk, nautical-dawn, nautical-dusk,
 /// astronomical-dawn, astronomical-dusk, first-light, last-light. Offsets: 30min, 1h30min, 45s.
 /// Between date and event stands a blank or a T.
@@ -41,7 +41,8 @@ TimeSpan day_of(const EventTime& time, const std::optional<Date>& given,
                 const std::optional<Zone>& zone);
 
 /// The moment of an event other than first and last light.
-/// @throws Error (BadInput) as day_of, and where the event does not happen on that day
+/// @throws Error (BadInput) as day_of, where there is no place, and where the event does not happen
+///     on that day
 ParsedTime resolve(const EventTime& time, const std::optional<Date>& given,
                    const std::optional<Zone>& zone);
 

@@ -51,6 +51,14 @@ Result relevo(const std::vector<std::string>& arguments,
     return run(build_dir() / "bin/relevo", arguments, environment);
 }
 
+void expect_failure(const std::vector<std::string>& arguments, int status,
+                    const std::string& message) {
+    const Result result = relevo(arguments);
+    EXPECT_EQ(result.status, status) << result.err;
+    EXPECT_EQ(result.err, "relevo: error: " + message + "\n");
+    EXPECT_EQ(result.out, "");
+}
+
 std::string bundled_dem() {
     return (source_dir() / "data/dem/jacksboro.tif").string();
 }

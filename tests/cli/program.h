@@ -23,6 +23,11 @@ Result run(const std::filesystem::path& program, const std::vector<std::string>&
 Result relevo(const std::vector<std::string>& arguments,
               const std::vector<std::string>& environment = {});
 
+/// Expects that a run of `relevo` fails with a status and exactly this message, and says nothing
+/// else.
+void expect_failure(const std::vector<std::string>& arguments, int status,
+                    const std::string& message);
+
 /// The DEM that comes along.
 std::string bundled_dem();
 

@@ -18,13 +18,10 @@ std::string out_png() {
     return (dir() / "out.png").string();
 }
 
-/// Status and whole message of a run that fails, and that nothing was written.
-void expect_failure(const std::vector<std::string>& arguments, int status,
-                    const std::string& message) {
-    const Result run = relevo(arguments);
-    EXPECT_EQ(run.status, status) << run.err;
-    EXPECT_EQ(run.err, "relevo: error: " + message + "\n");
-    EXPECT_EQ(run.out, "");
+/// As expect_failure, and no picture is there.
+void expect_no_picture(const std::vector<std::string>& arguments, int status,
+                       const std::string& message) {
+    expect_failure(arguments, status, message);
     EXPECT_FALSE(std::filesystem::exists(out_png()));
 }
 
@@ -56,9 +53,9 @@ TEST(BadDem, EachHasItsMessage) {
                "size, expected at least 2 x 2 posts but got 1 x 1"},
           Case{written("one_row.tif", one_row),
                "size, expected at least 2 x 2 posts but got 6 x 1"}}) {
-        expect_failure({"capture", c.path, "-o", out_png()}, 3,
-                       "dem::load: " + c.path + ": " + c.message);
-        expect_failure({"info", c.path}, 3, "dem::load: " + c.path + ": " + c.message);
+        expect_no_picture({"capture", c.path, "-o", out_png()}, 3,
+                          "dem::load: " + c.path + ": " + c.message);
+        expect_no_picture({"info", c.path}, 3, "dem::load: " + c.path + ": " + c.message);
     }
     const Result run = relevo({"capture", cut, "-o", out_png()});
     EXPECT_EQ(run.status, 3);
@@ -72,28 +69,35 @@ TEST(BadTime, EachHasItsMessage) {
         arguments.insert(arguments.end(), time.begin(), time.end());
         return arguments;
     };
-    expect_failure(
+    expect_no_picture(
         capture_at({"--time", "2026-06-21T18:30"}), 3,
         "sun::parse_time: 2026-06-21T18:30: no time zone; write 2026-06-21T18:30Z for UTC or "
         "2026-06-21T18:30+02:00, or pass --tz Europe/Zurich");
-    expect_failure(capture_at({"--time", "2026-06-21T18:30", "--tz", "Europe/Zurick"}), 3,
-                   "sun::Zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
-    expect_failure(capture_at({"--time", "sunset-30min", "--date", "2026-06-21", "--tz", "UTC"}), 3,
-                   "sun::parse_event_time: sunset-30min: no place, expected one after an @ such as "
-                   "sunrise@46.55,8.56");
+    expect_no_picture(capture_at({"--time", "2026-06-21T18:30", "--tz", "Europe/Zurick"}), 3,
+                      "sun::Zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
     // Without --time they would be left out of account, and the picture be of another day.
-    expect_failure(capture_at({"--date", "2026-12-21"}), 2,
-                   "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
-                   "day is written --time 2026-12-21T18:30");
-    expect_failure(capture_at({"--tz", "Europe/Zurich"}), 2,
-                   "--tz: goes with --time, such as --time 2026-06-21T18:30");
+    expect_no_picture(capture_at({"--date", "2026-12-21"}), 2,
+                      "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
+                      "day is written --time 2026-12-21T18:30");
+    expect_no_picture(capture_at({"--tz", "Europe/Zurich"}), 2,
+                      "--tz: goes with --time, such as --time 2026-06-21T18:30");
 }
 
 TEST(BadPlace, Latitude91) {
-    expect_failure(
+    expect_no_picture(
         {"sun", "position", "--at", "91,10", "--time", "2026-06-21T18:30Z"}, 2,
         "--at: 91,10: latitude, expected -90 to 90 degrees but got 91; latitude comes first, "
         "perhaps 10,91");
+}
+
+TEST(BadPlace, AnEyeWithoutGroundUnderIt) {
+    const Result run = relevo({"-q", "capture", bundled_dem(), "-o", out_png(), "--eye", "10.5,7"});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_EQ(run.err,
+              "relevo: error: --eye: 10.50000 N 7.00000 E: outside of the DEM or in a hole of it, "
+              "no ground to count the height from; give one above the DEM's zero, as in "
+              "10.5,7,500\n");
+    EXPECT_FALSE(std::filesystem::exists(out_png()));
 }
 
 TEST(BadEffect, EachHasItsMessage) {
@@ -107,30 +111,30 @@ TEST(BadEffect, EachHasItsMessage) {
     EXPECT_TRUE(
         unknown.err.starts_with("relevo: error: effect::select: xyzzy: no such plugin; there are "))
         << unknown.err;
-    expect_failure(
+    expect_no_picture(
         with({"--set", "terrain.norm=vertex"}), 3,
         "shader::ParamStore: terrain.norm: no such parameter; did you mean terrain.normal?");
-    expect_failure(
+    expect_no_picture(
         with({"--set", "terrain.normal=7"}), 3,
         "shader::parse_value: terrain.normal: expected one of fragment, vertex but got \"7\"");
-    expect_failure(with({"--set", "terrain.normal"}), 2,
-                   "--set: expected PLUGIN.PARAMETER=VALUE but got \"terrain.normal\"");
+    expect_no_picture(with({"--set", "terrain.normal"}), 2,
+                      "--set: expected PLUGIN.PARAMETER=VALUE but got \"terrain.normal\"");
 }
 
 TEST(BadOutput, EachHasItsMessage) {
     const std::string nowhere = (dir() / "none" / "a.png").string();
-    expect_failure({"capture", bundled_dem(), "-o", nowhere}, 3,
-                   "image: " + nowhere + ": the folder " + (dir() / "none").string() +
-                       " does not exist; make it first");
+    expect_no_picture({"capture", bundled_dem(), "-o", nowhere}, 3,
+                      "image: " + nowhere + ": the folder " + (dir() / "none").string() +
+                          " does not exist; make it first");
     const std::string there = (dir() / "there.png").string();
     std::ofstream(there) << "precious";
-    expect_failure({"capture", bundled_dem(), "-o", there}, 3,
-                   "image: " + there + ": exists; pass --overwrite to replace it");
+    expect_no_picture({"capture", bundled_dem(), "-o", there}, 3,
+                      "image: " + there + ": exists; pass --overwrite to replace it");
     std::string kept;
     std::ifstream(there) >> kept;
     EXPECT_EQ(kept, "precious");
-    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--size", "0x10"}, 2,
-                   "--size: expected WIDTHxHEIGHT, each 1 to 16384, but got \"0x10\"");
+    expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--size", "0x10"}, 2,
+                      "--size: expected WIDTHxHEIGHT, each 1 to 16384, but got \"0x10\"");
 }
 
 TEST(BadDevice, NoneIsExitFour) {
@@ -153,20 +157,23 @@ TEST(BadDevice, AMachineWithoutAnyDriverSaysWhatToInstall) {
 }
 
 TEST(BadUsage, EachHasItsMessage) {
-    expect_failure({"captur"}, 2, "captur: no such command; did you mean capture?");
-    expect_failure({"sun", "carpt"}, 2, "carpt: no such command; did you mean carpet?");
-    expect_failure({"plugins", "x"}, 2, "x: no such command; there are list, info");
-    expect_failure({"capture"}, 2, "DEM is required; see relevo capture --help");
-    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--fov", "500"}, 2,
-                   "--fov: expected 0.1 to 170 but got 500; see relevo capture --help");
-    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--foo"}, 2,
-                   "The following argument was not expected: --foo; see relevo capture --help");
-    expect_failure(
+    expect_no_picture({"captur"}, 2, "captur: no such command; did you mean capture?");
+    expect_no_picture({"sun", "carpt"}, 2, "carpt: no such command; did you mean carpet?");
+    expect_no_picture(
+        {"sun"}, 2,
+        "sun: which command? There are position, day, horizon, carpet, when; each has --help");
+    expect_no_picture({"plugins", "x"}, 2, "x: no such command; there are list, info");
+    expect_no_picture({"capture"}, 2, "DEM is required; see relevo capture --help");
+    expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--fov", "500"}, 2,
+                      "--fov: expected 0.1 to 170 but got 500; see relevo capture --help");
+    expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--foo"}, 2,
+                      "The following argument was not expected: --foo; see relevo capture --help");
+    expect_no_picture(
         {"capture", bundled_dem(), "-o", out_png(), "--view", "az=10,tilt=3"}, 2,
         "--view: az=10,tilt=3: expected az=DEG, el=DEG or zoom=FACTOR but got \"tilt=3\"");
-    expect_failure({"capture", bundled_dem(), "-o", out_png(), "--heading", "10"}, 2,
-                   "--look-at, --heading and --pitch need --eye");
-    expect_failure(
+    expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--heading", "10"}, 2,
+                      "--look-at, --heading and --pitch need --eye");
+    expect_no_picture(
         {"capture", bundled_dem(), "-o", out_png(), "--eye", "36.3,-84.2", "--view", "az=3"}, 2,
         "--view and --eye exclude each other; give one of them");
 }

@@ -319,31 +319,32 @@ TEST(EventTimes, AreTakenWhereATimeIs) {
     EXPECT_GT(before["elevation_deg"].get<double>(), 3);
     EXPECT_LT(before["elevation_deg"].get<double>(), 5);
 
-    const json light = json_of({"sun", "day", bundled_dem(), "--at", kValley, "--date",
-                                "2026-06-21", "--tz", kNewYork, "-q"});
-    for (const char* time : {"sunset-30min@", "first-light@"}) {
-        const std::string picture = out("event.png");
-        const Result run = relevo({"capture", bundled_dem(), "-o", picture, "--size", "64x48",
-                                   "--device", "software", "--only", "", "--time", time + kValley,
-                                   "--date", "2026-06-21", "--tz", kNewYork, "--overwrite"});
-        ASSERT_EQ(run.status, 0) << run.err;
-        const std::string about = image::read_metadata(picture).at("Description");
-        const std::string wanted = std::string(time) == "first-light@"
-                                       ? light["direct_sun"][0]["first_utc"].get<std::string>()
-                                       : std::string();
-        if (!wanted.empty()) {
-            EXPECT_NE(about.find(wanted.substr(0, 16)), std::string::npos) << about;
-        }
-    }
-}
-
-/// Status and whole message of a run that fails.
-void expect_failure(const std::vector<std::string>& arguments, int status,
-                    const std::string& message) {
-    const Result run = relevo(arguments);
-    EXPECT_EQ(run.status, status) << run.err;
-    EXPECT_EQ(run.err, "relevo: error: " + message + "\n");
-    EXPECT_EQ(run.out, "");
+    // Without a place: that of --at, or the middle of the DEM.
+    EXPECT_EQ(position("noon")["utc"], day["transit_utc"]);
+    const std::vector<std::string> on{"--date", "2026-06-21", "--tz", kNewYork, "-q"};
+    const auto with = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), on.begin(), on.end());
+        return arguments;
+    };
+    const auto over_dem = [&](const std::string& time) {
+        return json_of(with({"info", bundled_dem(), "--json", "--time", time}));
+    };
+    const json valley = json_of(with({"sun", "day", bundled_dem(), "--at", kValley}));
+    EXPECT_EQ(over_dem("sunset@" + kValley)["sun"]["utc"].get<std::string>().substr(0, 16),
+              valley["sunset_utc"].get<std::string>().substr(0, 16));
+    const json about = over_dem("first-light");
+    const std::string middle = std::to_string(about["center"]["lat_deg"].get<double>()) + "," +
+                               std::to_string(about["center"]["lon_deg"].get<double>());
+    const std::string first =
+        json_of(with({"sun", "day", bundled_dem(), "--at", middle}))["direct_sun"][0]["first_utc"]
+            .get<std::string>()
+            .substr(0, 16);
+    EXPECT_EQ(about["sun"]["utc"].get<std::string>().substr(0, 16), first);
+    const std::string picture = out("event.png");
+    const Result run = relevo(with({"capture", bundled_dem(), "-o", picture, "--size", "64x48",
+                                    "--only", "", "--time", "first-light", "--overwrite"}));
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(image::read_metadata(picture).at("Description").find(first), std::string::npos);
 }
 
 TEST(BadSunInput, EachHasItsMessage) {

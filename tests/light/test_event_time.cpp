@@ -26,6 +26,16 @@ TEST(EventTime, FirstAndLastLightAreThoseOfTheTerrain) {
     EXPECT_EQ(time("first-light@36.42,-84.25"), on_ground.lit.front().begin.utc);
     EXPECT_EQ(time("last-light-10min@36.42,-84.25"), on_ground.lit.back().end.utc - 600);
     EXPECT_EQ(time("first-light@36.42,-84.25,2agl"), at_eye.lit.front().begin.utc);
+    // Without a place it is the one at hand, or the middle of the DEM.
+    EXPECT_EQ(
+        parse_time("first-light", sun::Date{2026, 1, 6}, zone, dem, geo::PlaceText{place}).utc,
+        on_ground.lit.front().begin.utc);
+    const TerrainHorizon middle(field, field.grid.center());
+    EXPECT_EQ(time("last-light"), DirectLight(middle).day({2026, 1, 6}, zone).lit.back().end.utc);
+    EXPECT_EQ(time("sunset"), sun::resolve({.event = sun::EventKind::Sunset,
+                                            .place = geo::PlaceText{field.grid.center()}},
+                                           sun::Date{2026, 1, 6}, zone)
+                                  .utc);
     // What needs no terrain does not ask for it.
     EXPECT_NEAR(parse_time("sunrise@36.42,-84.25", sun::Date{2026, 1, 6}, zone).utc -
                     *on_ground.flat.first(sun::EventKind::Sunrise),

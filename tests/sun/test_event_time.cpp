@@ -15,9 +15,9 @@ TEST(EventTime, ReadsDateEventOffsetAndPlace) {
     EXPECT_EQ(time.date, kMidsummer);
     EXPECT_EQ(time.event, EventKind::Sunset);
     EXPECT_EQ(time.offset_s, -5400);
-    EXPECT_NEAR(degrees(time.place.place.lat_rad), 46.55, 1e-12);
-    EXPECT_NEAR(degrees(time.place.place.lon_rad), 8.56, 1e-12);
-    EXPECT_EQ(time.place.place.height_m, 1800);
+    EXPECT_NEAR(degrees(time.place->place.lat_rad), 46.55, 1e-12);
+    EXPECT_NEAR(degrees(time.place->place.lon_rad), 8.56, 1e-12);
+    EXPECT_EQ(time.place->place.height_m, 1800);
     EXPECT_FALSE(parse_event_time("sunrise@46.55,8.56").date);
     EXPECT_EQ(parse_event_time("2026-06-21Tnoon@46.55,8.56").event, EventKind::Transit);
     EXPECT_EQ(parse_event_time(" civil_dawn @46.55, 8.56").event, EventKind::CivilDawn);
@@ -37,7 +37,7 @@ TEST(EventTime, KnowsEveryEvent) {
         const EventTime time = parse_event_time(text);
         EXPECT_EQ(time.event, kind);
         EXPECT_EQ(time.offset_s, 900);
-        const Day day = day_events(kMidsummer, kZurich, time.place.place);
+        const Day day = day_events(kMidsummer, kZurich, time.place->place);
         EXPECT_NEAR(resolve(time, kMidsummer, kZurich).utc - *day.first(kind), 900, 1e-3) << name;
     }
     for (const bool last : {false, true}) {
