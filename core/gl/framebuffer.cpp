@@ -67,10 +67,6 @@ void Framebuffer::clear_colour(int index, glm::vec4 value) const {
     glClearNamedFramebufferfv(handle_.name(), GL_COLOR, index, &value.x);
 }
 
-void Framebuffer::clear_colour_uint(int index, glm::uvec4 value) const {
-    glClearNamedFramebufferuiv(handle_.name(), GL_COLOR, index, &value.x);
-}
-
 void Framebuffer::clear_depth(float value) const {
     glClearNamedFramebufferfv(handle_.name(), GL_DEPTH, 0, &value);
 }

@@ -30,7 +30,6 @@ class Framebuffer {
     /// Draws go here from now on, to the whole of it.
     void bind() const;
     void clear_colour(int index, glm::vec4 value) const;
-    void clear_colour_uint(int index, glm::uvec4 value) const;
     void clear_depth(float value) const;
     void clear_stencil(int value) const;
 

@@ -5,19 +5,14 @@
 
 #include "base/units.h"
 #include "cli/program.h"
+#include "golden/pinhole.h"
 #include "image/image.h"
 #include "support/support.h"
 
 namespace relevo::test {
 namespace {
 
-constexpr int kWidth = 640, kHeight = 512;
-constexpr double kFov_deg = 12;
 constexpr double kLat_deg = 36.44, kLon_deg = -84.41, kHeight_m = 3000;
-
-struct Direction {
-    double azimuth_deg, elevation_deg;
-};
 
 /// A star of the Hipparcos Catalogue (ESA 1997): J2000, yearly motion, V.
 struct Star {
@@ -51,18 +46,6 @@ Direction seen(const Star& star, const Moment& when) {
                         &zenith, &hour_angle, &dec, &ra, &origins),
               0);
     return {degrees(azimuth), 90 - degrees(zenith)};
-}
-
-/// Where the camera's pinhole puts a direction, in pixels from the upper left corner.
-std::pair<double, double> project(const Direction& star, double heading_deg, double pitch_deg) {
-    const double azimuth = radians(star.azimuth_deg - heading_deg);
-    const double elevation = radians(star.elevation_deg), pitch = radians(pitch_deg);
-    const double ahead = std::cos(elevation) * std::cos(azimuth),
-                 right = std::cos(elevation) * std::sin(azimuth), up = std::sin(elevation);
-    const double depth = ahead * std::cos(pitch) + up * std::sin(pitch);
-    const double rise = up * std::cos(pitch) - ahead * std::sin(pitch);
-    const double scale = kHeight / 2.0 / std::tan(radians(kFov_deg / 2));
-    return {kWidth / 2.0 + scale * right / depth, kHeight / 2.0 - scale * rise / depth};
 }
 
 bool there() {

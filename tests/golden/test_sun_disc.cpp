@@ -5,14 +5,12 @@
 
 #include "base/units.h"
 #include "cli/program.h"
+#include "golden/pinhole.h"
 #include "image/image.h"
 #include "support/support.h"
 
 namespace relevo::test {
 namespace {
-
-constexpr int kWidth = 640, kHeight = 512;
-constexpr double kFov_deg = 12;
 
 struct Sun {
     double azimuth_deg, apparent_elevation_deg, semidiameter_deg;
@@ -22,19 +20,6 @@ Sun sun_at(const std::string& place, const std::string& time) {
     const Result run = relevo({"sun", "position", "--at", place, "--time", time, "--json"});
     const auto json = nlohmann::json::parse(run.out);
     return {json["azimuth_deg"], json["apparent_elevation_deg"], json["semidiameter_deg"]};
-}
-
-/// Where the camera's pinhole puts a direction, in pixels from the upper left corner.
-std::pair<double, double> project(const Sun& sun, double heading_deg, double pitch_deg) {
-    const double azimuth = radians(sun.azimuth_deg - heading_deg);
-    const double elevation = radians(sun.apparent_elevation_deg), pitch = radians(pitch_deg);
-    // Ahead, to the right and up in the level frame that looks along the heading.
-    const double ahead = std::cos(elevation) * std::cos(azimuth),
-                 right = std::cos(elevation) * std::sin(azimuth), up = std::sin(elevation);
-    const double depth = ahead * std::cos(pitch) + up * std::sin(pitch);
-    const double rise = up * std::cos(pitch) - ahead * std::sin(pitch);
-    const double scale = kHeight / 2.0 / std::tan(radians(kFov_deg / 2));
-    return {kWidth / 2.0 + scale * right / depth, kHeight / 2.0 - scale * rise / depth};
 }
 
 TEST(SunDisc, IsWhereTheSunIsAndOfItsSize) {
@@ -72,7 +57,7 @@ TEST(SunDisc, IsWhereTheSunIsAndOfItsSize) {
                 ++n;
             }
         }
-        const auto [x, y] = project(sun, heading, pitch);
+        const auto [x, y] = project({sun.azimuth_deg, sun.apparent_elevation_deg}, heading, pitch);
         const double px_deg = degrees(2 * std::tan(radians(kFov_deg / 2)) / kHeight);
         // As wide as a round disc of as many pixels; the picture stretches what is off its axis.
         const double width_deg = 2 * std::sqrt(n / kPi) * px_deg;
