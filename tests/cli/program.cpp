@@ -48,7 +48,9 @@ Result run(const std::filesystem::path& program, const std::vector<std::string>&
 
 Result relevo(const std::vector<std::string>& arguments,
               const std::vector<std::string>& environment) {
-    return run(build_dir() / "bin/relevo", arguments, environment);
+    static const char* const given = std::getenv("RELEVO_PROGRAM");
+    return run(given && *given ? std::filesystem::path(given) : build_dir() / "bin/relevo",
+               arguments, environment);
 }
 
 void expect_failure(const std::vector<std::string>& arguments, int status,

@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# The tests under the address, undefined-behaviour and thread sanitizers.
+#
+# sanitizers.sh           every test: builds the presets asan and tsan as a whole (an hour on two cores)
+# sanitizers.sh reduced   the program alone, driven by the tests of build/dev that tests/sanitized_tests.txt names
+set -euo pipefail
+cd "$(dirname "$0")/.."
+export TSAN_OPTIONS=${TSAN_OPTIONS:-suppressions=$PWD/tests/tsan.txt}
+export LSAN_OPTIONS=${LSAN_OPTIONS:-suppressions=$PWD/tests/lsan.txt}
+
+for preset in asan tsan; do
+    [ -f build/$preset/build.ninja ] || cmake --preset $preset >/dev/null
+    if [ "${1:-}" = reduced ]; then
+        cmake --build --preset $preset --target relevo_program
+        RELEVO_PROGRAM=$PWD/build/$preset/bin/relevo RELEVO_SHARE=$PWD/build/dev/share/relevo \
+            build/dev/bin/test_cli --gtest_brief=1 \
+            --gtest_filter="$(sed '/^#/d; /^$/d' tests/sanitized_tests.txt | paste -sd:)"
+    else
+        cmake --build --preset $preset
+        ctest --preset $preset
+    fi
+done
