@@ -12,6 +12,7 @@
 #include <gdal_utils.h>
 
 #include "dem/gdal_support.h"
+#include "dem/guard.h"
 #include "dem/nodata.h"
 
 namespace relevo::dem {
@@ -300,7 +301,11 @@ Dataset Piece::open() const {
     Dataset dataset(GDALOpenEx(path.c_str(),
                                GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                driver.data(), nullptr, nullptr));
-    if (!dataset) refuse(path, fmt::format("cannot be opened again, {}", messages.failure(path)));
+    if (!dataset) {
+        refuse_unreadable(path);
+        const std::string reason = messages.failure(path);
+        refuse(path, fmt::format("cannot be opened again, {}{}", reason, remedy_for(reason)));
+    }
     return resampling ? resampled(*this, std::move(dataset), messages) : std::move(dataset);
 }
 
@@ -315,10 +320,11 @@ void Piece::read(void* dataset, const Level& level, const Window& w, float* heig
         const CPLErr result = GDALRasterIO(from, GF_Read, w.column, w.row, w.columns, w.rows, to,
                                            w.columns, w.rows, type, 0, 0);
         // Some drivers say that a block is broken, fill it and carry on.
-        if (result != CE_None || messages.any_failure())
-            refuse(path, fmt::format("its heights cannot be read, {}; the file is damaged or "
-                                     "incomplete",
-                                     messages.failure(path)));
+        if (result != CE_None || messages.any_failure()) {
+            const std::string reason = messages.failure(path);
+            refuse(path,
+                   fmt::format("its heights cannot be read, {}{}", reason, remedy_for(reason)));
+        }
     };
     const GDALRasterBandH band = band_of(resampling ? 1 : about.band);
     if (encoding != Encoding::None) {
