@@ -77,6 +77,14 @@ class Grid {
     /// so 30 m in UTM are 29.99 to 30.01 m and a degree of longitude shrinks with the latitude.
     glm::dvec2 post_spacing_m() const;
 
+    /// Ground metres from the first post to the last: x along the middle row, y along the middle
+    /// column, whichever way they run.
+    glm::dvec2 sides_m() const;
+
+    /// Azimuth of the middle row at the centre, from the first post towards the last [rad]. 90
+    /// degrees where the grid is neither turned nor mirrored.
+    double row_azimuth_rad() const;
+
     /// Ground metres that the posts span from west to east (x) and from south to north (y), from
     /// the first post to the last: the box, oriented to true north, around the middle row and the
     /// middle column as they run at the centre.

@@ -243,7 +243,12 @@ class VrtWalk {
   public:
     explicit VrtWalk(std::string given) : given_(std::move(given)) {}
 
+    std::uint64_t bytes() const { return bytes_; }
+
     void file(const std::string& path) {
+        VSIStatBufL status{};
+        if (VSIStatL(path.c_str(), &status) == 0)
+            bytes_ += static_cast<std::uint64_t>(status.st_size);
         if (std::find(inside_.begin(), inside_.end(), path) != inside_.end())
             refuse(given_,
                    fmt::format("a virtual raster that is made of itself, by way of '{}'", path));
@@ -322,19 +327,27 @@ class VrtWalk {
         const std::string_view kind = endless(fs::status(found, unknown));
         if (!found.empty() && !kind.empty())
             refuse(given_, fmt::format("a virtual raster of '{}', {}, expected files", text, kind));
-        if (++sources_ <= kManySources || name.ends_with(".vrt")) file(name);
+        if (++sources_ <= kManySources || name.ends_with(".vrt")) {
+            file(name);
+        } else if (!found.empty()) {
+            const std::uintmax_t size = fs::file_size(found, unknown);
+            bytes_ += unknown ? 0 : size;
+        }
     }
 
     std::string given_;
     std::vector<std::string> inside_;
     std::vector<std::string> seen_;
     int sources_ = 0;
+    std::uint64_t bytes_ = 0;
 };
 
 }  // namespace
 
-void refuse_unsafe_vrt(const std::string& path) {
-    VrtWalk(path).file(path);
+std::uint64_t refuse_unsafe_vrt(const std::string& path) {
+    VrtWalk walk(path);
+    walk.file(path);
+    return walk.bytes();
 }
 
 }  // namespace relevo::dem

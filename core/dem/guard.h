@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -28,7 +29,8 @@ void refuse_unreadable(const std::string& path);
 
 /// Refuses a virtual raster (VRT) that names, itself or through others that it names, what no file
 /// may name, or itself. Other files pass.
+/// @returns bytes of it and of all that it names, each as often as it is named
 /// @throws Error (BadInput)
-void refuse_unsafe_vrt(const std::string& path);
+std::uint64_t refuse_unsafe_vrt(const std::string& path);
 
 }  // namespace relevo::dem
