@@ -75,6 +75,23 @@ geo::Geodetic Grid::center() const {
     return place((columns_ - 1) / 2.0, (rows_ - 1) / 2.0);
 }
 
+double Grid::share_on_earth() const {
+    constexpr int kSamples = 32;
+    std::array<glm::dvec2, kSamples + 1> posts;
+    std::array<geo::Geodetic, kSamples + 1> places;
+    int found = 0;
+    for (int j = 0; j <= kSamples; ++j) {
+        for (int i = 0; i <= kSamples; ++i)
+            posts[static_cast<std::size_t>(i)] = {std::round((columns_ - 1.0) * i / kSamples),
+                                                  std::round((rows_ - 1.0) * j / kSamples)};
+        place(posts, places);
+        found += static_cast<int>(
+            std::count_if(places.begin(), places.end(),
+                          [](const geo::Geodetic& at) { return std::isfinite(at.lat_rad); }));
+    }
+    return found / double{(kSamples + 1) * (kSamples + 1)};
+}
+
 glm::dvec2 Grid::post_spacing_m() const {
     const double column = (columns_ - 1) / 2.0;
     const double row = (rows_ - 1) / 2.0;

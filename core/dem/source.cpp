@@ -105,6 +105,22 @@ bool is_empty(const Window& window) {
     return window.columns <= 0 || window.rows <= 0;
 }
 
+/// Makes holes of posts that are not on the Earth.
+void cut_to_earth(const Grid& grid, Array2d<float>& height_m) {
+    parallel_for(0, grid.rows(), std::max(1, (1 << 14) / grid.columns()), [&](int first, int last) {
+        std::vector<glm::dvec2> posts(static_cast<std::size_t>(grid.columns()));
+        std::vector<geo::Geodetic> places(posts.size());
+        for (int row = first; row < last; ++row) {
+            for (std::size_t i = 0; i < posts.size(); ++i)
+                posts[i] = {static_cast<double>(i), row};
+            grid.place(posts, places);
+            for (int column = 0; column < grid.columns(); ++column)
+                if (!std::isfinite(places[static_cast<std::size_t>(column)].lat_rad))
+                    height_m.at(column, row) = kHole;
+        }
+    });
+}
+
 /// The coarsest level that still has a cell for every `columns_each` by `rows_each` posts.
 const Level& coarsest_level(const Piece& piece, double columns_each, double rows_each) {
     const Level* best = &piece.levels.front();
@@ -124,6 +140,7 @@ struct Source::Impl {
     bool threads_pay = false;
     int block_rows = 1;
     int tallest_block = 1;
+    bool leaves_earth = false;  // some posts have no place
 
     // Open handles that no call is using, the one used last at the end; a GDAL dataset serves one
     // thread at a time.
@@ -339,6 +356,31 @@ Array2d<float> Source::Impl::read_means(const Window& window, int columns, int r
     return result;
 }
 
+namespace {
+
+/// Whether some posts have no place, which is said; where none has one, it is an error.
+void settle_earth(const Grid& grid, Description& about, bool& leaves_earth) {
+    constexpr const char* kRemedy =
+        "pass the right one with --crs EPSG:n, or bring it to degrees with gdalwarp -t_srs "
+        "EPSG:4326";
+    const double share = grid.share_on_earth();
+    leaves_earth = share < 1;
+    if (share == 0)
+        refuse(about.path, fmt::format("none of its posts is on the Earth in {}; {}",
+                                       grid.crs().name(), kRemedy));
+    const glm::dvec2 spacing_m = grid.post_spacing_m();
+    if (!std::isfinite(spacing_m.x + spacing_m.y))
+        refuse(about.path, fmt::format("cells so large that beside its middle is no place on the "
+                                       "Earth in {}; {}",
+                                       grid.crs().name(), kRemedy));
+    if (!leaves_earth) return;
+    about.holes_by.emplace_back("earth");
+    guess(about, fmt::format("some of its posts are not on the Earth in {}, and are holes",
+                             grid.crs().name()));
+}
+
+}  // namespace
+
 Source::Source(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Source::Source(Source&&) noexcept = default;
 Source& Source::operator=(Source&&) noexcept = default;
@@ -375,6 +417,7 @@ Source Source::open(std::span<const std::string> given, const LoadOptions& optio
         if (i < kMostIdle) opened[i] = std::move(dataset);
     }
     impl->grid = join(impl->pieces, impl->about);
+    settle_earth(*impl->grid, impl->about, impl->leaves_earth);
     for (std::size_t i = 0; i < opened.size(); ++i)
         if (!impl->pieces[i].resampling)
             impl->idle.push_back({&impl->pieces[i], std::move(opened[i])});
@@ -404,12 +447,16 @@ Array2d<float> Source::read(const Window& window, int columns, int rows) const {
            window.column + window.columns <= grid().columns() &&
            window.row + window.rows <= grid().rows());
     assert(columns > 0 && rows > 0 && columns <= window.columns && rows <= window.rows);
-    if (columns == window.columns && rows == window.rows) return impl_->read_stored(window);
-    return impl_->read_means(window, columns, rows);
+    Array2d<float> height_m = columns == window.columns && rows == window.rows
+                                  ? impl_->read_stored(window)
+                                  : impl_->read_means(window, columns, rows);
+    if (impl_->leaves_earth) cut_to_earth(grid().part(window, columns, rows), height_m);
+    return height_m;
 }
 
 Source::Blank Source::Impl::blank(const Window& window) const {
     Blank blank{window.rows, kHole};
+    if (leaves_earth) return {0, kHole};
     for (const Piece& piece : pieces) {
         const Window part = overlap(window, piece.place);
         if (is_empty(part)) continue;
@@ -439,7 +486,7 @@ int Source::block_rows() const {
 }
 
 Array2d<float> Source::read() const {
-    return impl_->read_stored({0, 0, grid().columns(), grid().rows()});
+    return read({0, 0, grid().columns(), grid().rows()}, grid().columns(), grid().rows());
 }
 
 double Source::height_at(const geo::Geodetic& place) const {

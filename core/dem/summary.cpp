@@ -90,6 +90,8 @@ std::string holes_text(const Summary& s) {
             ways.emplace_back("mask");
         else if (by == "alpha")
             ways.push_back(fmt::format("alpha band {}", s.alpha_band));
+        else if (by == "earth")
+            ways.emplace_back("not on the Earth");
         else if (by == "found" && !s.nodata)
             ways.emplace_back("too large for heights, not declared");
     if (s.nodata) {
