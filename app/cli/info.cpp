@@ -32,23 +32,21 @@ struct NetError {
     double worst_m = 0;
 };
 
-/// Over pieces all over the DEM, at the height of its highest post. The pieces are those of ground
-/// that is drawn post by post; what is drawn coarser counts its larger error as part of
+/// Over pieces all over the DEM, at a height [m], that of its highest post. The pieces are those of
+/// ground that is drawn post by post; what is drawn coarser counts its larger error as part of
 /// --pixel-error.
-NetError net_error(const dem::Heightfield& field) {
+NetError net_error(const dem::Grid& grid, double height_m) {
     constexpr int kPosts = dem::Pyramid::kTileQuads, kPieces = 4, kPoints = 16;
-    const geo::Geodetic center = field.grid.center();
-    const geo::LocalFrame frame(center);
-    const auto place = [&](double column, double row) { return field.grid.place(column, row); };
+    const geo::LocalFrame frame(grid.center());
+    const auto place = [&](double column, double row) { return grid.place(column, row); };
     NetError error;
-    error.posts = std::min(kPosts, std::max(field.grid.columns(), field.grid.rows()) - 1);
-    const double height_m = static_cast<double>(field.about.statistics.max_m);
+    error.posts = std::min(kPosts, std::max(grid.columns(), grid.rows()) - 1);
     for (int k = 0; k < kPieces * kPieces; ++k) {
         const auto first = [&](int index, int count) {
             return std::max(0.0, (count - 1.0 - error.posts) * index / (kPieces - 1));
         };
-        const glm::dvec2 corner(first(k % kPieces, field.grid.columns()),
-                                first(k / kPieces, field.grid.rows()));
+        const glm::dvec2 corner(first(k % kPieces, grid.columns()),
+                                first(k / kPieces, grid.rows()));
         const render::PatchNet net =
             render::fit_patch_net(place, frame, corner, glm::dvec2(error.posts));
         for (int i = 0; i <= kPoints * kPoints; ++i) {
@@ -82,15 +80,23 @@ void add_info(CLI::App& app) {
         std::optional<sun::ParsedTime> given_time;
         if (arguments->time.given() && !arguments->time.needs_dem())
             given_time = arguments->time.parse();
-        const dem::Heightfield field = dem::load(arguments->dem.paths, arguments->dem.options);
-        if (arguments->time.given() && !given_time) given_time = arguments->time.parse_over(field);
+        const std::int64_t max_posts = arguments->dem.options.max_posts;
+        const dem::Source source = dem::Source::open(arguments->dem.paths, arguments->dem.options);
+        std::optional<dem::Heightfield> field;
+        if (arguments->time.given() && !given_time) {
+            field = dem::load(source, max_posts);
+            given_time = arguments->time.parse_over(*field);
+        }
+        // Means would hide the lowest and the highest post.
+        const dem::Summary summary = field && field->reduction == 1
+                                         ? dem::summarize(*field)
+                                         : dem::summarize(source, max_posts);
         const sun::Instant utc = given_time ? given_time->utc : sun::Instant::now();
-        const dem::Summary summary = dem::summarize(field);
         const sun::Position sun = sun::position(utc, summary.center);
         const sun::Refraction air = air_over(summary);
         const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
         if (arguments->json) {
-            const NetError net = net_error(field);
+            const NetError net = net_error(source.grid(), summary.max_m);
             auto json = nlohmann::ordered_json::parse(dem::to_json(summary));
             json["sun"] = {
                 {"utc", sun::to_iso(utc)},
@@ -104,7 +110,7 @@ void add_info(CLI::App& app) {
         fmt::print("{}", dem::to_text(summary));
         fmt::print("{:<10} {} at {}\n", "sun", sun_text(sun, air), sun::to_iso(utc));
         if (log::level() == log::Level::Debug) {
-            const NetError net = net_error(field);
+            const NetError net = net_error(source.grid(), summary.max_m);
             fmt::print(
                 "{:<10} pieces of {} posts are drawn within {:.2g} m of where they are, "
                 "{:.2g} of the post spacing\n",

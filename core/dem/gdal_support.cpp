@@ -9,6 +9,7 @@
 
 #include "base/log.h"
 #include "base/text.h"
+#include "dem/guard.h"
 
 namespace relevo::dem {
 namespace {
@@ -24,6 +25,7 @@ void prepare_gdal() {
     std::call_once(once, [] {
         CPLSetErrorHandler(to_debug_log);
         GDALAllRegister();
+        disarm_gdal();
     });
 }
 

@@ -5,9 +5,10 @@
 
 namespace relevo::dem {
 
-/// Registers GDAL's drivers, once, and keeps GDAL from writing to standard error: what nobody
-/// collects goes to the debug log. Safe on several threads at once; everything here that uses GDAL
-/// calls it first. Takes 3 ms the first time; loading GDAL's own libraries, before main, takes 50.
+/// Registers GDAL's drivers, once, takes from them what files from others could misuse (guard.h),
+/// and keeps GDAL from writing to standard error: what nobody collects goes to the debug log. Safe
+/// on several threads at once; everything here that uses GDAL calls it first. Takes 3 ms the first
+/// time; loading GDAL's own libraries, before main, takes 50.
 void prepare_gdal();
 
 /// Collects what GDAL says on this thread while it lives, instead of having it printed.

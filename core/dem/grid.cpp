@@ -75,6 +75,23 @@ geo::Geodetic Grid::center() const {
     return place((columns_ - 1) / 2.0, (rows_ - 1) / 2.0);
 }
 
+double Grid::share_on_earth() const {
+    constexpr int kSamples = 32;
+    std::array<glm::dvec2, kSamples + 1> posts;
+    std::array<geo::Geodetic, kSamples + 1> places;
+    int found = 0;
+    for (int j = 0; j <= kSamples; ++j) {
+        for (int i = 0; i <= kSamples; ++i)
+            posts[static_cast<std::size_t>(i)] = {std::round((columns_ - 1.0) * i / kSamples),
+                                                  std::round((rows_ - 1.0) * j / kSamples)};
+        place(posts, places);
+        found += static_cast<int>(
+            std::count_if(places.begin(), places.end(),
+                          [](const geo::Geodetic& at) { return std::isfinite(at.lat_rad); }));
+    }
+    return found / double{(kSamples + 1) * (kSamples + 1)};
+}
+
 glm::dvec2 Grid::post_spacing_m() const {
     const double column = (columns_ - 1) / 2.0;
     const double row = (rows_ - 1) / 2.0;
@@ -85,18 +102,26 @@ glm::dvec2 Grid::post_spacing_m() const {
             distance_m(place(column, row - 0.5), place(column, row + 0.5))};
 }
 
-glm::dvec2 Grid::extent_m() const {
+glm::dvec2 Grid::sides_m() const {
     const double column = (columns_ - 1) / 2.0;
     const double row = (rows_ - 1) / 2.0;
-    const geo::Geodetic middle = center();
-    const double along_row_rad = geo::geodesic(middle, place(column + 0.5, row)).azimuth_rad;
-    const double along_column_rad = geo::geodesic(middle, place(column, row + 0.5)).azimuth_rad;
-    const double row_m = path_m(*this, {0, row}, {columns_ - 1, row});
-    const double column_m = path_m(*this, {column, 0}, {column, rows_ - 1});
-    return {
-        row_m * std::abs(std::sin(along_row_rad)) + column_m * std::abs(std::sin(along_column_rad)),
-        row_m * std::abs(std::cos(along_row_rad)) +
-            column_m * std::abs(std::cos(along_column_rad))};
+    return {path_m(*this, {0, row}, {columns_ - 1, row}),
+            path_m(*this, {column, 0}, {column, rows_ - 1})};
+}
+
+double Grid::row_azimuth_rad() const {
+    return geo::geodesic(center(), place(columns_ / 2.0, (rows_ - 1) / 2.0)).azimuth_rad;
+}
+
+glm::dvec2 Grid::extent_m() const {
+    const double along_row_rad = row_azimuth_rad();
+    const double along_column_rad =
+        geo::geodesic(center(), place((columns_ - 1) / 2.0, rows_ / 2.0)).azimuth_rad;
+    const glm::dvec2 side_m = sides_m();
+    return {side_m.x * std::abs(std::sin(along_row_rad)) +
+                side_m.y * std::abs(std::sin(along_column_rad)),
+            side_m.x * std::abs(std::cos(along_row_rad)) +
+                side_m.y * std::abs(std::cos(along_column_rad))};
 }
 
 Grid Grid::part(const Window& window, int columns, int rows) const {

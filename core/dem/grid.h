@@ -73,9 +73,21 @@ class Grid {
     /// The middle of the grid, on the ellipsoid.
     geo::Geodetic center() const;
 
+    /// Share of posts that the CRS has a place for, from a sample all over the grid: below 1 where a
+    /// map of the world has corners beside the globe, or where rows go on past a pole.
+    double share_on_earth() const;
+
     /// Ground metres from post to post at the centre: x along a row, y along a column. Geodesic,
     /// so 30 m in UTM are 29.99 to 30.01 m and a degree of longitude shrinks with the latitude.
     glm::dvec2 post_spacing_m() const;
+
+    /// Ground metres from the first post to the last: x along the middle row, y along the middle
+    /// column, whichever way they run.
+    glm::dvec2 sides_m() const;
+
+    /// Azimuth of the middle row at the centre, from the first post towards the last [rad]. 90
+    /// degrees where the grid is neither turned nor mirrored.
+    double row_azimuth_rad() const;
 
     /// Ground metres that the posts span from west to east (x) and from south to north (y), from
     /// the first post to the last: the box, oriented to true north, around the middle row and the

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,9 +27,19 @@ struct Statistics {
     friend bool operator==(const Statistics&, const Statistics&) = default;
 };
 
+/// Whether some place of the Earth has a height: -11500 to 9000 m.
+bool is_of_the_earth(double height_m);
+
 /// Lowest, highest, holes (NaN) and outliers of a field; the range is 0 to 0 where nothing is
 /// valid.
 Statistics statistics(const Array2d<float>& height_m);
+/// Of the first columns and rows.
+Statistics statistics(const Array2d<float>& height_m, int columns, int rows);
+
+/// The height in a cell of four posts, NaN where a hole takes part.
+/// @param first_m  the first of them, the others beside it and `stride` further
+/// @param u, v     0 to 1, along a row and from row to row
+double bilinear_m(const float* first_m, std::ptrdiff_t stride, double u, double v);
 
 /// Where the unit of the heights was found.
 enum class UnitSource { Option, Band, VerticalCrs, Encoding, Assumed };
@@ -48,6 +59,11 @@ struct Description {
     double offset = 0;             ///< in `unit`
     std::optional<double> nodata;  ///< the stored value that marks a hole, declared or given
 
+    /// What marks holes besides NaN: "nodata" (declared), "option", "found" (undeclared),
+    /// "encoding", "mask", "alpha".
+    std::vector<std::string> holes_by;
+    int alpha_band = 0;  ///< from 1, of that "alpha"
+
     /// `nodata` in as many digits as the file's type has: "-3.4028235e+38"; empty where none.
     std::string nodata_text() const;
 
@@ -57,6 +73,8 @@ struct Description {
     std::vector<std::string> assumptions;
     /// Those among them that are guesses, which Source::open says with log::info.
     std::vector<std::string> guesses;
+    /// Those that are probably mistakes, which Source::open says with log::warning.
+    std::vector<std::string> warnings;
 
     Statistics statistics;  ///< of the heights that were loaded; all zero before
 };

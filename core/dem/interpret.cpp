@@ -205,6 +205,13 @@ void settle_vertical_datum(GDALDatasetH dataset, const geo::Crs& crs, Descriptio
         // MIL-PRF-89020B, data set identification record, "Vertical Datum".
         const std::string code = dted;
         about.vertical_datum = code == "E96" ? "EGM96" : code == "MSL" ? "mean sea level" : code;
+    } else if (about.driver == "SRTMHGT") {
+        // SRTM Collection User Guide, USGS 2015, "Vertical datum"; others keep to it.
+        about.vertical_datum = "EGM96";
+        about.assumptions.emplace_back(
+            "heights are above mean sea level by EGM96, as in all .hgt files though none can say "
+            "so, and are placed as ellipsoidal ones: the geoid is not added");
+        return;
     }
     about.assumptions.push_back(
         about.vertical_datum.empty()

@@ -22,6 +22,13 @@ void guess(Description& about, const std::string& sentence);
 /// @throws Error (BadInput) `dem::load: path: what`
 [[noreturn]] void refuse(const std::string& path, const std::string& what);
 
+/// What to do about a reason that GDAL or the system gives, as the end of a message: "; the file is
+/// damaged or incomplete" where neither access nor the machine's means are at fault.
+std::string remedy_for(const std::string& reason);
+
+/// What GDAL opens as a raster, without a word where it opens nothing.
+Dataset gdal_open(const std::string& path);
+
 /// Opens a file, or the one raster of an archive.
 /// @param path  becomes the name by which GDAL opens it again
 /// @throws Error (BadInput) where there is no such file or GDAL does not take it for a raster

@@ -1,14 +1,66 @@
 #include "dem/load.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/log.h"
-#include "dem/frame.h"
 
 namespace relevo::dem {
+
+namespace {
+
+/// What to set as the unit of heights that the Earth has not: those units in which the Earth has
+/// all of them, where so many are off that it is no matter of single posts.
+std::string unit_advice(const Description& about) {
+    constexpr double kManyOfThem = 0.01;
+    constexpr std::array kUnits = {"ft", "dm", "cm", "mm"};
+    const Statistics& s = about.statistics;
+    std::vector<std::string> fitting;
+    for (const char* name : kUnits) {
+        const double per = known_unit(name)->metres / about.unit.metres;
+        if (per < 1 && is_of_the_earth(s.min_m * per) && is_of_the_earth(s.max_m * per))
+            fitting.push_back(
+                fmt::format("{} ({:.0f} to {:.0f} m)", name, s.min_m * per, s.max_m * per));
+    }
+    if (fitting.empty() ||
+        static_cast<double>(s.outliers) < kManyOfThem * static_cast<double>(s.valid))
+        return "sets the unit";
+    return fmt::format("sets the unit, perhaps {}", fmt::join(fitting, " or "));
+}
+
+}  // namespace
+
+void report_heights(Description& about, const std::optional<Frame>& frame) {
+    const Statistics& s = about.statistics;
+    if (s.valid == 0)
+        bad_input(fmt::format(
+            "dem::load: {}: not one valid height, all {} posts are holes{}", about.path, s.holes,
+            about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
+    const auto guess = [&](const std::string& sentence) {
+        about.assumptions.push_back(sentence);
+        about.guesses.push_back(sentence);
+        log::info(fmt::format("{}: {}", about.path, sentence));
+    };
+    if (s.outliers > 0)
+        guess(
+            fmt::format("{} heights are below -11500 m or above 9000 m, which the Earth has not, "
+                        "and are drawn as they are; --nodata V makes V a hole, --unit {}",
+                        s.outliers, unit_advice(about)));
+    if (frame)
+        guess(
+            fmt::format("the edge is {:g} m all around and the ground beside it {:.0f} m off, "
+                        "perhaps what is left around a turned raster; --nodata {:g} makes it a "
+                        "hole",
+                        frame->height_m, frame->step_m,
+                        (static_cast<double>(frame->height_m) - about.offset) / about.scale /
+                            about.unit.metres));
+}
 
 Heightfield load(const std::string& path, const LoadOptions& options) {
     return load(std::span(&path, 1), options);
@@ -28,6 +80,16 @@ Heightfield load(const Source& source, std::int64_t max_posts) {
     while (reduced_posts() > max_posts &&
            std::min(full.columns(), full.rows()) / (2 * reduction) >= 2)
         reduction *= 2;
+    constexpr double kMiB = 1 << 20;
+    if (reduced_posts() > max_posts) {
+        const double wanted = std::ceil(4.0 * static_cast<double>(reduced_posts()) / kMiB);
+        bad_input(fmt::format(
+            "dem::load: {}: memory for its heights, expected at most {:.0f} MiB but got {:.0f}: "
+            "{} x {} posts are too narrow for means; pass --memory {:.0f}, or cut it up with "
+            "gdal_translate",
+            about.path, 4.0 * static_cast<double>(max_posts) / kMiB, wanted, full.columns(),
+            full.rows(), wanted));
+    }
     const int columns = full.columns() / reduction, rows = full.rows() / reduction;
     // What is left over at the last row and column is less than one mean.
     const Window all{0, 0, columns * reduction, rows * reduction};
@@ -36,32 +98,18 @@ Heightfield load(const Source& source, std::int64_t max_posts) {
             "reduced from {} x {} to {} x {} posts, means of {} x {}, to keep within the memory "
             "allowed",
             full.columns(), full.rows(), columns, rows, reduction, reduction));
-    Array2d<float> height_m = source.read(all, columns, rows);
+    Array2d<float> height_m;
+    try {
+        height_m = source.read(all, columns, rows);
+    } catch (const std::bad_alloc&) {
+        failed(
+            fmt::format("dem::load: {}: no memory for {} x {} heights ({:.0f} MiB); pass a "
+                        "smaller --memory, now {:.0f}",
+                        about.path, columns, rows, 4.0 * columns * rows / kMiB,
+                        4.0 * static_cast<double>(max_posts) / kMiB));
+    }
     about.statistics = statistics(height_m);
-    const Statistics& s = about.statistics;
-    if (s.valid == 0)
-        bad_input(fmt::format(
-            "dem::load: {}: not one valid height, all {} posts are holes{}", about.path, s.holes,
-            about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
-    const auto guess = [&](const std::string& sentence) {
-        about.assumptions.push_back(sentence);
-        about.guesses.push_back(sentence);
-        log::info(fmt::format("{}: {}", about.path, sentence));
-    };
-    if (s.outliers > 0)
-        guess(
-            fmt::format("{} heights are below -11500 m or above 9000 m, which the Earth has not, "
-                        "and are drawn as they are; --nodata V makes V a hole, --unit sets the "
-                        "unit",
-                        s.outliers));
-    if (const std::optional<Frame> frame = find_frame(height_m))
-        guess(
-            fmt::format("the edge is {:g} m all around and the ground beside it {:.0f} m off, "
-                        "perhaps what is left around a turned raster; --nodata {:g} makes it a "
-                        "hole",
-                        frame->height_m, frame->step_m,
-                        (static_cast<double>(frame->height_m) - about.offset) / about.scale /
-                            about.unit.metres));
+    report_heights(about, about.statistics.valid > 0 ? find_frame(height_m) : std::nullopt);
     Grid grid = reduction == 1 ? full : full.part(all, columns, rows);
     return {std::move(height_m), std::move(grid), std::move(about), reduction};
 }

@@ -118,6 +118,50 @@ void gather(const std::vector<Piece>& pieces, std::vector<std::string> Descripti
         }
 }
 
+/// The two files that are furthest from each other, by their middles.
+struct Furthest {
+    const Piece* from = nullptr;
+    const Piece* to = nullptr;
+    double distance_m = 0;
+};
+
+Furthest furthest(const std::vector<Piece>& pieces) {
+    std::vector<geo::Geodetic> middles;
+    for (const Piece& piece : pieces)
+        middles.push_back(piece.grid.center());
+    const auto from = [&](std::size_t i) {
+        Furthest found;
+        for (std::size_t k = 0; k < pieces.size(); ++k)
+            if (const double distance_m = geo::geodesic(middles[i], middles[k]).distance_m;
+                distance_m > found.distance_m)
+                found = {&pieces[i], &pieces[k], distance_m};
+        return found;
+    };
+    // From the one furthest from the first; of thousands, not all pairs.
+    const Furthest first = from(0);
+    return first.to ? from(static_cast<std::size_t>(first.to - pieces.data())) : first;
+}
+
+/// @param covered  share of the whole DEM, 0 to 1
+void say_if_scattered(const std::vector<Piece>& pieces, double covered, Description& about) {
+    constexpr double kThin = 0.25;
+    constexpr double kMistake = 0.005;
+    if (covered >= kThin) return;
+    const std::string sentence = fmt::format(
+        "the files cover {:.2g} % of the DEM that they make, the rest is one hole", 100 * covered);
+    const Furthest far = furthest(pieces);
+    if (covered >= kMistake || !far.from) {
+        guess(about, sentence);
+        return;
+    }
+    const bool in_order = far.from < far.to;
+    about.warnings.push_back(
+        fmt::format("{} and {} are {:.0f} km apart: {}; are they meant to be one DEM?",
+                    (in_order ? far.from : far.to)->about.path,
+                    (in_order ? far.to : far.from)->about.path, far.distance_m / 1000, sentence));
+    about.assumptions.push_back(about.warnings.back());
+}
+
 }  // namespace
 
 Grid join(std::vector<Piece>& pieces, Description& about) {
@@ -162,6 +206,7 @@ Grid join(std::vector<Piece>& pieces, Description& about) {
         affine.y0 = first.y;
         piece.resampling = Resampling{affine, grid.crs()};
         piece.levels = {{-1, piece.place.columns, piece.place.rows}};
+        piece.sparse.reset();
         ++resampled;
     }
 
@@ -204,10 +249,7 @@ Grid join(std::vector<Piece>& pieces, Description& about) {
     if (resampled > 0)
         guess(about, fmt::format("{} of the {} files {} resampled to the grid of {}", resampled,
                                  pieces.size(), resampled == 1 ? "is" : "are", reference->path));
-    if (covered < 0.25 * size.x * size.y)
-        guess(about, fmt::format("the files cover {:.2g} % of the DEM that they make, the rest is "
-                                 "one hole",
-                                 100 * covered / (size.x * size.y)));
+    say_if_scattered(pieces, covered / (size.x * size.y), about);
     const std::string units =
         differing(pieces, [](const Piece& piece) { return piece.about.unit.name; });
     if (!units.empty()) guess(about, fmt::format("heights are in {}: each file in its own", units));

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <string_view>
 #include <vector>
@@ -11,6 +14,7 @@
 
 #include "base/error.h"
 #include "dem/gdal_support.h"
+#include "dem/guard.h"
 #include "dem/interpret.h"
 
 namespace relevo::dem {
@@ -28,6 +32,17 @@ void guess(Description& about, const std::string& sentence) {
     about.guesses.push_back(sentence);
 }
 
+std::string remedy_for(const std::string& reason) {
+    const auto is = [&](int error) {
+        return reason.find(std::strerror(error)) != std::string::npos;
+    };
+    if (is(EMFILE) || is(ENFILE)) return "; allow more open files with ulimit -n";
+    if (is(ENOMEM) || reason.find("ut of memory") != std::string::npos)
+        return "; pass a smaller --memory or free some";
+    if (is(EACCES) || is(EPERM) || is(EIO) || is(ESTALE)) return "";
+    return "; the file is damaged or incomplete";
+}
+
 namespace {
 
 /// What GDAL calls the inside of an archive; empty where the name is not that of one.
@@ -42,10 +57,37 @@ std::string inside_of(const std::string& path) {
     return ends(".gz") ? "/vsigzip/" + path : "";
 }
 
-Dataset gdal_open(const std::string& path) {
-    return Dataset(GDALOpenEx(path.c_str(),
-                              GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
-                              nullptr, nullptr));
+/// Whether a file begins as an archive or a compressed file does.
+bool begins_like_archive(const std::string& path) {
+    using namespace std::string_view_literals;
+    std::string head(512, '\0');
+    VSILFILE* const file = VSIFOpenL(path.c_str(), "rb");
+    if (!file) return false;
+    head.resize(VSIFReadL(head.data(), 1, head.size(), file));
+    VSIFCloseL(file);
+    constexpr std::array kBeginnings = {"PK\3\4"sv,
+                                        "\x1f\x8b\x08"sv,
+                                        "BZh"sv,
+                                        "\xfd"
+                                        "7zXZ"sv,
+                                        "7z\xbc\xaf"sv,
+                                        "Rar!"sv,
+                                        "\x28\xb5\x2f\xfd"sv};
+    return std::any_of(kBeginnings.begin(), kBeginnings.end(),
+                       [&](std::string_view beginning) { return head.starts_with(beginning); }) ||
+           (head.size() > 262 && head.compare(257, 5, "ustar") == 0);
+}
+
+/// Whether a dataset is what a header beside a file makes of it: the driver takes a file of any
+/// content, which may be an archive of the very raster.
+bool is_archive_taken_for_cells(const std::string& path, GDALDatasetH dataset) {
+    constexpr std::array<std::string_view, 7> kAnyContent = {"EHdr", "ENVI",    "GenBin", "ISCE",
+                                                             "PAux", "ROI_PAC", "RRASTER"};
+    const std::string_view driver = GDALGetDriverShortName(GDALGetDatasetDriver(dataset));
+    // ENVI's headers may say that the cells are compressed.
+    return std::find(kAnyContent.begin(), kAnyContent.end(), driver) != kAnyContent.end() &&
+           !GDALGetMetadataItem(dataset, "COMPRESSION", "IMAGE_STRUCTURE") &&
+           begins_like_archive(path);
 }
 
 /// Opens the one raster of an archive; nothing where it is no archive.
@@ -53,6 +95,7 @@ Dataset open_archive(std::string& path) {
     const std::string inside = inside_of(path);
     if (inside.empty()) return nullptr;
     if (inside.starts_with("/vsigzip/")) {
+        refuse_unsafe_vrt(inside);
         Dataset dataset = gdal_open(inside);
         if (dataset) path = inside;
         return dataset;
@@ -73,34 +116,51 @@ Dataset open_archive(std::string& path) {
         refuse(path, fmt::format("an archive of {} rasters, expected one; name those that are "
                                  "meant, as in '{}'",
                                  rasters.size(), rasters.front()));
-    if (found) path = rasters.front();
+    if (found) {
+        path = rasters.front();
+        refuse_unsafe_vrt(path);
+    }
     return found;
 }
 
 }  // namespace
 
+Dataset gdal_open(const std::string& path) {
+    return Dataset(GDALOpenEx(path.c_str(),
+                              GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
+                              nullptr, nullptr));
+}
+
 Dataset open_dataset(std::string& path) {
     prepare_gdal();
-    std::error_code ignored;
-    const bool is_folder = std::filesystem::is_directory(path, ignored);
     // Names that are no file may still mean something to GDAL: "/vsizip/...", "NETCDF:a.nc:topo".
-    const bool may_be_gdals = path.starts_with("/vsi") || path.find(':') != std::string::npos;
-    if (!may_be_gdals && !std::filesystem::exists(path, ignored))
-        refuse(path.empty() ? "\"\"" : path, "cannot be read, no such file");
+    if (is_remote(path)) allow_remote();
+    refuse_unreadable(path);
     GdalMessages messages;
+    refuse_unsafe_vrt(path);
     Dataset dataset = gdal_open(path);
+    if (dataset && is_archive_taken_for_cells(path, dataset.get())) dataset.reset();
     if (dataset) return dataset;
-    if (is_folder) refuse(path, "a folder, expected a raster file; name the files in it");
     const std::string reason = messages.failure(path);
     dataset = open_archive(path);
     if (dataset) return dataset;
+    if (begins_like_archive(path))
+        refuse(path,
+               "an archive or a compressed file, expected a raster, or a .zip, .tar or .gz "
+               "of one; unpack it first");
+    if (const std::string driver = disarmed_driver_of(path); driver == "MEM")
+        refuse(path, "names the program's own memory, expected a file");
+    else if (!driver.empty())
+        refuse(path, fmt::format("a description ({}) of what is on the net, which is asked only by "
+                                 "a name on the command line; make a file of it with "
+                                 "gdal_translate",
+                                 driver));
     if (reason.find("does not exist") != std::string::npos ||
         reason.find("No such file") != std::string::npos)
         refuse(path, "cannot be read, no such file");
     if (reason.empty() || reason.find("not recognized as") != std::string::npos)
         refuse(path, "not a raster in any format that GDAL reads");
-    refuse(path, fmt::format("cannot be opened as a raster, {}; the file is damaged or incomplete",
-                             reason));
+    refuse(path, fmt::format("cannot be opened as a raster, {}{}", reason, remedy_for(reason)));
 }
 
 }  // namespace relevo::dem

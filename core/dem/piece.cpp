@@ -7,11 +7,13 @@
 #include <utility>
 
 #include <cpl_string.h>
+#include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <gdal.h>
 #include <gdal_utils.h>
 
 #include "dem/gdal_support.h"
+#include "dem/guard.h"
 #include "dem/nodata.h"
 
 namespace relevo::dem {
@@ -107,6 +109,10 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
         about.nodata = declared_nodata(band);
     }
     const bool declared = about.nodata.has_value();
+    const auto holes_by = [&about](const char* what) { about.holes_by.emplace_back(what); };
+    about.alpha_band = piece.alpha_band;
+    if (piece.has_mask) holes_by("mask");
+    if (piece.alpha_band > 0) holes_by("alpha");
     if (options.no_nodata) {
         if (declared)
             about.assumptions.push_back(
@@ -117,7 +123,10 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
         about.nodata = options.nodata;
         about.assumptions.push_back(fmt::format("{} marks a hole, as given", *options.nodata));
         piece.knows_holes = piece.knows_holes && declared;
-    } else if (!declared && !piece.has_mask && piece.alpha_band == 0) {
+        holes_by("option");
+    } else if (declared) {
+        holes_by(piece.encoding != Encoding::None ? "encoding" : "nodata");
+    } else if (!piece.has_mask && piece.alpha_band == 0) {
         const Undeclared found = find_undeclared(sample_of(band, sampled_pieces), meaning.scale);
         if (found.beyond)
             guess(about,
@@ -129,9 +138,68 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
                                      "is near it; --nodata none takes it as a height",
                                      *found.nodata));
         piece.knows_holes = !found.nodata && !found.beyond;
+        if (!piece.knows_holes) holes_by("found");
     }
     if (piece.alpha_band > 0) piece.knows_holes = false;
     meaning.nodata = about.nodata;
+}
+
+constexpr double kMiB = 1 << 20;
+
+/// GDAL reads a whole block for any post of it.
+/// @param memory  allowed for heights [bytes]
+void refuse_huge_blocks(const std::string& path, GDALRasterBandH band, double memory) {
+    constexpr double kFine = 64 * kMiB;  // whatever is allowed
+    int columns = 1, rows = 1;
+    GDALGetBlockSize(band, &columns, &rows);
+    const double bytes =
+        double(columns) * rows * GDALGetDataTypeSizeBytes(GDALGetRasterDataType(band));
+    if (bytes > std::max(kFine, memory))
+        refuse(path,
+               fmt::format("is stored in blocks of {} x {} posts, {:.0f} MiB each, expected at "
+                           "most {:.0f} MiB; pass --memory {:.0f}, or make tiles of them with "
+                           "gdal_translate -co TILED=YES",
+                           columns, rows, bytes / kMiB, std::max(kFine, memory) / kMiB,
+                           std::ceil(bytes / kMiB)));
+}
+
+/// Bytes of all files that a dataset is made of.
+std::uint64_t bytes_behind(const std::string& path, GDALDatasetH dataset) {
+    std::uint64_t bytes = refuse_unsafe_vrt(path);
+    char** const files = GDALGetFileList(dataset);
+    for (char** file = files; file && *file; ++file) {
+        VSIStatBufL status{};
+        if (VSIStatL(*file, &status) == 0) bytes += static_cast<std::uint64_t>(status.st_size);
+    }
+    CSLDestroy(files);
+    return bytes;
+}
+
+/// Finds out what a huge raster's file does not store, and refuses one whose file cannot store what
+/// it promises: to read it would take for ever and give nothing.
+void settle_sparse(GDALDatasetH dataset, GDALRasterBandH band, Piece& piece) {
+    constexpr double kManyPosts = 1 << 28;    // read in seconds
+    constexpr double kBelievable = 1 << 30;   // read in some ten
+    constexpr double kMostInAByte = 1 << 20;  // a thousand times what deflate can do
+    const double posts = double(piece.grid.columns()) * piece.grid.rows();
+    if (posts < kManyPosts || is_remote(piece.path)) return;
+    const std::uint64_t bytes = bytes_behind(piece.path, dataset);
+    const GDALRasterBandH mask = piece.has_mask ? GDALGetMaskBand(band) : nullptr;
+    const GDALRasterBandH alpha =
+        piece.alpha_band > 0 ? GDALGetRasterBand(dataset, piece.alpha_band) : nullptr;
+    if (piece.encoding == Encoding::None)
+        piece.sparse = SparseMap::of(dataset, band, mask, alpha, bytes);
+    if (piece.sparse) {
+        const glm::ivec2 at = *piece.sparse->empty_post();
+        const SparseMap map = *std::exchange(piece.sparse, std::nullopt);
+        piece.read(dataset, piece.levels.front(), {at.x, at.y, 1, 1}, &piece.unstored_m);
+        piece.sparse = map;
+    }
+    const double stored = posts * (piece.sparse ? piece.sparse->stored_share() : 1);
+    if (posts > kBelievable && stored > kMostInAByte * static_cast<double>(bytes))
+        refuse(piece.about.path,
+               fmt::format("promises {} x {} posts, expected far fewer in {} bytes of files",
+                           piece.grid.columns(), piece.grid.rows(), bytes));
 }
 
 std::vector<Level> levels_of(GDALRasterBandH band) {
@@ -238,6 +306,7 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
     if (columns < 2 || rows < 2)
         refuse(given,
                fmt::format("size, expected at least 2 x 2 posts but got {} x {}", columns, rows));
+    refuse_huge_blocks(given, band, 4.0 * static_cast<double>(options.max_posts));
     Georeference where = georeference(given, dataset.get(), options, about);
     const geo::Crs& crs = where.crs;
     settle_unit(given, band, crs, options, about);
@@ -283,6 +352,7 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
     settle_nodata(band, options, files > kManyFiles ? 3 : 5, piece);
     piece.levels = levels_of(band);
     if (!piece.knows_holes) piece.levels.resize(1);
+    settle_sparse(dataset.get(), band, piece);
 
     int block_columns = 1;
     GDALGetBlockSize(band, &block_columns, &piece.block_rows);
@@ -300,7 +370,11 @@ Dataset Piece::open() const {
     Dataset dataset(GDALOpenEx(path.c_str(),
                                GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                driver.data(), nullptr, nullptr));
-    if (!dataset) refuse(path, fmt::format("cannot be opened again, {}", messages.failure(path)));
+    if (!dataset) {
+        refuse_unreadable(path);
+        const std::string reason = messages.failure(path);
+        refuse(path, fmt::format("cannot be opened again, {}{}", reason, remedy_for(reason)));
+    }
     return resampling ? resampled(*this, std::move(dataset), messages) : std::move(dataset);
 }
 
@@ -315,10 +389,11 @@ void Piece::read(void* dataset, const Level& level, const Window& w, float* heig
         const CPLErr result = GDALRasterIO(from, GF_Read, w.column, w.row, w.columns, w.rows, to,
                                            w.columns, w.rows, type, 0, 0);
         // Some drivers say that a block is broken, fill it and carry on.
-        if (result != CE_None || messages.any_failure())
-            refuse(path, fmt::format("its heights cannot be read, {}; the file is damaged or "
-                                     "incomplete",
-                                     messages.failure(path)));
+        if (result != CE_None || messages.any_failure()) {
+            const std::string reason = messages.failure(path);
+            refuse(path,
+                   fmt::format("its heights cannot be read, {}{}", reason, remedy_for(reason)));
+        }
     };
     const GDALRasterBandH band = band_of(resampling ? 1 : about.band);
     if (encoding != Encoding::None) {

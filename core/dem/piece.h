@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dem/interpret.h"
+#include "dem/sparse.h"
 
 // One raster of a DEM, and several joined. Inside of the layer only.
 
@@ -48,7 +49,9 @@ struct Piece {
     bool threads_pay = false;  ///< the driver decodes blocks one by one, whichever handle asks
     bool knows_holes = true;   ///< overviews were made by who knew which numbers are heights
     int block_rows = 1;
-    std::vector<Level> levels;  ///< the raster itself, then its overviews
+    std::vector<Level> levels;        ///< the raster itself, then its overviews
+    std::optional<SparseMap> sparse;  ///< what of it the file does not store
+    float unstored_m = 0;             ///< the height there, NaN for holes
     Description about;
 
     /// A handle of one's own. @throws Error (BadInput)

@@ -13,6 +13,8 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel_for.h"
+#include "base/progress.h"
+#include "dem/folder.h"
 #include "dem/piece.h"
 
 namespace relevo::dem {
@@ -21,13 +23,24 @@ namespace {
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 /// Handles kept open between reads. A process may have 1024 files open; tiles come in thousands.
 constexpr std::size_t kMostIdle = 128;
+/// Of more than these, some seconds of reading, progress is told.
+constexpr double kManyPosts = 1 << 28;
 
-/// One part of a line of cells and how much of each cell lies in it.
+/// One part of a line of cells and how much of each cell lies in it: all of those inside.
 struct Part {
     std::size_t first = 0;
-    std::vector<double> weights;  // of cells first, first + 1, ...
+    std::size_t count = 0;
+    double first_weight = 1;
+    double last_weight = 1;  // of more than one
 
-    std::size_t end() const { return first + weights.size(); }
+    std::size_t end() const { return first + count; }
+    double weight(std::size_t k) const {
+        return k == 0 ? first_weight : k + 1 == count ? last_weight : 1.0;
+    }
+    double whole() const {
+        return count == 1 ? first_weight
+                          : first_weight + static_cast<double>(count - 2) + last_weight;
+    }
 };
 
 /// The parts of a line that have cells of a piece, as the cells of one of its levels.
@@ -50,13 +63,34 @@ Parts parts_within(double begin, double each, int count, double per, int cells) 
         if (result.parts.empty()) result.first = i;
         const int first = std::clamp(static_cast<int>(std::floor(from + 1e-6)), 0, cells - 1);
         const int last = std::clamp(static_cast<int>(std::ceil(to - 1e-6)), first + 1, cells);
-        Part part;
-        part.first = static_cast<std::size_t>(first);
-        for (int cell = first; cell < last; ++cell)
-            part.weights.push_back(std::min(to, cell + 1.0) - std::max(from, double(cell)));
-        result.parts.push_back(std::move(part));
+        const auto weight = [&](int cell) {
+            return std::min(to, cell + 1.0) - std::max(from, double(cell));
+        };
+        result.parts.push_back({static_cast<std::size_t>(first),
+                                static_cast<std::size_t>(last - first), weight(first),
+                                weight(last - 1)});
     }
     return result;
+}
+
+/// Parts that are added up at once.
+struct Strip {
+    std::size_t begin = 0, end = 0;    // of the parts
+    std::size_t first = 0, width = 0;  // of their cells
+};
+
+/// As many parts as fit into some memory, one at least.
+std::vector<Strip> strips_of(const Parts& across) {
+    constexpr std::size_t kMostCells = std::size_t{1} << 18;
+    std::vector<Strip> strips;
+    for (std::size_t i = 0; i < across.parts.size(); ++i) {
+        const Part& part = across.parts[i];
+        if (strips.empty() || part.end() - strips.back().first > kMostCells)
+            strips.push_back({i, i, part.first, 0});
+        strips.back().end = i + 1;
+        strips.back().width = part.end() - strips.back().first;
+    }
+    return strips;
 }
 
 /// The part of a window that a piece covers; no columns or rows where it covers none.
@@ -69,6 +103,22 @@ Window overlap(const Window& a, const Window& b) {
 
 bool is_empty(const Window& window) {
     return window.columns <= 0 || window.rows <= 0;
+}
+
+/// Makes holes of posts that are not on the Earth.
+void cut_to_earth(const Grid& grid, Array2d<float>& height_m) {
+    parallel_for(0, grid.rows(), std::max(1, (1 << 14) / grid.columns()), [&](int first, int last) {
+        std::vector<glm::dvec2> posts(static_cast<std::size_t>(grid.columns()));
+        std::vector<geo::Geodetic> places(posts.size());
+        for (int row = first; row < last; ++row) {
+            for (std::size_t i = 0; i < posts.size(); ++i)
+                posts[i] = {static_cast<double>(i), row};
+            grid.place(posts, places);
+            for (int column = 0; column < grid.columns(); ++column)
+                if (!std::isfinite(places[static_cast<std::size_t>(column)].lat_rad))
+                    height_m.at(column, row) = kHole;
+        }
+    });
 }
 
 /// The coarsest level that still has a cell for every `columns_each` by `rows_each` posts.
@@ -89,6 +139,8 @@ struct Source::Impl {
     Description about;
     bool threads_pay = false;
     int block_rows = 1;
+    int tallest_block = 1;
+    bool leaves_earth = false;  // some posts have no place
 
     // Open handles that no call is using, the one used last at the end; a GDAL dataset serves one
     // thread at a time.
@@ -105,7 +157,8 @@ struct Source::Impl {
     Array2d<float> read_means(const Window& window, int columns, int rows) const;
     struct Sums;
     void add_means(const Piece& piece, const Window& window, int columns, int rows, int first_row,
-                   Sums& sums) const;
+                   Sums& sums, Progress* progress) const;
+    Blank blank(const Window& window) const;
 };
 
 template <typename Body>
@@ -139,6 +192,13 @@ Array2d<float> Source::Impl::read_stored(const Window& window) const {
         const Window part = overlap(slice, piece.place);
         const Window own{part.column - piece.place.column, part.row - piece.place.row, part.columns,
                          part.rows};
+        if (piece.sparse && piece.sparse->is_empty(own)) {
+            for (int row = part.row - window.row; row < part.row - window.row + part.rows; ++row)
+                for (int column = 0; column < part.columns && !std::isnan(piece.unstored_m);
+                     ++column)
+                    height_m.at(part.column - window.column + column, row) = piece.unstored_m;
+            return;
+        }
         if (pieces.size() == 1) {
             piece.read(dataset, piece.levels.front(), own, &height_m.at(0, slice.row - window.row));
             return;
@@ -185,7 +245,7 @@ struct Source::Impl::Sums {
 
 /// @param first_row  of the parts that are summed
 void Source::Impl::add_means(const Piece& piece, const Window& window, int columns, int rows,
-                             int first_row, Sums& sums) const {
+                             int first_row, Sums& sums, Progress* progress) const {
     const double columns_each = window.columns / double(columns);
     const double rows_each = window.rows / double(rows);
     const Level& level = coarsest_level(piece, columns_each, rows_each);
@@ -197,56 +257,76 @@ void Source::Impl::add_means(const Piece& piece, const Window& window, int colum
     const auto down = parts_within(window.row + first_row * rows_each - piece.place.row, rows_each,
                                    sums.height.height(), per_row, level.rows);
     if (across.parts.empty() || down.parts.empty()) return;
-    const std::size_t first_column = across.parts.front().first;
-    const std::size_t width = across.parts.back().end() - first_column;
-    // A part of a huge raster without overviews does not fit into memory at once.
-    const std::size_t slice_lines = std::max<std::size_t>(1, (std::size_t{1} << 18) / width);
+    const std::vector<Strip> strips = strips_of(across);
+    const bool may_skip = piece.sparse && level.overview < 0;
 
     const auto add_rows = [&](int first, int last) {
         std::vector<float> cells;
-        std::vector<double> heights(width);  // of valid cells, down a column of the part
-        std::vector<double> weights(width);  // their areas
+        std::vector<double> heights;  // of valid cells, down a column of the part
+        std::vector<double> weights;  // their areas
+        const auto add_strip = [&](void* dataset, int row, const Strip& strip) {
+            const Part& lines = down.parts[static_cast<std::size_t>(row)];
+            const auto add = [&](std::size_t i, double sum, double weight) {
+                const int column = across.first + static_cast<int>(i);
+                sums.height.at(column, down.first + row) += sum / (per_column * per_row);
+                sums.area.at(column, down.first + row) += weight / (per_column * per_row);
+            };
+            const Window within{static_cast<int>(strip.first), static_cast<int>(lines.first),
+                                static_cast<int>(strip.width), static_cast<int>(lines.count)};
+            if (may_skip && piece.sparse->is_empty(within)) {
+                for (std::size_t i = strip.begin; i < strip.end && !std::isnan(piece.unstored_m);
+                     ++i) {
+                    const double weight = across.parts[i].whole() * lines.whole();
+                    add(i, weight * double(piece.unstored_m), weight);
+                }
+                return;
+            }
+            heights.assign(strip.width, 0.0);
+            weights.assign(strip.width, 0.0);
+            // A part of a huge raster without overviews does not fit into memory at once.
+            const std::size_t slice_lines =
+                std::max<std::size_t>(1, (std::size_t{1} << 18) / strip.width);
+            for (std::size_t k = 0; k < lines.count; ++k) {
+                const std::size_t in_slice = k % slice_lines;
+                if (in_slice == 0) {
+                    const std::size_t n = std::min(slice_lines, lines.count - k);
+                    cells.resize(strip.width * n);
+                    piece.read(dataset, level,
+                               {within.column, within.row + static_cast<int>(k), within.columns,
+                                static_cast<int>(n)},
+                               cells.data());
+                }
+                const float* line = &cells[in_slice * strip.width];
+                const double whole = lines.weight(k);
+                for (std::size_t c = 0; c < strip.width; ++c) {
+                    const double weight = std::isnan(line[c]) ? 0.0 : whole;
+                    heights[c] += weight == 0 ? 0.0 : weight * double(line[c]);
+                    weights[c] += weight;
+                }
+            }
+            for (std::size_t i = strip.begin; i < strip.end; ++i) {
+                const Part& part = across.parts[i];
+                double sum = 0;
+                double weight = 0;
+                for (std::size_t k = 0; k < part.count; ++k) {
+                    sum += part.weight(k) * heights[part.first - strip.first + k];
+                    weight += part.weight(k) * weights[part.first - strip.first + k];
+                }
+                add(i, sum, weight);
+            }
+        };
         borrow(piece, [&](void* dataset) {
             for (int row = first; row < last; ++row) {
-                const Part& lines = down.parts[static_cast<std::size_t>(row)];
-                std::fill(heights.begin(), heights.end(), 0.0);
-                std::fill(weights.begin(), weights.end(), 0.0);
-                for (std::size_t k = 0; k < lines.weights.size(); ++k) {
-                    const std::size_t in_slice = k % slice_lines;
-                    if (in_slice == 0) {
-                        const std::size_t n = std::min(slice_lines, lines.weights.size() - k);
-                        cells.resize(width * n);
-                        piece.read(
-                            dataset, level,
-                            {static_cast<int>(first_column), static_cast<int>(lines.first + k),
-                             static_cast<int>(width), static_cast<int>(n)},
-                            cells.data());
-                    }
-                    const float* line = &cells[in_slice * width];
-                    for (std::size_t c = 0; c < width; ++c) {
-                        const double weight = std::isnan(line[c]) ? 0.0 : lines.weights[k];
-                        heights[c] += weight == 0 ? 0.0 : weight * double(line[c]);
-                        weights[c] += weight;
-                    }
-                }
-                for (std::size_t i = 0; i < across.parts.size(); ++i) {
-                    const Part& part = across.parts[i];
-                    double sum = 0;
-                    double weight = 0;
-                    for (std::size_t k = 0; k < part.weights.size(); ++k) {
-                        sum += part.weights[k] * heights[part.first - first_column + k];
-                        weight += part.weights[k] * weights[part.first - first_column + k];
-                    }
-                    const int column = across.first + static_cast<int>(i);
-                    sums.height.at(column, down.first + row) += sum / (per_column * per_row);
-                    sums.area.at(column, down.first + row) += weight / (per_column * per_row);
-                }
+                for (const Strip& strip : strips)
+                    add_strip(dataset, row, strip);
+                if (progress) progress->add(rows_each);
             }
         });
     };
+    const auto width = static_cast<int>(across.parts.back().end() - across.parts.front().first);
     const int count = static_cast<int>(down.parts.size());
     if (piece.threads_pay)
-        parallel_for(0, count, std::max(1, (1 << 17) / static_cast<int>(width)), add_rows);
+        parallel_for(0, count, std::max(1, (1 << 17) / width), add_rows);
     else
         add_rows(0, count);
 }
@@ -255,13 +335,18 @@ Array2d<float> Source::Impl::read_means(const Window& window, int columns, int r
     const double area =
         window.columns / double(columns) * (window.rows / double(rows)) * (1 - 1e-9);
     Array2d<float> result(columns, rows, kHole);
+    std::optional<Progress> progress;
+    if (double(window.columns) * window.rows > kManyPosts)
+        progress.emplace(about.path + ": reading",
+                         static_cast<double>(pieces.size()) * window.rows);
     // Sums take four times the memory of what they become.
     const int band_rows = std::max(1, (1 << 22) / columns);
     for (int first_row = 0; first_row < rows; first_row += band_rows) {
         const int count = std::min(band_rows, rows - first_row);
         Sums sums{Array2d<double>(columns, count), Array2d<double>(columns, count)};
         for (const Piece& piece : pieces)
-            add_means(piece, window, columns, rows, first_row, sums);
+            add_means(piece, window, columns, rows, first_row, sums,
+                      progress ? &*progress : nullptr);
         for (int row = 0; row < count; ++row)
             for (int column = 0; column < columns; ++column)
                 if (sums.area.at(column, row) >= 0.5 * area)
@@ -270,6 +355,31 @@ Array2d<float> Source::Impl::read_means(const Window& window, int columns, int r
     }
     return result;
 }
+
+namespace {
+
+/// Whether some posts have no place, which is said; where none has one, it is an error.
+void settle_earth(const Grid& grid, Description& about, bool& leaves_earth) {
+    constexpr const char* kRemedy =
+        "pass the right one with --crs EPSG:n, or bring it to degrees with gdalwarp -t_srs "
+        "EPSG:4326";
+    const double share = grid.share_on_earth();
+    leaves_earth = share < 1;
+    if (share == 0)
+        refuse(about.path, fmt::format("none of its posts is on the Earth in {}; {}",
+                                       grid.crs().name(), kRemedy));
+    const glm::dvec2 spacing_m = grid.post_spacing_m();
+    if (!std::isfinite(spacing_m.x + spacing_m.y))
+        refuse(about.path, fmt::format("cells so large that beside its middle is no place on the "
+                                       "Earth in {}; {}",
+                                       grid.crs().name(), kRemedy));
+    if (!leaves_earth) return;
+    about.holes_by.emplace_back("earth");
+    guess(about, fmt::format("some of its posts are not on the Earth in {}, and are holes",
+                             grid.crs().name()));
+}
+
+}  // namespace
 
 Source::Source(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Source::Source(Source&&) noexcept = default;
@@ -280,8 +390,15 @@ Source Source::open(const std::string& path, const LoadOptions& options) {
     return open(std::span(&path, 1), options);
 }
 
-Source Source::open(std::span<const std::string> paths, const LoadOptions& options) {
-    if (paths.empty()) bad_input("dem::load: no DEM, expected one file or more");
+Source Source::open(std::span<const std::string> given, const LoadOptions& options) {
+    if (given.empty()) bad_input("dem::load: no DEM, expected one file or more");
+    std::vector<std::string> paths;
+    std::vector<std::string> folders;  // that they are from, empty for what was named itself
+    for (const std::string& name : given)
+        for (std::string& path : rasters_of(name)) {
+            folders.push_back(path == name ? "" : name);
+            paths.push_back(std::move(path));
+        }
     if (options.bounds && paths.size() > 1)
         bad_usage(
             fmt::format("--bounds: it says where one file is, but there are {}", paths.size()));
@@ -289,19 +406,31 @@ Source Source::open(std::span<const std::string> paths, const LoadOptions& optio
     std::vector<Dataset> opened(std::min(paths.size(), kMostIdle));
     for (std::size_t i = 0; i < paths.size(); ++i) {
         Dataset dataset;
-        impl->pieces.push_back(open_piece(paths[i], options, paths.size(), dataset));
+        try {
+            impl->pieces.push_back(open_piece(paths[i], options, paths.size(), dataset));
+        } catch (const Error& error) {
+            if (folders[i].empty()) throw;
+            throw Error(error.code(),
+                        fmt::format("{}; it is one of {} in {}, name those that are meant",
+                                    error.what(), paths.size(), folders[i]));
+        }
         if (i < kMostIdle) opened[i] = std::move(dataset);
     }
     impl->grid = join(impl->pieces, impl->about);
+    settle_earth(*impl->grid, impl->about, impl->leaves_earth);
     for (std::size_t i = 0; i < opened.size(); ++i)
         if (!impl->pieces[i].resampling)
             impl->idle.push_back({&impl->pieces[i], std::move(opened[i])});
-    for (const Piece& piece : impl->pieces)
+    for (const Piece& piece : impl->pieces) {
         impl->threads_pay = impl->threads_pay || piece.threads_pay;
+        impl->tallest_block = std::max(impl->tallest_block, piece.block_rows);
+    }
     if (impl->pieces.size() == 1) impl->block_rows = impl->pieces.front().block_rows;
     // Of several files, what holds for one alone begins with its name.
     for (const std::string& sentence : impl->about.guesses)
         log::info(paths.size() == 1 ? fmt::format("{}: {}", paths.front(), sentence) : sentence);
+    for (const std::string& sentence : impl->about.warnings)
+        log::warning(sentence);
     return Source(std::move(impl));
 }
 
@@ -318,12 +447,46 @@ Array2d<float> Source::read(const Window& window, int columns, int rows) const {
            window.column + window.columns <= grid().columns() &&
            window.row + window.rows <= grid().rows());
     assert(columns > 0 && rows > 0 && columns <= window.columns && rows <= window.rows);
-    if (columns == window.columns && rows == window.rows) return impl_->read_stored(window);
-    return impl_->read_means(window, columns, rows);
+    Array2d<float> height_m = columns == window.columns && rows == window.rows
+                                  ? impl_->read_stored(window)
+                                  : impl_->read_means(window, columns, rows);
+    if (impl_->leaves_earth) cut_to_earth(grid().part(window, columns, rows), height_m);
+    return height_m;
+}
+
+Source::Blank Source::Impl::blank(const Window& window) const {
+    Blank blank{window.rows, kHole};
+    if (leaves_earth) return {0, kHole};
+    for (const Piece& piece : pieces) {
+        const Window part = overlap(window, piece.place);
+        if (is_empty(part)) continue;
+        int rows = part.row - window.row;
+        if (rows == 0 && piece.sparse) {
+            rows = piece.sparse->empty_rows({part.column - piece.place.column,
+                                             part.row - piece.place.row, part.columns, part.rows});
+            // Of several, what lies on top would have to be found out.
+            if (pieces.size() == 1)
+                blank.height_m = piece.unstored_m;
+            else if (!std::isnan(piece.unstored_m))
+                rows = 0;
+            // Below the piece only others can have heights.
+            if (rows == part.rows) continue;
+        }
+        blank.rows = std::min(blank.rows, rows);
+    }
+    return blank;
+}
+
+Source::Blank Source::blank(const Window& window) const {
+    return impl_->blank(window);
+}
+
+int Source::block_rows() const {
+    return impl_->tallest_block;
 }
 
 Array2d<float> Source::read() const {
-    return impl_->read_stored({0, 0, grid().columns(), grid().rows()});
+    return read({0, 0, grid().columns(), grid().rows()}, grid().columns(), grid().rows());
 }
 
 double Source::height_at(const geo::Geodetic& place) const {

@@ -39,8 +39,9 @@ class Source {
     /// Opens a raster of any dialect (docs/dem-formats.md) and settles what its numbers mean. Reads
     /// no heights but, where no nodata value is declared, a sample to see whether one is used;
     /// what was found there holds for every later read. Guesses are said with log::info.
-    /// @param path  a file, a folder that is one raster (Esri grids), an archive of one raster, or
-    ///              another name that GDAL opens ("/vsizip/alps.zip/alps.tif", "NETCDF:a.nc:topo")
+    /// @param path  a file, a folder that is one raster (Esri grids), a folder of rasters, an
+    ///              archive of one, or another name that GDAL opens ("/vsizip/alps.zip/alps.tif",
+    ///              "NETCDF:a.nc:topo")
     /// @throws Error (BadInput) `dem::load: PATH: what, expected E but got G; remedy`
     static Source open(const std::string& path, const LoadOptions& options = {});
 
@@ -71,6 +72,16 @@ class Source {
 
     /// All posts, as stored.
     Array2d<float> read() const;
+
+    /// Rows at the top of a window that need not be read, because no file stores or covers them.
+    struct Blank {
+        int rows = 0;        ///< 0: the first one has to be read
+        float height_m = 0;  ///< of each post there, NaN for holes
+    };
+    Blank blank(const Window& window) const;
+
+    /// Rows that are read best at once, those of the files' blocks.
+    int block_rows() const;
 
     /// The height at a place, as Heightfield::height_at() has it: four posts are read.
     double height_at(const geo::Geodetic& place) const;

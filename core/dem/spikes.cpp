@@ -10,6 +10,11 @@
 namespace relevo::dem {
 
 Spikes find_spikes(const Array2d<float>& height_m, const glm::dvec2& post_spacing_m) {
+    return find_spikes(height_m, post_spacing_m, {0, 0, height_m.width(), height_m.height()});
+}
+
+Spikes find_spikes(const Array2d<float>& height_m, const glm::dvec2& post_spacing_m,
+                   const Window& window) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     constexpr int kFewest = 3;
     Spikes all;
@@ -17,10 +22,11 @@ Spikes find_spikes(const Array2d<float>& height_m, const glm::dvec2& post_spacin
     const auto limit_m = static_cast<float>(all.limit_m);
     std::mutex mutex;
     const int width = height_m.width(), height = height_m.height();
-    parallel_for(0, height, std::max(1, 100'000 / std::max(1, width)), [&](int first, int last) {
+    const int grain = std::max(1, 100'000 / std::max(1, window.columns));
+    parallel_for(window.row, window.row + window.rows, grain, [&](int first, int last) {
         Spikes found;
         for (int row = first; row < last; ++row)
-            for (int column = 0; column < width; ++column) {
+            for (int column = window.column; column < window.column + window.columns; ++column) {
                 const float h = height_m.at(column, row);
                 // One comparison is enough for nearly all posts: a spike leaves its left neighbour.
                 if (std::isnan(h) ||

@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 
 #include "base/array2d.h"
+#include "dem/grid.h"
 
 namespace relevo::dem {
 
@@ -22,5 +23,9 @@ struct Spikes {
 /// and chimneys stay, and at most 1500 m, which no kilometre of the Earth rises on all sides.
 /// Posts with fewer than three valid neighbours are left out.
 Spikes find_spikes(const Array2d<float>& height_m, const glm::dvec2& post_spacing_m);
+
+/// Among the posts of a window; those around it are neighbours all the same.
+Spikes find_spikes(const Array2d<float>& height_m, const glm::dvec2& post_spacing_m,
+                   const Window& window);
 
 }  // namespace relevo::dem

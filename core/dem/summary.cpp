@@ -1,11 +1,15 @@
 #include "dem/summary.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
+#include "dem/load.h"
+#include "dem/survey.h"
 #include "geo/format.h"
 
 namespace relevo::dem {
@@ -40,36 +44,91 @@ std::string distance_text(double metres) {
 
 }  // namespace
 
-Summary summarize(const Heightfield& field) {
-    const Description& about = field.about;
+namespace {
+
+Summary summary_of(const Description& about, const Grid& grid, const Spikes& spikes) {
     Summary s;
     s.path = about.path;
     s.files = about.files;
     s.driver = about.driver;
     s.data_type = about.data_type;
-    s.columns = field.grid.columns();
-    s.rows = field.grid.rows();
-    s.crs = field.grid.crs().text();
-    s.crs_name = field.grid.crs().name();
-    s.center = field.grid.center();
+    s.columns = grid.columns();
+    s.rows = grid.rows();
+    s.crs = grid.crs().text();
+    s.crs_name = grid.crs().name();
+    s.center = grid.center();
     s.utm = geo::utm_text(s.center);
     s.mgrs = geo::mgrs_text(s.center);
-    s.extent_m = field.grid.extent_m();
-    s.post_spacing_m = field.grid.post_spacing_m();
+    s.extent_m = grid.extent_m();
+    s.sides_m = grid.sides_m();
+    s.row_azimuth_rad = grid.row_azimuth_rad();
+    s.post_spacing_m = grid.post_spacing_m();
     s.min_m = about.statistics.min_m;
     s.max_m = about.statistics.max_m;
     s.nodata_share = about.statistics.nodata_share();
     s.nodata = about.nodata;
     s.nodata_text = about.nodata_text();
+    s.holes_by = about.holes_by;
+    s.alpha_band = about.alpha_band;
     s.outliers = about.statistics.outliers;
-    s.spikes = find_spikes(field.height_m, s.post_spacing_m);
-    if (s.spikes.count > 0) s.worst_spike = field.place(s.spikes.worst_column, s.spikes.worst_row);
+    s.spikes = spikes;
     s.unit = about.unit.name;
     s.unit_source = name_of(about.unit_source);
     s.vertical_datum = about.vertical_datum;
     s.band = about.band;
     s.bands = about.bands;
     s.assumptions = about.assumptions;
+    return s;
+}
+
+/// How holes were told from heights, in brackets; empty where nothing but NaN says so and there is
+/// none.
+std::string holes_text(const Summary& s) {
+    std::vector<std::string> ways;
+    for (const std::string& by : s.holes_by)
+        if (by == "mask")
+            ways.emplace_back("mask");
+        else if (by == "alpha")
+            ways.push_back(fmt::format("alpha band {}", s.alpha_band));
+        else if (by == "earth")
+            ways.emplace_back("not on the Earth");
+        else if (by == "found" && !s.nodata)
+            ways.emplace_back("too large for heights, not declared");
+    if (s.nodata) {
+        const bool found =
+            std::find(s.holes_by.begin(), s.holes_by.end(), "found") != s.holes_by.end();
+        ways.push_back(fmt::format("nodata {}{}", s.nodata_text, found ? ", not declared" : ""));
+    }
+    if (ways.empty() && s.nodata_share > 0 && s.files.size() == 1) ways.emplace_back("NaN");
+    return ways.empty() ? "" : fmt::format(" ({})", fmt::join(ways, "; "));
+}
+
+/// Whether rows run so far from east and from north that sides are shorter than the extent.
+bool is_turned(const Summary& s) {
+    constexpr double kTurned = 0.09;  // sine of 5 degrees: no UTM zone turns its rows that far
+    return std::abs(std::sin(2 * s.row_azimuth_rad)) > 2 * kTurned;
+}
+
+}  // namespace
+
+Summary summarize(const Source& source, std::int64_t max_posts) {
+    Description about = source.description();
+    const Survey found = survey(source, max_posts);
+    about.statistics = found.statistics;
+    report_heights(about, found.frame);
+    Summary s = summary_of(about, source.grid(), found.spikes);
+    if (found.spikes.count > 0) {
+        const int column = found.spikes.worst_column, row = found.spikes.worst_row;
+        s.worst_spike = source.grid().place(column, row);
+        s.worst_spike->height_m = source.read({column, row, 1, 1}, 1, 1).at(0, 0);
+    }
+    return s;
+}
+
+Summary summarize(const Heightfield& field) {
+    const Spikes spikes = find_spikes(field.height_m, field.grid.post_spacing_m());
+    Summary s = summary_of(field.about, field.grid, spikes);
+    if (spikes.count > 0) s.worst_spike = field.place(spikes.worst_column, spikes.worst_row);
     return s;
 }
 
@@ -88,13 +147,15 @@ std::string to_json(const Summary& s) {
     json["utm"] = s.utm;
     json["mgrs"] = s.mgrs;
     json["extent_m"] = {rounded(s.extent_m.x, 3), rounded(s.extent_m.y, 3)};
+    json["side_m"] = {rounded(s.sides_m.x, 3), rounded(s.sides_m.y, 3)};
+    json["row_azimuth_deg"] = rounded(degrees(s.row_azimuth_rad), 6);
     json["post_spacing_m"] = {rounded(s.post_spacing_m.x, 6), rounded(s.post_spacing_m.y, 6)};
     json["elevation_m"] = {{"min", rounded(s.min_m, 3)}, {"max", rounded(s.max_m, 3)}};
     json["nodata_share"] = s.nodata_share;
-    // JSON has no word for a nodata value that is NaN or infinite.
-    json["nodata"] = !s.nodata                  ? Json()
-                     : std::isfinite(*s.nodata) ? Json(*s.nodata)
-                                                : Json(s.nodata_text);
+    // JSON has no number for a nodata value that is NaN or infinite; the text says those too.
+    json["nodata"] = s.nodata && std::isfinite(*s.nodata) ? Json(*s.nodata) : Json();
+    json["nodata_text"] = s.nodata ? Json(s.nodata_text) : Json();
+    json["holes_by"] = s.holes_by;
     json["outliers"] = s.outliers;
     Json& spikes = json["spikes"] = {
         {"count", s.spikes.count}, {"limit_m", rounded(s.spikes.limit_m, 3)}, {"worst", Json()}};
@@ -126,13 +187,17 @@ std::string to_text(const Summary& s) {
                                                          : s.crs_name);
     line("center", fmt::format("{} ({}{}, MGRS {})", geo::degrees_text(s.center),
                                s.utm.starts_with("UPS") ? "" : "UTM ", s.utm, s.mgrs));
-    line("extent", fmt::format("{} east, {} north", distance_text(s.extent_m.x),
-                               distance_text(s.extent_m.y)));
+    line("extent",
+         fmt::format(
+             "{} east, {} north{}", distance_text(s.extent_m.x), distance_text(s.extent_m.y),
+             is_turned(s) ? fmt::format("; sides {} x {}, rows run towards {:.1f} degrees",
+                                        distance_text(s.sides_m.x), distance_text(s.sides_m.y),
+                                        degrees(s.row_azimuth_rad))
+                          : ""));
     line("spacing", fmt::format("{} x {}", distance_text(s.post_spacing_m.x),
                                 distance_text(s.post_spacing_m.y)));
     line("heights", fmt::format("{:.1f} to {:.1f} m", s.min_m, s.max_m));
-    line("holes", fmt::format("{:.4g} %{}", 100 * s.nodata_share,
-                              s.nodata ? fmt::format(" (nodata {})", s.nodata_text) : ""));
+    line("holes", fmt::format("{:.4g} %{}", 100 * s.nodata_share, holes_text(s)));
     if (s.outliers > 0)
         line("outliers", fmt::format("{} heights that the Earth has not", s.outliers));
     if (s.worst_spike)

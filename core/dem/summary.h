@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dem/heightfield.h"
+#include "dem/source.h"
 #include "dem/spikes.h"
 
 namespace relevo::dem {
@@ -22,12 +23,16 @@ struct Summary {
     std::string utm;              ///< geo::utm_text() of the centre
     std::string mgrs;             ///< geo::mgrs_text() of the centre
     glm::dvec2 extent_m{};        ///< Grid::extent_m(): east, north
+    glm::dvec2 sides_m{};         ///< Grid::sides_m(): along rows, along columns
+    double row_azimuth_rad = 0;   ///< Grid::row_azimuth_rad()
     glm::dvec2 post_spacing_m{};  ///< Grid::post_spacing_m(): x, y
     float min_m = 0;
     float max_m = 0;
     double nodata_share = 0;  ///< posts without a height, 0 to 1
     std::optional<double> nodata;
-    std::string nodata_text;  ///< in as many digits as the file's type has
+    std::string nodata_text;            ///< in as many digits as the file's type has
+    std::vector<std::string> holes_by;  ///< Description::holes_by
+    int alpha_band = 0;                 ///< Description::alpha_band
     std::int64_t outliers = 0;
     Spikes spikes;
     std::optional<geo::Geodetic> worst_spike;  ///< where, with its height
@@ -39,12 +44,19 @@ struct Summary {
     std::vector<std::string> assumptions;
 };
 
+/// Of all posts of a DEM, whatever part of them memory holds. Says what looks wrong with log::info.
+/// @param max_posts  that memory has room for
+/// @throws Error (BadInput) where the file is damaged, and where not one post has a height
+Summary summarize(const Source& source, std::int64_t max_posts);
+
+/// Of the posts of a field.
 Summary summarize(const Heightfield& field);
 
 /// The object of `relevo info --json`, two blanks a level, no line end after it. Keys
 /// (docs/cli.md): path, files, driver, data_type, size [columns, rows], crs, crs_name, center
-/// {lat_deg, lon_deg}, utm, mgrs, extent_m [east, north], post_spacing_m [x, y], elevation_m {min,
-/// max}, nodata_share, nodata, outliers, spikes {count, limit_m, worst}, unit, unit_source,
+/// {lat_deg, lon_deg}, utm, mgrs, extent_m [east, north], side_m [x, y], row_azimuth_deg,
+/// post_spacing_m [x, y], elevation_m {min, max}, nodata_share, nodata, nodata_text, holes_by
+/// [text], outliers, spikes {count, limit_m, worst}, unit, unit_source,
 /// vertical_datum, band, bands, assumptions [text]. Unknown ones are null.
 std::string to_json(const Summary& summary);
 

@@ -20,12 +20,20 @@ Ground make_ground(const dem::Heightfield& dem) {
     const double columns = dem.grid.columns() - 1, rows = dem.grid.rows() - 1;
     ground.south_west_m = glm::dvec2(1e300);
     ground.north_east_m = glm::dvec2(-1e300);
-    for (const double u : {0.0, 0.5, 1.0}) {
-        for (const double v : {0.0, 0.5, 1.0}) {
-            const glm::dvec2 at(ground.frame.to_local(dem.grid.place(u * columns, v * rows)));
-            ground.south_west_m = glm::min(ground.south_west_m, at);
-            ground.north_east_m = glm::max(ground.north_east_m, at);
+    // A map of the world has corners that are no place; more of it then says where its ground is.
+    for (const int steps : {2, kPiecesAcross}) {
+        bool all_on_earth = true;
+        for (int i = 0; i <= steps; ++i) {
+            for (int j = 0; j <= steps; ++j) {
+                const geo::Geodetic place = dem.grid.place(columns * i / steps, rows * j / steps);
+                all_on_earth = all_on_earth && std::isfinite(place.lat_rad);
+                if (!std::isfinite(place.lat_rad)) continue;
+                const glm::dvec2 at(ground.frame.to_local(place));
+                ground.south_west_m = glm::min(ground.south_west_m, at);
+                ground.north_east_m = glm::max(ground.north_east_m, at);
+            }
         }
+        if (all_on_earth) break;
     }
     return ground;
 }

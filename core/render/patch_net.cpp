@@ -1,5 +1,6 @@
 #include "render/patch_net.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -28,6 +29,100 @@ std::array<glm::dvec3, 9> biquadratic(const std::array<glm::dvec3, 9>& nodes) {
     return result;
 }
 
+/// Values at the nodes of the biquadratic that is nearest to what is known of it.
+class NodeFit {
+  public:
+    NodeFit() {
+        // Keeps the sums solvable where few posts are known.
+        constexpr double kStiff = 1e-6;
+        for (std::size_t i = 0; i < 9; ++i)
+            matrix_[i][i] = kStiff;
+    }
+
+    void add(double u, double v, const glm::dvec3& position, const glm::dvec3& vertical,
+             double weight = 1) {
+        const std::array<double, 3> a = {1, u, u * u}, b = {1, v, v * v};
+        std::array<double, 9> row{};
+        for (std::size_t i = 0; i < 9; ++i)
+            row[i] = a[i % 3] * b[i / 3];
+        for (std::size_t i = 0; i < 9; ++i) {
+            for (std::size_t k = 0; k < 9; ++k)
+                matrix_[i][k] += weight * row[i] * row[k];
+            positions_[i] += weight * row[i] * position;
+            verticals_[i] += weight * row[i] * vertical;
+        }
+    }
+
+    void solve(std::array<glm::dvec3, 9>& positions, std::array<glm::dvec3, 9>& verticals) {
+        // Symmetric and positive: elimination needs no pivots.
+        for (std::size_t i = 0; i < 9; ++i) {
+            for (std::size_t k = i + 1; k < 9; ++k) {
+                const double factor = matrix_[k][i] / matrix_[i][i];
+                for (std::size_t c = i; c < 9; ++c)
+                    matrix_[k][c] -= factor * matrix_[i][c];
+                positions_[k] -= factor * positions_[i];
+                verticals_[k] -= factor * verticals_[i];
+            }
+        }
+        for (std::size_t i = 9; i-- > 0;) {
+            for (std::size_t k = i + 1; k < 9; ++k) {
+                positions_[i] -= matrix_[i][k] * positions_[k];
+                verticals_[i] -= matrix_[i][k] * verticals_[k];
+            }
+            positions_[i] /= matrix_[i][i];
+            verticals_[i] /= matrix_[i][i];
+        }
+        for (std::size_t node = 0; node < 9; ++node) {
+            const double u = 0.5 * static_cast<double>(node % 3);
+            const double v = 0.5 * static_cast<double>(node / 3);
+            const std::array<double, 3> a = {1, u, u * u}, b = {1, v, v * v};
+            positions[node] = verticals[node] = glm::dvec3(0);
+            for (std::size_t i = 0; i < 9; ++i) {
+                positions[node] += a[i % 3] * b[i / 3] * positions_[i];
+                verticals[node] += a[i % 3] * b[i / 3] * verticals_[i];
+            }
+        }
+    }
+
+  private:
+    std::array<std::array<double, 9>, 9> matrix_{};
+    std::array<glm::dvec3, 9> positions_{}, verticals_{};  // first sums, then coefficients
+};
+
+/// Of a piece that is partly beside the globe: nodes that have no place go on from those posts that
+/// have one. The others stay, so that neighbours agree.
+void fit_what_is_on_earth(const PostPlace& place, const geo::LocalFrame& frame, glm::dvec2 first,
+                          glm::dvec2 sides, std::array<glm::dvec3, 9>& positions,
+                          std::array<glm::dvec3, 9>& verticals) {
+    constexpr int kSamples = 16;
+    constexpr double kNodeWeight = 1e4;
+    NodeFit fit;
+    std::array<bool, 9> known{};
+    for (std::size_t node = 0; node < 9; ++node) {
+        known[node] = std::isfinite(positions[node].x);
+        if (known[node])
+            fit.add(0.5 * static_cast<double>(node % 3), 0.5 * static_cast<double>(node / 3),
+                    positions[node], verticals[node], kNodeWeight);
+    }
+    for (int j = 0; j <= kSamples; ++j) {
+        for (int i = 0; i <= kSamples; ++i) {
+            const glm::dvec2 at = glm::dvec2(i, j) / double{kSamples};
+            const geo::Geodetic on_earth =
+                place(first.x + sides.x * at.x, first.y + sides.y * at.y);
+            if (std::isfinite(on_earth.lat_rad))
+                fit.add(at.x, at.y, frame.to_local({on_earth.lat_rad, on_earth.lon_rad, 0}),
+                        frame.up(on_earth.lat_rad, on_earth.lon_rad));
+        }
+    }
+    std::array<glm::dvec3, 9> fitted_positions, fitted_verticals;
+    fit.solve(fitted_positions, fitted_verticals);
+    for (std::size_t node = 0; node < 9; ++node) {
+        if (known[node]) continue;
+        positions[node] = fitted_positions[node];
+        verticals[node] = fitted_verticals[node];
+    }
+}
+
 }  // namespace
 
 glm::dvec3 PatchNet::place(double u, double v, double height_m) const {
@@ -50,6 +145,9 @@ PatchNet fit_patch_net(const PostPlace& place, const geo::LocalFrame& frame, glm
         positions[node] = frame.to_local({at.lat_rad, at.lon_rad, 0});
         verticals[node] = frame.up(at.lat_rad, at.lon_rad);
     }
+    if (!std::all_of(positions.begin(), positions.end(),
+                     [](const glm::dvec3& position) { return std::isfinite(position.x); }))
+        fit_what_is_on_earth(place, frame, first, sides, positions, verticals);
     PatchNet net;
     net.centre_m = positions[4];
     for (glm::dvec3& position : positions)

@@ -18,9 +18,10 @@ namespace relevo::render {
 ///     centre + sum over i, j of position[3 j + i] u^i v^j + h (n0 + u nu + v nv),  i, j = 0..2
 ///
 /// in the DEM's local frame [m]: the biquadratic through 3 x 3 exact places, so that neighbours
-/// agree along the side they share. Accuracy: below a hundredth of the post spacing for pieces up
-/// to 200 km; the error grows with the cube of the side (tests/render/test_patch_net.cpp prints
-/// it).
+/// agree along the side they share. Of a piece with posts that have no place on the Earth it is the
+/// biquadratic nearest to those that have one. Accuracy: below a hundredth of the post spacing for
+/// pieces up to 200 km; the error grows with the cube of the side (tests/render/test_patch_net.cpp
+/// prints it).
 struct PatchNet {
     glm::dvec3 centre_m;                   ///< exact place of the piece's middle
     std::array<glm::dvec3, 9> position_m;  ///< coefficients, see above

@@ -153,5 +153,39 @@ TEST_F(DialectPicture, TilesAreThePictureOfTheWhole) {
     EXPECT_GT(image::compare(whole, picture({south_east, west, north_east})).psnr_db, 60);
 }
 
+/// Share of a picture that is not the paper it is drawn on.
+double drawn_share(const image::Image8& picture) {
+    int drawn = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const std::uint8_t* const pixel = picture.row(y) + x * picture.channels;
+            drawn += pixel[0] < 250 || pixel[1] < 250 || pixel[2] < 250;
+        }
+    return drawn / double(picture.width * picture.height);
+}
+
+TEST_F(DialectPicture, MapsOfTheWorldShowTheirGround) {
+    // The same hills over the northern hemisphere's middle, on a globe seen from above.
+    const auto world = [&](const char* name, const char* crs, double half_width_m,
+                           double half_height_m, int columns, int rows) {
+        Raster raster;
+        raster.crs = crs;
+        raster.columns = columns;
+        raster.rows = rows;
+        raster.geotransform = {{-half_width_m, 2 * half_width_m / columns, 0, half_height_m, 0,
+                                -2 * half_height_m / rows}};
+        raster.value = [](int column, int row, int) { return 10.0 * ((column + row) % 50); };
+        return picture({written(name, raster)}, {"--view", "az=180,el=60,zoom=1"});
+    };
+    const double orthographic = drawn_share(world(
+        "ortho.tif", "+proj=ortho +lat_0=47 +lon_0=11 +R=6371000", 6371000, 6371000, 256, 256));
+    const double mollweide =
+        drawn_share(world("mollweide.tif", "ESRI:54009", 18040096, 9020048, 512, 256));
+    fmt::print("[ share    ] drawn: orthographic {:.3f}, Mollweide {:.3f}\n", orthographic,
+               mollweide);
+    EXPECT_GT(orthographic, 0.2);
+    EXPECT_GT(mollweide, 0.2);
+}
+
 }  // namespace
 }  // namespace relevo::test

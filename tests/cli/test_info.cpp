@@ -1,5 +1,7 @@
+#include <cstdint>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -113,6 +115,120 @@ TEST(InfoVerb, JoinsFiles) {
     EXPECT_EQ(json["size"], (nlohmann::json{12, 4}));
     EXPECT_EQ(json["files"], (nlohmann::json{a, b}));
     EXPECT_EQ(json["path"], a + " and 1 more");
+}
+
+/// `relevo`, in so much address space and processor time and no more.
+Result limited(std::vector<std::string> arguments, int gib, int processor_s) {
+    arguments.insert(arguments.begin(),
+                     {fmt::format("--as={}", std::int64_t{gib} << 30),
+                      fmt::format("--cpu={}", processor_s), (build_dir() / "bin/relevo").string()});
+    return run("/usr/bin/prlimit", arguments);
+}
+
+TEST(InfoVerb, IsOfAllPostsWhateverMemoryHolds) {
+    Raster raster;
+    raster.columns = 1200;
+    raster.rows = 640;
+    raster.value = [](int column, int row, int) {
+        return column == 1199 && row == 639 ? 4321.0 : 500.0 + (column * 7 + row * 3) % 100;
+    };
+    const std::string path = write_raster(dir() / "beyond.tif", raster);
+    const std::vector<std::string> info{"-q", "info", path, "--time", "2026-06-21T16:00Z"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), info.begin(), info.end());
+        return relevo(more);
+    };
+    const Result all = with({});
+    EXPECT_NE(all.out.find("posts      1200 x 640\n"), std::string::npos) << all.out;
+    EXPECT_NE(all.out.find("heights    500.0 to 4321.0 m\n"), std::string::npos) << all.out;
+    EXPECT_NE(all.out.find("spikes     1 posts"), std::string::npos) << all.out;
+    EXPECT_EQ(with({"--memory", "1"}).out, all.out);
+    EXPECT_EQ(with({"--memory", "1", "--json"}).out, with({"--json"}).out);
+}
+
+TEST(InfoVerb, TakesAFolderOfTiles) {
+    const std::filesystem::path tiles = dir() / "tiles";
+    std::filesystem::create_directories(tiles);
+    Raster east;
+    east.geotransform = {{500180, 30, 0, 5200000, 0, -30}};
+    write_raster(tiles / "b.tif", {});
+    write_raster(tiles / "a.tif", east);
+    const Result run = relevo({"info", tiles.string() + "/", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(nlohmann::json::parse(run.out)["files"],
+              (nlohmann::json{(tiles / "a.tif").string(), (tiles / "b.tif").string()}));
+}
+
+TEST(InfoVerb, FilesThatClaimMuchCostLittle) {
+    // 2^31 columns in 0.6 kB of text, full of one tile and of nothing.
+    const auto claim = [](const char* name, int rows, const std::string& band) {
+        const std::filesystem::path path = dir() / name;
+        std::ofstream(path)
+            << "<VRTDataset rasterXSize=\"2147483647\" rasterYSize=\"" << rows
+            << "\"><SRS>EPSG:4326</SRS><GeoTransform>0,0.00000001,0,1,0,-0.00000001</GeoTransform>"
+               "<VRTRasterBand dataType=\"Float32\" band=\"1\">"
+            << band << "</VRTRasterBand></VRTDataset>";
+        return path.string();
+    };
+    const std::string tile = write_raster(dir() / "tile.tif", {});
+    const std::string source =
+        "<SimpleSource><SourceFilename>" + tile +
+        "</SourceFilename><SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"6\" "
+        "ySize=\"4\"/><DstRect xOff=\"0\" yOff=\"0\" xSize=\"2147483647\" ySize=\"3\"/>"
+        "</SimpleSource>";
+    const Result full = limited({"-q", "info", claim("full.vrt", 3, source)}, 3, 60);
+    EXPECT_EQ(full.status, 3) << full.err;
+    EXPECT_NE(full.err.find(": promises 2147483647 x 3 posts, expected far fewer in "),
+              std::string::npos)
+        << full.err;
+    const std::string nothing = claim("nothing.vrt", 3, "");
+    const Result empty = limited({"-q", "info", nothing}, 3, 60);
+    EXPECT_EQ(empty.status, 0) << empty.err;
+    EXPECT_NE(empty.out.find("posts      2147483647 x 3\n"), std::string::npos) << empty.out;
+    const Result drawn = limited(
+        {"-q", "capture", nothing, "-o", (dir() / "nothing.png").string(), "--device", "software"},
+        3, 60);
+    EXPECT_EQ(drawn.status, 3);
+    EXPECT_EQ(drawn.err,
+              "relevo: error: dem::load: " + nothing +
+                  ": memory for its heights, expected at most 1024 MiB but got 24576: 2147483647 x "
+                  "3 posts are too narrow for means; pass --memory 24576, or cut it up with "
+                  "gdal_translate\n");
+}
+
+TEST(InfoVerb, SparseFilesAreReadWhereTheyStoreSomething) {
+    Raster raster;
+    raster.type = "Int16";
+    raster.crs = "EPSG:4326";
+    raster.columns = raster.rows = 200'000;
+    raster.geotransform = {{0, 0.0001, 0, 20, 0, -0.0001}};
+    raster.nodata = -9999;
+    raster.options = {"TILED=YES", "SPARSE_OK=YES", "BLOCKXSIZE=1024", "BLOCKYSIZE=1024",
+                      "COMPRESS=DEFLATE"};
+    const std::string path =
+        write_sparse_raster(dir() / "sparse.tif", raster, {{123'456, 77'777, 321}});
+    const Result info = limited({"-q", "info", path}, 3, 60);
+    EXPECT_EQ(info.status, 0) << info.err;
+    EXPECT_NE(info.out.find("posts      200000 x 200000\n"), std::string::npos) << info.out;
+    EXPECT_NE(info.out.find("heights    321.0 to 321.0 m\n"), std::string::npos) << info.out;
+}
+
+TEST(DemOptions, MemoryIsInMiB) {
+    // 600 000 heights are 2.3 MiB, and two rows have no means.
+    Raster raster;
+    raster.columns = 300'000;
+    raster.rows = 2;
+    raster.geotransform = {{500000, 1, 0, 5200000, 0, -1}};
+    const std::string path = write_raster(dir() / "narrow.tif", raster);
+    const std::string out = (dir() / "narrow.png").string();
+    expect_failure({"capture", path, "-o", out, "--memory", "2"}, 3,
+                   "dem::load: " + path +
+                       ": memory for its heights, expected at most 2 MiB but got 3: 300000 x 2 "
+                       "posts are too narrow for means; pass --memory 3, or cut it up with "
+                       "gdal_translate");
+    const Result run = relevo({"-q", "capture", path, "-o", out, "--memory", "3", "--size", "64x48",
+                               "--device", "software"});
+    EXPECT_EQ(run.status, 0) << run.err;
 }
 
 TEST(DemOptions, TakeTheirValues) {

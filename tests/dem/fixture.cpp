@@ -86,6 +86,32 @@ std::string write_raster(const std::filesystem::path& path, const Raster& raster
     return path.string();
 }
 
+std::string write_sparse_raster(const std::filesystem::path& path, const Raster& raster,
+                                const std::vector<std::array<double, 3>>& posts) {
+    CPLStringList options;
+    for (const std::string& option : raster.options)
+        options.AddString(option.c_str());
+    GDALAllRegister();
+    GDALDatasetH dataset = GDALCreate(GDALGetDriverByName(raster.driver.c_str()), path.c_str(),
+                                      raster.columns, raster.rows, raster.bands,
+                                      GDALGetDataTypeByName(raster.type.c_str()), options.List());
+    must(dataset, "cannot be created");
+    std::array<double, 6> g = *raster.geotransform;
+    must(GDALSetGeoTransform(dataset, g.data()) == CE_None, "geotransform");
+    OGRSpatialReferenceH srs = OSRNewSpatialReference(nullptr);
+    must(OSRSetFromUserInput(srs, raster.crs.c_str()) == OGRERR_NONE, "crs");
+    must(GDALSetSpatialRef(dataset, srs) == CE_None, "crs");
+    OSRDestroySpatialReference(srs);
+    GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
+    if (raster.nodata) GDALSetRasterNoDataValue(band, *raster.nodata);
+    for (std::array<double, 3> post : posts)
+        must(GDALRasterIO(band, GF_Write, static_cast<int>(post[0]), static_cast<int>(post[1]), 1,
+                          1, &post[2], 1, 1, GDT_Float64, 0, 0) == CE_None,
+             "values");
+    GDALClose(dataset);
+    return path.string();
+}
+
 void add_overviews(const std::string& path, std::vector<int> factors) {
     GDALDatasetH dataset = GDALOpen(path.c_str(), GA_Update);
     must(dataset, "cannot be opened");

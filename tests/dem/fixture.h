@@ -39,6 +39,11 @@ struct Raster {
 /// Writes a raster. @returns the path
 std::string write_raster(const std::filesystem::path& path, const Raster& raster);
 
+/// Writes a raster of which only some posts are stored, each {column, row, value}; the rest costs
+/// no room where the driver can do that.
+std::string write_sparse_raster(const std::filesystem::path& path, const Raster& raster,
+                                const std::vector<std::array<double, 3>>& posts);
+
 /// Adds overviews, averages of so many posts each way, to a raster.
 void add_overviews(const std::string& path, std::vector<int> factors);
 

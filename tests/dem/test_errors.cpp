@@ -50,10 +50,6 @@ TEST(LoadError, NotARaster) {
     EXPECT_EQ(refusal(written("empty.tif", "")), "not a raster in any format that GDAL reads");
 }
 
-TEST(LoadError, Folder) {
-    EXPECT_EQ(refusal(folder().string()), "a folder, expected a raster file; name the files in it");
-}
-
 TEST(LoadError, TruncatedGeoTiffNeverGivesPartOfItself) {
     for (const char* kind : {"NONE", "DEFLATE", "LZW"}) {
         Raster raster;

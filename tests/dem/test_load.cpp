@@ -359,5 +359,73 @@ TEST(Load, InputsOfACommandLineAreNotNone) {
               "exit 3: dem::load: no DEM, expected one file or more");
 }
 
+TEST(Load, TheAdviceOnAFrameIsInStoredNumbers) {
+    // 300 feet around ground of 1300 feet and more, scaled: 10 (h - 100).
+    Raster raster;
+    raster.type = "Int16";
+    raster.columns = raster.rows = 20;
+    raster.nodata = -9999;
+    raster.unit = "ft";
+    raster.scale = 0.1;
+    raster.offset = 100;
+    raster.value = [](int column, int row, int) {
+        return column < 2 || row < 2 || column > 17 || row > 17 ? 2000.0 : 12000.0 + column;
+    };
+    const Heightfield f = loaded("frame_in_feet.tif", raster);
+    EXPECT_FLOAT_EQ(f.height_m.at(0, 0), 91.44F);
+    EXPECT_THAT(f.about.guesses,
+                ElementsAre("the edge is 91.44 m all around and the ground beside it 305 m off, "
+                            "perhaps what is left around a turned raster; --nodata 2000 makes it a "
+                            "hole"));
+    EXPECT_EQ(
+        load((folder() / "frame_in_feet.tif").string(), {.nodata = 2000}).about.statistics.holes,
+        400 - 16 * 16);
+}
+
+TEST(Load, HeightsThatTheEarthHasNotMayBeInAnotherUnit) {
+    const auto advice = [](const char* name, double lowest, double highest,
+                           const LoadOptions& options = {}) {
+        Raster raster;
+        raster.columns = raster.rows = 20;
+        raster.type = "Float32";
+        raster.value = [=](int column, int row, int) {
+            return lowest + (highest - lowest) * (row * 20 + column) / 399;
+        };
+        const std::string said = loaded(name, raster, options).about.guesses.front();
+        return said.substr(said.rfind("--unit"));
+    };
+    EXPECT_EQ(advice("feet.tif", 200, 28000),
+              "--unit sets the unit, perhaps ft (61 to 8534 m) or dm (20 to 2800 m) or cm (2 to "
+              "280 m) or mm (0 to 28 m)");
+    EXPECT_EQ(advice("cm.tif", 41'000, 480'900),
+              "--unit sets the unit, perhaps cm (410 to 4809 m) or mm (41 to 481 m)");
+    EXPECT_EQ(advice("mm.tif", -100'000, 4'809'000),
+              "--unit sets the unit, perhaps mm (-100 to 4809 m)");
+    EXPECT_EQ(advice("none.tif", -2e6, 9.5e6), "--unit sets the unit");
+    // In centimetres taken for feet.
+    EXPECT_EQ(advice("cm_as_ft.tif", 41'000, 480'900, {.unit = "ft"}),
+              "--unit sets the unit, perhaps cm (410 to 4809 m) or mm (41 to 481 m)");
+    // A single post is no unit.
+    Raster spike;
+    spike.columns = spike.rows = 20;
+    spike.value = [](int column, int row, int) { return column + row == 0 ? 9500.0 : 500; };
+    EXPECT_THAT(loaded("one_spike.tif", spike).about.guesses.front(),
+                testing::EndsWith("--unit sets the unit"));
+}
+
+TEST(Load, HgtIsAboveEgm96) {
+    std::string bytes(1201 * 1201 * 2, '\0');
+    for (std::size_t i = 1; i < bytes.size(); i += 2)
+        bytes[i] = static_cast<char>(i % 119);
+    const std::filesystem::path path = folder() / "N46E008.hgt";
+    std::ofstream(path, std::ios::binary) << bytes;
+    const Heightfield f = load(path.string());
+    EXPECT_EQ(f.about.vertical_datum, "EGM96");
+    EXPECT_THAT(f.about.assumptions,
+                Contains("heights are above mean sea level by EGM96, as in all .hgt files though "
+                         "none can say so, and are placed as ellipsoidal ones: the geoid is not "
+                         "added"));
+}
+
 }  // namespace
 }  // namespace relevo::dem

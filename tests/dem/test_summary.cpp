@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "base/units.h"
@@ -65,15 +67,74 @@ TEST(Summary, CrsWithoutACodeIsWktThatLoadsAgain) {
     EXPECT_NEAR(degrees(found.lon_rad - expected.lon_rad), 0.5, 1e-12);
 }
 
-TEST(Summary, NodataThatIsNoNumberIsText) {
+TEST(Summary, NodataIsANumberOrNullAndATextBesides) {
     test::Raster raster = alps();
     raster.type = "Float32";
     raster.nodata = std::nan("");
     raster.value = [](int column, int, int) { return column == 0 ? std::nan("") : 5.0; };
     const nlohmann::json json = nlohmann::json::parse(to_json(of("nan.tif", raster)));
-    EXPECT_EQ(json["nodata"], "nan");
+    EXPECT_EQ(json["nodata"], nullptr);
+    EXPECT_EQ(json["nodata_text"], "nan");
     raster.nodata.reset();
-    EXPECT_EQ(nlohmann::json::parse(to_json(of("none.tif", raster)))["nodata"], nullptr);
+    const nlohmann::json none = nlohmann::json::parse(to_json(of("none.tif", raster)));
+    EXPECT_EQ(none["nodata"], nullptr);
+    EXPECT_EQ(none["nodata_text"], nullptr);
+    raster.nodata = -3.4028234663852886e38;
+    const nlohmann::json number = nlohmann::json::parse(to_json(of("number.tif", raster)));
+    EXPECT_EQ(number["nodata"], -3.4028234663852886e38);
+    EXPECT_EQ(number["nodata_text"], "-3.4028235e+38");
+}
+
+TEST(Summary, SaysHowHolesWereFound) {
+    const auto holes = [](const char* name, const test::Raster& raster) {
+        const Summary summary = of(name, raster);
+        const std::string text = to_text(summary);
+        const std::size_t at = text.find("holes      ") + 11;
+        return text.substr(at, text.find('\n', at) - at) + " " +
+               nlohmann::json::parse(to_json(summary))["holes_by"].dump();
+    };
+    test::Raster raster = alps();
+    raster.columns = raster.rows = 20;
+    const auto height = [](int column, int row) { return 1000.0 + column + 2 * row; };
+    raster.value = [=](int c, int r, int) { return c == 0 ? -9999.0 : height(c, r); };
+    EXPECT_EQ(holes("declared.tif", raster), "5 % (nodata -9999) [\"nodata\"]");
+    raster.nodata.reset();
+    EXPECT_EQ(holes("found.tif", raster), "5 % (nodata -9999, not declared) [\"found\"]");
+    raster.type = "Float32";
+    raster.value = [=](int c, int r, int) { return c == 0 ? -3e38 : height(c, r); };
+    EXPECT_EQ(holes("large.tif", raster), "5 % (too large for heights, not declared) [\"found\"]");
+    raster.value = [=](int c, int r, int) { return c == 0 ? std::nan("") : height(c, r); };
+    EXPECT_EQ(holes("nan.tif", raster), "5 % (NaN) []");
+    raster.value = [=](int c, int r, int) { return height(c, r); };
+    EXPECT_EQ(holes("whole.tif", raster), "0 % []");
+    raster.mask = [](int column, int) { return column > 0; };
+    EXPECT_EQ(holes("mask.tif", raster), "5 % (mask) [\"mask\"]");
+    raster.mask = {};
+    raster.bands = 2;
+    raster.options = {"ALPHA=YES"};
+    raster.value = [=](int c, int r, int band) { return band == 1 ? height(c, r) : c > 0; };
+    EXPECT_EQ(holes("alpha.tif", raster), "5 % (alpha band 2) [\"alpha\"]");
+}
+
+TEST(Summary, OfATurnedGridHasItsSides) {
+    test::Raster raster = alps();
+    // Turned by 30 degrees, 3000 m by 1500 m.
+    raster.geotransform = {{500000, 25.98076211, 15, 5200000, 15, -25.98076211}};
+    const Summary summary = of("turned.tif", raster);
+    const nlohmann::json json = nlohmann::json::parse(to_json(summary));
+    EXPECT_NEAR(json["side_m"][0].get<double>(), 3000 / 0.9996, 1);
+    EXPECT_NEAR(json["side_m"][1].get<double>(), 1500 / 0.9996, 1);
+    EXPECT_NEAR(json["row_azimuth_deg"].get<double>(), 60, 0.05);
+    // The box around it, as ever: 3000 cos 30 + 1500 sin 30 and the other way round.
+    EXPECT_NEAR(json["extent_m"][0].get<double>(), 3348 / 0.9996, 2);
+    EXPECT_NEAR(json["extent_m"][1].get<double>(), 2799 / 0.9996, 2);
+    EXPECT_NE(to_text(summary).find("extent     3349 m east, 2800 m north; sides 3001 m x 1501 m, "
+                                    "rows run towards 60.0 degrees\n"),
+              std::string::npos)
+        << to_text(summary);
+    // Rows that run to the south are along the box all the same.
+    raster.geotransform = {{500000, 0, 30, 5200000, -30, 0}};
+    EXPECT_EQ(to_text(of("quarter.tif", raster)).find("sides"), std::string::npos);
 }
 
 TEST(Summary, TextForPeople) {

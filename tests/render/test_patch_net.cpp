@@ -59,6 +59,36 @@ TEST(PatchNet, PlacesPostsWithinAHundredthOfTheirSpacing) {
     }
 }
 
+TEST(PatchNet, APiecePartlyBesideTheGlobeIsRightWhereItHasGround) {
+    const PostPlace whole = degrees_grid(47, 11, 1 / 120.0);
+    const geo::LocalFrame frame(geo::geodetic_deg(46.7, 11.3));
+    // Four nodes, two, one, and none have a place.
+    for (const glm::dvec2 last : {glm::dvec2(40, 40), glm::dvec2(20, 40), glm::dvec2(20, 20)}) {
+        const PostPlace place = [&](double column, double row) {
+            return column <= last.x && row <= last.y ? whole(column, row)
+                                                     : geo::Geodetic{std::nan(""), std::nan(""), 0};
+        };
+        const PatchNet net = fit_patch_net(place, frame, {0, 0}, glm::dvec2(64));
+        double worst_m = 0;
+        for (double row = 0; row <= last.y; row += 4)
+            for (double column = 0; column <= last.x; column += 4) {
+                geo::Geodetic exact = whole(column, row);
+                exact.height_m = 4000;
+                worst_m = std::max(worst_m, distance(net.place(column / 64, row / 64, 4000),
+                                                     frame.to_local(exact)));
+            }
+        fmt::print("[ accuracy ] position net, {} x {} of 64 x 64 posts on Earth: worst {:.3g} m\n",
+                   last.x, last.y, worst_m);
+        EXPECT_LT(worst_m, 6.5);  // of posts 650 m apart
+    }
+    const PatchNet nowhere = fit_patch_net(
+        [](double, double) {
+            return geo::Geodetic{std::nan(""), std::nan(""), 0};
+        },
+        frame, {0, 0}, glm::dvec2(64));
+    EXPECT_TRUE(std::isfinite(nowhere.place(0.3, 0.7, 100).x));
+}
+
 TEST(PatchNet, NeighboursAgreeAlongTheirSharedSide) {
     const PostPlace place = degrees_grid(56, -5, 1 / 1200.0);
     const geo::LocalFrame frame(geo::geodetic_deg(55.5, -4.5));

@@ -1,0 +1,171 @@
+#include "dem/folder.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include <cpl_string.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gdal.h>
+
+#include "base/log.h"
+#include "dem/gdal_support.h"
+#include "dem/guard.h"
+#include "dem/interpret.h"
+
+namespace relevo::dem {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool ends_like_archive(const fs::path& file) {
+    std::string ending = file.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    constexpr std::array<std::string_view, 4> kEndings = {".zip", ".tar", ".tgz", ".gz"};
+    return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+/// GDAL's driver for a file by its beginning and those beside it; empty where it has none.
+std::string driver_of(const fs::path& file) {
+    const GDALDriverH driver = GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER, nullptr, nullptr);
+    return driver ? GDALGetDriverShortName(driver) : "";
+}
+
+/// Files that GDAL keeps beside "a.tif": its overviews, its mask, what it could not hold itself.
+bool is_beside(const fs::path& file, const std::set<std::string>& names) {
+    const std::string name = file.filename().string();
+    for (std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0;
+         dot = name.rfind('.', dot - 1))
+        if (names.contains(name.substr(0, dot))) return true;
+    return false;
+}
+
+/// The files that a virtual raster names, as far as they are there.
+std::set<std::string> parts_of(const std::string& path) {
+    std::set<std::string> parts;
+    refuse_unsafe_vrt(path);
+    const Dataset dataset = gdal_open(path);
+    if (!dataset) return parts;
+    char** const files = GDALGetFileList(dataset.get());
+    for (char** file = files; file && *file; ++file) {
+        std::error_code unknown;
+        const fs::path part = fs::weakly_canonical(*file, unknown);
+        if (!unknown) parts.insert(part.string());
+    }
+    CSLDestroy(files);
+    std::error_code unknown;
+    parts.erase(fs::weakly_canonical(path, unknown).string());
+    return parts;
+}
+
+struct Found {
+    fs::path path;
+    std::string driver;
+    std::uintmax_t bytes = 0;
+};
+
+/// A header makes a raster of every file that has its name before the dot; the largest has the
+/// cells.
+void keep_cells(std::vector<Found>& rasters) {
+    constexpr std::array<std::string_view, 4> kByHeader = {"EHdr", "ENVI", "GenBin", "ISCE"};
+    const auto by_header = [&](const Found& one) {
+        return std::find(kByHeader.begin(), kByHeader.end(), one.driver) != kByHeader.end();
+    };
+    std::map<std::string, std::uintmax_t> most;
+    for (const Found& one : rasters) {
+        std::uintmax_t& bytes = most[one.path.stem().string()];
+        bytes = std::max(bytes, one.bytes);
+    }
+    std::erase_if(rasters, [&](const Found& one) {
+        return by_header(one) && one.bytes < most[one.path.stem().string()];
+    });
+}
+
+std::vector<fs::path> sorted_entries(const std::string& folder) {
+    std::error_code error;
+    std::vector<fs::path> entries;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        if (!at->path().filename().string().starts_with('.')) entries.push_back(at->path());
+    if (error) refuse(folder, fmt::format("a folder that cannot be read, {}", error.message()));
+    std::sort(entries.begin(), entries.end(),
+              [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
+    return entries;
+}
+
+}  // namespace
+
+std::vector<std::string> rasters_of(const std::string& path) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) return {path};
+    prepare_gdal();
+    refuse_unreadable(path);
+    GdalMessages messages;
+    if (gdal_open(path)) return {path};
+
+    std::vector<Found> rasters;
+    std::vector<fs::path> others;
+    std::set<std::string> names;
+    int folders = 0;
+    for (const fs::path& entry : sorted_entries(path)) {
+        const fs::file_status status = fs::status(entry, error);
+        const bool is_folder = fs::is_directory(status);
+        folders += is_folder;
+        if (is_folder && gdal_open(entry.string())) {
+            rasters.push_back({entry, "", 0});
+        } else if (is_folder) {
+            continue;
+        } else if (!fs::is_regular_file(status)) {
+            others.push_back(entry);
+        } else {
+            refuse_unreadable(entry.string());
+            const std::string driver = ends_like_archive(entry) ? "archive" : driver_of(entry);
+            if (driver.empty()) {
+                others.push_back(entry);
+            } else {
+                rasters.push_back({entry, driver, fs::file_size(entry, error)});
+                names.insert(entry.filename().string());
+            }
+        }
+    }
+    std::erase_if(rasters, [&](const Found& one) { return is_beside(one.path, names); });
+    keep_cells(rasters);
+    std::set<std::string> parts;
+    for (const Found& one : rasters)
+        if (one.driver == "VRT") parts.merge(parts_of(one.path.string()));
+    std::erase_if(rasters, [&](const Found& one) {
+        return parts.contains(fs::weakly_canonical(one.path, error).string());
+    });
+
+    if (rasters.empty())
+        refuse(path, fmt::format("a folder without a raster in it, expected a raster or a folder "
+                                 "of rasters{}",
+                                 folders > 0 ? "; name the folder in it that is meant" : ""));
+    std::set<std::string> stems;
+    std::vector<std::string> paths;
+    for (const Found& one : rasters) {
+        stems.insert(one.path.stem().string());
+        paths.push_back(one.path.string());
+    }
+    std::vector<std::string> left_out;
+    for (const fs::path& other : others)
+        if (!is_beside(other, names) && !stems.contains(other.stem().string()))
+            left_out.push_back(other.filename().string());
+    constexpr std::size_t kMostNamed = 3;
+    if (!left_out.empty())
+        log::info(fmt::format("{}: {} of its files {} and left out: {}{}", path, left_out.size(),
+                              left_out.size() == 1 ? "is no raster" : "are no rasters",
+                              fmt::join(left_out.begin(),
+                                        left_out.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                                               left_out.size(), kMostNamed)),
+                                        ", "),
+                              left_out.size() > kMostNamed ? ", ..." : ""));
+    return paths;
+}
+
+}  // namespace relevo::dem

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+// A folder of rasters. Inside of the layer only.
+
+namespace relevo::dem {
+
+/// What a name of the command line stands for: itself, or the rasters in it where it is a folder
+/// that GDAL does not take for one raster. In the order of their names, byte by byte; folders
+/// inside count only where they are rasters themselves. Overviews, masks, headers and the files
+/// that a virtual raster of the same folder is made of are parts of rasters, not rasters. Others
+/// that are left out are named with log::info.
+/// @throws Error (BadInput) where a folder has no raster in it or cannot be read
+std::vector<std::string> rasters_of(const std::string& path);
+
+}  // namespace relevo::dem

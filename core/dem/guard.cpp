@@ -1,0 +1,353 @@
+#include "dem/guard.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include <cpl_http.h>
+#include <cpl_string.h>
+#include <cpl_vsi_virtual.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <unistd.h>
+
+#include "dem/interpret.h"
+
+namespace relevo::dem {
+namespace {
+
+constexpr std::array kRemoteDrivers = {"DAAS",   "EEDA",     "EEDAI",    "HTTP",          "NGW",
+                                       "OGCAPI", "PLMOSAIC", "PLSCENES", "PostGISRaster", "STACIT",
+                                       "STACTA", "WCS",      "WMS",      "WMTS"};
+constexpr std::array kRemotePrefixes = {
+    "DAAS:",     "EEDA:",   "EEDAI:",  "NGW:", "OGCAPI:", "PG:",  "PLMOSAIC:",
+    "PLSCENES:", "STACIT:", "STACTA:", "WCS:", "WMS:",    "WMTS:"};
+/// GDAL's file systems that lie on files of this machine.
+constexpr std::array<std::string_view, 10> kLocalSystems = {
+    "/vsi7z/",  "/vsicached",  "/vsicrypt/",   "/vsigzip/", "/vsimem/",
+    "/vsirar/", "/vsisparse/", "/vsisubfile/", "/vsitar/",  "/vsizip/"};
+
+using OpenFunction = GDALDataset* (*)(GDALOpenInfo*);
+
+struct Disarmed {
+    std::vector<std::pair<GDALDriver*, OpenFunction>> drivers;
+    std::vector<std::pair<std::string, VSIFilesystemHandler*>> systems;
+    bool remote_allowed = false;
+};
+
+std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+}
+
+Disarmed& disarmed() {
+    static Disarmed all;
+    return all;
+}
+
+OpenFunction netcdf_open = nullptr;
+OpenFunction geopackage_open = nullptr;
+
+/// netCDF's library itself goes to addresses.
+GDALDataset* open_local_netcdf(GDALOpenInfo* info) {
+    const bool address = std::strstr(info->pszFilename, "://") != nullptr;
+    if (address) {
+        const std::lock_guard lock(mutex());
+        if (!disarmed().remote_allowed) return nullptr;
+    }
+    return netcdf_open(info);
+}
+
+/// A virtual raster may pass options on, and this one is SQL of any kind.
+GDALDataset* open_plain_geopackage(GDALOpenInfo* info) {
+    if (CSLFetchNameValue(info->papszOpenOptions, "PRELUDE_STATEMENTS")) return nullptr;
+    return geopackage_open(info);
+}
+
+GDALDriver* driver(const char* name) {
+    return GDALDriver::FromHandle(GDALGetDriverByName(name));
+}
+
+bool is_local_system(std::string_view name) {
+    return std::any_of(kLocalSystems.begin(), kLocalSystems.end(),
+                       [&](std::string_view system) { return name.starts_with(system); });
+}
+
+CPLHTTPResult* fetch_nothing(const char*, CSLConstList, GDALProgressFunc, void*,
+                             CPLHTTPFetchWriteFunc, void*, void*) {
+    auto* const result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
+    result->nStatus = 1;
+    result->pszErrBuf = CPLStrdup("the net is closed to files that ask for it themselves");
+    return result;
+}
+
+void close_remote_systems() {
+    VSIFilesystemPluginCallbacksStruct* const nothing = VSIAllocFilesystemPluginCallbacksStruct();
+    nothing->open = [](void*, const char*, const char*) -> void* {
+        errno = EACCES;
+        return nullptr;
+    };
+    char** const prefixes = VSIGetFileSystemsPrefixes();
+    for (char** prefix = prefixes; prefix && *prefix; ++prefix) {
+        const std::string name = *prefix;
+        if (!name.starts_with("/vsi") || is_local_system(name)) continue;
+        VSIFilesystemHandler* const handler = VSIFileManager::GetHandler(name.c_str());
+        disarmed().systems.emplace_back(name, handler);
+        VSIInstallPluginHandler(name.c_str(), nothing);
+    }
+    CSLDestroy(prefixes);
+    VSIFreeFilesystemPluginCallbacksStruct(nothing);
+}
+
+}  // namespace
+
+void disarm_gdal() {
+    const std::lock_guard lock(mutex());
+    CPLSetConfigOption("GDAL_VRT_ENABLE_PYTHON", "NO");
+    const auto close = [](const char* name) {
+        if (GDALDriver* const found = driver(name)) {
+            disarmed().drivers.emplace_back(found, found->pfnOpen);
+            found->pfnOpen = nullptr;
+        }
+    };
+    close("MEM");
+    for (const char* name : kRemoteDrivers)
+        close(name);
+    if (GDALDriver* const netcdf = driver("netCDF"))
+        netcdf_open = std::exchange(netcdf->pfnOpen, open_local_netcdf);
+    if (GDALDriver* const geopackage = driver("GPKG"))
+        geopackage_open = std::exchange(geopackage->pfnOpen, open_plain_geopackage);
+    close_remote_systems();
+    CPLHTTPSetFetchCallback(fetch_nothing, nullptr);
+}
+
+void allow_remote() {
+    const std::lock_guard lock(mutex());
+    Disarmed& all = disarmed();
+    if (std::exchange(all.remote_allowed, true)) return;
+    for (const auto& [found, open] : all.drivers)
+        if (found != driver("MEM")) found->pfnOpen = open;
+    for (const auto& [name, handler] : all.systems)
+        VSIFileManager::InstallHandler(name, handler);
+    CPLHTTPSetFetchCallback(nullptr, nullptr);
+}
+
+bool is_remote(std::string_view name) {
+    if (name.starts_with("vrt://")) name.remove_prefix(6);
+    if (name.find("://") != std::string_view::npos) return true;
+    for (const std::string_view prefix : kRemotePrefixes)
+        if (name.size() >= prefix.size() && EQUALN(name.data(), prefix.data(), prefix.size()))
+            return true;
+    // In the middle too: "/vsizip//vsicurl/...".
+    for (std::size_t at = name.find("/vsi"); at != std::string_view::npos;
+         at = name.find("/vsi", at + 1))
+        if (at == 0 || name[at - 1] == '/' || name[at - 1] == '{' || name[at - 1] == ':' ||
+            name[at - 1] == '"' || name[at - 1] == ',')
+            if (!is_local_system(name.substr(at))) return true;
+    return false;
+}
+
+std::string disarmed_driver_of(const std::string& path) {
+    CPLStringList names;
+    for (const auto& [found, open] : disarmed().drivers)
+        if (!found->pfnOpen) names.AddString(found->GetDescription());
+    const GDALDriverH found =
+        GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, names.List(), nullptr);
+    return found ? GDALGetDriverShortName(found) : "";
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a file is that is read to its end only by luck; empty for others.
+std::string_view endless(const fs::file_status& status) {
+    switch (status.type()) {
+        case fs::file_type::fifo:
+            return "a pipe";
+        case fs::file_type::socket:
+            return "a socket";
+        case fs::file_type::character:
+        case fs::file_type::block:
+            return "a device";
+        default:
+            return {};
+    }
+}
+
+/// The file of this machine that a name is about: that of "NETCDF:a.nc:z" and of
+/// "/vsizip/a.zip/b.tif"; empty where it is about none.
+std::string file_in(std::string_view name) {
+    std::error_code unknown;
+    for (std::size_t from = 0; from != std::string_view::npos && from < name.size();) {
+        std::string_view rest = name.substr(from);
+        while (!rest.empty() && (rest.front() == '"' || rest.front() == '{'))
+            rest.remove_prefix(1);
+        for (std::size_t end = rest.size(); end > 1 && end != std::string_view::npos;
+             end = rest.find_last_of("/:\"}?", end - 1)) {
+            const fs::file_status status = fs::status(rest.substr(0, end), unknown);
+            if (fs::is_directory(status)) break;  // of which there is no such file
+            if (fs::exists(status)) return std::string(rest.substr(0, end));
+        }
+        if (rest.starts_with("/vsi"))
+            from = name.find('/', from + 1) + 1;
+        else
+            from = name.find(':', from) == std::string_view::npos ? name.size()
+                                                                  : name.find(':', from) + 1;
+    }
+    return {};
+}
+
+std::string remedy_of(int error) {
+    return error == EMFILE || error == ENFILE ? "; allow more of them with ulimit -n" : "";
+}
+
+}  // namespace
+
+void refuse_unreadable(const std::string& path) {
+    if (path.empty()) refuse("\"\"", "cannot be read, no such file");
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    const bool may_be_gdals = path.starts_with("/vsi") || path.find(':') != std::string::npos;
+    std::string file = path;
+    if (!fs::exists(status)) {
+        if (!may_be_gdals || path.size() > PATH_MAX) {
+            const int reason = error.value();
+            refuse(path, reason == 0 || reason == ENOENT || reason == ENOTDIR
+                             ? std::string("cannot be read, no such file")
+                             : fmt::format("cannot be read, {}", std::strerror(reason)));
+        }
+        file = file_in(path);
+        if (file.empty()) return;
+    }
+    if (const std::string_view kind = endless(fs::status(file, error)); !kind.empty())
+        refuse(path, fmt::format("{}, expected a file or a folder; write what it gives to a file "
+                                 "first",
+                                 kind));
+    const int opened = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (opened < 0)
+        refuse(path, fmt::format("cannot be read, {}{}", std::strerror(errno), remedy_of(errno)));
+    ::close(opened);
+}
+
+namespace {
+
+/// Walks through a virtual raster and those that it names.
+class VrtWalk {
+  public:
+    explicit VrtWalk(std::string given) : given_(std::move(given)) {}
+
+    std::uint64_t bytes() const { return bytes_; }
+
+    void file(const std::string& path) {
+        VSIStatBufL status{};
+        if (VSIStatL(path.c_str(), &status) == 0)
+            bytes_ += static_cast<std::uint64_t>(status.st_size);
+        if (std::find(inside_.begin(), inside_.end(), path) != inside_.end())
+            refuse(given_,
+                   fmt::format("a virtual raster that is made of itself, by way of '{}'", path));
+        if (!is_vrt(path) || std::find(seen_.begin(), seen_.end(), path) != seen_.end()) return;
+        if (inside_.size() >= kDeepest)
+            refuse(given_, fmt::format("virtual rasters in each other, expected at most {} deep",
+                                       kDeepest));
+        inside_.push_back(path);
+        if (CPLXMLNode* const tree = CPLParseXMLFile(path.c_str())) {
+            const CPLXMLTreeCloser closer(tree);
+            elements(tree, CPLGetPath(path.c_str()));
+        }
+        inside_.pop_back();
+        seen_.push_back(path);
+    }
+
+  private:
+    static constexpr std::size_t kDeepest = 16;
+    /// Of more sources than these, only those called .vrt are looked into.
+    static constexpr int kManySources = 256;
+
+    static bool is_vrt(const std::string& path) {
+        VSILFILE* const file = VSIFOpenL(path.c_str(), "rb");
+        if (!file) return false;
+        std::string head(1024, '\0');  // as far as GDAL looks
+        head.resize(VSIFReadL(head.data(), 1, head.size(), file));
+        VSIFCloseL(file);
+        return head.find("<VRTDataset") != std::string::npos;
+    }
+
+    /// All that a tree of elements names.
+    void elements(const CPLXMLNode* tree, const std::string& folder) {
+        std::vector<const CPLXMLNode*> open{tree};
+        while (!open.empty()) {
+            const CPLXMLNode* const node = open.back();
+            open.pop_back();
+            if (node->psNext) open.push_back(node->psNext);
+            if (node->psChild) open.push_back(node->psChild);
+            if (node->eType != CXT_Element) continue;
+            const std::string_view name = node->pszValue;
+            const char* const text = CPLGetXMLValue(node, nullptr, "");
+            if (EQUAL(node->pszValue, "SourceFilename") || EQUAL(node->pszValue, "SourceDataset"))
+                source(text, CPLTestBool(CPLGetXMLValue(node, "relativeToVRT", "0")) ? folder : "");
+            else if (EQUAL(node->pszValue, "PixelFunctionLanguage") && EQUAL(text, "Python"))
+                refuse(given_, "a virtual raster with Python code, which is not run");
+            else if (name == "OOI" && EQUAL(CPLGetXMLValue(node, "key", ""), "PRELUDE_STATEMENTS"))
+                refuse(given_, "a virtual raster with SQL statements, which are not run");
+        }
+    }
+
+    void source(const std::string& text, const std::string& folder) {
+        std::string name = text;
+        if (name.starts_with('<')) {
+            if (CPLXMLNode* const tree = CPLParseXMLString(name.c_str())) {
+                const CPLXMLTreeCloser closer(tree);
+                elements(tree, folder);
+            }
+            return;
+        }
+        if (EQUALN(name.c_str(), "vrt://", 6)) name = name.substr(6, name.find('?') - 6);
+        if (EQUALN(name.c_str(), "MEM:::", 6))
+            refuse(given_, fmt::format("a virtual raster of the program's own memory ('{}'), "
+                                       "expected files",
+                                       text));
+        {
+            const std::lock_guard lock(mutex());
+            if (is_remote(name) && !disarmed().remote_allowed)
+                refuse(given_, fmt::format("a virtual raster of '{}', expected files of this "
+                                           "machine; the net is asked only by a name on the "
+                                           "command line",
+                                           text));
+        }
+        if (!folder.empty()) name = CPLProjectRelativeFilename(folder.c_str(), name.c_str());
+        std::error_code unknown;
+        const std::string found = file_in(name);
+        const std::string_view kind = endless(fs::status(found, unknown));
+        if (!found.empty() && !kind.empty())
+            refuse(given_, fmt::format("a virtual raster of '{}', {}, expected files", text, kind));
+        if (++sources_ <= kManySources || name.ends_with(".vrt")) {
+            file(name);
+        } else if (!found.empty()) {
+            const std::uintmax_t size = fs::file_size(found, unknown);
+            bytes_ += unknown ? 0 : size;
+        }
+    }
+
+    std::string given_;
+    std::vector<std::string> inside_;
+    std::vector<std::string> seen_;
+    int sources_ = 0;
+    std::uint64_t bytes_ = 0;
+};
+
+}  // namespace
+
+std::uint64_t refuse_unsafe_vrt(const std::string& path) {
+    VrtWalk walk(path);
+    walk.file(path);
+    return walk.bytes();
+}
+
+}  // namespace relevo::dem

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "dem/frame.h"
+#include "dem/heightfield.h"
+#include "dem/source.h"
+#include "dem/spikes.h"
+
+namespace relevo::dem {
+
+/// What all posts of a DEM say together, however many there are.
+struct Survey {
+    Statistics statistics;
+    Spikes spikes;
+    std::optional<Frame> frame;
+};
+
+/// Goes through all posts once, in pieces; tells of its progress where that takes long.
+/// @param max_posts  that memory has room for, at least some 10^5
+/// @throws Error (BadInput) where the file is damaged
+Survey survey(const Source& source, std::int64_t max_posts);
+
+}  // namespace relevo::dem

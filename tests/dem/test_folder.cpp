@@ -1,0 +1,145 @@
+#include <cstdlib>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include "base/log.h"
+#include "dem/fixture.h"
+#include "dem/load.h"
+#include "support/support.h"
+
+namespace relevo::dem {
+namespace {
+
+using test::Raster;
+using test::write_raster;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+std::filesystem::path made(const char* name) {
+    static const std::filesystem::path all = test::scratch_dir("dem_folder");
+    std::filesystem::create_directories(all / name);
+    return all / name;
+}
+
+Raster tile(int column) {
+    Raster raster;
+    raster.geotransform = {{500000 + 180.0 * column, 30, 0, 5200000, 0, -30}};
+    return raster;
+}
+
+/// What is said while a folder is opened, and the files it becomes.
+struct Opened {
+    std::vector<std::string> said, files;
+    explicit Opened(const std::filesystem::path& folder) {
+        log::set_sink([&](log::Level, std::string_view text) { said.emplace_back(text); });
+        for (const std::string& file : load(folder.string()).about.files)
+            files.push_back(std::filesystem::path(file).filename());
+        log::set_sink({});
+    }
+};
+
+TEST(Folder, ItsRastersAreOneDemInTheOrderOfTheirNames) {
+    const std::filesystem::path dir = made("tiles");
+    for (const int i : {2, 0, 1})
+        write_raster(dir / ("t" + std::to_string(i) + ".tif"), tile(i));
+    const Heightfield f = load(dir.string());
+    EXPECT_EQ(f.grid.columns(), 18);
+    EXPECT_EQ(f.about.statistics.holes, 0);
+    EXPECT_EQ(f.about.path, (dir / "t0.tif").string() + " and 2 more");
+    EXPECT_THAT(Opened(dir).files, ElementsAre("t0.tif", "t1.tif", "t2.tif"));
+    EXPECT_EQ(load(dir.string() + "/").grid.columns(), 18);
+    // Beside other names.
+    const std::string far = write_raster(made("more") / "t3.tif", tile(3));
+    const std::vector<std::string> paths{dir.string(), far};
+    EXPECT_EQ(load(paths).grid.columns(), 24);
+}
+
+TEST(Folder, WhatBelongsToARasterIsNone) {
+    const std::filesystem::path dir = made("parts");
+    Raster masked = tile(0);
+    masked.mask = [](int column, int) { return column > 0; };
+    masked.type = "Int16";
+    test::add_overviews(write_raster(dir / "a.tif", masked), {2});
+    std::ofstream(dir / "a.tif.aux.xml") << "<PAMDataset/>";
+    std::ofstream(dir / "a.tfw") << "30\n0\n0\n-30\n500015\n5199985\n";
+    Raster raw = tile(1);
+    raw.driver = "EHdr";
+    raw.type = "Int16";
+    write_raster(dir / "b.bil", raw);  // with b.hdr and b.prj
+    std::ofstream(dir / ".hidden.tif") << "x";
+    const Opened opened(dir);
+    EXPECT_THAT(opened.files, ElementsAre("a.tif", "b.bil"));
+    EXPECT_THAT(opened.said, IsEmpty());
+    EXPECT_EQ(load(dir.string()).about.statistics.holes, 4);
+}
+
+TEST(Folder, AVirtualRasterStandsForItsTiles) {
+    const std::filesystem::path dir = made("virtual");
+    write_raster(dir / "a.tif", tile(0));
+    write_raster(dir / "b.tif", tile(1));
+    std::ofstream(dir / "all.vrt")
+        << "<VRTDataset rasterXSize=\"6\" rasterYSize=\"4\"><SRS>EPSG:32632</SRS>"
+           "<GeoTransform>500000,30,0,5200000,0,-30</GeoTransform>"
+           "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource>"
+           "<SourceFilename relativeToVRT=\"1\">a.tif</SourceFilename>"
+           "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
+    EXPECT_THAT(Opened(dir).files, ElementsAre("all.vrt", "b.tif"));
+}
+
+TEST(Folder, WhatIsLeftOutIsSaid) {
+    const std::filesystem::path dir = made("mixed");
+    write_raster(dir / "a.tif", tile(0));
+    for (const char* name : {"LICENSE", "index.html", "notes.txt", "z.csv"})
+        std::ofstream(dir / name) << "Heights of the Alps, to be measured.\n";
+    EXPECT_THAT(Opened(dir).said,
+                ElementsAre(dir.string() + ": 4 of its files are no rasters and left out: LICENSE, "
+                                           "index.html, notes.txt, ..."));
+}
+
+TEST(Folder, WhatCannotBeOneDemHasItsMessage) {
+    const auto refusal = [](const std::filesystem::path& dir) {
+        return test::error_of([&] { load(dir.string()); });
+    };
+    const std::filesystem::path empty = made("empty");
+    EXPECT_EQ(refusal(empty), "exit 3: dem::load: " + empty.string() +
+                                  ": a folder without a raster in it, expected a raster or a "
+                                  "folder of rasters");
+    const std::filesystem::path outer = made("outer");
+    made("outer/inner");
+    EXPECT_EQ(refusal(outer), "exit 3: dem::load: " + outer.string() +
+                                  ": a folder without a raster in it, expected a raster or a "
+                                  "folder of rasters; name the folder in it that is meant");
+    const std::filesystem::path dir = made("with_picture");
+    write_raster(dir / "a.tif", tile(0));
+    Raster picture = tile(1);
+    picture.type = "Byte";
+    picture.bands = 3;
+    picture.pictures = true;
+    picture.value = [](int column, int row, int band) { return column * 40 + row * 9 + band; };
+    const std::string name = write_raster(dir / "preview.tif", picture);
+    EXPECT_EQ(refusal(dir),
+              "exit 3: dem::load: " + name +
+                  ": a picture (red, green and blue bands of 8 bits), expected heights; if its "
+                  "colours encode heights pass --encoding terrain-rgb or terrarium, if one band "
+                  "holds them --band N; it is one of 2 in " +
+                  dir.string() + ", name those that are meant");
+    // A damaged tile is no missing one.
+    const std::filesystem::path cut = made("cut");
+    write_raster(cut / "a.tif", tile(0));
+    test::cut_short(write_raster(cut / "b.tif", tile(1)), 60);
+    EXPECT_THAT(refusal(cut), testing::EndsWith("it is one of 2 in " + cut.string() +
+                                                ", name those that are meant"));
+}
+
+TEST(Folder, PipesInItAreNotWaitedFor) {
+    const std::filesystem::path dir = made("pipes");
+    write_raster(dir / "a.tif", tile(0));
+    ASSERT_EQ(mkfifo((dir / "b.tif").c_str(), 0600), 0);
+    EXPECT_THAT(Opened(dir).said,
+                ElementsAre(dir.string() + ": 1 of its files is no raster and left out: b.tif"));
+}
+
+}  // namespace
+}  // namespace relevo::dem
