@@ -82,8 +82,10 @@ void add_info(CLI::App& app) {
         std::optional<sun::ParsedTime> given_time;
         if (arguments->time.given() && !arguments->time.needs_dem())
             given_time = arguments->time.parse();
-        const dem::Heightfield field = dem::load(arguments->dem.paths, arguments->dem.options);
-        if (arguments->time.given() && !given_time) given_time = arguments->time.parse_over(field);
+        const dem::Source source = dem::Source::open(arguments->dem.paths, arguments->dem.options);
+        const dem::Heightfield field = dem::load(source, arguments->dem.options.max_posts);
+        if (arguments->time.given() && !given_time)
+            given_time = arguments->time.parse_over(source, field);
         const sun::Instant utc = given_time ? given_time->utc : sun::Instant::now();
         const dem::Summary summary = dem::summarize(field);
         const sun::Position sun = sun::position(utc, summary.center);

@@ -26,12 +26,16 @@ std::string Description::nodata_text() const {
 }
 
 Statistics statistics(const Array2d<float>& height_m) {
+    return statistics(height_m, height_m.width(), height_m.height());
+}
+
+Statistics statistics(const Array2d<float>& height_m, int columns, int rows) {
     Statistics total;
     float total_min = kInfinity;
     float total_max = -kInfinity;
     std::mutex mutex;
-    const int grain = std::max(1, 100'000 / std::max(1, height_m.width()));
-    parallel_for(0, height_m.height(), grain, [&](int first, int last) {
+    const int grain = std::max(1, 100'000 / std::max(1, columns));
+    parallel_for(0, rows, grain, [&](int first, int last) {
         float min = kInfinity;
         float max = -kInfinity;
         std::int64_t valid = 0;
@@ -39,7 +43,7 @@ Statistics statistics(const Array2d<float>& height_m) {
         for (int row = first; row < last; ++row) {
             int row_valid = 0;
             int row_outliers = 0;
-            for (const float h : height_m.row(row)) {
+            for (const float h : height_m.row(row).first(static_cast<std::size_t>(columns))) {
                 // Comparisons with NaN are false: a hole changes nothing.
                 min = h < min ? h : min;
                 max = h > max ? h : max;
@@ -55,12 +59,21 @@ Statistics statistics(const Array2d<float>& height_m) {
         total.valid += valid;
         total.outliers += outliers;
     });
-    total.holes = static_cast<std::int64_t>(height_m.size()) - total.valid;
+    total.holes = std::int64_t{columns} * rows - total.valid;
     if (total.valid > 0) {
         total.min_m = total_min;
         total.max_m = total_max;
     }
     return total;
+}
+
+double bilinear_m(const float* first_m, std::ptrdiff_t stride, double u, double v) {
+    const auto weighted = [](float height_m, double weight) {
+        // A hole with no part in the sum does not spoil it.
+        return weight == 0 ? 0.0 : weight * height_m;
+    };
+    return weighted(first_m[0], (1 - u) * (1 - v)) + weighted(first_m[1], u * (1 - v)) +
+           weighted(first_m[stride], (1 - u) * v) + weighted(first_m[stride + 1], u * v);
 }
 
 double Heightfield::height_at(double column, double row) const {
@@ -70,14 +83,7 @@ double Heightfield::height_at(double column, double row) const {
         return kNaN;
     const int c = std::min(static_cast<int>(column), height_m.width() - 2);
     const int r = std::min(static_cast<int>(row), height_m.height() - 2);
-    const double u = column - c;
-    const double v = row - r;
-    const auto weighted = [&](int dc, int dr, double weight) {
-        // A hole with no part in the sum does not spoil it.
-        return weight == 0 ? 0.0 : weight * height_m.at(c + dc, r + dr);
-    };
-    return weighted(0, 0, (1 - u) * (1 - v)) + weighted(1, 0, u * (1 - v)) +
-           weighted(0, 1, (1 - u) * v) + weighted(1, 1, u * v);
+    return bilinear_m(&height_m.at(c, r), height_m.width(), column - c, row - r);
 }
 
 geo::Geodetic Heightfield::place(int column, int row) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -29,6 +30,13 @@ struct Statistics {
 /// Lowest, highest, holes (NaN) and outliers of a field; the range is 0 to 0 where nothing is
 /// valid.
 Statistics statistics(const Array2d<float>& height_m);
+/// Of the first columns and rows.
+Statistics statistics(const Array2d<float>& height_m, int columns, int rows);
+
+/// The height in a cell of four posts, NaN where a hole takes part.
+/// @param first_m  the first of them, the others beside it and `stride` further
+/// @param u, v     0 to 1, along a row and from row to row
+double bilinear_m(const float* first_m, std::ptrdiff_t stride, double u, double v);
 
 /// Where the unit of the heights was found.
 enum class UnitSource { Option, Band, VerticalCrs, Encoding, Assumed };

@@ -6,9 +6,35 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "dem/frame.h"
 
 namespace relevo::dem {
+
+void report_heights(Description& about, const std::optional<Frame>& frame) {
+    const Statistics& s = about.statistics;
+    if (s.valid == 0)
+        bad_input(fmt::format(
+            "dem::load: {}: not one valid height, all {} posts are holes{}", about.path, s.holes,
+            about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
+    const auto guess = [&](const std::string& sentence) {
+        about.assumptions.push_back(sentence);
+        about.guesses.push_back(sentence);
+        log::info(fmt::format("{}: {}", about.path, sentence));
+    };
+    if (s.outliers > 0)
+        guess(
+            fmt::format("{} heights are below -11500 m or above 9000 m, which the Earth has not, "
+                        "and are drawn as they are; --nodata V makes V a hole, --unit sets the "
+                        "unit",
+                        s.outliers));
+    if (frame)
+        guess(
+            fmt::format("the edge is {:g} m all around and the ground beside it {:.0f} m off, "
+                        "perhaps what is left around a turned raster; --nodata {:g} makes it a "
+                        "hole",
+                        frame->height_m, frame->step_m,
+                        (static_cast<double>(frame->height_m) - about.offset) / about.scale /
+                            about.unit.metres));
+}
 
 Heightfield load(const std::string& path, const LoadOptions& options) {
     return load(std::span(&path, 1), options);
@@ -38,30 +64,7 @@ Heightfield load(const Source& source, std::int64_t max_posts) {
             full.columns(), full.rows(), columns, rows, reduction, reduction));
     Array2d<float> height_m = source.read(all, columns, rows);
     about.statistics = statistics(height_m);
-    const Statistics& s = about.statistics;
-    if (s.valid == 0)
-        bad_input(fmt::format(
-            "dem::load: {}: not one valid height, all {} posts are holes{}", about.path, s.holes,
-            about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
-    const auto guess = [&](const std::string& sentence) {
-        about.assumptions.push_back(sentence);
-        about.guesses.push_back(sentence);
-        log::info(fmt::format("{}: {}", about.path, sentence));
-    };
-    if (s.outliers > 0)
-        guess(
-            fmt::format("{} heights are below -11500 m or above 9000 m, which the Earth has not, "
-                        "and are drawn as they are; --nodata V makes V a hole, --unit sets the "
-                        "unit",
-                        s.outliers));
-    if (const std::optional<Frame> frame = find_frame(height_m))
-        guess(
-            fmt::format("the edge is {:g} m all around and the ground beside it {:.0f} m off, "
-                        "perhaps what is left around a turned raster; --nodata {:g} makes it a "
-                        "hole",
-                        frame->height_m, frame->step_m,
-                        (static_cast<double>(frame->height_m) - about.offset) / about.scale /
-                            about.unit.metres));
+    report_heights(about, about.statistics.valid > 0 ? find_frame(height_m) : std::nullopt);
     Grid grid = reduction == 1 ? full : full.part(all, columns, rows);
     return {std::move(height_m), std::move(grid), std::move(about), reduction};
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
+#include "dem/frame.h"
 #include "dem/heightfield.h"
 #include "dem/source.h"
 
@@ -18,5 +20,10 @@ Heightfield load(std::span<const std::string> paths, const LoadOptions& options 
 
 /// The same for what is open already.
 Heightfield load(const Source& source, std::int64_t max_posts);
+
+/// Says what heights look wrong, in the description and with log::info.
+/// @param about  with its statistics
+/// @throws Error (BadInput) where not one post has a height
+void report_heights(Description& about, const std::optional<Frame>& frame);
 
 }  // namespace relevo::dem
