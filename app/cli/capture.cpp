@@ -136,7 +136,7 @@ void capture(const Arguments& arguments) {
     const auto loaded = loading.get();
     const dem::Source& source = loaded.first;
     const dem::Heightfield& dem = loaded.second;
-    if (arguments.time.given() && !given_time) given_time = arguments.time.parse_over(dem);
+    if (arguments.time.given() && !given_time) given_time = arguments.time.parse_over(source, dem);
 
     const auto upload_began = Clock::now();
     const render::Ground ground = render::make_ground(dem);

@@ -85,7 +85,7 @@ void add_info(CLI::App& app) {
         std::optional<dem::Heightfield> field;
         if (arguments->time.given() && !given_time) {
             field = dem::load(source, max_posts);
-            given_time = arguments->time.parse_over(*field);
+            given_time = arguments->time.parse_over(source, *field);
         }
         // Means would hide the lowest and the highest post.
         const dem::Summary summary = field && field->reduction == 1

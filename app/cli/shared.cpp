@@ -9,7 +9,6 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "geo/geodetic.h"
-#include "light/event_time.h"
 #include "sun/event_time.h"
 
 namespace relevo::cli {
@@ -91,7 +90,20 @@ bool TimeArguments::needs_dem() const {
     return !event.event || !event.place;
 }
 
-sun::ParsedTime TimeArguments::parse(const std::function<const dem::Heightfield&()>& dem,
+sun::ParsedTime TimeArguments::parse_over(const dem::Source& source,
+                                          const dem::Heightfield& loaded) const {
+    std::optional<dem::Posts> posts;
+    return parse({.middle = [&] { return source.grid().center(); },
+                  .posts = [&]() -> const dem::Posts& {
+                      if (loaded.reduction == 1)
+                          posts.emplace(loaded);
+                      else  // as many again as the means, while this is computed
+                          posts.emplace(source, static_cast<std::int64_t>(loaded.height_m.size()));
+                      return *posts;
+                  }});
+}
+
+sun::ParsedTime TimeArguments::parse(const light::TerrainAccess& dem,
                                      const std::optional<geo::PlaceText>& here) const {
     std::optional<sun::Zone> in_zone;
     if (!zone.empty()) in_zone = sun::Zone::named(zone);

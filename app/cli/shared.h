@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "dem/load.h"
+#include "light/event_time.h"
 #include "scene/view.h"
 #include "sun/position.h"
 #include "sun/refraction.h"
@@ -40,15 +41,16 @@ struct TimeArguments {
     bool needs_dem() const;
     /// Tells the user where a wall time was skipped or came twice.
     /// @throws Error (Usage, BadInput)
-    sun::ParsedTime parse() const { return parse({}); }
-    sun::ParsedTime parse_over(const dem::Heightfield& dem) const {
-        return parse([&]() -> const dem::Heightfield& { return dem; });
-    }
+    sun::ParsedTime parse() const { return parse(light::TerrainAccess{}); }
+    /// Events without a place happen in the middle of the DEM; first and last light are those of
+    /// its posts.
+    /// @param loaded  of the source, all its posts or means of them
+    sun::ParsedTime parse_over(const dem::Source& source, const dem::Heightfield& loaded) const;
     /// Events without a place happen there.
     sun::ParsedTime parse_at(const geo::PlaceText& here) const { return parse({}, here); }
 
   private:
-    sun::ParsedTime parse(const std::function<const dem::Heightfield&()>& dem,
+    sun::ParsedTime parse(const light::TerrainAccess& dem,
                           const std::optional<geo::PlaceText>& here = {}) const;
 };
 

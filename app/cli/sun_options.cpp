@@ -139,12 +139,13 @@ std::unique_ptr<TerrainView> TerrainArguments::view_from(const PlaceArguments& p
     options.refraction = refraction;
     options.eye_height_m = at.has_height ? at.place.height_m : place.eye_height_m.value_or(0);
     options.eye_above_ground = at.above_ground || !at.has_height;
-    return std::make_unique<TerrainView>(dem::load(dem.paths, dem.options), at.place, options);
+    return std::make_unique<TerrainView>(dem::Posts::load(dem.paths, dem.options), at.place,
+                                         options);
 }
 
 std::vector<light::OpenSector> TerrainArguments::check(
     const light::TerrainHorizon& horizon, const std::vector<light::HorizonPoint>& profile) const {
-    const double high_m = highest_m.value_or(horizon.field().about.statistics.max_m);
+    const double high_m = highest_m.value_or(horizon.posts().highest_m());
     std::vector<light::OpenSector> sectors = horizon.open_sectors(profile, high_m);
     if (sectors.empty()) return sectors;
     // Directions that follow each other but for less than five degrees are one for a reader.

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/shared.h"
-#include "dem/heightfield.h"
+#include "dem/posts.h"
 #include "light/direct_light.h"
 #include "light/drawing.h"
 #include "light/horizon.h"
@@ -72,11 +72,10 @@ struct LightArguments {
 
 /// The DEM, and the horizon of a place on it.
 struct TerrainView {
-    TerrainView(dem::Heightfield field, const geo::Geodetic& place,
-                const light::HorizonOptions& options)
-        : dem(std::move(field)), horizon(dem, place, options) {}
+    TerrainView(dem::Posts posts, const geo::Geodetic& place, const light::HorizonOptions& options)
+        : dem(std::move(posts)), horizon(dem, place, options) {}
 
-    const dem::Heightfield dem;
+    const dem::Posts dem;
     const light::TerrainHorizon horizon;  // refers to dem
 };
 

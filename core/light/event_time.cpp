@@ -8,20 +8,19 @@
 namespace relevo::light {
 
 sun::ParsedTime parse_time(std::string_view text, const std::optional<sun::Date>& date,
-                           const std::optional<sun::Zone>& zone,
-                           const std::function<const dem::Heightfield&()>& dem,
+                           const std::optional<sun::Zone>& zone, const TerrainAccess& dem,
                            const std::optional<geo::PlaceText>& here) {
     if (!sun::is_event_time(text)) return sun::parse_time(text, zone);
     sun::EventTime time = sun::parse_event_time(text);
     sun::day_of(time, date, zone);  // says what is missing before any work is done
     if (!time.place) time.place = here;
-    if (!time.place && dem) time.place = geo::PlaceText{dem().grid.center()};
-    if (time.event || !dem) return sun::resolve(time, date, zone);
+    if (!time.place && dem.middle) time.place = geo::PlaceText{dem.middle()};
+    if (time.event || !dem.posts) return sun::resolve(time, date, zone);
 
     HorizonOptions options;
     options.eye_height_m = time.place->place.height_m;
     options.eye_above_ground = time.place->above_ground || !time.place->has_height;
-    const TerrainHorizon horizon(dem(), time.place->place, options);
+    const TerrainHorizon horizon(dem.posts(), time.place->place, options);
     const sun::Date of = time.date ? *time.date : *date;
     const LightDay day = DirectLight(horizon).day(of, *zone);
     if (day.lit.empty())

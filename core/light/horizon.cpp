@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -12,7 +13,6 @@
 #include "base/parallel_for.h"
 #include "base/units.h"
 #include "light/fan.h"
-#include "light/relief.h"
 
 namespace relevo::light {
 namespace {
@@ -119,49 +119,72 @@ std::string cover_text(const dem::Grid& grid) {
 
 /// The nearest post with a height, as a remedy: ", the nearest height is at LAT,LON"; empty where
 /// there is none near.
-std::string nearest_height_text(const dem::Heightfield& field, const glm::dvec2& post) {
+std::string nearest_height_text(const dem::Posts& posts, const glm::dvec2& post) {
     constexpr int kFarthest = 2000;
+    const dem::Grid& grid = posts.grid();
     const int column = static_cast<int>(std::lround(post.x));
     const int row = static_cast<int>(std::lround(post.y));
-    const auto valid = [&](int c, int r) {
-        return c >= 0 && r >= 0 && c < field.height_m.width() && r < field.height_m.height() &&
-               !std::isnan(field.height_m.at(c, r));
+    // A side of a ring: as much of it as lies on the grid.
+    struct Side {
+        dem::Window on_grid;
+        std::vector<float> buffer;
+        dem::Posts::View view;
+        bool valid(int c, int r) const {
+            return c >= on_grid.column && r >= on_grid.row &&
+                   c < on_grid.column + on_grid.columns && r < on_grid.row + on_grid.rows &&
+                   !std::isnan(*view.at(c, r));
+        }
     };
-    for (int ring = 0; ring <= kFarthest; ++ring)
-        for (int i = -ring; i <= ring; ++i)
-            for (const auto& [c, r] : {std::pair{column + i, row - ring},
-                                       {column + i, row + ring},
-                                       {column - ring, row + i},
-                                       {column + ring, row + i}})
-                if (valid(c, r))
+    std::array<Side, 4> sides;
+    const auto read = [&](Side& side, int c1, int c2, int r1, int r2) {
+        c1 = std::max(c1, 0), c2 = std::min(c2, grid.columns() - 1);
+        r1 = std::max(r1, 0), r2 = std::min(r2, grid.rows() - 1);
+        side.on_grid = {c1, r1, c2 - c1 + 1, r2 - r1 + 1};
+        if (side.on_grid.columns > 0 && side.on_grid.rows > 0)
+            side.view = posts.view(side.on_grid, side.buffer);
+    };
+    for (int ring = 0; ring <= kFarthest; ++ring) {
+        read(sides[0], column - ring, column + ring, row - ring, row - ring);
+        read(sides[1], column - ring, column + ring, row + ring, row + ring);
+        read(sides[2], column - ring, column - ring, row - ring, row + ring);
+        read(sides[3], column + ring, column + ring, row - ring, row + ring);
+        for (int i = -ring; i <= ring; ++i) {
+            const std::array<glm::ivec2, 4> candidates{glm::ivec2(column + i, row - ring),
+                                                       {column + i, row + ring},
+                                                       {column - ring, row + i},
+                                                       {column + ring, row + i}};
+            for (std::size_t k = 0; k < sides.size(); ++k)
+                if (sides[k].valid(candidates[k].x, candidates[k].y))
                     return fmt::format("; a post with a height is at {}",
-                                       place_text(field.grid.place(c, r)));
+                                       place_text(grid.place(candidates[k].x, candidates[k].y)));
+        }
+    }
     return {};
 }
 
 /// The column and row of a place, snapped, and its height.
 /// @throws Error (BadInput) `light::horizon: LAT,LON: what`
-std::pair<glm::dvec2, double> ground_at(const dem::Heightfield& field, const geo::Geodetic& place) {
-    glm::dvec2 post = field.grid.post(place);
+std::pair<glm::dvec2, double> ground_at(const dem::Posts& posts, const geo::Geodetic& place) {
+    const dem::Grid& grid = posts.grid();
+    glm::dvec2 post = grid.post(place);
     post = {snapped(post.x), snapped(post.y)};
-    if (!(post.x >= 0 && post.y >= 0 && post.x <= field.grid.columns() - 1 &&
-          post.y <= field.grid.rows() - 1))
+    if (!(post.x >= 0 && post.y >= 0 && post.x <= grid.columns() - 1 && post.y <= grid.rows() - 1))
         bad_input(fmt::format("light::horizon: {}: outside of the DEM, expected a point within {}",
-                              place_text(place), cover_text(field.grid)));
-    const double height_m = field.height_at(post.x, post.y);
+                              place_text(place), cover_text(grid)));
+    const double height_m = posts.height_at(post.x, post.y);
     if (std::isnan(height_m))
         bad_input(
             fmt::format("light::horizon: {}: no height there, the point lies in a hole of "
                         "the DEM{}",
-                        place_text(place), nearest_height_text(field, post)));
+                        place_text(place), nearest_height_text(posts, post)));
     return {post, height_m};
 }
 
 /// The farthest that a line of sight can matter: to the DEM's farthest edge, or to where terrain as
 /// high as its highest post sinks under the horizon of a smooth Earth as high as its lowest.
-double longest_m(const Relief& relief, const geo::Geodetic& place, double eye_m,
+double longest_m(const dem::Posts& posts, const geo::Geodetic& place, double eye_m,
                  double refraction) {
-    const dem::Grid& grid = relief.field().grid;
+    const dem::Grid& grid = posts.grid();
     double edge_m = 0;
     constexpr int kSteps = 32;
     for (int i = 0; i <= kSteps; ++i) {
@@ -175,9 +198,9 @@ double longest_m(const Relief& relief, const geo::Geodetic& place, double eye_m,
         }
     }
     const double radius = kWgs84_a_m / (1 - refraction);
-    const double low_m = relief.lowest_m();
+    const double low_m = posts.lowest_m();
     const double sight_m = std::sqrt(2 * radius * std::max(0.0, eye_m - low_m)) +
-                           std::sqrt(2 * radius * (relief.highest_m() - low_m));
+                           std::sqrt(2 * radius * (posts.highest_m() - low_m));
     // Edges between the samples, and the radius that way, are within 2 %.
     return 1.02 * std::min(edge_m, sight_m) + 1;
 }
@@ -201,9 +224,15 @@ namespace {
 template <typename G, typename Scan>
 class Line {
   public:
-    Line(const Relief& relief, const G& ground, double spacing_m, Scan& scan)
-        : relief_(relief),
-          height_m_(relief.height_m()),
+    /// @param buffer  room for the posts of a chunk
+    Line(const dem::Posts& posts, const G& ground, double spacing_m, std::vector<float>& buffer,
+         Scan& scan)
+        : posts_(posts),
+          columns_(posts.grid().columns()),
+          rows_(posts.grid().rows()),
+          lowest_m_(posts.lowest_m()),
+          highest_m_(posts.highest_m()),
+          buffer_(buffer),
           ground_(ground),
           touching_m_(1e-6 * spacing_m),
           scan_(scan) {}
@@ -223,8 +252,7 @@ class Line {
         double t = 1;
         for (int axis = 0; axis < 2; ++axis) {
             const double first = -kSnap_cells;
-            const double last =
-                (axis == 0 ? height_m_.width() : height_m_.height()) - 1 + kSnap_cells;
+            const double last = (axis == 0 ? columns_ : rows_) - 1 + kSnap_cells;
             const double from = a.post[axis], to = b.post[axis];
             if (to > last) t = std::min(t, (last - from) / (to - from));
             if (to < first) t = std::min(t, (first - from) / (to - from));
@@ -261,39 +289,45 @@ class Line {
     /// The highest tangent that height h can have between two distances.
     double bound(double h, double near_m, double far_m) const {
         const double rise = ground_.rise(h, near_m);
-        return rise > 0 ? rise / ground_.run(relief_.lowest_m(), near_m)
-                        : rise / ground_.run(h, far_m);
+        return rise > 0 ? rise / ground_.run(lowest_m_, near_m) : rise / ground_.run(h, far_m);
     }
 
     void chunk(const TracePoint& a, const TracePoint& b) {
+        const auto [c1, c2] = std::minmax(a.post.x, b.post.x);
+        const auto [r1, r2] = std::minmax(a.post.y, b.post.y);
+        const glm::ivec2 first(c1, r1), last(c2, r2);
         if (a.distance_m > touching_m_) {
-            if (bound(relief_.highest_m(), a.distance_m, kFarthest_m) <= scan_.best) {
+            if (bound(highest_m_, a.distance_m, kFarthest_m) <= scan_.best) {
                 nothing_left_ = true;
                 return;
             }
-            const auto [c1, c2] = std::minmax(a.post.x, b.post.x);
-            const auto [r1, r2] = std::minmax(a.post.y, b.post.y);
-            const float h = relief_.bound_m(static_cast<int>(c1), static_cast<int>(c2),
-                                            static_cast<int>(r1), static_cast<int>(r2));
+            const float h = posts_.bound_m(first.x, last.x, first.y, last.y);
             if (bound(h, a.distance_m, b.distance_m) <= scan_.best) return;
         }
-        crossings<0>(a, b);
-        crossings<1>(a, b);
+        // Rounding may put a crossing into the cell beside.
+        const glm::ivec2 begin = glm::max(first - 1, 0);
+        const glm::ivec2 end = glm::min(last + 3, glm::ivec2(columns_, rows_));
+        const dem::Posts::View view =
+            posts_.view({begin.x, begin.y, end.x - begin.x, end.y - begin.y}, buffer_);
+        crossings<0>(a, b, view);
+        crossings<1>(a, b, view);
     }
 
     /// All crossings with columns (axis 0) or rows (axis 1).
     template <int kAxis>
-    void crossings(const TracePoint& a, const TracePoint& b) {
+    void crossings(const TracePoint& a, const TracePoint& b, const dem::Posts::View& view) {
         constexpr int kOther = 1 - kAxis;
         const double begin = a.post[kAxis], way = b.post[kAxis] - begin;
         if (way == 0) return;
-        const int lines = kAxis == 0 ? height_m_.width() : height_m_.height();
+        const int lines = kAxis == 0 ? columns_ : rows_;
         const auto [low, high] = std::minmax(begin, b.post[kAxis]);
         const int first = std::max(0, static_cast<int>(std::ceil(low)));
         const int last = std::min(lines - 1, static_cast<int>(std::floor(high)));
-        const int posts = kOther == 0 ? height_m_.width() : height_m_.height();
-        const std::ptrdiff_t line = kAxis == 0 ? 1 : height_m_.width();
-        const std::ptrdiff_t step = kAxis == 0 ? height_m_.width() : 1;
+        const int posts = kOther == 0 ? columns_ : rows_;
+        const std::ptrdiff_t line = kAxis == 0 ? 1 : view.stride;
+        const std::ptrdiff_t step = kAxis == 0 ? view.stride : 1;
+        const int view_line = kAxis == 0 ? view.column : view.row;
+        const int view_post = kAxis == 0 ? view.row : view.column;
         const double other_way = b.post[kOther] - a.post[kOther];
         const double distance = b.distance_m - a.distance_m;
         for (int i = first; i <= last; ++i) {
@@ -303,7 +337,7 @@ class Line {
             const double other = a.post[kOther] + t * other_way;
             const int k = std::clamp(static_cast<int>(other), 0, posts - 2);
             const double f = other - k;
-            const float* h0 = height_m_.data() + i * line + k * step;
+            const float* h0 = view.first_m + (i - view_line) * line + (k - view_post) * step;
             double h = h0[0] + f * (h0[step] - h0[0]);
             if (h != h) {
                 // A hole at the far end of the edge does not spoil the post itself.
@@ -328,8 +362,10 @@ class Line {
     // Half the way round: the longest geodesic.
     static constexpr double kFarthest_m = 2.0e7;
 
-    const Relief& relief_;
-    const Array2d<float>& height_m_;
+    const dem::Posts& posts_;
+    int columns_, rows_;
+    double lowest_m_, highest_m_;
+    std::vector<float>& buffer_;
     const G& ground_;
     double touching_m_;
     Scan& scan_;
@@ -340,14 +376,25 @@ class Line {
 
 TerrainHorizon::TerrainHorizon(const dem::Heightfield& field, const geo::Geodetic& place,
                                const HorizonOptions& options)
-    : relief_(std::make_unique<const Relief>(field)), options_(options) {
+    : TerrainHorizon(std::make_unique<const dem::Posts>(field), place, options) {}
+
+TerrainHorizon::TerrainHorizon(std::unique_ptr<const dem::Posts> owned, const geo::Geodetic& place,
+                               const HorizonOptions& options)
+    : TerrainHorizon(*owned, place, options) {
+    owned_ = std::move(owned);
+}
+
+TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& place,
+                               const HorizonOptions& options)
+    : posts_(&posts), options_(options) {
     if (!(options.refraction >= -1 && options.refraction <= 0.9))
         bad_input(
             fmt::format("light::horizon: refraction {:.10g}: no air bends light so, expected "
                         "-1 to 0.9 of the Earth's curvature; 0.13 is the mean",
                         options.refraction));
-    std::tie(post_, ground_m_) = ground_at(field, place);
-    place_ = field.grid.place(post_.x, post_.y);
+    std::tie(post_, ground_m_) = ground_at(posts, place);
+    const dem::Grid& grid = posts.grid();
+    place_ = grid.place(post_.x, post_.y);
     place_.height_m = ground_m_;
     eye_m_ = options.eye_above_ground ? ground_m_ + options.eye_height_m : options.eye_height_m;
     if (eye_m_ < ground_m_)
@@ -355,16 +402,15 @@ TerrainHorizon::TerrainHorizon(const dem::Heightfield& field, const geo::Geodeti
             fmt::format("light::horizon: {}: the eye at {:.1f} m is under the ground, which "
                         "is at {:.1f} m there; a height above the ground is written as 2agl",
                         place_text(place_), eye_m_, ground_m_));
-    outside_m_ = options.outside_height_m.value_or(relief_->lowest_m());
+    outside_m_ = options.outside_height_m.value_or(posts.lowest_m());
 
-    const dem::Grid& grid = field.grid;
     const auto map_point = [&](const geo::Geodetic& p) { return grid.crs().from_geodetic(p); };
     const glm::dvec2 here = map_point(place_);
     const glm::dvec2 northward = map_point(geo::destination(place_, 0, 1)) - here;
     true_north_on_map_rad_ = std::atan2(northward.x, northward.y);
     if (options.ground == Ground::Ellipsoid) {
         fan_ = std::make_unique<const Fan>(grid, place_, post_,
-                                           longest_m(*relief_, place_, eye_m_, options.refraction));
+                                           longest_m(posts, place_, eye_m_, options.refraction));
     } else {
         if (grid.crs().is_geographic())
             bad_input(
@@ -376,10 +422,6 @@ TerrainHorizon::TerrainHorizon(const dem::Heightfield& field, const geo::Geodeti
 }
 
 TerrainHorizon::~TerrainHorizon() = default;
-
-const dem::Heightfield& TerrainHorizon::field() const {
-    return relief_->field();
-}
 
 /// Calls `body` with the shape of the ground that way.
 template <typename Body>
@@ -397,7 +439,8 @@ void TerrainHorizon::with_ground(double azimuth_rad, const Body& body) const {
 
 void TerrainHorizon::look(double azimuth_rad, Scan& scan) const {
     thread_local std::vector<TracePoint> line;
-    const dem::Grid& grid = field().grid;
+    thread_local std::vector<float> buffer;
+    const dem::Grid& grid = posts_->grid();
     if (fan_) {
         fan_->trace(azimuth_rad, line);
     } else {
@@ -414,7 +457,8 @@ void TerrainHorizon::look(double azimuth_rad, Scan& scan) const {
         line.size() < 2 ? 1.0
                         : line[1].distance_m / std::max(1e-9, glm::length(line[1].post - post_));
     with_ground(azimuth_rad, [&](const auto& ground) {
-        Line<std::decay_t<decltype(ground)>, Scan>(*relief_, ground, spacing_m, scan).follow(line);
+        Line<std::decay_t<decltype(ground)>, Scan>(*posts_, ground, spacing_m, buffer, scan)
+            .follow(line);
     });
 }
 
@@ -441,7 +485,7 @@ HorizonPoint TerrainHorizon::at(double azimuth_rad) const {
             point.post = glm::dvec2(kNaN);
         }
         if (scan.first_hole_m < kInfinity) {
-            const double high_m = relief_->highest_m();
+            const double high_m = posts_->highest_m();
             const double hole_m =
                 std::min(farthest_rise_m(ground, high_m, scan.first_hole_m), scan.last_hole_m);
             point.hole = std::atan(tangent(ground, high_m, hole_m)) > point.elevation_rad;
@@ -468,7 +512,7 @@ std::vector<HorizonPoint> TerrainHorizon::profile(int count) const {
 
 geo::Geodetic TerrainHorizon::place_of(const HorizonPoint& point) const {
     if (std::isnan(point.distance_m)) return {kNaN, kNaN, kNaN};
-    geo::Geodetic place = field().grid.place(point.post.x, point.post.y);
+    geo::Geodetic place = posts_->grid().place(point.post.x, point.post.y);
     place.height_m = point.height_m;
     return place;
 }
@@ -528,12 +572,12 @@ Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
         sight.azimuth_rad = way.azimuth_rad;
         sight.distance_m = way.distance_m;
     } else {
-        const geo::Crs& crs = field().grid.crs();
+        const geo::Crs& crs = posts_->grid().crs();
         const glm::dvec2 way = crs.from_geodetic(target) - crs.from_geodetic(place_);
         sight.azimuth_rad = turned(std::atan2(way.x, way.y) - true_north_on_map_rad_);
         sight.distance_m = glm::length(way) * map_unit_m_;
     }
-    const glm::dvec2 spacing_m = field().grid.post_spacing_m();
+    const glm::dvec2 spacing_m = posts_->grid().post_spacing_m();
     Scan scan;
     scan.until_m = sight.distance_m - kNear_posts * std::max(spacing_m.x, spacing_m.y);
     double level = 0;
@@ -576,22 +620,40 @@ std::string TerrainHorizon::description() const {
     return text;
 }
 
-geo::Geodetic summit_near(const dem::Heightfield& field, const geo::Geodetic& place,
-                          double radius_m) {
-    const auto [post, ground_m] = ground_at(field, place);
-    const glm::dvec2 spacing_m = field.grid.post_spacing_m();
-    const glm::ivec2 reach = glm::ivec2(radius_m / spacing_m);
-    geo::Geodetic summit = field.grid.place(post.x, post.y);
-    summit.height_m = ground_m;
-    const int column = static_cast<int>(std::lround(post.x));
-    const int row = static_cast<int>(std::lround(post.y));
-    for (int r = std::max(0, row - reach.y);
-         r <= std::min(field.height_m.height() - 1, row + reach.y); ++r)
-        for (int c = std::max(0, column - reach.x);
-             c <= std::min(field.height_m.width() - 1, column + reach.x); ++c)
-            if (field.height_m.at(c, r) > summit.height_m &&
-                glm::length((glm::dvec2(c, r) - post) * spacing_m) <= radius_m)
-                summit = field.place(c, r);
+geo::Geodetic summit_near(const dem::Posts& posts, const geo::Geodetic& place, double radius_m) {
+    constexpr int kSide = 256;  // of what is looked at together
+    const dem::Grid& grid = posts.grid();
+    const auto [post, ground_m] = ground_at(posts, place);
+    const glm::dvec2 spacing_m = grid.post_spacing_m();
+    const glm::ivec2 reach =
+        glm::ivec2(glm::min(radius_m / spacing_m, glm::dvec2(grid.columns(), grid.rows())));
+    const glm::ivec2 nearest(std::lround(post.x), std::lround(post.y));
+    const glm::ivec2 begin = glm::max(nearest - reach, 0);
+    const glm::ivec2 end = glm::min(nearest + reach + 1, glm::ivec2(grid.columns(), grid.rows()));
+    double highest_m = ground_m;
+    std::optional<glm::ivec2> at;  // of equally high posts the first, row by row
+    std::vector<float> buffer;
+    for (int row = begin.y; row < end.y; row += kSide)
+        for (int column = begin.x; column < end.x; column += kSide) {
+            const dem::Window part{column, row, std::min(kSide, end.x - column),
+                                   std::min(kSide, end.y - row)};
+            if (posts.bound_m(column, column + part.columns - 1, row, row + part.rows - 1) <
+                highest_m)
+                continue;
+            const dem::Posts::View view = posts.view(part, buffer);
+            for (int r = row; r < row + part.rows; ++r)
+                for (int c = column; c < column + part.columns; ++c) {
+                    const double height_m = *view.at(c, r);
+                    const bool higher =
+                        height_m > highest_m || (height_m == highest_m && at && r < at->y);
+                    if (higher && glm::length((glm::dvec2(c, r) - post) * spacing_m) <= radius_m) {
+                        highest_m = height_m;
+                        at = glm::ivec2(c, r);
+                    }
+                }
+        }
+    geo::Geodetic summit = at ? grid.place(at->x, at->y) : grid.place(post.x, post.y);
+    summit.height_m = highest_m;
     return summit;
 }
 

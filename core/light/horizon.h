@@ -8,6 +8,7 @@
 #include <glm/vec2.hpp>
 
 #include "dem/heightfield.h"
+#include "dem/posts.h"
 #include "geo/geodetic.h"
 
 namespace relevo::light {
@@ -70,25 +71,31 @@ struct Sight {
     double hidden_by_rad = 0;  ///< elevation of that ground over the point; 0 where visible
 };
 
-class Relief;
 class Fan;
 
 /// What of the sky the terrain hides from one point.
 ///
 /// The horizon in a direction is the highest of all crossings of the line of sight with the rows
 /// and columns of the grid, where heights are linear from post to post: every post in the way
-/// counts, and none is looked at twice. Holes are passed over and reported. A value that refers to
-/// the heightfield it was made from; safe on several threads at once.
+/// counts, and none is looked at twice. Blocks of posts that cannot stand over what was found so
+/// far are skipped; of a DEM that memory does not hold, the others are read as they come. Holes are
+/// passed over and reported. A value that refers to the posts it was made from; safe on several
+/// threads at once.
 ///
 /// Accuracy: 0.0001 degrees against crossings computed independently, 720 directions at 60 points
 /// of 30 m SRTM (tests/light/test_horizon.cpp); the heights themselves are another matter. Speed:
 /// about 10 us a direction (tests/light/bench_light.cpp).
 class TerrainHorizon {
   public:
-    /// @param field  outlives this
+    /// @param posts  outlives this
     /// @param place  its height plays no part
     /// @throws Error (BadInput) where the point is outside of the DEM or in a hole of it, where
-    ///     the eye is under the ground, for a refraction that no air has, for a map without metres
+    ///     the eye is under the ground, for a refraction that no air has, for a map without metres;
+    ///     here and later where the file is damaged that posts are read from
+    TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& place,
+                   const HorizonOptions& options = {});
+    /// The same over heights in memory.
+    /// @param field  all posts, not means of them; outlives this
     TerrainHorizon(const dem::Heightfield& field, const geo::Geodetic& place,
                    const HorizonOptions& options = {});
     TerrainHorizon(const TerrainHorizon&) = delete;
@@ -100,7 +107,7 @@ class TerrainHorizon {
     double eye_m() const { return eye_m_; }           ///< height of the eye, above the DEM's zero
     const glm::dvec2& post() const { return post_; }  ///< column and row of the viewpoint
     const HorizonOptions& options() const { return options_; }
-    const dem::Heightfield& field() const;
+    const dem::Posts& posts() const { return *posts_; }
 
     HorizonPoint at(double azimuth_rad) const;
 
@@ -141,7 +148,11 @@ class TerrainHorizon {
     template <typename Body>
     void with_ground(double azimuth_rad, const Body& body) const;
 
-    std::unique_ptr<const Relief> relief_;
+    TerrainHorizon(std::unique_ptr<const dem::Posts> owned, const geo::Geodetic& place,
+                   const HorizonOptions& options);
+
+    std::unique_ptr<const dem::Posts> owned_;  // those of a heightfield
+    const dem::Posts* posts_;
     std::unique_ptr<const Fan> fan_;  // none on maps
     HorizonOptions options_;
     geo::Geodetic place_;
@@ -154,7 +165,6 @@ class TerrainHorizon {
 /// The highest post within a radius of a place, with its height: the summit that was meant. The
 /// place itself, with its interpolated height, where no post is near enough or the radius is 0.
 /// @throws Error (BadInput) where the place is outside of the DEM or in a hole of it
-geo::Geodetic summit_near(const dem::Heightfield& field, const geo::Geodetic& place,
-                          double radius_m);
+geo::Geodetic summit_near(const dem::Posts& posts, const geo::Geodetic& place, double radius_m);
 
 }  // namespace relevo::light

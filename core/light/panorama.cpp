@@ -188,7 +188,7 @@ class Panorama {
             if (p.distance_m > farthest_m) farthest_m = p.distance_m;
         farthest_m = std::max(farthest_m, 1000.0);
         // Nearer than some posts there is no ridge yet.
-        const glm::dvec2 spacing_m = of_.horizon->field().grid.post_spacing_m();
+        const glm::dvec2 spacing_m = of_.horizon->posts().grid().post_spacing_m();
         const double nearest_m = 5 * std::max(spacing_m.x, spacing_m.y);
         constexpr std::array kRound{100.,  200., 500., 1e3, 2e3, 3e3, 5e3, 7e3, 1e4,
                                     1.5e4, 2e4,  3e4,  5e4, 7e4, 1e5, 2e5, 5e5};

@@ -17,6 +17,7 @@ namespace relevo::sun {
 namespace {
 
 constexpr const char* kWho = "sun::parse_event_time";
+constexpr double kLongestOffset_s = 366 * kDay_s;
 
 struct Name {
     const char* name;
@@ -96,6 +97,11 @@ EventTime parse_event_time(std::string_view text) {
             refuse(time.text, fmt::format("offset \"{}\", expected hours, minutes or seconds such "
                                           "as -30min, +1h30min or +45s",
                                           rest.substr(sign)));
+        if (*offset_s > kLongestOffset_s)
+            refuse(time.text,
+                   fmt::format("offset \"{}\", expected at most {:.0f}h either way; another day is "
+                               "named by its date",
+                               rest.substr(sign), kLongestOffset_s / 3600));
         time.offset_s = rest[sign] == '-' ? -*offset_s : *offset_s;
         rest = trimmed(rest.substr(0, sign));
     }

@@ -31,8 +31,8 @@ bool is_event_time(std::string_view text);
 /// midnight (lower transit), civil-dawn, civil-dusk, nautical-dawn, nautical-dusk,
 /// astronomical-dawn, astronomical-dusk, first-light, last-light. Offsets: 30min, 1h30min, 45s.
 /// Between date and event stands a blank or a T.
-/// @throws Error (BadInput) for an unknown event, with the nearest one, or an offset or date that
-///     is none; (Usage) for a place that is none
+/// @throws Error (BadInput) for an unknown event, with the nearest one, an offset or date that is
+///     none, an offset of more than a year; (Usage) for a place that is none
 EventTime parse_event_time(std::string_view text);
 
 /// The local day that is meant: that of the text, else `given` (`--date`).

@@ -1,5 +1,6 @@
 #include "sun/time.h"
 
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -85,6 +86,7 @@ CivilTime Instant::utc() const {
 }
 
 Instant operator+(Instant instant, double seconds) {
+    assert(std::abs(seconds) < 1e12);
     return Instant::from_unix_us(instant.unix_us_ + std::llround(seconds * 1e6));
 }
 

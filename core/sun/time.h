@@ -57,6 +57,7 @@ class Instant {
 
     friend constexpr auto operator<=>(Instant, Instant) = default;
     /// Rounded to the nearest microsecond.
+    /// @param seconds  some thousand years at most: a count of 64 bits holds 292 000
     friend Instant operator+(Instant instant, double seconds);
     friend Instant operator-(Instant instant, double seconds) { return instant + -seconds; }
     /// Seconds from `b` to `a`, without leap seconds.

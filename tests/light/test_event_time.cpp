@@ -7,9 +7,15 @@ namespace {
 
 using test::error_of;
 
+TerrainAccess access(const dem::Posts& posts) {
+    return {.middle = [&] { return posts.grid().center(); },
+            .posts = [&]() -> const dem::Posts& { return posts; }};
+}
+
 TEST(EventTime, FirstAndLastLightAreThoseOfTheTerrain) {
     const dem::Heightfield field = test::bundled("jacksboro.tif");
-    const auto dem = [&]() -> const dem::Heightfield& { return field; };
+    const dem::Posts posts(field);
+    const TerrainAccess dem = access(posts);
     const sun::Zone zone = sun::Zone::named("America/New_York");
     const geo::Geodetic place = geo::geodetic_deg(36.42, -84.25);
     HorizonOptions standing;
@@ -48,7 +54,8 @@ TEST(EventTime, FirstLightErrorsSayWhatIsWrong) {
     const dem::Heightfield field = test::bundled("jacksboro.tif");
     const sun::Zone zone = sun::Zone::named("America/New_York");
     const sun::Date date{2026, 1, 6};
-    const auto dem = [&]() -> const dem::Heightfield& { return field; };
+    const dem::Posts posts(field);
+    const TerrainAccess dem = access(posts);
     EXPECT_EQ(error_of([&] { parse_time("first-light@36.42,-84.25", date, zone); }),
               "exit 3: sun::parse_event_time: first-light@36.42,-84.25: first and last light hang "
               "on the terrain; expected a DEM");
@@ -60,7 +67,8 @@ TEST(EventTime, FirstLightErrorsSayWhatIsWrong) {
               "latitudes 36.1600 to 36.4458 and longitudes -84.4133 to -84.0783");
     const dem::Heightfield arctic = test::field_of(101, 101, {15, 0.002, 0, 78.3, 0, -0.0005},
                                                    "EPSG:4326", [](int, int) { return 10.0; });
-    const auto there = [&]() -> const dem::Heightfield& { return arctic; };
+    const dem::Posts arctic_posts(arctic);
+    const TerrainAccess there = access(arctic_posts);
     const sun::Zone oslo = sun::Zone::named("Europe/Oslo");
     EXPECT_EQ(error_of([&] {
                   parse_time("2026-12-21 first-light@78.275,15.1", std::nullopt, oslo, there);

@@ -391,11 +391,12 @@ TEST(TerrainHorizon, FindsTheSummitThatWasMeant) {
     const dem::Heightfield field =
         plain([](int column, int row) { return column == 110 && row == 104 ? 180.0 : 100.0; });
     const geo::Geodetic meant = field.grid.place(108.6, 102.2);  // 69 m away
-    EXPECT_EQ(summit_near(field, meant, 100), field.place(110, 104));
-    const geo::Geodetic itself = summit_near(field, meant, 50);
+    const dem::Posts posts(field);
+    EXPECT_EQ(summit_near(posts, meant, 100), field.place(110, 104));
+    const geo::Geodetic itself = summit_near(posts, meant, 50);
     EXPECT_NEAR(itself.lat_rad, meant.lat_rad, 1e-12);
     EXPECT_EQ(itself.height_m, 100);
-    EXPECT_NEAR(summit_near(field, field.grid.place(109.5, 104), 0).height_m, 140, 1e-3);
+    EXPECT_NEAR(summit_near(posts, field.grid.place(109.5, 104), 0).height_m, 140, 1e-3);
 }
 
 TEST(TerrainHorizon, ErrorsSayWhatIsWrong) {

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dem/grid.h"
+#include "dem/heightfield.h"
+#include "dem/source.h"
+
+namespace relevo::dem {
+
+/// Every post of a DEM, whether memory holds them all or not, for figures that means would falsify.
+///
+/// The DEM is gone through once. From then on the lowest and the highest post are known, and the
+/// highest of each block of posts, so that whoever looks for high ground skips blocks that cannot
+/// matter. Of a DEM beyond the memory allowed, posts are read from the file where they are asked
+/// for, in tiles of which those used last are kept. What is found is the same either way.
+///
+/// Safe on several threads at once.
+class Posts {
+  public:
+    /// Posts in memory.
+    /// @param field  all posts, not means of them; it must outlive this
+    explicit Posts(const Heightfield& field);
+
+    /// Posts on demand.
+    /// @param source     must outlive this
+    /// @param max_posts  that are kept: a quarter at most for the highest of blocks, the rest tiles
+    /// @throws Error (BadInput) where the file is damaged, here and later, and where not one post
+    ///     has a height
+    Posts(const Source& source, std::int64_t max_posts);
+
+    /// Opens files and holds their posts in memory where LoadOptions::max_posts allows that.
+    /// @throws Error (BadInput) as dem::load
+    static Posts load(std::span<const std::string> paths, const LoadOptions& options = {});
+
+    Posts(Posts&&) noexcept;
+    Posts& operator=(Posts&&) noexcept;
+    ~Posts();
+
+    const Grid& grid() const;
+    const Description& about() const;  ///< its statistics are those of all posts
+    bool in_memory() const;
+    float lowest_m() const { return about().statistics.min_m; }
+    float highest_m() const { return about().statistics.max_m; }
+
+    /// The highest that the ground can be within a box of cells: no less than the highest post at
+    /// their corners; where one of these is a hole, highest_m(), for a hole may hide that.
+    /// @param first_column, last_column, first_row, last_row  of cells (between posts), inclusive
+    float bound_m(int first_column, int last_column, int first_row, int last_row) const;
+
+    /// Where heights are in memory.
+    struct View {
+        const float* first_m;   ///< of post (column, row), NaN for a hole
+        std::ptrdiff_t stride;  ///< from row to row
+        int column, row;
+
+        const float* at(int c, int r) const { return first_m + (r - row) * stride + (c - column); }
+    };
+    /// Posts of a window and perhaps others around it.
+    /// @param window  inside of the grid
+    /// @param buffer  where they are put unless memory holds them already; the view ends with it
+    View view(const Window& window, std::vector<float>& buffer) const;
+
+    /// As Heightfield::height_at().
+    double height_at(double column, double row) const;
+
+  private:
+    struct Impl;
+    explicit Posts(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relevo::dem
