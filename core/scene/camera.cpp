@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -29,7 +30,7 @@ double fov_y_of_focal_length(double focal_length_mm, double aspect) {
 }
 
 Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,
-                    double aspect) {
+                    double aspect, std::span<const glm::dvec3> also) {
     const double azimuth = radians(orbit.azimuth_deg);
     const double elevation = radians(orbit.elevation_deg);
     const glm::dvec3 to_camera{std::sin(azimuth) * std::cos(elevation),
@@ -50,7 +51,9 @@ Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, doub
         double highest = -1e300, lowest = 1e300;
     } horizontal, vertical;
     double nearest = -1e300;
-    for (const glm::dvec3& point : points) {
+    std::vector<glm::dvec3> shown(points.begin(), points.end());
+    shown.insert(shown.end(), also.begin(), also.end());
+    for (const glm::dvec3& point : shown) {
         const double x = dot(point, right), y = dot(point, camera.up), z = dot(point, to_camera);
         horizontal.highest = std::max(horizontal.highest, x + z * tan_x);
         horizontal.lowest = std::min(horizontal.lowest, x - z * tan_x);
@@ -70,7 +73,7 @@ Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, doub
         middle += dot(point, to_camera) / static_cast<double>(points.size());
     for (int turn = 0; turn < 30; ++turn) {
         glm::dvec2 least(1e300), most(-1e300);
-        for (const glm::dvec3& point : points) {
+        for (const glm::dvec3& point : shown) {
             const glm::dvec2 at = glm::dvec2(dot(point, right) - a, dot(point, camera.up) - b) /
                                   (distance - dot(point, to_camera));
             least = glm::min(least, at);
