@@ -52,6 +52,10 @@ void main() {
     float morph = clamp((distance_m - net_vv.w) * net_uvv.w, 0.0, 1.0);
 #endif
     vec2 height = mix(levels.rg, levels.ba, morph);
+    bool rim = grid != clamp(grid, 0.0, 64.0);
+#ifndef TERRAIN_DEPTH
+    height.r -= rim ? kRim_px * length(frame.pixel_ray_dx.xyz) * distance_m : 0.0;
+#endif
 
     VertexFrame v;
     v.up = up_0.xyz + at.x * up_u.xyz + at.y * up_v.xyz;
@@ -70,13 +74,8 @@ void main() {
 #ifdef TERRAIN_DEPTH
     // Down to where no ground is lower: light does not come in under the DEM's sides.
     float sunk_m = v.drawn_height_m - frame.height_range.w * frame.height_range.z;
-#else
-    float sunk_m = kRim_px * length(frame.pixel_ray_dx.xyz) * distance_m * frame.height_range.z;
+    v.position_m -= (rim ? sunk_m : 0.0) * v.up;
 #endif
-    bool rim = grid != clamp(grid, 0.0, 64.0);
-    sunk_m = rim ? sunk_m : 0.0;
-    v.position_m -= sunk_m * v.up;
-    height.r -= sunk_m / frame.height_range.z;
 
 #ifdef TERRAIN_NORMAL_VERTEX
     // The paper's normal: two more reads, at the next posts along the row and down the column, and

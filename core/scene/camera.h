@@ -35,7 +35,7 @@ double fov_y_of_focal_length(double focal_length_mm, double aspect);
 /// farther by `zoom`.
 /// @param points   ground to show, in the local frame [m], at least one
 /// @param aspect   width / height of the picture
-/// @param also     has to be in the picture too, and does not count for the ground's middle
+/// @param also     has to be in the picture too; where it is, the camera stands as without it
 Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,
                     double aspect, std::span<const glm::dvec3> also = {});
 

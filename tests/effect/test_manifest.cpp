@@ -238,7 +238,7 @@ INSTANTIATE_TEST_SUITE_P(
             "\"haze.height_m\", but got -5"},
         Bad{"DisplacesFar", with(R"("displaces": {"up_m": 1e6})"),
             "2: displaces.up_m: expected metres from 0 to 100000, or a parameter such as "
-            "\"haze.height_m\", but got 1e+06"},
+            "\"haze.height_m\", but got 1000000"},
         Bad{"DisplacesTo", with(R"("displaces": {"to_m": "sea.level_m"})"),
             "2: displaces.to_m: expected metres from -100000 to 100000, or a parameter such as "
             "\"haze.height_m\", but got \"sea.level_m\""},

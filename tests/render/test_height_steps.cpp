@@ -47,7 +47,7 @@ class Mesh {
         for (int row = 0; row < posts_.height(); ++row)
             for (int column = 0; column < posts_.width(); ++column)
                 posts_.at(column, row) =
-                    drawn.ground().frame.to_local(drawn.dem().place(column, row));
+                    drawn.ground().frame.to_local(drawn_place(drawn, column, row));
     }
 
     struct Hit {
@@ -104,6 +104,12 @@ class Mesh {
     }
 
   private:
+    static geo::Geodetic drawn_place(const Drawn& drawn, int column, int row) {
+        geo::Geodetic place = drawn.dem().place(column, row);
+        place.height_m *= drawn.frame().exaggeration;
+        return place;
+    }
+
     Array2d<float> height_m_;
     Array2d<glm::dvec3> posts_;
 };
@@ -173,25 +179,19 @@ TEST(HeightSteps, AreExactAtTheEyesFeetOnHighGround) {
 }
 
 TEST(HeightSteps, AreOfTheDemsOwnHeightsUnderExaggeration) {
-    Drawn drawn(hills(900), {test::kBrightSky, probe("s.height_dx_m, s.height_m / 1024.0")}, 64,
-                64);
-    for (const double exaggeration : {1.0, 3.0}) {
+    Drawn drawn(hills(900), {test::kBrightSky, probe("s.height_dx_m, s.height_dy_m")}, 160, 128);
+    for (const double exaggeration : {0.5, 3.0}) {
         drawn.frame().exaggeration = exaggeration;
-        drawn.stand(0.4, 0.55, 900 * exaggeration + 2000, 30, -88);
-        const image::ImageF image = drawn.radiance();
-        // Steps add up to the difference of heights across the row.
-        double sum_m = 0;
-        for (int x = 0; x < 63; ++x)
-            sum_m += 0.5 * (Drawn::values(image, x, 32).x + Drawn::values(image, x + 1, 32).x);
-        const double rise_m =
-            1024 * (Drawn::values(image, 63, 32).y - Drawn::values(image, 0, 32).y);
-        EXPECT_NEAR(sum_m, rise_m, 2 + 0.2 * std::abs(rise_m)) << exaggeration;
+        drawn.stand(0.4, 0.55, 1200 * exaggeration, 30, -30);
+        const Compared found = compare(drawn, 60, 1e-4);
+        EXPECT_LT(found.errors[30], 1e-3) << exaggeration;
+        EXPECT_LT(found.errors[57], 5e-3) << exaggeration;
     }
 }
 
 TEST(HeightSteps, DrawContoursOfOneWidth) {
     // A cone's contours are circles: the area of a drawn one over its length is its width.
-    constexpr double kTop_m = 1500, kSlope = 0.35, kInterval_m = 50, kWidth_px = 2;
+    constexpr double kTop_m = 1500, kSlope = 0.1, kInterval_m = 20, kWidth_px = 2;
     constexpr int kSide = 257;
     const auto cone = test::field_of(
         kSide, kSide, {500000, kSpacing_m, 0, 5200000, 0, -kSpacing_m}, "EPSG:32632",
@@ -200,12 +200,12 @@ TEST(HeightSteps, DrawContoursOfOneWidth) {
         });
     const std::string line =
         "float contour_line(in Surface s, in vec2 steps) {\n"
-        "    float level = floor(s.height_m / 50.0 + 0.5) * 50.0;\n"
+        "    float level = floor(s.height_m / 20.0 + 0.5) * 20.0;\n"
         "    float away_px = abs(s.height_m - level) / max(length(steps), 1e-6);\n"
         "    return clamp(0.5 * 2.0 + 0.5 - away_px, 0.0, 1.0);\n"
         "}\n"
         "void contour_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {\n"
-        "    radiance = vec3(contour_line(s, vec2(STEPS)), floor(s.height_m / 50.0 + 0.5), 1.0) / "
+        "    radiance = vec3(contour_line(s, vec2(STEPS)), floor(s.height_m / 20.0 + 0.5), 1.0) / "
         "frame.exposure;\n"
         "}\n";
     for (const bool are_steps : {true, false}) {
@@ -214,9 +214,9 @@ TEST(HeightSteps, DrawContoursOfOneWidth) {
             glsl.find("STEPS"), 5,
             are_steps ? "s.height_dx_m, s.height_dy_m" : "s.ground_dx_m.z, s.ground_dy_m.z");
         Drawn drawn(cone, {test::kBrightSky, {"contour", glsl}}, 640, 512);
-        drawn.stand(0.5, 1.6, 5400, 0, -36);
+        drawn.stand(0.5, 1.6, 2400, 0, -11);
         const image::ImageF image = drawn.radiance();
-        std::array<double, 64> area_px{};
+        std::array<double, 128> area_px{};
         for (int y = 0; y < image.height; ++y) {
             for (int x = 0; x < image.width; ++x) {
                 if (test::is_sky(image, x, y)) continue;
@@ -225,7 +225,7 @@ TEST(HeightSteps, DrawContoursOfOneWidth) {
             }
         }
         double least = 1e9, most = 0;
-        for (double level_m = kTop_m - 2 * kInterval_m; level_m > 800; level_m -= kInterval_m) {
+        for (double level_m = kTop_m - 2 * kInterval_m; level_m > 1280; level_m -= kInterval_m) {
             // Around the circle, as the picture shows it.
             double length_px = 0;
             glm::dvec2 before(0);
