@@ -34,7 +34,8 @@ class NotNumbers : public testing::Test {
     static std::string message(const std::string& id, int pixels, int of,
                                const std::string& without = "none") {
         return fmt::format(
-            "relevo: capture: {0}: expected light that is a number in every pixel but got {1} of "
+            "relevo: error: capture: {0}: expected light that is a number in every pixel but got "
+            "{1} of "
             "{2} pixels that have none or an infinite one, and {3} without this effect; mend it (a "
             "division by 0, a root or logarithm of less than 0, normalize of nothing), or go on "
             "with --disable {0}\n",
@@ -54,7 +55,7 @@ TEST_F(NotNumbers, OfAnyHookAreAnErrorThatNamesTheEffect) {
         {"visibility(in Surface s, in vec3 to_sun, inout float factor)",
          "factor = log(sick_zero - 1.0)"},
         {"ambient(in Surface s, inout vec3 irradiance)", "irradiance.g = -1.0 / sick_zero"},
-        {"lit(in Surface s, inout vec3 radiance)", "radiance.b = 0.0 / sick_zero"},
+        {"lit(in Surface s, inout vec3 radiance)", "radiance.b = sqrt(sick_zero - 3.0)"},
         {"atmosphere(in Surface s, in vec3 view, inout vec3 radiance)",
          "radiance *= pow(sick_zero - 2.0, 0.5)"},
         {"display(in Surface s, inout vec4 overlay)", "overlay = vec4(sick_zero / sick_zero)"},
@@ -80,8 +81,9 @@ TEST_F(NotNumbers, AreCounted) {
         EXPECT_EQ(take({"--only", "sick"}, name).err, message("sick", 100, 64 * 48)) << name;
     EXPECT_EQ(take({"--only", "", "--ab", "sick"}).err, message("sick", 100, 64 * 48));
     // Behind the air too, whose mixing makes NaN of infinite light.
-    if (std::filesystem::exists(source_dir() / "plugins/haze"))
+    if (std::filesystem::exists(source_dir() / "plugins/haze")) {
         EXPECT_EQ(take({"--only", "haze,sick"}).err, message("sick", 100, 64 * 48));
+    }
     // What is off makes none.
     EXPECT_EQ(take({"--only", ""}).err, "");
     EXPECT_TRUE(std::filesystem::exists(dir_ / "a.png"));
@@ -98,7 +100,7 @@ TEST_F(NotNumbers, NameTheMakerAndNotWhatItStandsOn) {
     add("worse",
         "uniform float worse_zero = 0.0; //@ range(-1, 1)\n"
         "void worse_on_lit(in Surface s, inout vec3 radiance) {\n"
-        "    radiance = gl_FragCoord.x < 10.0 ? vec3(1.0 / worse_zero) : vec3(0.5);\n"
+        "    if (gl_FragCoord.x < 10.0) radiance += vec3(1.0 / worse_zero);\n"
         "}\n");
     EXPECT_EQ(take({"--only", "sick,worse"}).err, message("sick", 64 * 48, 64 * 48, "480"));
 }

@@ -61,7 +61,7 @@ TEST(Haze, StrengthOnTheGpuIsTheIntegralsAlongTheRay) {
 }
 
 TEST(Haze, OfTheDrawnGroundIsTheIntegralsToThreeHundredKilometres) {
-    // A plateau at 3000 m from an eye at 4500 m, whose horizon lies at 330 km: black ground before
+    // A plateau at 3000 m from an eye at 12000 m, whose horizon lies at 340 km: black ground before
     // a white sky shows the share alone.
     const auto plateau =
         test::field_of(81, 801, {480000, 500, 0, 5400000, 0, -500}, "EPSG:32632", [](int, int row) {
@@ -83,11 +83,11 @@ TEST(Haze, OfTheDrawnGroundIsTheIntegralsToThreeHundredKilometres) {
                       {{"haze.blue", "0"}, {"haze.density", "0.02"}});
     std::vector<double> errors;
     double farthest_m = 0;
-    // Under exaggeration the air is that before what is drawn: from 9000 m to 6000 m.
+    // Under exaggeration the air is that before what is drawn: from 24000 m to 6000 m.
     for (const double exaggeration : {1.0, 2.0}) {
         drawn.frame().exaggeration = exaggeration;
-        drawn.stand(0.5, 1, 4500 * exaggeration, 0, -1.8);
-        drawn.frame().camera.fov_y_rad = 0.03;
+        drawn.stand(0.5, 1, 12000 * exaggeration, 0, -3.6);
+        drawn.frame().camera.fov_y_rad = 0.06;
         const image::ImageF image = drawn.radiance();
         for (int y = 0; y < image.height; ++y) {
             if (image.at(32, y, 2) == 0) continue;
@@ -95,7 +95,7 @@ TEST(Haze, OfTheDrawnGroundIsTheIntegralsToThreeHundredKilometres) {
             const double distance_m = 1048576 * found.y;
             farthest_m = std::max(farthest_m, distance_m);
             errors.push_back(
-                std::abs(found.x - (1 - std::exp(-depth(0.02, 2500, 4500 * exaggeration,
+                std::abs(found.x - (1 - std::exp(-depth(0.02, 2500, 12000 * exaggeration,
                                                         3000 * exaggeration, distance_m)))));
         }
     }
