@@ -56,5 +56,5 @@ void main() {
     bool moves_here = abs(miss) > tolerance && (miss > 0.0) == (beyond > here);
     float amount = 0.5 - float(min(back_steps, on_steps)) / float(back_steps + on_steps);
     vec2 at = gl_FragCoord.xy + (moves_here ? amount : 0.0) * vec2(across);
-    colour_out = vec4(textureLod(colour, at * frame.viewport.zw, 0.0).rgb, 1.0);
+    colour_out = textureLod(colour, at * frame.viewport.zw, 0.0);
 }

@@ -1,14 +1,28 @@
 //! provides  the geometry pass: what is where, for terrain.frag.glsl to shade each visible pixel once
-//! writes    place: column and row of the post, height [m], view depth [m]
+//! writes    place: column and row of the post, height [m], view depth [m]; with HEIGHT_STEPS, the number
+//!           of an output, also how the height changes from pixel to pixel [m/px]
 //!
 //! Shading is deferred because small triangles cost a software renderer a whole block of 4 x 4
 //! pixels each, and a GPU a block of 2 x 2: this way that block runs these few lines only.
 
 in vec2 post;
 in float height_m;
+in float height_from_eye_m;
 in vec3 vertex_normal;
 
 layout(location = 0) out uvec4 place_out;
+#ifdef HEIGHT_STEPS
+layout(location = HEIGHT_STEPS) out vec2 height_steps_out;
+
+/// How the height changes from this pixel to the next one right and up, on this triangle [m/px].
+/// Heights divided by the depth are linear in the picture, as is 1 / depth: their differences are
+/// those of the whole triangle's plane, also where the triangle ends between two pixels.
+vec2 height_steps() {
+    float near = gl_FragCoord.w;
+    float scaled = height_from_eye_m * near;
+    return (vec2(dFdx(scaled), dFdy(scaled)) - height_from_eye_m * vec2(dFdx(near), dFdy(near))) / near;
+}
+#endif
 
 void main() {
 #ifdef TERRAIN_NORMAL_VERTEX
@@ -16,6 +30,9 @@ void main() {
     uvec2 normal_source = uvec2(packSnorm2x16(n.xy), packSnorm2x16(n.zz));
 #else
     uvec2 normal_source = floatBitsToUint(post);
+#endif
+#ifdef HEIGHT_STEPS
+    height_steps_out = height_steps();
 #endif
     // A sliver that the near plane has cut to nothing has no coordinates in llvmpipe; its neighbours
     // cover the pixel.

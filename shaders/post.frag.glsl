@@ -15,5 +15,6 @@ void main() {
 #ifdef DISPLAY_OVERLAY
     over = texelFetch(overlay, pixel, 0);
 #endif
-    colour_out = shown(texelFetch(radiance, pixel, 0).rgb, over);
+    vec4 light = texelFetch(radiance, pixel, 0);
+    colour_out = shown(light.rgb, over, light.a);
 }

@@ -1,13 +1,16 @@
 //! provides  the light that a visible point of the terrain sends to the eye
 //! reads     place (geometry.frag.glsl), normal pages
-//! writes    with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB
+//! writes    with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB; in
+//!           alpha of either 0 where effects made what is no number, or infinite
 
 //@ include lib/exposed.glsl
+//@ include lib/finite.glsl
 //@ include lib/ground.glsl
 //@ include lib/pages.glsl
 //@ include lib/shown.glsl
 //@ include lib/tangent.glsl
 
+uniform sampler2D height_steps;  // rg: from geometry.frag.glsl, where a hook reads height_dx_m or height_dy_m
 uniform sampler2DArray normal_pages;  // rg: east and north part of the unit normal
 
 layout(location = 0) out vec4 light_out;
@@ -21,6 +24,11 @@ vec3 footprint(in vec3 position, in vec3 normal, in vec3 ray, in vec3 ray_step) 
     // A ray never meets its plane at less than about one degree: textures would fade for nothing.
     float slant = min(dot(beside, normal), -0.02 * length(ray));
     return beside * (min(dot(position, normal), -0.02 * length(position)) / slant) - position;
+}
+
+/// A step over the drawn ground as one over the DEM's own.
+vec3 unexaggerated(in vec3 step_m, in vec3 up) {
+    return step_m - (1.0 - 1.0 / frame.height_range.z) * dot(step_m, up) * up;
 }
 
 /// East and north part of the normal at a post, as a level of the pyramid has it.
@@ -43,8 +51,8 @@ void main() {
     s.position_m = ray * depth;
     s.height_m = uintBitsToFloat(what.z);
     s.height_unit = height_unit_of(s.height_m);
-    s.ground_m = vec3(s.position_m.xy + frame.eye_m.xy, s.height_m);
     s.up = up_at(s.position_m);
+    s.ground_m = ground_at(s.position_m, s.up, s.height_m);
     s.distance_m = length(s.position_m);
     vec3 east = east_at(s.up);
     vec3 north = cross(s.up, east);
@@ -52,6 +60,9 @@ void main() {
 #ifdef TERRAIN_NORMAL_VERTEX
     s.geometric_normal =
         normalize(vec3(unpackSnorm2x16(what.x), unpackSnorm2x16(what.y).x));
+    float upright = dot(s.geometric_normal, s.up);
+    s.ground_normal =
+        normalize(s.geometric_normal + (frame.height_range.z - 1.0) * upright * s.up);
 #else
     // A pixel's size on the ground, across the view, decides how fine the normals are read.
     float size = length(frame.pixel_ray_dx.xyz) * depth * frame.normal_texels_per_m;
@@ -60,6 +71,7 @@ void main() {
     vec2 slope = mix(slope_at(post, int(level)),
                      slope_at(post, min(int(level) + 1, int(frame.normal_levels) - 1)), fract(level));
     float rise = sqrt(max(1.0 - dot(slope, slope), 0.0025));
+    s.ground_normal = normalize(slope.x * east + slope.y * north + rise * s.up);
     slope *= frame.height_range.z;
     s.geometric_normal = normalize(slope.x * east + slope.y * north + rise * s.up);
 #endif
@@ -72,8 +84,14 @@ void main() {
     float longest = max(length(dx), length(dy));
     float shortest = min(length(dx), length(dy));
     float most = max(shortest * frame.footprint_limit, 1e-6);
-    s.ground_dx_m = dx * min(1.0, most / length(dx));
-    s.ground_dy_m = dy * min(1.0, most / length(dy));
+    s.ground_dx_m = unexaggerated(dx * min(1.0, most / length(dx)), s.up);
+    s.ground_dy_m = unexaggerated(dy * min(1.0, most / length(dy)), s.up);
+    s.height_dx_m = s.height_dy_m = 0.0;
+#ifdef HEIGHT_STEPS
+    vec2 steps = texelFetch(height_steps, pixel, 0).rg;
+    s.height_dx_m = steps.x;
+    s.height_dy_m = steps.y;
+#endif
 
     s.texture_at = s.ground_m.xy;
     s.texture_dx = s.ground_dx_m.xy;
@@ -104,13 +122,15 @@ void main() {
     vec3 radiance = s.emissive + irradiance * lit * hook_brdf(s, to_sun, -view) + s.ambient * sky;
     hook_lit(s, radiance);
     hook_atmosphere(s, view, radiance);
-    radiance = exposed(radiance);
     vec4 over = vec4(0.0);
     hook_display(s, over);
+    // What is stored may be clamped to a number.
+    float numbers = finite(vec4(radiance, 0.0)) * finite(over);
+    radiance = exposed(radiance);
 #ifdef SHOWN
-    light_out = shown(radiance, over);
+    light_out = shown(radiance, over, numbers);
 #else
-    light_out = vec4(radiance, 1.0);
+    light_out = vec4(radiance, numbers);
 #endif
 #ifdef DISPLAY_OVERLAY
     overlay_out = over;

@@ -26,6 +26,7 @@ const float kRim_px = 2.0;  // how far the rim hangs down in the picture
 
 out vec2 post;
 out float height_m;
+out float height_from_eye_m;  // of the DEM's heights: near the eye small, and so exact
 out vec3 vertex_normal;
 
 /// Where a point of the tile lies, relative to the eye [m].
@@ -52,10 +53,7 @@ void main() {
 #endif
     vec2 height = mix(levels.rg, levels.ba, morph);
     bool rim = grid != clamp(grid, 0.0, 64.0);
-#ifdef TERRAIN_DEPTH
-    // Down to where no ground is lower: light does not come in under the DEM's sides.
-    height.r = rim ? frame.height_range.x : height.r;
-#else
+#ifndef TERRAIN_DEPTH
     height.r -= rim ? kRim_px * length(frame.pixel_ray_dx.xyz) * distance_m : 0.0;
 #endif
 
@@ -64,10 +62,20 @@ void main() {
     v.height_m = height.r;
     v.height_unit = height_unit_of(height.r);
     v.position_m = placed(at, height.r);
-    v.ground_m = vec3(v.position_m.xy + frame.eye_m.xy, height.r);
+    v.ground_m = ground_at(v.position_m, v.up, height.r);
     v.distance_m = length(v.position_m);
+    v.drawn_height_m = height.r * frame.height_range.z;
+    vec3 in_place = v.position_m;
     hook_displace(v, v.position_m);
+    v.distance_m = length(v.position_m);
+    v.drawn_height_m += dot(v.position_m - in_place, v.up);
     hook_vertex(v);
+
+#ifdef TERRAIN_DEPTH
+    // Down to where no ground is lower: light does not come in under the DEM's sides.
+    float sunk_m = v.drawn_height_m - frame.height_range.w * frame.height_range.z;
+    v.position_m -= (rim ? sunk_m : 0.0) * v.up;
+#endif
 
 #ifdef TERRAIN_NORMAL_VERTEX
     // The paper's normal: two more reads, at the next posts along the row and down the column, and
@@ -83,6 +91,9 @@ void main() {
     // Short of the last post, so that it lies in a page as all others do.
     post = vec2(net_v.w, net_uv.w) + clamp(vertex, vec2(0.0), limit - 0.01) * net_uuv.w;
     height_m = height.r;
+#ifdef HEIGHT_STEPS
+    height_from_eye_m = height.r - frame.eye_m.w / frame.height_range.z;
+#endif
     gl_Position = frame.view_projection * vec4(v.position_m, 1.0);
     gl_ClipDistance[0] = height.g - 0.5;
 }

@@ -14,6 +14,7 @@
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/effects.h"
+#include "cli/not_numbers.h"
 #include "cli/shared.h"
 #include "geo/format.h"
 #include "render/ground.h"
@@ -99,6 +100,20 @@ Picture side_by_side(const Picture& left, const Picture& right, Value line) {
     return both;
 }
 
+/// The sun that is told of, and from where.
+struct SunSeen {
+    std::string from, sun;
+};
+
+/// As `relevo sun position` has it for the eye's place and height.
+SunSeen seen_from_eye(const render::FrameInputs& inputs, const render::Ground& ground,
+                      sun::Instant utc, const RefractionArguments& refraction) {
+    geo::Geodetic eye = ground.frame.to_geodetic(inputs.camera.eye_m);
+    eye.height_m /= inputs.exaggeration;
+    return {geo::degrees_text(eye) + " (the eye)",
+            sun_text(sun::position(utc, eye), refraction.at(eye))};
+}
+
 void capture(const Arguments& arguments) {
     Timings timings;
     const std::filesystem::path output = arguments.output;
@@ -121,7 +136,8 @@ void capture(const Arguments& arguments) {
     const std::unique_ptr<ActiveEffects> effects =
         (compared ? arguments.effects.with(arguments.ab) : arguments.effects).active();
     const std::unique_ptr<ActiveEffects> others =
-        compared ? arguments.effects.without(arguments.ab).active(/*aloud=*/false) : nullptr;
+        compared ? arguments.effects.without(arguments.ab, *effects).active(/*aloud=*/false)
+                 : nullptr;
     gl::Context context({.device = arguments.device});
     timings.add("device", device_began);
     const auto compile_began = Clock::now();
@@ -151,9 +167,6 @@ void capture(const Arguments& arguments) {
     const sun::Position position = sun::position(utc, place);
     const sun::Refraction air =
         arguments.refraction.at({place.lat_rad, place.lon_rad, ground.air_height_m()});
-    const std::string sun = "sun at " + sun_text(position, air);
-    log::info(fmt::format("{}, {}: {}{}", geo::degrees_text(place), sun::to_iso(utc), sun,
-                          given_time ? "" : "; no --time given, so a summer morning was taken"));
 
     render::FrameInputs inputs;
     inputs.sun = render::make_sun_light(position, air, ground, dem.grid);
@@ -165,9 +178,16 @@ void capture(const Arguments& arguments) {
         const glm::dvec2 post = dem.grid.post(at);
         return dem.height_at(post.x, post.y);
     };
-    inputs.camera = scene::make_camera(view, ground_height_m, ground.frame,
-                                       render::points_to_show(dem, ground, inputs.exaggeration),
-                                       static_cast<double>(size.x) / size.y, inputs.exaggeration);
+    const auto points = render::points_to_show(dem, ground, inputs.exaggeration);
+    inputs.camera = scene::make_camera(
+        view, ground_height_m, ground.frame, points, static_cast<double>(size.x) / size.y,
+        inputs.exaggeration,
+        render::points_moved_to(points, ground, inputs.exaggeration, renderer.displacement()));
+
+    const SunSeen seen = view.eye ? seen_from_eye(inputs, ground, utc, arguments.refraction)
+                                  : SunSeen{geo::degrees_text(place), sun_text(position, air)};
+    log::info(fmt::format("{}, {}: sun at {}{}", seen.from, sun::to_iso(utc), seen.sun,
+                          given_time ? "" : "; no --time given, so a summer morning was taken"));
 
     const bool timed = !arguments.timings.empty();
     render::PassTimes passes;
@@ -178,19 +198,32 @@ void capture(const Arguments& arguments) {
 
     const image::Metadata metadata{
         {"Software", "Relevo " RELEVO_VERSION},
-        {"Description",
-         fmt::format("{}; {}; {}", geo::degrees_text(place), sun::to_iso(utc), sun)}};
+        {"Description", fmt::format("{}; {}; sun at {}", seen.from, sun::to_iso(utc), seen.sun)}};
+    int not_numbers = 0, others_not_numbers = 0;
+    const auto check_numbers = [&] {
+        if (not_numbers > 0)
+            refuse_not_numbers({arguments.effects, *effects, context, options, terrain, ground,
+                                inputs, not_numbers});
+        if (others_not_numbers > 0)
+            refuse_not_numbers({arguments.effects, *others, context, options, terrain, ground,
+                                inputs, others_not_numbers});
+    };
     const auto readback_began = Clock::now();
     if (image::holds_linear_light(output)) {
-        image::ImageF picture = renderer.read_radiance();
-        if (without) picture = side_by_side(picture, without->read_radiance(), 0.0f);
+        image::ImageF picture = renderer.read_radiance(&not_numbers);
+        if (without)
+            picture = side_by_side(picture, without->read_radiance(&others_not_numbers), 0.0f);
+        check_numbers();
         timings.add("readback", readback_began);
         const auto write_began = Clock::now();
         image::write(output, picture, metadata, arguments.overwrite);
         timings.add("write", write_began);
     } else {
-        image::Image8 picture = renderer.read_picture();
-        if (without) picture = side_by_side(picture, without->read_picture(), std::uint8_t{255});
+        image::Image8 picture = renderer.read_picture(&not_numbers);
+        if (without)
+            picture = side_by_side(picture, without->read_picture(&others_not_numbers),
+                                   std::uint8_t{255});
+        check_numbers();
         timings.add("readback", readback_began);
         const auto write_began = Clock::now();
         image::write(output, picture, metadata, arguments.overwrite);

@@ -31,6 +31,7 @@ Tried try_device(const gl::Device& device) {
     Tried tried{device, std::nullopt, {}};
     try {
         tried.info = gl::Context({.device = std::to_string(device.index)}).info();
+        tried.device = tried.info->device;
     } catch (const Error& error) {
         // The message names each device that was tried, on a line of its own.
         const std::string text = error.what();
@@ -156,10 +157,7 @@ void doctor(const std::string& wanted, bool as_json) {
     }
     const Plugins plugins = find_plugins();
     const std::vector<std::string> advice = remedies(devices, chosen);
-    // What llvmpipe and its kin call themselves; EGL does not mark what it finds without a device.
-    const bool software = chosen && (chosen->device.software ||
-                                     chosen->renderer.find("llvmpipe") != std::string::npos ||
-                                     chosen->renderer.find("softpipe") != std::string::npos);
+    const bool software = chosen && chosen->device.software;
     std::error_code ignored;
     const bool has_share = std::filesystem::is_directory(share_dir() / "shaders", ignored);
 

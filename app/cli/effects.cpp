@@ -11,9 +11,12 @@ render::EffectInputs ActiveEffects::inputs() const {
     inputs.stitch.snippets = selection.snippets();
     inputs.stitch.capabilities = selection.capabilities;
     inputs.stitch.values = &values;
-    for (const effect::Effect* effect : selection.effects)
-        inputs.textures.insert(inputs.textures.end(), effect->manifest.textures.begin(),
-                               effect->manifest.textures.end());
+    for (const effect::Effect* effect : selection.effects) {
+        const effect::Manifest& manifest = effect->manifest;
+        inputs.textures.insert(inputs.textures.end(), manifest.textures.begin(),
+                               manifest.textures.end());
+        if (manifest.displaces) inputs.displaces.push_back(*manifest.displaces);
+    }
     for (const effect::NativeModule& module : modules)
         inputs.modules.push_back(&module);
     return inputs;
@@ -59,10 +62,14 @@ EffectArguments EffectArguments::with(const std::vector<std::string>& ids) const
     return changed;
 }
 
-EffectArguments EffectArguments::without(const std::vector<std::string>& ids) const {
+EffectArguments EffectArguments::without(const std::vector<std::string>& ids,
+                                         const ActiveEffects& shown) const {
     EffectArguments changed = *this;
-    move_to(ids, changed.enable, changed.disable);
-    move_to(ids, changed.only, changed.disable);
+    changed.enable.clear();
+    changed.exactly.emplace();
+    for (const effect::Effect* effect : shown.selection.effects)
+        changed.exactly->push_back(effect->id());
+    move_to(ids, *changed.exactly, changed.disable);
     return changed;
 }
 
@@ -78,6 +85,7 @@ std::unique_ptr<ActiveEffects> EffectArguments::active(bool aloud) const {
         for (const std::string& id : only)
             if (!id.empty()) switches.only->push_back(id);
     }
+    if (exactly) switches.only = exactly;
     switches.enable = enable;
     switches.disable = disable;
     effect::NativeSelection chosen = effect::select_and_load(active->registry, loaded, switches);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,14 +28,17 @@ struct ActiveEffects {
 struct EffectArguments {
     std::vector<std::string> only, enable, disable, settings, presets, plugin_path;
     CLI::Option* only_option = nullptr;
+    std::optional<std::vector<std::string>> exactly;  ///< in the place of --only and --enable
 
     void add_to(CLI::App& verb);
     /// Loads the plugins and switches them.
     /// @param aloud  says on standard error what is not as asked
     std::unique_ptr<ActiveEffects> active(bool aloud = true) const;
-    /// The same with these effects on, or off, whatever was asked of them.
+    /// The same with these effects on, whatever was asked of them.
     EffectArguments with(const std::vector<std::string>& ids) const;
-    EffectArguments without(const std::vector<std::string>& ids) const;
+    /// The effects of `shown` but these and what requires them. What they have pulled in stays: the
+    /// difference is theirs alone.
+    EffectArguments without(const std::vector<std::string>& ids, const ActiveEffects& shown) const;
 };
 
 }  // namespace relevo::cli

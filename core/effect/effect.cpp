@@ -87,6 +87,47 @@ void check_textures(const Effect& effect) {
     }
 }
 
+void check_bound(const Effect& effect, const DisplaceSpec& spec) {
+    const std::vector<shader::Param> params = effect.params();
+    for (const DisplaceSpec::Length* length : spec.lengths()) {
+        if (length->address.empty()) continue;
+        const auto param = std::find_if(params.begin(), params.end(), [&](const shader::Param& p) {
+            return p.address == length->address;
+        });
+        // Host parameters are written when it is settled already what is drawn.
+        if (param == params.end() || param->type != shader::ParamType::Float || param->is_host)
+            fail(effect.manifest.file.string(), spec.line,
+                 fmt::format("displaces: expected a parameter of type float, not host, but got "
+                             "\"{}\", which is {}",
+                             length->address,
+                             param == params.end() ? "none of the plugin's"
+                             : param->is_host      ? "host"
+                                              : "of type " + std::string(glsl_name(param->type))));
+    }
+}
+
+/// What is moved into sight has to be drawn: without a bound core would leave it out.
+void check_displace(const Effect& effect) {
+    const Manifest& manifest = effect.manifest;
+    const std::string function = effect.id() + "_on_displace";
+    if (manifest.displaces) check_bound(effect, *manifest.displaces);
+    for (const shader::Snippet& snippet : effect.snippets) {
+        const shader::HookFunction* const hook = snippet.find("displace");
+        if (!hook) continue;
+        if (manifest.displaces) return;
+        fail(snippet.file, hook->line,
+             fmt::format("{}: {} does not say how far it moves the ground; add \"displaces\": "
+                         "{{\"down_m\": D, \"up_m\": U}} with the most metres down and up, or "
+                         "\"displaces\": {{\"to_m\": H}} where ground ends between its own height "
+                         "and H",
+                         function, manifest.file.string()));
+    }
+    if (manifest.displaces)
+        fail(manifest.file.string(), manifest.displaces->line,
+             fmt::format("displaces: no hook moves the ground; define {}, or leave this out",
+                         function));
+}
+
 void check_hooks(const Effect& effect) {
     for (const shader::Snippet& snippet : effect.snippets) {
         for (const shader::HookFunction& function : snippet.hooks) {
@@ -133,6 +174,7 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
         effect.snippets.push_back(
             shader::parse_snippet(effect.id(), file.string(), read_text(file, kWho)));
     check_hooks(effect);
+    check_displace(effect);
     check_wants(effect);
     check_textures(effect);
     return effect;

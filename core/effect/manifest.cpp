@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::string_view kWho = "effect::load";
 constexpr int kFormat = 1;
+constexpr double kMostDisplaced_m = 1e5;
 
 // Prefixes and owners that core's own texts, parameters and command line use.
 constexpr std::array<std::string_view, 12> kReserved = {"all",   "camera", "core",    "data",
@@ -112,6 +113,7 @@ class ManifestReader {
         glsl(object);
         textures(object);
         passes(object);
+        displaces(object);
         object.finish();
         return std::move(manifest_);
     }
@@ -233,6 +235,36 @@ class ManifestReader {
                         "expected at least one resource that the pass writes");
         object.finish();
         return spec;
+    }
+
+    void displaces(ObjectReader& object) {
+        const Json* const value = object.take("displaces");
+        if (!value) return;
+        ObjectReader bound(kWho, manifest_.file.string(), "displaces", *value);
+        DisplaceSpec& spec = manifest_.displaces.emplace();
+        spec.line = value->line;
+        spec.down = length(bound, "down_m", 0);
+        spec.up = length(bound, "up_m", 0);
+        spec.aside = length(bound, "aside_m", 0);
+        if (bound.take("to_m")) spec.to = length(bound, "to_m", -kMostDisplaced_m);
+        bound.finish();
+    }
+
+    /// @param min  of a number [m]
+    DisplaceSpec::Length length(ObjectReader& object, const std::string& key, double min) const {
+        const Json* const value = object.take(key);
+        if (!value) return {};
+        const std::string prefix = manifest_.id + '.';
+        if (value->kind == Json::Kind::Number && value->number >= min &&
+            value->number <= kMostDisplaced_m)
+            return {value->number, {}};
+        if (value->kind == Json::Kind::String && value->text.substr(0, prefix.size()) == prefix &&
+            is_resource(value->text))
+            return {0, value->text};
+        object.fail(value->line, key,
+                    fmt::format("expected metres from {:g} to {:g}, or a parameter such as "
+                                "\"{}height_m\", but got {}",
+                                min, kMostDisplaced_m, prefix, describe(*value)));
     }
 
     Manifest manifest_;

@@ -24,6 +24,26 @@ struct TextureSpec {
     int line = 0;  ///< in plugin.json
 };
 
+/// How far a plugin's hook `displace` moves the ground at most, so that core draws what is moved
+/// into sight. Heights are the DEM's, not exaggerated.
+struct DisplaceSpec {
+    /// A length [m], or the parameter of the plugin's own that holds it.
+    struct Length {
+        double metres = 0;
+        std::string address;  ///< "sea.level_m"; empty: `metres`
+    };
+    Length down, up;           ///< along the vertical
+    Length aside;              ///< across it, in any direction
+    std::optional<Length> to;  ///< anywhere between the ground and this height
+    int line = 0;              ///< in plugin.json
+
+    std::vector<const Length*> lengths() const {
+        std::vector<const Length*> all{&down, &up, &aside};
+        if (to) all.push_back(&*to);
+        return all;
+    }
+};
+
 /// A pass that a plugin wants drawn. Read and checked; nothing draws them yet.
 struct PassSpec {
     enum class Target { Screen, Sun };  ///< over the picture, or over the map as the sun sees it
@@ -53,6 +73,7 @@ struct Manifest {
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;
     std::vector<PassSpec> passes;
+    std::optional<DisplaceSpec> displaces;
     std::string module;  ///< name of a native library, or empty
 
     std::filesystem::path folder;

@@ -3,15 +3,28 @@
 #include <cassert>
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "gl/errors.h"
 
 namespace relevo::gl {
 namespace {
 
 unsigned create(std::size_t size, const void* bytes, std::string_view label) {
     GLuint name = 0;
+    expect_no_error(label);
     glCreateBuffers(1, &name);
     glNamedBufferStorage(name, static_cast<GLsizeiptr>(size), bytes, GL_DYNAMIC_STORAGE_BIT);
-    glObjectLabel(GL_BUFFER, name, static_cast<GLsizei>(label.size()), label.data());
+    const GLenum error = glGetError();
+    if (error != GL_NO_ERROR && size > 0) {
+        glDeleteBuffers(1, &name);
+        failed(
+            fmt::format("gl::Buffer: {}: the device has no {:.1f} MiB for it ({}); take a device "
+                        "with more",
+                        label, static_cast<double>(size) / (1 << 20), error_name(error)));
+    }
+    set_label(GL_BUFFER, name, label);
     return name;
 }
 

@@ -1,10 +1,12 @@
 #include "gl/context.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
 
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -12,11 +14,16 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "gl/errors.h"
 
 namespace relevo::gl {
 namespace {
 
 constexpr EGLint kMaxDevices = 32;
+
+constexpr std::array<std::string_view, 8> kSoftwareRenderers = {
+    "llvmpipe",    "lavapipe", "softpipe", "swr (",
+    "swiftshader", "software", "swrast",   "gdi generic"};
 
 struct Candidate {
     Device device;
@@ -31,8 +38,24 @@ bool contains(const char* list, const char* word) {
     return list && std::strstr(list, word) != nullptr;
 }
 
+/// Libepoxy ends the program where a library is missing that it needs. Each name is a list of which
+/// one has to be there.
+std::string missing_library() {
+    const std::vector<std::vector<const char*>> needed = {{"libEGL.so.1"},
+                                                          {"libOpenGL.so.0", "libGL.so.1"}};
+    for (const auto& names : needed) {
+        const bool found = std::any_of(names.begin(), names.end(), [](const char* name) {
+            // Never closed: libepoxy opens it next.
+            return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr;
+        });
+        if (!found) return names.front();
+    }
+    return {};
+}
+
 std::vector<Candidate> candidates() {
     std::vector<Candidate> found;
+    if (!missing_library().empty()) return found;
     if (client_extension("EGL_EXT_platform_device") && client_extension("EGL_EXT_device_base")) {
         EGLDeviceEXT devices[kMaxDevices];
         EGLint count = 0;
@@ -101,6 +124,13 @@ const char* gl_string(GLenum name) {
 
 }  // namespace
 
+bool is_software_renderer(std::string_view renderer) {
+    // Mesa's (zink may stand on lavapipe, which is llvmpipe), SwiftShader, Windows' and Apple's.
+    const std::string name = lower(renderer);
+    return std::any_of(kSoftwareRenderers.begin(), kSoftwareRenderers.end(),
+                       [&](std::string_view word) { return name.find(word) != std::string::npos; });
+}
+
 std::vector<Device> list_devices() {
     std::vector<Device> devices;
     for (const Candidate& candidate : candidates())
@@ -155,6 +185,8 @@ struct Context::Impl {
         if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
             return fmt::format("cannot be made current, {}", egl_error());
         info.device = candidate.device;
+        info.device.software =
+            candidate.device.software || is_software_renderer(gl_string(GL_RENDERER));
         info.renderer = gl_string(GL_RENDERER);
         info.vendor = gl_string(GL_VENDOR);
         info.version = gl_string(GL_VERSION);
@@ -162,10 +194,12 @@ struct Context::Impl {
     }
 
     void close() {
-        if (display == EGL_NO_DISPLAY) return;
-        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-        if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
-        eglTerminate(display);
+        // Not eglTerminate: the display is the process's, and would go from under every other
+        // context on it.
+        if (context == EGL_NO_CONTEXT) return;
+        if (eglGetCurrentContext() == context)
+            eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        eglDestroyContext(display, context);
         display = EGL_NO_DISPLAY;
         context = EGL_NO_CONTEXT;
     }
@@ -190,6 +224,9 @@ struct Context::Impl {
         info.max_texture_units = value;
         glGetIntegerv(GL_MAX_TEXTURE_SIZE, &value);
         info.max_texture_size = value;
+        std::array<GLint, 2> viewport{};
+        glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
+        info.max_picture_size = std::min({info.max_texture_size, viewport[0], viewport[1]});
         glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &value);
         info.max_array_layers = value;
         glGetInternalformativ(GL_RENDERBUFFER, GL_RGBA16F, GL_SAMPLES, 1, &value);
@@ -224,8 +261,11 @@ Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()
     for (const Candidate& candidate : all) {
         const Device& device = candidate.device;
         if (index && device.index != static_cast<int>(*index)) continue;
-        if (wanted == "software" && !device.software) continue;
+        // What surfaceless is shows when it is open.
+        if (wanted == "software" && !device.software && candidate.egl_device) continue;
         std::string reason = impl_->open(candidate, options.debug);
+        if (reason.empty() && wanted == "software" && !impl_->info.device.software)
+            reason = fmt::format("is {}", impl_->info.renderer);
         const bool by_name = wanted != "auto" && wanted != "software" && !index;
         if (reason.empty() && by_name &&
             lower(impl_->info.renderer + " " + impl_->info.vendor).find(wanted) ==
@@ -239,6 +279,12 @@ Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()
         tried += fmt::format("\n  {}: {} ({}) {}", device.index, device.platform,
                              device.description, reason);
     }
+    if (const std::string missing = missing_library(); !missing.empty())
+        throw Error(
+            ErrorCode::NoDevice,
+            fmt::format("gl: no GL device: there is no {}; install Mesa's software renderer "
+                        "(libegl1, libopengl0, libegl-mesa0, libgl1-mesa-dri)",
+                        missing));
     if (all.empty())
         throw Error(ErrorCode::NoDevice,
                     "gl: no GL device: EGL offers none; install Mesa's software renderer "
@@ -258,6 +304,8 @@ const DeviceInfo& Context::info() const {
 }
 
 void Context::check_errors() {
+    const GLenum error = glGetError();
+    if (impl_->errors.empty() && error != GL_NO_ERROR) impl_->errors.push_back(error_name(error));
     if (impl_->errors.empty()) return;
     const std::string message = fmt::format("gl: {}", fmt::join(impl_->errors, "; "));
     impl_->errors.clear();

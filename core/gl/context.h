@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace relevo::gl {
@@ -12,12 +13,17 @@ struct Device {
     std::string platform;  ///< "device" (an EGL device) or "surfaceless"
     std::string
         description;  ///< what EGL says of it: render node, "software", extensions that matter
-    bool software = false;  ///< EGL marks it as a software renderer
+    bool software =
+        false;  ///< a software renderer: EGL marks it, or an open context is known as one
 };
 
 /// The devices in the order in which they are tried: hardware first, then software, then the
-/// surfaceless platform. Empty where EGL itself is missing.
+/// surfaceless platform. Empty where EGL itself is missing. Of the surfaceless platform nothing is
+/// known before a context is open.
 std::vector<Device> list_devices();
+
+/// Whether a renderer, by the name that GL gives it, is known to draw on the processor.
+bool is_software_renderer(std::string_view renderer);
 
 /// What GL says of itself once a context is current.
 struct DeviceInfo {
@@ -25,6 +31,7 @@ struct DeviceInfo {
     std::string renderer, vendor, version;
     int max_texture_units = 0;  ///< of a fragment program
     int max_texture_size = 0;   ///< [px]
+    int max_picture_size = 0;   ///< that can be drawn at once, each way [px]
     int max_array_layers = 0;   ///< of an array texture
     int max_samples = 0;        ///< of a half-float colour target
     double max_anisotropy = 1;  ///< 1 where there is no anisotropic filter
@@ -41,7 +48,9 @@ struct ContextOptions {
 /// the device platform, then the surfaceless one. Clip space has depth 0..1 (reversed-Z is the
 /// caller's).
 ///
-/// Every other object of this layer needs a Context that lives longer than it does.
+/// Every other object of this layer needs a Context that lives longer than it does. Contexts share
+/// the display of a device, with each other and with all else in the process, and leave it as it is
+/// when they go.
 class Context {
   public:
     /// @throws Error (NoDevice) with each device that was tried and why it would not do
@@ -52,8 +61,9 @@ class Context {
 
     const DeviceInfo& info() const;
 
-    /// Throws what the debug context has collected since the last call.
-    /// @throws Error (Failed) `gl: message`; never without ContextOptions::debug
+    /// Throws what went wrong since the last call: what a debug context has collected, else the
+    /// name of the first error.
+    /// @throws Error (Failed) `gl: message`
     void check_errors();
 
     /// Waits until the device has done everything asked so far.

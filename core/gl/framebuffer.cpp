@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "gl/errors.h"
 
 namespace relevo::gl {
 
@@ -19,7 +20,7 @@ Framebuffer::Framebuffer(std::span<const Texture* const> colours, const Texture*
     GLuint name = 0;
     glCreateFramebuffers(1, &name);
     handle_ = Handle<&Framebuffer::destroy>(name);
-    glObjectLabel(GL_FRAMEBUFFER, name, static_cast<GLsizei>(label.size()), label.data());
+    set_label(GL_FRAMEBUFFER, name, label);
     std::vector<GLenum> targets;
     for (const Texture* colour : colours) {
         const GLenum target = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(targets.size());
@@ -45,7 +46,7 @@ Framebuffer::Framebuffer(const Texture& colour, int level, int layer, std::strin
     GLuint name = 0;
     glCreateFramebuffers(1, &name);
     handle_ = Handle<&Framebuffer::destroy>(name);
-    glObjectLabel(GL_FRAMEBUFFER, name, static_cast<GLsizei>(label.size()), label.data());
+    set_label(GL_FRAMEBUFFER, name, label);
     if (colour.kind() == TextureKind::D2)
         glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, colour.name(), level);
     else

@@ -2,6 +2,8 @@
 
 #include <epoxy/gl.h>
 
+#include "gl/errors.h"
+
 namespace relevo::gl {
 namespace {
 
@@ -57,7 +59,7 @@ std::optional<Program> Program::build(std::string_view vertex, std::string_view 
     Program program;
     program.handle_ = Handle<&Program::destroy>(glCreateProgram());
     const GLuint name = program.name();
-    glObjectLabel(GL_PROGRAM, name, static_cast<GLsizei>(label.size()), label.data());
+    set_label(GL_PROGRAM, name, label);
     glAttachShader(name, vertex_shader.name());
     glAttachShader(name, fragment_shader.name());
     glLinkProgram(name);

@@ -8,9 +8,13 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "gl/errors.h"
 
 namespace relevo::gl {
 namespace {
+
+/// Of one call that reads texels: GL counts them in 31 bits, and drivers in fewer.
+constexpr std::size_t kMostReadBytes = std::size_t{1} << 28;
 
 struct FormatInfo {
     GLenum internal, format, type;
@@ -67,21 +71,50 @@ GLenum target(TextureKind kind) {
     return GL_TEXTURE_2D;
 }
 
-/// GL refuses memory in silence, and the first to notice would be a framebuffer.
-void check_memory(Format format, Extent extent, std::string_view label) {
-    if (glGetError() != GL_OUT_OF_MEMORY) return;
+std::string size_text(Extent extent) {
+    return fmt::format("{} x {} x {} texels", extent.width, extent.height, extent.depth);
+}
+
+int limit(GLenum name) {
+    GLint value = 0;
+    glGetIntegerv(name, &value);
+    return value;
+}
+
+/// The largest texture that the device takes, for messages.
+std::string largest(TextureKind kind) {
+    if (kind == TextureKind::D3) {
+        const int side = limit(GL_MAX_3D_TEXTURE_SIZE);
+        return fmt::format("{0} x {0} x {0} texels", side);
+    }
+    const int side = limit(GL_MAX_TEXTURE_SIZE);
+    return kind == TextureKind::D2 ? fmt::format("{0} x {0} texels", side)
+                                   : fmt::format("{0} x {0} texels in {1} layers", side,
+                                                 limit(GL_MAX_ARRAY_TEXTURE_LAYERS));
+}
+
+/// GL refuses storage in silence, and the first to notice would be a framebuffer, or nobody.
+void check_storage(TextureKind kind, Format format, Extent extent, int levels,
+                   std::string_view label) {
+    const GLenum error = glGetError();
+    if (error == GL_NO_ERROR) return;
+    if (error != GL_OUT_OF_MEMORY)
+        failed(
+            fmt::format("gl::Texture: {}: expected a texture of up to {} and a whole chain of "
+                        "levels but got {} in {} levels ({})",
+                        label, largest(kind), size_text(extent), levels, error_name(error)));
     const double mib =
         double{1.0 / (1 << 20)} * info(format).bytes * extent.width * extent.height * extent.depth;
     failed(
-        fmt::format("gl::Texture: {}: the device has no {:.0f} MiB for {} x {} x {} texels; "
+        fmt::format("gl::Texture: {}: the device has no {:.0f} MiB for {}; "
                     "take a smaller picture or a device with more",
-                    label, mib, extent.width, extent.height, extent.depth));
+                    label, mib, size_text(extent)));
 }
 
 unsigned create(TextureKind kind, std::string_view label) {
     GLuint name = 0;
     glCreateTextures(target(kind), 1, &name);
-    glObjectLabel(GL_TEXTURE, name, static_cast<GLsizei>(label.size()), label.data());
+    set_label(GL_TEXTURE, name, label);
     return name;
 }
 
@@ -107,12 +140,13 @@ Texture::Texture(TextureKind kind, Format format, Extent extent, int levels, std
       format_(format),
       extent_(extent),
       levels_(levels > 0 ? levels : full_chain(kind, extent)) {
+    expect_no_error(label);
     if (kind == TextureKind::D2Array || kind == TextureKind::D3)
         glTextureStorage3D(name(), levels_, info(format).internal, extent.width, extent.height,
                            extent.depth);
     else
         glTextureStorage2D(name(), levels_, info(format).internal, extent.width, extent.height);
-    check_memory(format, extent, label);
+    check_storage(kind, format, extent, levels_, label);
 }
 
 void Texture::write(int level, Extent offset, Extent extent, std::span<const std::byte> texels) {
@@ -128,15 +162,45 @@ void Texture::write(int level, Extent offset, Extent extent, std::span<const std
                             extent.height, extent.depth, format.format, format.type, texels.data());
 }
 
+std::vector<TexelBand> bands_of(Extent extent, std::size_t row_bytes, std::size_t most_bytes) {
+    const std::size_t rows =
+        std::max<std::size_t>(1, most_bytes / std::max<std::size_t>(1, row_bytes));
+    const int rows_a_band = static_cast<int>(std::min<std::size_t>(rows, 1 << 30));
+    std::vector<TexelBand> bands;
+    for (int layer = 0; layer < extent.depth; ++layer)
+        for (int row = 0; row < extent.height; row += rows_a_band)
+            bands.push_back({layer, row, std::min(rows_a_band, extent.height - row)});
+    return bands;
+}
+
+Extent Texture::level_extent(int level) const {
+    const auto half = [&](int size) { return std::max(1, size >> level); };
+    return {half(extent_.width), half(extent_.height),
+            kind_ == TextureKind::D3 ? half(extent_.depth) : extent_.depth};
+}
+
+void Texture::read_as(int level, unsigned format, unsigned type, std::size_t bytes_a_texel,
+                      std::span<std::byte> texels) const {
+    const Extent extent = level_extent(level);
+    const std::size_t row_bytes = bytes_a_texel * static_cast<std::size_t>(extent.width);
+    std::byte* to = texels.data();
+    assert(texels.size() >= row_bytes * static_cast<std::size_t>(extent.height) *
+                                static_cast<std::size_t>(extent.depth));
+    for (const TexelBand& band : bands_of(extent, row_bytes, kMostReadBytes)) {
+        const std::size_t bytes = row_bytes * static_cast<std::size_t>(band.rows);
+        glGetTextureSubImage(name(), level, 0, band.row, band.layer, extent.width, band.rows, 1,
+                             format, type, static_cast<GLsizei>(bytes), to);
+        to += bytes;
+    }
+}
+
 void Texture::read(int level, std::span<std::byte> texels) const {
     const FormatInfo format = info(format_);
-    glGetTextureImage(name(), level, format.format, format.type,
-                      static_cast<GLsizei>(texels.size()), texels.data());
+    read_as(level, format.format, format.type, static_cast<std::size_t>(format.bytes), texels);
 }
 
 void Texture::read_floats(std::span<float> texels) const {
-    glGetTextureImage(name(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size_bytes()),
-                      texels.data());
+    read_as(0, GL_RGBA, GL_FLOAT, 4 * sizeof(float), std::as_writable_bytes(texels));
 }
 
 void Texture::set_sampling(Filter filter, Wrap wrap, double anisotropy) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "gl/handle.h"
 
@@ -39,12 +40,20 @@ struct Extent {
     int width = 1, height = 1, depth = 1;
 };
 
+/// Rows [row, row + rows) of one layer.
+struct TexelBand {
+    int layer = 0, row = 0, rows = 0;
+};
+
+/// A level cut into pieces of whole rows, layer after layer, of at most so many bytes or one row.
+std::vector<TexelBand> bands_of(Extent extent, std::size_t row_bytes, std::size_t most_bytes);
+
 /// An immutable-size texture.
 class Texture {
   public:
     Texture() = default;
     /// @param levels  of the mip chain; 0 for the whole chain
-    /// @throws Error (Failed) where the device has no memory for it
+    /// @throws Error (Failed) where the device has no memory for it, or takes none as large
     Texture(TextureKind kind, Format format, Extent extent, int levels, std::string_view label);
 
     /// Replaces a box of one level. Texels are tightly packed, rows in the order of t.
@@ -64,9 +73,13 @@ class Texture {
     Format format() const { return format_; }
     Extent extent() const { return extent_; }
     int levels() const { return levels_; }
+    Extent level_extent(int level) const;
     unsigned name() const { return handle_.name(); }
 
   private:
+    void read_as(int level, unsigned format, unsigned type, std::size_t bytes_a_texel,
+                 std::span<std::byte> texels) const;
+
     static void destroy(unsigned name);
     Handle<&Texture::destroy> handle_;
     TextureKind kind_ = TextureKind::D2;

@@ -125,7 +125,8 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     block.sun_light_domain = {fit.domain.x, fit.domain.y, 0, 0};
     block.sky_irradiance = glm::vec4(sun::sky_irradiance(elevation), 0);
     block.height_range = {ground.lowest_m, 1 / std::max(ground.highest_m - ground.lowest_m, 1e-3),
-                          inputs.exaggeration, 0};
+                          inputs.exaggeration,
+                          inputs.displacement.range_m(ground.lowest_m, ground.highest_m).first};
     block.ground_extent = glm::vec4(ground.south_west_m,
                                     1.0 / glm::max(ground.north_east_m - ground.south_west_m, 1.0));
     block.exposure =

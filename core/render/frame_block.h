@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include "geo/local_frame.h"
+#include "render/displacement.h"
 #include "scene/camera.h"
 #include "sun/celestial.h"
 
@@ -66,6 +67,7 @@ struct FrameInputs {
     sun::CelestialFrame stars;  ///< of the DEM's centre
     double exposure_ev = 0;     ///< stops brighter than the natural exposure of this sun
     double exaggeration = 1;    ///< factor on heights
+    Displacement displacement;  ///< by the effects; the renderer fills it
 };
 
 /// What does not change from frame to frame.

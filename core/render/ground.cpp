@@ -68,6 +68,25 @@ std::vector<glm::dvec3> points_to_show(const dem::Heightfield& dem, const Ground
     return points;
 }
 
+std::vector<glm::dvec3> points_moved_to(std::span<const glm::dvec3> points, const Ground& ground,
+                                        double exaggeration, const Displacement& displacement) {
+    std::vector<glm::dvec3> moved;
+    if (!displacement.any()) return moved;
+    for (const glm::dvec3& point : points) {
+        const geo::Geodetic place = ground.frame.to_geodetic(point);
+        const double own_m = place.height_m / exaggeration;
+        const auto [lowest_m, highest_m] = displacement.range_m(own_m, own_m);
+        for (const double height_m : {lowest_m, highest_m}) {
+            const glm::dvec3 at =
+                ground.frame.to_local({place.lat_rad, place.lon_rad, height_m * exaggeration});
+            for (const glm::dvec2 aside :
+                 {glm::dvec2(1, 0), glm::dvec2(-1, 0), glm::dvec2(0, 1), glm::dvec2(0, -1)})
+                moved.push_back(at + glm::dvec3(displacement.aside_m * aside, 0));
+        }
+    }
+    return moved;
+}
+
 SunLight make_sun_light(const sun::Position& position, const sun::Refraction& refraction,
                         const Ground& ground, const dem::Grid& grid) {
     SunLight light;

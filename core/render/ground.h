@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -21,6 +22,10 @@ Ground make_ground(const dem::Heightfield& dem);
 /// with the highest and the lowest of each piece kept, in the local frame [m].
 std::vector<glm::dvec3> points_to_show(const dem::Heightfield& dem, const Ground& ground,
                                        double exaggeration);
+
+/// Points to show where effects move the ground beyond these at most.
+std::vector<glm::dvec3> points_moved_to(std::span<const glm::dvec3> points, const Ground& ground,
+                                        double exaggeration, const Displacement& displacement);
 
 /// The light of a sun over the DEM.
 /// @param refraction  the air's; also for other elevations than the present one

@@ -88,22 +88,38 @@ TileTree::TileTree(const dem::Pyramid& pyramid, const dem::Grid& grid, const geo
                 {longest_spacing_m_, length(point(1, 0) - here), length(point(0, 1) - here)});
         }
     }
-    lowest_m_ = pyramid.bounds(pyramid.levels() - 1, {0, 0}).lowest_m;
-    for (int level = 0; level < pyramid.levels(); ++level) {
+    for (int level = 0; level < pyramid.levels(); ++level)
         error_m_.push_back(kSigmas *
                                pyramid.error_m(level, &dem::Pyramid::Bounds::rms_m, kVouchedShare) +
                            net_error_m(level));
+    measure_relief();
+}
+
+void TileTree::measure_relief() {
+    const dem::Pyramid::Bounds whole = pyramid_->bounds(pyramid_->levels() - 1, {0, 0});
+    lowest_m_ = displacement_.range_m(whole.lowest_m, whole.highest_m).first;
+    relief_m_.clear();
+    for (int level = 0; level < pyramid_->levels(); ++level) {
         double relief_m = 0;
-        const glm::ivec2 count = pyramid.tiles(level);
+        const glm::ivec2 count = pyramid_->tiles(level);
         for (int y = 0; y < count.y; ++y) {
             for (int x = 0; x < count.x; ++x) {
-                const dem::Pyramid::Bounds bounds = pyramid.bounds(level, {x, y});
-                if (!bounds.empty())
-                    relief_m = std::max(relief_m, double{bounds.highest_m} - bounds.lowest_m);
+                const dem::Pyramid::Bounds bounds = pyramid_->bounds(level, {x, y});
+                if (bounds.empty()) continue;
+                const auto [low, high] = displacement_.range_m(bounds.lowest_m, bounds.highest_m);
+                relief_m = std::max(relief_m, high - low);
             }
         }
         relief_m_.push_back(relief_m);
     }
+}
+
+void TileTree::displace(const Displacement& displacement) {
+    if (displacement == displacement_) return;
+    displacement_ = displacement;
+    for (auto& [key, node] : nodes_)
+        node.exaggeration = -1;
+    measure_relief();
 }
 
 double TileTree::net_error_m(int level) const {
@@ -130,10 +146,11 @@ Box TileTree::box(const TileKey& key, double exaggeration) {
     Node& n = node(key);
     if (n.exaggeration == exaggeration) return n.box;
     const dem::Pyramid::Bounds bounds = pyramid_->bounds(key.level, key.at);
+    const auto [low_m, high_m] = displacement_.range_m(bounds.lowest_m, bounds.highest_m);
     Box box{glm::dvec3(kInfinity), glm::dvec3(-kInfinity)};
     for (const double u : {0.0, 0.5, 1.0}) {
         for (const double v : {0.0, 0.5, 1.0}) {
-            for (const float h : {bounds.lowest_m, bounds.highest_m}) {
+            for (const double h : {low_m, high_m}) {
                 const glm::dvec3 p = n.net.place(u, v, h * exaggeration);
                 box.low = glm::min(box.low, p);
                 box.high = glm::max(box.high, p);
@@ -144,17 +161,18 @@ Box TileTree::box(const TileKey& key, double exaggeration) {
     const auto& p = n.net.position_m;
     const double bulge =
         (length(p[2]) + length(p[6]) + length(p[5]) + length(p[7]) + length(p[8])) / 16;
-    box.low -= bulge + 0.01;
-    box.high += bulge + 0.01;
+    const double margin = bulge + 0.01 + displacement_.aside_m;
+    box.low -= margin;
+    box.high += margin;
     n.box = box;
     n.exaggeration = exaggeration;
     return box;
 }
 
-bool TileTree::below_horizon(const Box& box, const glm::dvec3& eye_m) const {
-    // In a space where the ellipsoid, lowered to the DEM's lowest post, is the unit sphere.
+bool TileTree::below_horizon(const Box& box, const LodView& view) const {
+    // In a space where the ellipsoid, lowered to the lowest ground as drawn, is the unit sphere.
     // Source: P. Cozzi, K. Ring, 3D Engine Design for Virtual Globes, 2011, section 12.
-    const double lowered = std::min(double{lowest_m_}, 0.0);
+    const double lowered = std::min(lowest_m_ * view.exaggeration, 0.0);
     const double a = kEquatorialRadius_m + lowered;
     const double b = kEquatorialRadius_m * (1 - kFlattening) + lowered;
     const auto scaled = [&](const glm::dvec3& p) {
@@ -162,7 +180,7 @@ bool TileTree::below_horizon(const Box& box, const glm::dvec3& eye_m) const {
         const double along = dot(q, polar_axis_);
         return (q - along * polar_axis_) / a + along / b * polar_axis_;
     };
-    const glm::dvec3 eye = scaled(eye_m);
+    const glm::dvec3 eye = scaled(*view.eye_m);
     const double to_horizon2 = dot(eye, eye) - 1;
     if (to_horizon2 <= 0) return false;
     for (int corner = 0; corner < 8; ++corner) {
@@ -177,7 +195,7 @@ bool TileTree::below_horizon(const Box& box, const glm::dvec3& eye_m) const {
 }
 
 bool TileTree::hidden(const Box& box, const LodView& view) const {
-    return box.outside(view.planes) || (view.eye_m && below_horizon(box, *view.eye_m));
+    return box.outside(view.planes) || (view.eye_m && below_horizon(box, view));
 }
 
 LodRanges TileTree::ranges(const LodView& view) {

@@ -12,6 +12,7 @@
 #include "dem/grid.h"
 #include "dem/pyramid.h"
 #include "geo/local_frame.h"
+#include "render/displacement.h"
 #include "render/patch_net.h"
 #include "scene/camera.h"
 
@@ -84,10 +85,14 @@ class TileTree {
     /// All must outlive this.
     TileTree(const dem::Pyramid& pyramid, const dem::Grid& grid, const geo::LocalFrame& frame);
 
+    /// How far effects move the ground from now on: boxes and ranges hold where it ends up too.
+    void displace(const Displacement& displacement);
+    const Displacement& displacement() const { return displacement_; }
+
     /// Where the tile's part of the DEM lies; u and v run over that part. Kept once asked for.
     const PatchNet& net(const TileKey& key);
 
-    /// Holds all of a tile's posts.
+    /// Holds all of a tile's posts, where they are and where effects move them.
     Box box(const TileKey& key, double exaggeration);
 
     /// Ranges that keep the tolerance of a view from an eye, and are far enough apart for levels to
@@ -134,9 +139,10 @@ class TileTree {
 
     Node& node(const TileKey& key);
     double net_error_m(int level) const;
+    void measure_relief();
     std::vector<TileDraw> select_in_parallel(const LodView& view);
     bool hidden(const Box& box, const LodView& view) const;
-    bool below_horizon(const Box& box, const glm::dvec3& eye_m) const;
+    bool below_horizon(const Box& box, const LodView& view) const;
 
     const dem::Pyramid* pyramid_;
     const dem::Grid* grid_;
@@ -144,9 +150,10 @@ class TileTree {
     glm::dvec3 earth_centre_m_;
     glm::dvec3 polar_axis_;
     double longest_spacing_m_ = 0;
-    float lowest_m_ = 0;
+    Displacement displacement_;
+    double lowest_m_ = 0;           // of the whole ground, displaced
     std::vector<double> error_m_;   // by level
-    std::vector<double> relief_m_;  // largest of a tile, by level
+    std::vector<double> relief_m_;  // largest of a tile, displaced, by level
     std::unordered_map<std::uint64_t, Node> nodes_;
 };
 

@@ -28,6 +28,33 @@ bool wants_night(const shader::StitchInput& input) {
         });
 }
 
+// Outputs beside the place: GL guarantees eight.
+constexpr int kMostStored = 7;
+
+/// Whether an effect reads how the height changes from pixel to pixel.
+bool reads_height_steps(const shader::StitchInput& input) {
+    for (const shader::Snippet* snippet : input.snippets) {
+        const shader::Source& source = snippet->source;
+        for (std::size_t i = 1; i < source.tokens.size(); ++i) {
+            const std::string_view word = source.str(source.tokens[i]);
+            if ((word == "height_dx_m" || word == "height_dy_m") &&
+                source.str(source.tokens[i - 1]) == ".")
+                return true;
+        }
+    }
+    return false;
+}
+
+/// Where the geometry program puts them: behind the stored varyings.
+shader::Define height_steps_define(const shader::Stitched& geometry) {
+    if (geometry.varying_targets >= kMostStored)
+        bad_input(
+            fmt::format("render: height_dx_m and height_dy_m: expected varyings of up to {} floats "
+                        "beside them but got {} textures of four; switch an effect off",
+                        4 * (kMostStored - 1), geometry.varying_targets));
+    return {kHeightStepsDefine, std::to_string(1 + geometry.varying_targets)};
+}
+
 }  // namespace
 
 std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
@@ -50,6 +77,11 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
         ends.push_back({"DISPLAY_OVERLAY", ""});
     terrain.defines.insert(terrain.defines.end(), ends.begin(), ends.end());
     std::vector<ProgramText> programs;
+    if (reads_height_steps(input)) {
+        const shader::Define define = height_steps_define(shader::stitch(core, geometry, input));
+        geometry.defines.push_back(define);
+        terrain.defines.push_back(define);
+    }
     programs.push_back({"geometry", shader::stitch(core, geometry, input)});
     programs.push_back({"terrain", shader::stitch(core, terrain, input)});
     if (options.depth)

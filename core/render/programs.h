@@ -31,6 +31,11 @@ inline constexpr const char* kNightWord = "night";
 /// Elevation of the sun, seen from the eye, below which it is night [deg].
 inline constexpr double kNight_deg = -3;
 
+/// The stored steps of the height, from the geometry to the terrain program: their sampler, and the
+/// define that has the number of their output. There where a hook reads them.
+inline constexpr const char* kHeightStepsTexture = "height_steps";
+inline constexpr const char* kHeightStepsDefine = "HEIGHT_STEPS";
+
 /// Whether any of the effects draws over the finished picture.
 bool has_overlay(const shader::StitchInput& input);
 

@@ -56,6 +56,7 @@ struct Renderer::Impl {
     LinkedProgram edges, antialias, depth_only;
     EffectTextures effect_textures;
     gl::Buffer frame_block;
+    std::vector<effect::DisplaceSpec> displaces;
     shader::ParamStore values;  // as given; native modules write host parameters
     double exposure = 1;        // of the last frame
     gl::Buffer params_block;
@@ -65,6 +66,7 @@ struct Renderer::Impl {
 
     gl::Texture place, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     std::vector<gl::Texture> varyings;
+    gl::Texture height_steps;
     // Light is the radiance, or at once the picture's colours.
     gl::Framebuffer geometry_target, light_target, overlaid_target, post_target, picture_target;
     std::vector<NativeHost> natives;
@@ -82,7 +84,8 @@ struct Renderer::Impl {
           edges(link("edges")),
           antialias(link("antialias")),
           effect_textures(effects.textures, anisotropy),
-          frame_block(sizeof(FrameBlock), "frame block") {
+          frame_block(sizeof(FrameBlock), "frame block"),
+          displaces(effects.displaces) {
         if (effects.stitch.values) {
             values = *effects.stitch.values;
             const std::vector<std::byte> params =
@@ -113,6 +116,11 @@ struct Renderer::Impl {
         }
         for (const gl::Texture& texture : varyings)
             outputs.push_back(&texture);
+        if (reads(kHeightStepsTexture)) {
+            height_steps = target(gl::Format::RG32F, kHeightStepsTexture);
+            height_steps.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+            outputs.push_back(&height_steps);
+        }
         geometry_target = gl::Framebuffer(outputs, &depth, "geometry");
         const gl::Texture& end = options.antialias ? tone_mapped : picture;
         light_target = gl::Framebuffer({options.radiance ? &radiance : &end}, &depth, "light");
@@ -125,14 +133,19 @@ struct Renderer::Impl {
         }
         picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
 
-        reads_surface = std::any_of(
-            terrain.textures.begin(), terrain.textures.end(),
-            [](const shader::TextureUnit& unit) { return unit.resource == "surface_pages"; });
+        reads_surface = reads("surface_pages");
         if (!effects.modules.empty()) depth_only = link("depth");
         for (const effect::NativeModule* module : effects.modules)
             natives.emplace_back(
                 *module, context, [this](const Terrain& ground) { bind(depth_only, ground); },
                 values, options.width_px, options.height_px);
+    }
+
+    /// Whether the terrain program reads a texture.
+    bool reads(std::string_view resource) const {
+        return std::any_of(
+            terrain.textures.begin(), terrain.textures.end(),
+            [&](const shader::TextureUnit& unit) { return unit.resource == resource; });
     }
 
     static std::vector<ProgramText> stitch(const EffectInputs& effects, int max_texture_units,
@@ -187,6 +200,7 @@ struct Renderer::Impl {
 
     const gl::Texture* core_texture(const std::string& name, const Terrain& ground) const {
         if (name == "place") return &place;
+        if (name == kHeightStepsTexture) return &height_steps;
         if (name == "radiance") return &radiance;
         if (name == "overlay") return &overlay;
         if (name == "colour") return &tone_mapped;
@@ -296,8 +310,15 @@ struct Renderer::Impl {
 };
 
 Renderer::Renderer(gl::Context& context, const EffectInputs& effects,
-                   const RendererOptions& options)
-    : impl_(std::make_unique<Impl>(context, effects, options)) {}
+                   const RendererOptions& options) {
+    const int most = context.info().max_picture_size;
+    if (options.width_px > most || options.height_px > most)
+        bad_input(
+            fmt::format("render: picture: expected a width and a height of up to {} px, "
+                        "which {} draws at once, but got {} x {}; take a smaller --size",
+                        most, context.info().renderer, options.width_px, options.height_px));
+    impl_ = std::make_unique<Impl>(context, effects, options);
+}
 
 Renderer::~Renderer() = default;
 
@@ -305,14 +326,21 @@ const std::vector<ProgramText>& Renderer::texts() const {
     return impl_->texts;
 }
 
-void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
+void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& frame,
                             PassTimes* times) {
+    FrameInputs inputs = frame;
+    inputs.displacement = displacement();
+    terrain.displace(inputs.displacement);
     const double footprint =
         impl_->anisotropy > 1 ? impl_->anisotropy : kFootprintWithoutAnisotropy;
     const FrameBlock block = make_frame_block(inputs, ground, impl_->options.width_px,
                                               impl_->options.height_px, footprint);
     impl_->exposure = block.exposure;
     impl_->draw(terrain, ground, inputs, block, times);
+}
+
+Displacement Renderer::displacement() const {
+    return displacement_of(impl_->displaces, impl_->values);
 }
 
 const shader::ParamStore& Renderer::values() const {
@@ -323,11 +351,16 @@ int Renderer::triangles() const {
     return impl_->tiles.triangles();
 }
 
-image::Image8 Renderer::read_picture() const {
+image::Image8 Renderer::read_picture(int* not_numbers) const {
     const int width = impl_->options.width_px, height = impl_->options.height_px;
     std::vector<std::uint8_t> texels(static_cast<std::size_t>(width) *
                                      static_cast<std::size_t>(height) * 4);
     impl_->picture.read(0, std::as_writable_bytes(std::span(texels)));
+    if (not_numbers) {
+        *not_numbers = 0;
+        for (std::size_t alpha = 3; alpha < texels.size(); alpha += 4)
+            *not_numbers += texels[alpha] != 255;
+    }
     image::Image8 picture(width, height, 3);
     for (int y = 0; y < height; ++y) {
         // GL's first row is the lowest.
@@ -340,12 +373,17 @@ image::Image8 Renderer::read_picture() const {
     return picture;
 }
 
-image::ImageF Renderer::read_radiance() const {
+image::ImageF Renderer::read_radiance(int* not_numbers) const {
     assert(impl_->options.radiance);
     const int width = impl_->options.width_px, height = impl_->options.height_px;
     std::vector<float> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
                               4);
     impl_->radiance.read_floats(texels);
+    if (not_numbers) {
+        *not_numbers = 0;
+        for (std::size_t alpha = 3; alpha < texels.size(); alpha += 4)
+            *not_numbers += texels[alpha] != 1;
+    }
     // The passes store exposed light.
     const auto scale = static_cast<float>(1 / impl_->exposure);
     image::ImageF picture(width, height, 3);

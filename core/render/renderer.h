@@ -29,6 +29,7 @@ struct RendererOptions {
 struct EffectInputs {
     shader::StitchInput stitch;  ///< its units are the device's, whatever is set
     std::vector<effect::TextureSpec> textures;
+    std::vector<effect::DisplaceSpec> displaces;
     /// Of native effects; must outlive the renderer.
     std::vector<const effect::NativeModule*> modules;
 };
@@ -47,6 +48,7 @@ using PassTimes = std::vector<std::pair<std::string, double>>;
 class Renderer {
   public:
     /// Stitches and compiles the programs, and loads the textures they read.
+    /// @throws Error (BadInput) for a picture that the device cannot draw at once
     /// @throws Error (BadInput) for a plugin's mistake, in its file and line; (Failed) for core's
     Renderer(gl::Context& context, const EffectInputs& effects, const RendererOptions& options);
     ~Renderer();
@@ -60,13 +62,18 @@ class Renderer {
     void render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                       PassTimes* times = nullptr);
 
+    /// How far its effects move the ground.
+    Displacement displacement() const;
     /// Of all parameters, as the last frame was drawn.
     const shader::ParamStore& values() const;
     int triangles() const;  ///< of terrain in the last frame
     /// The last frame as RGB, rows from the top.
-    image::Image8 read_picture() const;
+    /// @param not_numbers  filled, if not null, with how many pixels have light or colour that is
+    /// no
+    ///                     number, or infinite, before the picture clamps it
+    image::Image8 read_picture(int* not_numbers = nullptr) const;
     /// The last frame before exposure and tone mapping: linear radiance, RGB.
-    image::ImageF read_radiance() const;
+    image::ImageF read_radiance(int* not_numbers = nullptr) const;
 
   private:
     struct Impl;

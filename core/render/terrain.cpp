@@ -141,6 +141,12 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
     vertex_array_->indices(grid_indices_);
 }
 
+void Terrain::displace(const Displacement& displacement) {
+    if (displacement == tree_.displacement()) return;
+    tree_.displace(displacement);
+    serial_ = next_serial();
+}
+
 int TileSelection::finest_level() const {
     int finest = tiles_.empty() ? 0 : tiles_.front().draw.key.level;
     for (const Tile& tile : tiles_)

@@ -57,6 +57,10 @@ class Terrain {
     Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
             const TerrainOptions& options, const dem::Source* finer = nullptr);
 
+    /// How far effects move the ground from now on. Another bound makes it another ground, with a
+    /// new serial().
+    void displace(const Displacement& displacement);
+
     /// Chooses the tiles of a view and makes their height pages.
     /// @param keep  a selection that has to stay drawable beside the new one
     TileSelection select(const LodView& view, const TileSelection* keep = nullptr);

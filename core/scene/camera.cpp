@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -21,30 +22,34 @@ glm::dvec3 upright(const glm::dvec3& forward, const glm::dvec3& up, const glm::d
     return normalize(across);
 }
 
-}  // namespace
+/// Where a camera stands that looks along a direction: `a` to the right and `b` up from the axis
+/// through the origin, and a distance back along it [m].
+struct Fit {
+    double a = 0, b = 0, distance_m = 0;
 
-double fov_y_of_focal_length(double focal_length_mm, double aspect) {
-    const double height_mm = aspect >= 1 ? 36 / aspect : 36;
-    return 2 * std::atan(height_mm / 2 / focal_length_mm);
-}
+    /// Whether the camera has all of these points in its picture.
+    bool shows(const Camera& camera, std::span<const glm::dvec3> points, double aspect) const {
+        const double tan_y = std::tan(camera.fov_y_rad / 2);
+        const glm::dvec3 right = cross(camera.forward, camera.up);
+        return std::all_of(points.begin(), points.end(), [&](const glm::dvec3& point) {
+            const double depth = distance_m + dot(point, camera.forward);
+            return std::abs(dot(point, right) - a) <= depth * tan_y * aspect &&
+                   std::abs(dot(point, camera.up) - b) <= depth * tan_y;
+        });
+    }
+};
 
-Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,
-                    double aspect) {
-    const double azimuth = radians(orbit.azimuth_deg);
-    const double elevation = radians(orbit.elevation_deg);
-    const glm::dvec3 to_camera{std::sin(azimuth) * std::cos(elevation),
-                               std::cos(azimuth) * std::cos(elevation), std::sin(elevation)};
-    Camera camera;
-    camera.fov_y_rad = fov_y_rad;
-    camera.forward = -to_camera;
-    camera.up = upright(camera.forward, {0, 0, 1}, {-std::sin(azimuth), -std::cos(azimuth), 0});
+/// The nearest place from which all points are in the picture, with a little room around.
+/// @param middle  depth of the ground's middle, against the camera's direction [m]
+Fit fit_to(const Camera& camera, std::span<const glm::dvec3> points, double middle, double aspect) {
+    const glm::dvec3 to_camera = -camera.forward;
     const glm::dvec3 right = cross(camera.forward, camera.up);
 
     // Each point asks for a wedge: with the camera at target + d to_camera + a right + b up, the
     // point is inside while |x - a| <= (d - z) tan. The middle of the extremes of x + z tan and x -
     // z tan gives a, the larger of the two spreads gives d: the tightest view, no iteration.
     const double margin = 1.04;
-    const double tan_y = std::tan(fov_y_rad / 2) / margin;
+    const double tan_y = std::tan(camera.fov_y_rad / 2) / margin;
     const double tan_x = tan_y * aspect;
     struct Spread {
         double highest = -1e300, lowest = 1e300;
@@ -58,30 +63,59 @@ Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, doub
         vertical.lowest = std::min(vertical.lowest, y - z * tan_y);
         nearest = std::max(nearest, z);
     }
-    double distance = std::max((horizontal.highest - horizontal.lowest) / (2 * tan_x),
-                               (vertical.highest - vertical.lowest) / (2 * tan_y));
-    distance = std::max(distance, nearest + 1);
+    Fit fit;
+    fit.distance_m = std::max((horizontal.highest - horizontal.lowest) / (2 * tan_x),
+                              (vertical.highest - vertical.lowest) / (2 * tan_y));
+    fit.distance_m = std::max(fit.distance_m, nearest + 1);
     // That is the nearest place from which all is seen, but where one direction has room to spare
     // the ground need not lie in its middle: shift it there, as seen.
-    double a = (horizontal.highest + horizontal.lowest) / 2;
-    double b = (vertical.highest + vertical.lowest) / 2;
-    double middle = 0;  // depth of the ground's middle
-    for (const glm::dvec3& point : points)
-        middle += dot(point, to_camera) / static_cast<double>(points.size());
+    fit.a = (horizontal.highest + horizontal.lowest) / 2;
+    fit.b = (vertical.highest + vertical.lowest) / 2;
     for (int turn = 0; turn < 30; ++turn) {
         glm::dvec2 least(1e300), most(-1e300);
         for (const glm::dvec3& point : points) {
-            const glm::dvec2 at = glm::dvec2(dot(point, right) - a, dot(point, camera.up) - b) /
-                                  (distance - dot(point, to_camera));
+            const glm::dvec2 at =
+                glm::dvec2(dot(point, right) - fit.a, dot(point, camera.up) - fit.b) /
+                (fit.distance_m - dot(point, to_camera));
             least = glm::min(least, at);
             most = glm::max(most, at);
         }
-        a += 0.5 * (least.x + most.x) * (distance - middle);
-        b += 0.5 * (least.y + most.y) * (distance - middle);
+        fit.a += 0.5 * (least.x + most.x) * (fit.distance_m - middle);
+        fit.b += 0.5 * (least.y + most.y) * (fit.distance_m - middle);
+    }
+    return fit;
+}
+
+}  // namespace
+
+double fov_y_of_focal_length(double focal_length_mm, double aspect) {
+    const double height_mm = aspect >= 1 ? 36 / aspect : 36;
+    return 2 * std::atan(height_mm / 2 / focal_length_mm);
+}
+
+Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,
+                    double aspect, std::span<const glm::dvec3> also) {
+    const double azimuth = radians(orbit.azimuth_deg);
+    const double elevation = radians(orbit.elevation_deg);
+    const glm::dvec3 to_camera{std::sin(azimuth) * std::cos(elevation),
+                               std::cos(azimuth) * std::cos(elevation), std::sin(elevation)};
+    Camera camera;
+    camera.fov_y_rad = fov_y_rad;
+    camera.forward = -to_camera;
+    camera.up = upright(camera.forward, {0, 0, 1}, {-std::sin(azimuth), -std::cos(azimuth), 0});
+
+    double middle = 0;  // depth of the ground's middle
+    for (const glm::dvec3& point : points)
+        middle += dot(point, to_camera) / static_cast<double>(points.size());
+    Fit fit = fit_to(camera, points, middle, aspect);
+    if (!fit.shows(camera, also, aspect)) {
+        std::vector<glm::dvec3> all(points.begin(), points.end());
+        all.insert(all.end(), also.begin(), also.end());
+        fit = fit_to(camera, all, middle, aspect);
     }
     // Zooming moves towards the ground's middle.
-    camera.eye_m = right * a + camera.up * b +
-                   to_camera * (middle + (distance - middle) / std::max(orbit.zoom, 1e-6));
+    camera.eye_m = cross(camera.forward, camera.up) * fit.a + camera.up * fit.b +
+                   to_camera * (middle + (fit.distance_m - middle) / std::max(orbit.zoom, 1e-6));
     return camera;
 }
 

@@ -35,8 +35,9 @@ double fov_y_of_focal_length(double focal_length_mm, double aspect);
 /// farther by `zoom`.
 /// @param points   ground to show, in the local frame [m], at least one
 /// @param aspect   width / height of the picture
+/// @param also     has to be in the picture too; where it is, the camera stands as without it
 Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,
-                    double aspect);
+                    double aspect, std::span<const glm::dvec3> also = {});
 
 /// Stands at `eye_m` and looks along a compass heading.
 /// @param axes         east, north and up at the eye

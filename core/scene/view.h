@@ -41,10 +41,11 @@ using GroundHeight = std::function<double(const geo::Geodetic& place)>;
 /// The camera of a view of a DEM.
 /// @param frame   the DEM's local frame
 /// @param points  ground that an orbit has to show, in that frame
+/// @param also    as orbit_camera()'s
 /// @param aspect  width / height of the picture
 /// @throws Error (BadInput) for a standpoint above the ground where the DEM has none
 Camera make_camera(const View& view, const GroundHeight& ground_height_m,
                    const geo::LocalFrame& frame, std::span<const glm::dvec3> points, double aspect,
-                   double exaggeration);
+                   double exaggeration, std::span<const glm::dvec3> also = {});
 
 }  // namespace relevo::scene

@@ -40,7 +40,7 @@ vec3 haze_strength_of(in float depth) {
 }
 
 void haze_on_vertex(in VertexFrame v) {
-    haze_strength = haze_strength_of(haze_depth(frame.eye_m.w, v.height_m, v.distance_m));
+    haze_strength = haze_strength_of(haze_depth(frame.eye_m.w, v.drawn_height_m, v.distance_m));
 }
 
 void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {

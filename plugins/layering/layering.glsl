@@ -174,7 +174,7 @@ void layering_on_albedo(inout Surface s) {
     bool normalised = layering_limits == 0;
     vec4 weights = layering_weights(limits, normalised ? s.height_unit : s.height_m,
                                     noise * (normalised ? vec3(layering_noise_amount) : layering_noise_amount_m),
-                                    layering_steepness(dot(s.geometric_normal, s.up), noise));
+                                    layering_steepness(dot(s.ground_normal, s.up), noise));
 
     // The two materials: the heavier first.
     float most = max(max(weights.x, weights.y), max(weights.z, weights.w));
@@ -192,7 +192,7 @@ void layering_on_albedo(inout Surface s) {
     // The heavier material shows no repeats, which is enough. A loop, because a software renderer works
     // both sides of an "if": most ground has one material, and the second is read only near a limit.
     vec3 factor = layering_nature ? layering_unrepeated(at, dx, dy, first) : vec3(1.0);
-    float flatness = dot(s.geometric_normal, s.up);
+    float flatness = dot(s.ground_normal, s.up);
     vec3 albedo = vec3(0.0);
     float gloss = 0.0;
     int count = next > 0.0 ? 2 : 1;

@@ -18,7 +18,8 @@ layout(std140, binding = 0) uniform Frame {
     vec4 sun_light[4];        // polynomial over the DEM: rgb irradiance, a refraction (sun_light())
     vec4 sun_light_domain;    // x: its centre, y: 1/half-width, in sines of the geometric elevation
     vec4 sky_irradiance;      // rgb: on level ground from the whole sky
-    vec4 height_range;        // x: lowest post [m], y: 1/(highest - lowest) [1/m], z: exaggeration
+    vec4 height_range;        // x: lowest post [m], y: 1/(highest - lowest) [1/m], z: exaggeration,
+                              // w: lowest that effects move ground to [m], before exaggeration
     vec4 ground_extent;       // xy: the DEM's south-west corner, zw: 1/its width and 1/its height, in ground_m
     float exposure;           // factor on radiance before tone mapping, already in what is stored
     float footprint_limit;    // longest to shortest side of a pixel's footprint that textures resolve

@@ -10,6 +10,14 @@ vec3 east_at(in vec3 up) {
     return normalize(cross(frame.polar_axis.xyz, up));
 }
 
+/// Coordinates of the DEM's own ground, whatever the exaggeration that it is drawn with: east and
+/// north from the DEM's centre, and the height [m].
+/// @param position_m  as drawn, relative to the eye
+vec3 ground_at(in vec3 position_m, in vec3 up, in float height_m) {
+    vec2 drawn_m = position_m.xy + frame.eye_m.xy;
+    return vec3(drawn_m - (frame.height_range.z - 1.0) * height_m * up.xy, height_m);
+}
+
 float height_unit_of(in float height_m) {
     return clamp((height_m - frame.height_range.x) * frame.height_range.y, 0.0, 1.0);
 }

@@ -1,6 +1,7 @@
 //! provides  shown: from radiance to the colours of the picture
 //! hook      tonemap
 
+//@ include lib/finite.glsl
 //@ include lib/srgb.glsl
 
 /// Rounds to 8 bits up or down by where the pixel is, so that a sky's gradient does not end in steps.
@@ -13,9 +14,12 @@ vec3 dithered(in vec3 colour) {
 
 /// @param radiance  linear, exposed
 /// @param over      premultiplied sRGB that lies over the picture
-vec4 shown(in vec3 radiance, in vec4 over) {
+/// @param numbers   1 where both were numbers, 0 else
+/// @returns sRGB, and in alpha whether all were numbers up to here
+vec4 shown(in vec3 radiance, in vec4 over, in float numbers) {
     vec3 colour = radiance;
     hook_tonemap(colour);
+    numbers *= finite(vec4(colour, 0.0));
     colour = srgb_encoded(colour) * (1.0 - over.a) + over.rgb;
-    return vec4(dithered(colour), 1.0);
+    return vec4(dithered(colour), numbers);
 }

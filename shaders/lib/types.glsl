@@ -1,4 +1,8 @@
 //! provides  VertexFrame, Surface: what hooks get. Append-only: plugins rely on every member.
+//!
+//! What tells the ground's kind is the DEM's own, whatever --exaggerate: height_m, height_unit,
+//! ground_m, ground_normal and the steps of these. What light needs is of the ground as it is drawn:
+//! position_m, distance_m, drawn_height_m, geometric_normal, normal, tangent, bitangent.
 
 /// A vertex of the terrain, before and while plugins displace it.
 struct VertexFrame {
@@ -7,7 +11,8 @@ struct VertexFrame {
     float height_m;     // orthometric, as in the file [m]
     float height_unit;  // 0 at the DEM's lowest post, 1 at its highest
     vec3 up;            // normal of the ellipsoid, unit
-    float distance_m;   // from the eye [m]
+    float distance_m;   // from the eye [m]; in `vertex` of the displaced position
+    float drawn_height_m;  // above the DEM's zero, exaggerated; in `vertex` also displaced [m]
 };
 
 /// A visible point of the terrain.
@@ -17,7 +22,7 @@ struct Surface {
     float height_m;           // orthometric, as in the file [m]
     float height_unit;        // 0 at the DEM's lowest post, 1 at its highest
     vec3 up;                  // normal of the ellipsoid, unit
-    vec3 geometric_normal;    // of the DEM's surface, unit
+    vec3 geometric_normal;    // of the DEM's surface as drawn, exaggerated, not displaced; unit
     vec3 tangent, bitangent;  // of the ground textures, unit, orthogonal to geometric_normal
     vec3 normal;              // that light sees; hooks of `normal` perturb it, unit
     ivec2 material;           // at most two materials ...
@@ -29,9 +34,12 @@ struct Surface {
     float shininess;          // exponent of the highlight
     float distance_m;         // from the eye [m]
     vec3 ground_dx_m;         // how ground_m changes from this pixel to the next one right ...
-    vec3 ground_dy_m;         // ... and up [m/px]: gradients for textureGrad
+    vec3 ground_dy_m;         // ... and up [m/px], no longer at a slant than filters resolve: for textureGrad
     vec2 texture_at;          // coordinates that the materials' textures are read at ...
     vec2 texture_dx;          // ... and their gradients, right
     vec2 texture_dy;          // ... and up
     float gloss;              // of the materials, 0..1: how much of their highlight this point has
+    vec3 ground_normal;       // of the DEM's surface, not exaggerated: true slope and aspect, unit
+    float height_dx_m;        // how height_m changes from this pixel to the next one right ...
+    float height_dy_m;        // ... and up [m/px], on the drawn surface
 };

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
@@ -43,6 +44,36 @@ TEST_F(Capture, WritesAPictureOfTheSizeAskedForWithItsSunInside) {
               "36.30292 N 84.24583 W; 2026-06-21T22:30:00Z; sun at azimuth 280.33, elevation 27.03 "
               "(27.05 "
               "with refraction)");
+}
+
+TEST_F(Capture, TellsOfTheSunAsTheEyeSeesIt) {
+    // The DEM's corner is a tenth of a degree from its centre, and so is the sun.
+    const std::vector<std::string> eye{"--eye", "36.05,-84.05,3000", "--heading", "300"};
+    const std::vector<std::string> time{"--time", "2026-06-21T18:30-04:00"};
+    const auto run = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"capture", bundled_dem(), "-o", (dir_ / "a.png").string(),
+                                   "--size", "32x32", "--overwrite", "--only", ""});
+        more.insert(more.end(), time.begin(), time.end());
+        return relevo(more);
+    };
+    const nlohmann::json sun = nlohmann::json::parse(
+        relevo({"sun", "position", "--at", "36.05,-84.05,3000", time[0], time[1], "--json"}).out);
+    const std::string expected =
+        fmt::format("sun at azimuth {:.2f}, elevation {:.2f} ({:.2f} with refraction)",
+                    sun["azimuth_deg"].get<double>(), sun["elevation_deg"].get<double>(),
+                    sun["apparent_elevation_deg"].get<double>());
+    for (const char* exaggeration : {"1", "3"}) {
+        std::vector<std::string> more = eye;
+        more.insert(more.end(), {"--exaggerate", exaggeration});
+        EXPECT_EQ(run(more).err, "relevo: 36.05000 N 84.05000 W (the eye), 2026-06-21T22:30:00Z: " +
+                                     expected + "\n");
+        EXPECT_EQ(image::read_metadata(dir_ / "a.png").at("Description"),
+                  "36.05000 N 84.05000 W (the eye); 2026-06-21T22:30:00Z; " + expected);
+    }
+    const std::string orbit = run({}).err;
+    EXPECT_EQ(orbit.substr(0, orbit.find(", elev")),
+              "relevo: 36.30292 N 84.24583 W, 2026-06-21T22:30:00Z: sun at azimuth 280.33");
+    EXPECT_EQ(orbit.find(expected), std::string::npos);
 }
 
 TEST_F(Capture, IsTheSamePictureEveryTime) {

@@ -42,6 +42,14 @@ TEST(PluginGuide, ItsExampleIsAPlugin) {
     EXPECT_EQ(stitched.params.members.size(), 3u);
 }
 
+TEST(PluginGuide, ItsContoursAreAPlugin) {
+    const Plugins plugins;
+    plugins.add("contour", "", block(guide(), "glsl contour.glsl"));
+    const Registry registry = plugins.load();
+    ASSERT_TRUE(registry.broken().empty()) << registry.broken()[0].error;
+    EXPECT_TRUE(registry.effects()[0].answers("display"));
+}
+
 TEST(PluginGuide, HasEveryHook) {
     const std::string text = guide();
     for (const shader::Hook& hook : shader::hooks())
@@ -58,7 +66,7 @@ TEST(PluginGuide, HasEveryKey) {
         relevo::test::error_of([&] { load_effect(plugins.plugins() / "dust", plugins.data()); });
     const std::string list = error.substr(error.find("there are ") + 10);
     const std::vector<std::string> keys = split(list, ',');
-    EXPECT_EQ(keys.size(), 14u);
+    EXPECT_EQ(keys.size(), 15u);
     for (const std::string& key : keys)
         EXPECT_THAT(text, HasSubstr('`' + std::string(trimmed(key)) + '`'));
 }

@@ -69,6 +69,23 @@ TEST(Manifest, IsReadWhole) {
     EXPECT_THAT(manifest.passes[0].writes, ElementsAre("haze.blurred"));
 }
 
+TEST(Manifest, SaysHowFarItMovesTheGround) {
+    const Plugins plugins;
+    plugins.add(
+        "haze", R"("displaces": {"down_m": 2.5, "up_m": "haze.tall_m", "to_m": -30})",
+        "uniform float haze_tall_m = 9.0; //@ range(0, 50)\n"
+        "void haze_on_displace(in VertexFrame v, inout vec3 p) { p += haze_tall_m * v.up; }\n");
+    const auto displaces =
+        load_effect(plugins.plugins() / "haze", plugins.data()).manifest.displaces;
+    ASSERT_TRUE(displaces);
+    EXPECT_EQ(displaces->down.metres, 2.5);
+    EXPECT_EQ(displaces->up.address, "haze.tall_m");
+    EXPECT_EQ(displaces->aside.metres, 0);
+    ASSERT_TRUE(displaces->to);
+    EXPECT_EQ(displaces->to->metres, -30);
+    EXPECT_EQ(displaces->line, 1);
+}
+
 TEST(Manifest, NeedsLittle) {
     const Plugins plugins;
     plugins.add("haze");
@@ -118,7 +135,7 @@ std::string pass(const std::string& members) {
 
 constexpr const char* kKeys =
     "format, id, name, description, version, enabled_by_default, provides, requires, wants, after, "
-    "module, glsl, textures, passes";
+    "module, glsl, textures, passes, displaces";
 const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
 
 INSTANTIATE_TEST_SUITE_P(
@@ -212,7 +229,27 @@ INSTANTIATE_TEST_SUITE_P(
             pass(R"("name": "b", "target": "sun", "format": "r8", "writes": ["vsm.moments"])"),
             "2: passes.0.writes: expected resources that begin with haze. but got \"vsm.moments\""},
         Bad{"PassWithoutResult", pass(R"("name": "b", "target": "sun", "format": "r8")"),
-            "2: passes.0.writes: expected at least one resource that the pass writes"}),
+            "2: passes.0.writes: expected at least one resource that the pass writes"},
+        Bad{"Displaces", with(R"("displaces": 5)"), "2: displaces: expected an object but got 5"},
+        Bad{"DisplacesKey", with(R"("displaces": {"by_m": 5})"),
+            "2: displaces.by_m: no such key; there are down_m, up_m, aside_m, to_m"},
+        Bad{"DisplacesDown", with(R"("displaces": {"down_m": -5})"),
+            "2: displaces.down_m: expected metres from 0 to 100000, or a parameter such as "
+            "\"haze.height_m\", but got -5"},
+        Bad{"DisplacesFar", with(R"("displaces": {"up_m": 1e6})"),
+            "2: displaces.up_m: expected metres from 0 to 100000, or a parameter such as "
+            "\"haze.height_m\", but got 1000000"},
+        Bad{"DisplacesTo", with(R"("displaces": {"to_m": "sea.level_m"})"),
+            "2: displaces.to_m: expected metres from -100000 to 100000, or a parameter such as "
+            "\"haze.height_m\", but got \"sea.level_m\""},
+        Bad{"DisplacesToTruth", with(R"("displaces": {"to_m": true})"),
+            "2: displaces.to_m: expected metres from -100000 to 100000, or a parameter such as "
+            "\"haze.height_m\", but got true"},
+        Bad{"DisplacesNothing", with(R"("displaces": {"up_m": 5})"),
+            "2: displaces: no hook moves the ground; define haze_on_displace, or leave this out"},
+        Bad{"DisplacesByNone", with(R"("displaces": {"up_m": "haze.tall_m"})"),
+            "2: displaces: expected a parameter of type float, not host, but got \"haze.tall_m\", "
+            "which is none of the plugin's"}),
     [](const auto& test) { return test.param.name; });
 
 // Whatever stands in a file, it is read or refused, never crashed upon. Run with the sanitizers.
@@ -289,6 +326,22 @@ INSTANTIATE_TEST_SUITE_P(
         Mismatch{"WrongSampler", kNoise, "\nuniform sampler2D haze_noise;\n" + kHook,
                  "effect::load: plugins/haze/haze.glsl:2: haze_noise: expected a sampler3D for the "
                  "texture noise of plugins/haze/plugin.json:1 but got a sampler2D"},
+        Mismatch{"DisplacesWithoutABound", "",
+                 "\nvoid haze_on_displace(in VertexFrame v, inout vec3 p) { p += v.up; }",
+                 "effect::load: plugins/haze/haze.glsl:2: haze_on_displace: "
+                 "plugins/haze/plugin.json does not say how far it moves the ground; add "
+                 "\"displaces\": {\"down_m\": D, \"up_m\": U} with the most metres down and up, or "
+                 "\"displaces\": {\"to_m\": H} where ground ends between its own height and H"},
+        Mismatch{"DisplacesByAWord", R"("displaces": {"up_m": "haze.tall_m"})",
+                 "uniform int haze_tall_m = 9; //@ range(0, 50)\n"
+                 "void haze_on_displace(in VertexFrame v, inout vec3 p) { p += v.up; }",
+                 "effect::load: plugins/haze/plugin.json:1: displaces: expected a parameter of "
+                 "type float, not host, but got \"haze.tall_m\", which is of type int"},
+        Mismatch{"DisplacesByAHostsValue", R"("displaces": {"up_m": "haze.tall_m"})",
+                 "uniform float haze_tall_m = 9.0; //@ host\n"
+                 "void haze_on_displace(in VertexFrame v, inout vec3 p) { p += v.up; }",
+                 "effect::load: plugins/haze/plugin.json:1: displaces: expected a parameter of "
+                 "type float, not host, but got \"haze.tall_m\", which is host"},
         Mismatch{"HookInTwoFiles", R"("glsl": ["more.glsl", "haze.glsl"])", "\n" + kHook,
                  "effect::load: plugins/haze/haze.glsl:2: haze_on_albedo: defined already in "
                  "plugins/haze/more.glsl:1"}),

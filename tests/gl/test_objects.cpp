@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <numeric>
 #include <type_traits>
 
 #include <epoxy/gl.h>
@@ -66,6 +68,97 @@ TEST(Texture, LargerThanTheDevicesMemorySaysHowLarge) {
               fmt::format("exit 1: gl::Texture: sky: the device has no {} MiB for 16384 x 16384 x "
                           "{} texels; take a smaller picture or a device with more",
                           4096 * layers, layers));
+}
+
+TEST(Texture, LargerThanTheDeviceTakesIsAMessage) {
+    const Context context{ContextOptions{}};
+    const int side = context.info().max_texture_size;
+    const auto refused = [](TextureKind kind, Extent extent, int levels) {
+        return test::error_of([&] { Texture(kind, Format::R8, extent, levels, "sky"); });
+    };
+    EXPECT_EQ(refused(TextureKind::D2, {side + 1, 4, 1}, 1),
+              fmt::format("exit 1: gl::Texture: sky: expected a texture of up to {0} x {0} texels "
+                          "and a whole chain of levels but got {1} x 4 x 1 texels in 1 levels "
+                          "(GL_INVALID_VALUE)",
+                          side, side + 1));
+    EXPECT_EQ(
+        refused(TextureKind::D2Array, {4, 4, context.info().max_array_layers + 1}, 1),
+        fmt::format("exit 1: gl::Texture: sky: expected a texture of up to {0} x {0} texels in "
+                    "{1} layers and a whole chain of levels but got 4 x 4 x {2} texels in 1 "
+                    "levels (GL_INVALID_VALUE)",
+                    side, context.info().max_array_layers, context.info().max_array_layers + 1));
+    // More levels than there are halvings.
+    EXPECT_EQ(refused(TextureKind::D2, {8, 8, 1}, 99),
+              fmt::format("exit 1: gl::Texture: sky: expected a texture of up to {0} x {0} texels "
+                          "and a whole chain of levels but got 8 x 8 x 1 texels in 99 levels "
+                          "(GL_INVALID_OPERATION)",
+                          side));
+}
+
+TEST(Texture, DoesNotTakeAnEarlierErrorForItsOwn) {
+    const Context context{ContextOptions{}};
+    glEnable(GL_TEXTURE_WRAP_S);
+    EXPECT_EQ(test::error_of([] {
+                  Texture(TextureKind::D2, Format::R8, {4, 4, 1}, 1, "sky");
+              }),
+              "exit 1: gl: before sky: GL_INVALID_ENUM");
+    const Texture good(TextureKind::D2, Format::R8, {4, 4, 1}, 1, "sky");
+}
+
+TEST(Texture, IsReadInPiecesThatGlCanCount) {
+    // Of 16 bytes a texel, 134 million texels are more than 31 bits count.
+    for (const Extent extent : {Extent{16384, 16384, 1}, Extent{16384, 9000, 3}, Extent{1, 1, 1}}) {
+        for (const std::size_t most : {std::size_t{1} << 28, std::size_t{1000}}) {
+            const std::size_t row_bytes = std::size_t{16} * static_cast<unsigned>(extent.width);
+            int layer = 0, row = 0;
+            for (const TexelBand& band : bands_of(extent, row_bytes, most)) {
+                if (row == extent.height) {
+                    row = 0;
+                    ++layer;
+                }
+                EXPECT_EQ(band.layer, layer);
+                EXPECT_EQ(band.row, row);
+                EXPECT_GT(band.rows, 0);
+                EXPECT_LE(static_cast<std::size_t>(band.rows) * row_bytes,
+                          std::max(most, row_bytes));
+                row += band.rows;
+            }
+            EXPECT_EQ(layer, extent.depth - 1);
+            EXPECT_EQ(row, extent.height);
+        }
+    }
+}
+
+TEST_F(GlObjects, EveryLevelAndLayerIsRead) {
+    for (const TextureKind kind : {TextureKind::D2Array, TextureKind::D3}) {
+        Texture texture(kind, Format::R32F, {6, 4, 4}, 2, "layers");
+        const Extent half = texture.level_extent(1);
+        EXPECT_EQ(half.width, 3);
+        EXPECT_EQ(half.height, 2);
+        EXPECT_EQ(half.depth, kind == TextureKind::D3 ? 2 : 4);
+        std::vector<float> texels(static_cast<std::size_t>(half.width * half.height * half.depth));
+        std::iota(texels.begin(), texels.end(), 1.0f);
+        texture.write(1, {0, 0, 0}, half, std::as_bytes(std::span(texels)));
+        std::vector<float> back(texels.size());
+        texture.read(1, std::as_writable_bytes(std::span(back)));
+        EXPECT_EQ(back, texels);
+    }
+}
+
+TEST_F(GlObjects, MayHaveAnyName) {
+    const Texture texture(TextureKind::D2, Format::R8, {1, 1, 1}, 1, std::string(5000, 'n'));
+    const Buffer buffer(16, std::string(5000, 'n'));
+}
+
+TEST(Buffer, LargerThanTheDevicesMemorySaysHowLarge) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the sanitizer ends the program for such a request";
+#endif
+    const Context context{ContextOptions{}};
+    const std::string message = test::error_of([] { Buffer(std::size_t{1} << 52, "everything"); });
+    EXPECT_EQ(message,
+              "exit 1: gl::Buffer: everything: the device has no 4294967296.0 MiB for it "
+              "(GL_OUT_OF_MEMORY); take a device with more");
 }
 
 constexpr const char* kFullscreen =

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -162,6 +163,70 @@ TEST_F(Toggles, AbIsWithOnTheLeftAndWithoutOnTheRight) {
             }
         }
     }
+}
+
+TEST_F(Toggles, AbOfTheOnlyEffectIsThatEffectAgainstTheRest) {
+    SKIP_WITHOUT_PLUGIN("haze");
+    SKIP_WITHOUT_PLUGIN("layering");
+    SKIP_WITHOUT_PLUGIN("sky");
+    struct Case {
+        std::string only, ab, with, without;
+    };
+    // What the effect has pulled in stays on the right: the difference is the effect alone.
+    for (const Case& c :
+         {Case{"layering", "layering", "layering", ""}, Case{"haze", "haze", "haze,sky", "sky"},
+          Case{"haze,layering", "haze", "haze,layering,sky", "layering,sky"},
+          Case{"haze,sky", "sky", "haze,sky", ""}}) {
+        const Result run = take("ab.png", {"--only", c.only, "--ab", c.ab});
+        ASSERT_EQ(run.status, 0) << c.only << ": " << run.err;
+        take("with.png", {"--only", c.with});
+        take("without.png", {"--only", c.without});
+        const image::Image8 ab = picture("ab.png"), with = picture("with.png"),
+                            without = picture("without.png");
+        EXPECT_GT(image::compare(with, without).worst, 8) << c.only;
+        int off = 0;
+        for (int y = 0; y < ab.height; ++y)
+            for (int x = 0; x < ab.width; ++x)
+                for (int i = 0; i < 3; ++i)
+                    off += x < 47 ? ab.at(x, y, i) != with.at(x, y, i)
+                                  : x >= 49 && ab.at(x, y, i) != without.at(x, y, i);
+        EXPECT_EQ(off, 0) << c.only << " without " << c.ab;
+    }
+}
+
+TEST_F(Toggles, ExaggerationMovesNoRockAndNoSnow) {
+    SKIP_WITHOUT_PLUGIN("layering");
+    // The heavier of the materials as a colour, from above through a long lens.
+    const std::filesystem::path folder = dir_ / "plugins/kinds";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "plugin.json")
+        << R"({"format": 1, "id": "kinds", "name": "Kinds", "version": "1.0.0",
+               "requires": ["materials"], "after": ["materials"]})";
+    std::ofstream(folder / "kinds.glsl")
+        << "void kinds_on_display(in Surface s, inout vec4 overlay) {\n"
+           "    overlay = vec4(float(s.material.x) / 4.0, 0.0, 0.0, 1.0);\n"
+           "}\n";
+    std::vector<image::Image8> pictures;
+    for (const char* exaggeration : {"1", "3"}) {
+        take("kinds.png", {"--only", "layering,kinds", "--plugin-path", (dir_ / "plugins").string(),
+                           "--view", "el=90,zoom=1.2", "--fov", "1", "--exaggerate", exaggeration,
+                           "--set", "layering.limits=metres", "--set",
+                           "layering.rock_snow_m=700,760", "--set", "layering.slope_deg=12,25"});
+        pictures.push_back(picture("kinds.png"));
+    }
+    std::array<double, 4> count{};
+    double moved = 0, all = 0;
+    for (int y = 8; y < pictures[0].height - 8; ++y) {
+        for (int x = 8; x < pictures[0].width - 8; ++x, ++all) {
+            ++count[static_cast<std::size_t>(std::lround(pictures[0].at(x, y, 0) / 63.75))];
+            moved += pictures[0].at(x, y, 0) != pictures[1].at(x, y, 0);
+        }
+    }
+    fmt::print("[ exaggeration ] grass {:.0f} %, rock {:.0f} %, snow {:.0f} %; {:.1f} % differ\n",
+               100 * count[1] / all, 100 * count[2] / all, 100 * count[3] / all, 100 * moved / all);
+    EXPECT_GT(count[1] / all, 0.1);
+    EXPECT_GT(count[2] / all, 0.05);
+    EXPECT_LT(moved / all, 0.05);
 }
 
 double mean(const image::Image8& picture) {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "base/units.h"
 #include "dem/load.h"
 #include "gl/context.h"
@@ -28,6 +30,23 @@ TEST(Picture, ColoursFollowTheSrgbCurve) {
     test::print_accuracy("sRGB, GPU against double", errors, "of 255", 0.1);
     EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.1);
     EXPECT_NEAR(results.back().r, 1, 1e-6);  // white stays white
+}
+
+TEST(Picture, LargerThanTheDeviceDrawsIsAMessage) {
+    gl::Context context({.device = "software"});
+    const int most = context.info().max_picture_size;
+    const auto refused = [&](int width_px, int height_px) {
+        return test::error_of(
+            [&] { Renderer(context, {}, {.width_px = width_px, .height_px = height_px}); });
+    };
+    const std::string expected = fmt::format(
+        "exit 3: render: picture: expected a width and a height of up to {} px, which {} "
+        "draws at once, but got ",
+        most, context.info().renderer);
+    EXPECT_EQ(refused(most + 1, 8),
+              expected + fmt::format("{} x 8; take a smaller --size", most + 1));
+    EXPECT_EQ(refused(8, most + 1),
+              expected + fmt::format("8 x {}; take a smaller --size", most + 1));
 }
 
 TEST(Picture, IsTheSameWithAndWithoutKeepingItsRadiance) {

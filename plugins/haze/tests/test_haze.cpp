@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "light/fields.h"
+#include "render/drawn.h"
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
@@ -56,6 +58,50 @@ TEST(Haze, StrengthOnTheGpuIsTheIntegralsAlongTheRay) {
     }
     test::print_accuracy("haze strength, GPU against the integral", errors, "", 1e-3);
     EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 1e-3);
+}
+
+TEST(Haze, OfTheDrawnGroundIsTheIntegralsToThreeHundredKilometres) {
+    // A plateau at 3000 m from an eye at 12000 m, whose horizon lies at 340 km: black ground before
+    // a white sky shows the share alone.
+    const auto plateau =
+        test::field_of(81, 801, {480000, 500, 0, 5400000, 0, -500}, "EPSG:32632", [](int, int row) {
+            return 3000.0 + (row % 2);  // so that it has a relief
+        });
+    const test::TestEffect sky{
+        "white",
+        "vec3 white_on_background_radiance(in vec3 direction, in bool with_disc) {\n"
+        "    return vec3(1.0, 0.0, 0.0);\n"
+        "}\n"
+        "void white_on_lit(in Surface s, inout vec3 radiance) { radiance = vec3(0.0); }\n"};
+    const test::TestEffect probe{
+        "probe",
+        "void probe_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {\n"
+        "    radiance = vec3(radiance.r, s.distance_m / 1048576.0, 1.0) / frame.exposure;\n"
+        "}\n"};
+    const auto haze = effect::load_effect(test::source_dir() / "plugins/haze", {});
+    test::Drawn drawn(plateau, {sky, probe}, 64, 512, 0, {haze},
+                      {{"haze.blue", "0"}, {"haze.density", "0.02"}});
+    std::vector<double> errors;
+    double farthest_m = 0;
+    // Under exaggeration the air is that before what is drawn: from 24000 m to 6000 m.
+    for (const double exaggeration : {1.0, 2.0}) {
+        drawn.frame().exaggeration = exaggeration;
+        drawn.stand(0.5, 1, 12000 * exaggeration, 0, -3.6);
+        drawn.frame().camera.fov_y_rad = 0.06;
+        const image::ImageF image = drawn.radiance();
+        for (int y = 0; y < image.height; ++y) {
+            if (image.at(32, y, 2) == 0) continue;
+            const glm::dvec2 found = test::Drawn::values(image, 32, y);
+            const double distance_m = 1048576 * found.y;
+            farthest_m = std::max(farthest_m, distance_m);
+            errors.push_back(
+                std::abs(found.x - (1 - std::exp(-depth(0.02, 2500, 12000 * exaggeration,
+                                                        3000 * exaggeration, distance_m)))));
+        }
+    }
+    EXPECT_GT(farthest_m, 250000);
+    test::print_accuracy("haze over drawn ground, to 250 km", errors, "", 2e-3);
+    EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 2e-3);
 }
 
 TEST(Haze, VisibilityIsTheDistanceOfTwoPercentContrast) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "cli/effects.h"
+
+namespace relevo::cli {
+
+/// A picture whose light is no number in some pixels, and all that it was drawn from.
+struct FaultyPicture {
+    const EffectArguments& arguments;
+    const ActiveEffects& effects;
+    gl::Context& context;
+    render::RendererOptions options;
+    render::Terrain& terrain;
+    const render::Ground& ground;
+    const render::FrameInputs& frame;
+    int pixels = 0;  ///< that are no number, or infinite
+};
+
+/// Finds the effects that make them, by drawing the picture without each in turn.
+/// @throws Error (Failed) that names them, always
+[[noreturn]] void refuse_not_numbers(const FaultyPicture& picture);
+
+}  // namespace relevo::cli

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace relevo::gl {
+
+/// The name of a GL error: "GL_INVALID_VALUE".
+std::string error_name(unsigned error);
+
+/// Throws for an error that a command raised and nobody has looked at. Before a command whose own
+/// errors are told apart: those then are its own.
+/// @throws Error (Failed) `gl: before WHAT: GL_INVALID_ENUM`
+void expect_no_error(std::string_view before);
+
+/// Names an object for debuggers, as far as the device lets names be long.
+/// @param kind  GL_TEXTURE and its like
+void set_label(unsigned kind, unsigned name, std::string_view label);
+
+}  // namespace relevo::gl
