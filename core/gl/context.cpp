@@ -190,6 +190,8 @@ struct Context::Impl {
         info.max_texture_units = value;
         glGetIntegerv(GL_MAX_TEXTURE_SIZE, &value);
         info.max_texture_size = value;
+        glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &value);
+        info.max_volume_size = value;
         glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &value);
         info.max_array_layers = value;
         glGetInternalformativ(GL_RENDERBUFFER, GL_RGBA16F, GL_SAMPLES, 1, &value);

@@ -25,6 +25,7 @@ struct DeviceInfo {
     std::string renderer, vendor, version;
     int max_texture_units = 0;  ///< of a fragment program
     int max_texture_size = 0;   ///< [px]
+    int max_volume_size = 0;    ///< of a texture with three dimensions [px]
     int max_array_layers = 0;   ///< of an array texture
     int max_samples = 0;        ///< of a half-float colour target
     double max_anisotropy = 1;  ///< 1 where there is no anisotropic filter
