@@ -139,15 +139,18 @@ void capture(const Arguments& arguments) {
         compared ? arguments.effects.without(arguments.ab, *effects).active(/*aloud=*/false)
                  : nullptr;
     gl::Context context({.device = arguments.device});
+    effects->fit(context.info());
+    if (compared) others->fit(context.info(), /*aloud=*/false);
     timings.add("device", device_began);
     const auto compile_began = Clock::now();
-    const render::RendererOptions options{
-        .width_px = size.x, .height_px = size.y, .radiance = image::holds_linear_light(output)};
+    render::RendererOptions options{.width_px = size.x,
+                                    .height_px = size.y,
+                                    .radiance = image::holds_linear_light(output),
+                                    .dump_shaders = arguments.dump_shaders};
     render::Renderer renderer(context, effects->inputs(), options);
+    options.dump_shaders.clear();
     std::optional<render::Renderer> without;
     if (compared) without.emplace(context, others->inputs(), options);
-    if (!arguments.dump_shaders.empty())
-        render::dump_programs(renderer.texts(), arguments.dump_shaders);
     timings.add("compile", compile_began);
     const auto loaded = loading.get();
     const dem::Source& source = loaded.first;

@@ -1,23 +1,45 @@
 #include "cli/effects.h"
 
 #include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "base/log.h"
 
 namespace relevo::cli {
 
+namespace {
+
+void say(const effect::Selection& selection) {
+    for (const std::string& warning : selection.warnings)
+        log::warning(warning);
+    for (const std::string& notice : selection.notices)
+        log::info(notice);
+}
+
+}  // namespace
+
+void ActiveEffects::fit(const gl::DeviceInfo& device, bool aloud) {
+    const std::size_t unusable = loaded.unusable.size();
+    loaded = effect::select_and_load(
+        registry, presets, switches, values,
+        effect::TextureLimits{device.max_texture_size, device.max_volume_size,
+                              device.max_array_layers},
+        std::move(loaded));
+    if (aloud && loaded.unusable.size() > unusable) say(loaded.selection);
+}
+
 render::EffectInputs ActiveEffects::inputs() const {
     render::EffectInputs inputs;
-    inputs.stitch.snippets = selection.snippets();
-    inputs.stitch.capabilities = selection.capabilities;
+    inputs.stitch.snippets = loaded.selection.snippets();
+    inputs.stitch.capabilities = loaded.selection.capabilities;
     inputs.stitch.values = &values;
-    for (const effect::Effect* effect : selection.effects) {
-        const effect::Manifest& manifest = effect->manifest;
-        inputs.textures.insert(inputs.textures.end(), manifest.textures.begin(),
-                               manifest.textures.end());
-        if (manifest.displaces) inputs.displaces.push_back(*manifest.displaces);
-    }
-    for (const effect::NativeModule& module : modules)
+    for (const effect::Effect* effect : loaded.selection.effects)
+        if (effect->manifest.displaces) inputs.displaces.push_back(*effect->manifest.displaces);
+    for (const effect::LoadedTexture& texture : loaded.textures)
+        inputs.textures.push_back(&texture);
+    for (const effect::NativeModule& module : loaded.modules)
         inputs.modules.push_back(&module);
     return inputs;
 }
@@ -76,35 +98,32 @@ EffectArguments EffectArguments::without(const std::vector<std::string>& ids,
 std::unique_ptr<ActiveEffects> EffectArguments::active(bool aloud) const {
     auto active = std::make_unique<ActiveEffects>();
     active->registry = effect::Registry::load_installed({plugin_path.begin(), plugin_path.end()});
-    std::vector<effect::Preset> loaded;
     for (const std::string& preset : presets)
-        loaded.push_back(effect::load_preset(preset));
-    effect::Switches switches;
+        active->presets.push_back(effect::load_preset(preset));
     if (only_option && only_option->count() > 0) {
-        switches.only.emplace();
+        active->switches.only.emplace();
         for (const std::string& id : only)
-            if (!id.empty()) switches.only->push_back(id);
+            if (!id.empty()) active->switches.only->push_back(id);
     }
-    if (exactly) switches.only = exactly;
-    switches.enable = enable;
-    switches.disable = disable;
-    effect::NativeSelection chosen = effect::select_and_load(active->registry, loaded, switches);
-    active->selection = std::move(chosen.selection);
-    active->modules = std::move(chosen.modules);
+    if (exactly) active->switches.only = exactly;
+    active->switches.enable = enable;
+    active->switches.disable = disable;
     std::vector<shader::Param> params = active->registry.params();
     for (const shader::Param& param : render::core_params())
         params.push_back(param);
     active->values.declare(params);
+    active->loaded = effect::select_and_load(active->registry, active->presets, active->switches,
+                                             active->values);
     std::vector<effect::Setting> given;
     for (const std::string& setting : settings)
         given.push_back(effect::parse_setting(setting));
-    const std::vector<std::string> notices =
-        effect::apply_settings(active->values, active->registry, active->selection, loaded, given);
+    const std::vector<std::string> notices = effect::apply_settings(
+        active->values, active->registry, active->loaded.selection, active->presets, given);
     if (!aloud) return active;
     for (const effect::BrokenEffect& broken : active->registry.broken())
-        log::warning(broken.error);
-    for (const std::string& notice : active->selection.notices)
-        log::info(notice);
+        if (std::find(disable.begin(), disable.end(), broken.id) == disable.end())
+            log::warning(fmt::format("{}; --disable {} leaves it out", broken.error, broken.id));
+    say(active->loaded.selection);
     for (const std::string& notice : notices)
         log::info(notice);
     return active;

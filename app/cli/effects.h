@@ -7,8 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "effect/native_module.h"
-#include "effect/selection.h"
+#include "effect/loaded_selection.h"
+#include "gl/context.h"
 #include "render/renderer.h"
 
 namespace relevo::cli {
@@ -16,10 +16,14 @@ namespace relevo::cli {
 /// The plugins there are, those that are on, and the values of their parameters.
 struct ActiveEffects {
     effect::Registry registry;
-    effect::Selection selection;  // points into registry
-    std::vector<effect::NativeModule> modules;
+    std::vector<effect::Preset> presets;
+    effect::Switches switches;
+    effect::LoadedSelection loaded;  // points into registry
     shader::ParamStore values;
 
+    /// Switches off, with a warning, what brings larger textures than a device takes.
+    /// @throws Error (BadInput) for what was asked for by name
+    void fit(const gl::DeviceInfo& device, bool aloud = true);
     /// For a renderer; valid as long as this is.
     render::EffectInputs inputs() const;
 };

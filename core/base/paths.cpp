@@ -18,6 +18,19 @@ std::filesystem::path share_dir() {
     return prefix() / "share" / "relevo";
 }
 
+std::optional<std::filesystem::path> file_inside(const std::filesystem::path& folder,
+                                                 const std::filesystem::path& name) {
+    if (name.empty() || name.is_absolute()) return std::nullopt;
+    std::error_code error;
+    const std::filesystem::path inside = std::filesystem::canonical(folder, error);
+    if (error) return std::nullopt;
+    const std::filesystem::path file = std::filesystem::weakly_canonical(inside / name, error);
+    if (error) return std::nullopt;
+    const std::filesystem::path relative = file.lexically_relative(inside);
+    if (relative.empty() || *relative.begin() == ".." || relative == ".") return std::nullopt;
+    return folder / name;
+}
+
 std::filesystem::path module_dir() {
     return prefix() / "lib" / "relevo";
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 namespace relevo {
 
@@ -11,5 +12,10 @@ std::filesystem::path share_dir();
 
 /// Where the program's loadable modules are: `../lib/relevo` as seen from the program.
 std::filesystem::path module_dir();
+
+/// The file `name` of a folder; nothing where that is outside it, by `..`, by an absolute name or
+/// by a symbolic link. Whether the file is there does not matter.
+std::optional<std::filesystem::path> file_inside(const std::filesystem::path& folder,
+                                                 const std::filesystem::path& name);
 
 }  // namespace relevo

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,8 +9,12 @@
 
 namespace relevo {
 
-/// The whole of a text file.
-/// @throws Error (BadInput) `who: path: cannot be read, reason`
+/// Longer files are no texts that people write [bytes].
+inline constexpr std::size_t kMostTextBytes = std::size_t{16} << 20;
+
+/// The whole of a text file, which must be a regular one.
+/// @throws Error (BadInput) `who: path: cannot be read, reason`, and for one of more than
+///         kMostTextBytes
 std::string read_text(const std::filesystem::path& path, std::string_view who);
 
 /// Pieces between the separators, empty ones kept: "a,,b" gives "a", "", "b"; "" gives none.
@@ -17,6 +22,9 @@ std::vector<std::string> split(std::string_view text, char separator);
 
 /// Without blanks, tabs and line ends at both sides.
 std::string_view trimmed(std::string_view text);
+
+/// The text with `?` for each control character and each byte that is no UTF-8.
+std::string printable(std::string_view text);
 
 /// A decimal number that fills the whole text ("1e-3", "-33.9"), whatever the locale; nothing else.
 /// Infinities and NaN are not numbers here.

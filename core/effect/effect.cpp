@@ -11,6 +11,8 @@ namespace relevo::effect {
 namespace {
 
 constexpr std::string_view kWho = "effect::load";
+/// Of one file. Drivers take minutes for longer ones.
+constexpr std::size_t kMostGlslBytes = std::size_t{1} << 20;
 
 [[noreturn]] void fail(const std::string& file, int line, const std::string& message) {
     bad_input(fmt::format("{}: {}:{}: {}", kWho, file, line, message));
@@ -18,6 +20,14 @@ constexpr std::string_view kWho = "effect::load";
 
 bool contains(const std::vector<std::string>& words, std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::string glsl_text(const std::filesystem::path& file) {
+    std::string text = read_text(file, kWho);
+    if (text.size() > kMostGlslBytes)
+        bad_input(fmt::format("{}: {}: expected at most {} KiB but got {}", kWho, file.string(),
+                              kMostGlslBytes >> 10, (text.size() + 1023) >> 10));
+    return text;
 }
 
 std::string_view sampler_of(TextureSpec::Kind kind) {
@@ -172,7 +182,7 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
     effect.manifest = load_manifest(folder, data_dir);
     for (const std::filesystem::path& file : effect.manifest.glsl)
         effect.snippets.push_back(
-            shader::parse_snippet(effect.id(), file.string(), read_text(file, kWho)));
+            shader::parse_snippet(effect.id(), file.string(), glsl_text(file)));
     check_hooks(effect);
     check_displace(effect);
     check_wants(effect);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -82,12 +83,10 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     bool end_array() override { return close(); }
 
     bool key(string_t& value) override {
-        const auto& members = stack_.back().members;
-        const auto same = std::find_if(members.begin(), members.end(),
-                                       [&](const auto& member) { return member.first == value; });
-        if (same != members.end())
+        const auto [same, fresh] = keys_.back().emplace(value, line_);
+        if (!fresh)
             bad_input(fmt::format("{}: {}:{}: {}: given already in line {}", who_, file_, line_,
-                                  value, same->second.line));
+                                  value, same->second));
         stack_.back().members.emplace_back(value, Json{});
         stack_.back().members.back().second.line = line_;
         return true;
@@ -95,12 +94,15 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
 
     bool parse_error(std::size_t, const std::string&,
                      const nlohmann::detail::exception& error) override {
-        // "[json.exception.parse_error.101] parse error at line 3, column 5: what"
-        const std::string_view text = error.what();
-        const std::size_t column = text.find("column ");
-        const std::size_t what = text.find(": ", column == std::string_view::npos ? 0 : column);
-        bad_input(fmt::format("{}: {}:{}: {}", who_, file_, line_,
-                              what == std::string_view::npos ? text : text.substr(what + 2)));
+        // "[json.exception.parse_error.101] parse error at line 3, column 5: what", or without a
+        // place "[json.exception.out_of_range.406] what".
+        std::string_view text = error.what();
+        if (const std::size_t name = text.find("] "); name != std::string_view::npos)
+            text.remove_prefix(name + 2);
+        if (const std::size_t column = text.find("column "); column != std::string_view::npos)
+            text.remove_prefix(std::min(text.size(), text.find(": ", column) + 2));
+        // It quotes the file, whatever its bytes are.
+        bad_input(fmt::format("{}: {}:{}: {}", who_, file_, line_, printable(text)));
     }
 
   private:
@@ -121,12 +123,14 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
         json.kind = kind;
         json.line = line_;
         stack_.push_back(std::move(json));
+        keys_.emplace_back();
         return true;
     }
 
     bool close() {
         Json json = std::move(stack_.back());
         stack_.pop_back();
+        keys_.pop_back();
         return add(std::move(json));
     }
 
@@ -148,6 +152,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     std::string file_;
     const int& line_;
     std::vector<Json> stack_;
+    std::vector<std::map<std::string, int>> keys_;  // of each object in stack_, with their lines
     Json root_;
 };
 
@@ -162,7 +167,7 @@ std::string describe(const Json& value) {
         case Json::Kind::Number:
             return fmt::format("{}", value.number);
         case Json::Kind::String:
-            return fmt::format("\"{}\"", value.text);
+            return fmt::format("\"{}\"", printable(value.text));
         case Json::Kind::Array:
             return "a list";
         default:
@@ -171,6 +176,9 @@ std::string describe(const Json& value) {
 }
 
 Json parse_json(std::string_view who, std::string_view file, std::string_view text) {
+    if (text.size() > kMostJsonBytes)
+        bad_input(fmt::format("{}: {}: expected at most {} KiB but got {}", who, file,
+                              kMostJsonBytes >> 10, (text.size() + 1023) >> 10));
     int line = 1;
     Builder builder(who, file, line);
     nlohmann::json::sax_parse(CountingIterator(text.data(), &line),
@@ -216,6 +224,11 @@ std::string ObjectReader::string(const std::string& key, std::optional<std::stri
     if (!value) return *otherwise;
     if (value->kind != Json::Kind::String || value->text.empty())
         fail(value->line, key, fmt::format("expected a text but got {}", describe(*value)));
+    // A terminal would obey them.
+    if (value->text != printable(value->text))
+        fail(value->line, key,
+             fmt::format("expected a text without control characters but got \"{}\"",
+                         printable(value->text)));
     return value->text;
 }
 
@@ -251,6 +264,10 @@ std::vector<std::string> ObjectReader::strings(const std::string& key) {
         if (item.kind != Json::Kind::String || item.text.empty())
             fail(item.line, key,
                  fmt::format("expected a list of texts but got {} in it", describe(item)));
+        if (item.text != printable(item.text))
+            fail(item.line, key,
+                 fmt::format("expected a list of texts without control characters but got {} in it",
+                             describe(item)));
         if (std::find(result.begin(), result.end(), item.text) != result.end())
             fail(item.line, key, fmt::format("\"{}\" is listed twice", item.text));
         result.push_back(item.text);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/paths.h"
 #include "base/text.h"
 #include "effect/json.h"
 
@@ -15,10 +16,13 @@ constexpr std::string_view kWho = "effect::load";
 constexpr int kFormat = 1;
 constexpr double kMostDisplaced_m = 1e5;
 
-// Prefixes and owners that core's own texts, parameters and command line use.
-constexpr std::array<std::string_view, 12> kReserved = {"all",   "camera", "core",    "data",
-                                                        "frame", "gl",     "hook",    "none",
-                                                        "scene", "stored", "terrain", "varyings"};
+// Words of core's command line, parameters and timings, and what its shaders' globals begin with.
+constexpr std::array<std::string_view, 38> kReserved = {
+    "all",     "antialias", "background", "camera",   "colour",   "core",   "data",   "depth",
+    "east",    "edges",     "frame",      "geometry", "gl",       "height", "hook",   "light",
+    "load",    "net",       "none",       "normal",   "overlay",  "page",   "place",  "post",
+    "scene",   "select",    "slope",      "srgb",     "steps",    "store",  "stored", "sun",
+    "surface", "tangent",   "terrain",    "up",       "varyings", "vertex"};
 
 // A capability that core provides itself: render/programs.h.
 constexpr std::string_view kNightWord = "night";
@@ -65,18 +69,23 @@ std::vector<std::string> words(ObjectReader& object, const std::string& key) {
     return result;
 }
 
+/// @param folder  the plugin's, or the program's data, where links may lead elsewhere
 std::filesystem::path own_file(const ObjectReader& object, int line, const std::string& key,
-                               const std::filesystem::path& folder, const std::string& name) {
+                               const std::filesystem::path& folder, const std::string& name,
+                               bool shared = false) {
     const std::filesystem::path path(name);
     const bool inside = path.is_relative() && std::none_of(path.begin(), path.end(),
                                                            [](const auto& p) { return p == ".."; });
-    if (!inside)
+    if (!inside || (!shared && !file_inside(folder, path)))
         object.fail(line, key,
                     fmt::format("expected a file of the plugin's own folder but got {}", name));
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(folder / path, ignored))
-        object.fail(line, key, fmt::format("{}: no such file", (folder / path).string()));
-    return folder / path;
+    const std::filesystem::path file = folder / path;
+    if (!std::filesystem::exists(file, ignored))
+        object.fail(line, key, fmt::format("{}: no such file", file.string()));
+    if (!std::filesystem::is_regular_file(file, ignored))
+        object.fail(line, key, fmt::format("{}: it is not a regular file", file.string()));
+    return file;
 }
 
 class ManifestReader {
@@ -194,7 +203,7 @@ class ManifestReader {
         constexpr std::string_view kShared = "data:";
         const bool shared = name.substr(0, kShared.size()) == kShared;
         return own_file(object, object.line_of(key), key, shared ? data_dir_ : manifest_.folder,
-                        shared ? name.substr(kShared.size()) : name);
+                        shared ? name.substr(kShared.size()) : name, shared);
     }
 
     void passes(ObjectReader& object) {

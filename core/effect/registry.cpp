@@ -1,6 +1,7 @@
 #include "effect/registry.h"
 
 #include <algorithm>
+#include <new>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,9 +13,18 @@
 namespace relevo::effect {
 namespace {
 
+/// Whether there is a plugin.json, be it one that cannot be read.
 bool is_plugin(const std::filesystem::path& folder) {
     std::error_code ignored;
-    return std::filesystem::is_regular_file(folder / "plugin.json", ignored);
+    return std::filesystem::exists(
+        std::filesystem::symlink_status(folder / "plugin.json", ignored));
+}
+
+/// The folder's own name, "haze" of "." too.
+std::string name_of(const std::filesystem::path& folder) {
+    std::error_code error;
+    const std::filesystem::path whole = std::filesystem::absolute(folder, error).lexically_normal();
+    return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
 }
 
 std::vector<std::filesystem::path> plugin_folders(const std::filesystem::path& path) {
@@ -23,8 +33,9 @@ std::vector<std::filesystem::path> plugin_folders(const std::filesystem::path& p
         bad_input(fmt::format("effect::load: {}: no such folder", path.string()));
     if (is_plugin(path)) return {path};
     std::vector<std::filesystem::path> folders;
-    for (const auto& entry : std::filesystem::directory_iterator(path, error))
-        if (is_plugin(entry.path())) folders.push_back(entry.path());
+    for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end;
+         entry.increment(error))
+        if (is_plugin(entry->path())) folders.push_back(entry->path());
     if (error)
         bad_input(
             fmt::format("effect::load: {}: cannot be read, {}", path.string(), error.message()));
@@ -40,8 +51,7 @@ Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
     Registry registry;
     for (const std::filesystem::path& path : search_paths) {
         for (const std::filesystem::path& folder : plugin_folders(path)) {
-            std::string id =
-                std::filesystem::absolute(folder).lexically_normal().filename().string();
+            std::string id = name_of(folder);
             try {
                 Effect effect = load_effect(folder, data_dir);
                 id = effect.id();
@@ -53,6 +63,11 @@ Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
                 registry.effects_.push_back(std::move(effect));
             } catch (const Error& error) {
                 registry.broken_.push_back({id, folder, error.what()});
+            } catch (const std::bad_alloc&) {
+                registry.broken_.push_back(
+                    {id, folder,
+                     fmt::format("effect::load: {}: there is not enough memory to read it",
+                                 folder.string())});
             }
         }
     }
@@ -74,6 +89,11 @@ const Effect* Registry::find(std::string_view id) const {
     const auto found = std::find_if(effects_.begin(), effects_.end(),
                                     [&](const Effect& effect) { return effect.id() == id; });
     return found == effects_.end() ? nullptr : &*found;
+}
+
+bool Registry::is_broken(std::string_view id) const {
+    return !find(id) && std::any_of(broken_.begin(), broken_.end(),
+                                    [&](const BrokenEffect& broken) { return broken.id == id; });
 }
 
 const Effect& Registry::effect(std::string_view id, std::string_view who) const {

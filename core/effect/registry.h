@@ -33,6 +33,7 @@ class Registry {
     const std::vector<BrokenEffect>& broken() const { return broken_; }
 
     const Effect* find(std::string_view id) const;  ///< or null
+    bool is_broken(std::string_view id) const;      ///< there, but could not be loaded
     /// @throws Error (BadInput) `who: id: ...` with the nearest id, or why that plugin is broken
     const Effect& effect(std::string_view id, std::string_view who) const;
     std::vector<shader::Param> params() const;  ///< of all effects, for ParamStore::declare

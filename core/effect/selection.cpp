@@ -23,7 +23,7 @@ class Selector {
   public:
     Selector(const Registry& registry, const std::vector<Preset>& presets,
              const Switches& command_line, const Unusable& unusable)
-        : registry_(registry) {
+        : registry_(registry), command_line_(command_line) {
         for (const Effect& effect : registry.effects())
             if (effect.manifest.enabled_by_default) on_.insert(effect.id());
         for (const Preset& preset : presets)
@@ -31,9 +31,10 @@ class Selector {
         check_command_line(command_line);
         apply(command_line);
         for (const auto& [id, reason] : unusable) {
-            if (on_.erase(id) > 0) notices_.push_back(fmt::format("{} is off: {}", id, reason));
+            if (on_.erase(id) > 0) warn_off(id, reason);
             asked_.erase(id);
             unmet_.insert(id);
+            broken_.insert(id);
         }
     }
 
@@ -48,6 +49,7 @@ class Selector {
             words.insert(effect->manifest.provides.begin(), effect->manifest.provides.end());
         selection.capabilities.assign(words.begin(), words.end());
         selection.notices = std::move(notices_);
+        selection.warnings = std::move(warnings_);
         return selection;
     }
 
@@ -80,7 +82,7 @@ class Selector {
         const std::vector<std::string> only = switches.only.value_or(std::vector<std::string>{});
         for (const auto* ids : {&only, &switches.enable, &switches.disable})
             for (const std::string& id : *ids)
-                effect(id);
+                if (ids != &switches.disable || !registry_.is_broken(id)) effect(id);
         for (const std::string& id : switches.disable)
             if (contains(switches.enable, id) || contains(only, id))
                 bad_input(
@@ -153,7 +155,9 @@ class Selector {
 
     void switch_off(const std::string id, const std::string& word) {
         std::vector<std::string> offers;
+        bool needs_broken = false;
         for (const Effect* provider : providers(word)) {
+            needs_broken = needs_broken || broken_.count(provider->id()) > 0;
             const bool disabled = disabled_.count(provider->id()) > 0;
             const bool unmet = unmet_.count(provider->id()) > 0;
             offers.push_back(
@@ -162,13 +166,30 @@ class Selector {
                             : unmet  ? "off"
                                      : "off, --enable " + provider->id() + " changes that"));
         }
-        notices_.push_back(fmt::format("{} is off: it requires {}, {}", id, word,
-                                       offers.empty()
-                                           ? "which no plugin here provides"
-                                           : fmt::format("{}", fmt::join(offers, "; "))));
+        const std::string reason =
+            fmt::format("it requires {}, {}", word,
+                        offers.empty() ? "which no plugin here provides"
+                                       : fmt::format("{}", fmt::join(offers, "; ")));
+        if (needs_broken) {
+            broken_.insert(id);
+            warn_off(id, reason);
+        } else {
+            notices_.push_back(fmt::format("{} is off: {}", id, reason));
+        }
         on_.erase(id);
         asked_.erase(id);
         unmet_.insert(id);
+    }
+
+    /// Says that something broken keeps an effect off.
+    /// @throws Error if the command line asks for that effect by name
+    void warn_off(const std::string& id, const std::string& reason) {
+        const bool only = command_line_.only && contains(*command_line_.only, id);
+        if (only || contains(command_line_.enable, id))
+            bad_input(fmt::format("{}: {}: it cannot be switched on: {}; take it out of {}", kWho,
+                                  id, reason, only ? "--only" : "--enable"));
+        warnings_.push_back(
+            fmt::format("{} is off: {}; --disable {} leaves it out", id, reason, id));
     }
 
     // ---- hooks and order
@@ -243,11 +264,13 @@ class Selector {
     }
 
     const Registry& registry_;
+    const Switches& command_line_;
     std::set<std::string> on_;
     std::set<std::string> asked_;     // by name, or by what was asked for
     std::set<std::string> disabled_;  // by name
     std::set<std::string> unmet_;     // switched off here
-    std::vector<std::string> notices_;
+    std::set<std::string> broken_;    // of those, what is unusable or requires what is
+    std::vector<std::string> notices_, warnings_;
 };
 
 std::string plugin_of(const std::string& address) {

@@ -14,7 +14,8 @@ namespace relevo::effect {
 struct Selection {
     std::vector<const Effect*> effects;     ///< in calling order; they live in the registry
     std::vector<std::string> capabilities;  ///< what they provide, sorted
-    std::vector<std::string> notices;  ///< what was switched on or off beyond the asked, and why
+    std::vector<std::string> notices;   ///< what was switched on or off beyond the asked, and why
+    std::vector<std::string> warnings;  ///< what is off because something is broken, and why
 
     bool has(std::string_view id) const;
     std::vector<const shader::Snippet*> snippets() const;  ///< for shader::StitchInput
@@ -32,9 +33,11 @@ using Unusable = std::map<std::string, std::string>;
 /// ties by id.
 ///
 /// What a preset names and is not there is a notice, so that deleting a plugin breaks no preset.
-/// @throws Error (BadInput) for an id on the command line that is unknown, or both on and off; a
-///         circle of `after`; two providers of an exclusive hook
-/// @param unusable  effects that cannot be on whatever is asked, each with the reason: a notice
+/// @param unusable  effects that cannot be on: they are off, with a warning, and so is what
+///                  requires them
+/// @throws Error (BadInput) for an id on the command line that is unknown, or both on and off; one
+///         that `only` or `enable` name there and that cannot be on; a circle of `after`; two
+///         providers of an exclusive hook
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
                  const Switches& command_line, const Unusable& unusable = {});
 

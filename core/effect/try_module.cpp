@@ -1,90 +1,159 @@
-// Loads a native module and calls its registration, so that what goes wrong there goes wrong here.
+// Loads a native module and calls each of its functions, so that what goes wrong there goes wrong
+// here.
 //
-// try_module LIBRARY ID: on standard output "good" and status 0, or the reason why it will not do,
-// if it can still say it. Links with nothing, so that it starts in a millisecond.
+// try_module LIBRARY ID FOLDER: parameters on standard input and a report on standard output, as
+// effect/module_trial.cpp and effect/trial_report.h say. Links with little, so that it starts in
+// two milliseconds.
+#include <array>
+#include <cerrno>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <string>
+#include <string_view>
 
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "effect/abi/relevo_plugin.h"
+#include "effect/stand_in_host.h"
+#include "effect/trial_report.h"
 
 namespace {
 
-constexpr int kBad = 2;
+using namespace relevo::effect;
 
-void write_log(void*, int32_t, const char*) {}
+constexpr int kFrames = 3;
 
-relevo_log_1 log_table{sizeof(relevo_log_1), nullptr, &write_log};
-
-const void* service(const relevo_host*, const char* name, uint32_t version) {
-    return std::strcmp(name, "relevo.log") == 0 && version == 1 ? &log_table : nullptr;
-}
-
-char reason[1024] = "";
-
-void fail(const relevo_host*, const char* text) {
-    std::snprintf(reason, sizeof reason, "%s", text ? text : "");
-}
-
-int bad(const char* text) {
-    std::fputs(text, stdout);
-    return kBad;
-}
-
-int try_it(const char* path, const char* id) {
-    void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    if (!library) {
-        std::printf("it cannot be loaded: %s", dlerror());
-        return kBad;
+/// The way to who started this. What the module prints goes elsewhere.
+class Report {
+  public:
+    Report() : fd_(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)) {
+        const int nowhere = open("/dev/null", O_RDWR);
+        dup2(nowhere, STDIN_FILENO);
+        dup2(nowhere, STDOUT_FILENO);
+        close(nowhere);
     }
-    const auto* version = static_cast<const uint32_t*>(dlsym(library, "relevo_plugin_abi"));
-    if (!version) return bad("it has no symbol relevo_plugin_abi; see RELEVO_PLUGIN");
-    if (*version >> 16 != RELEVO_ABI_MAJOR) {
-        std::printf(
-            "expected version %u of the plugin interface but got %u.%u; build it with this "
-            "program's relevo_plugin.h",
-            RELEVO_ABI_MAJOR, *version >> 16, *version & 0xffff);
-        return kBad;
+    void stage(const char* name) const { write(std::string(1, kStageMark) + name + '\n'); }
+    [[noreturn]] void end(std::string_view reason) const {
+        std::string text(1, kVerdictMark);
+        for (const char c : reason.substr(0, kMostReasonBytes))
+            text += c == kStageMark || c == kVerdictMark || c == kReportEnd ? '?' : c;
+        write(text + kReportEnd);
+        // Destructors of a bad library are not to be trusted either.
+        _exit(0);
     }
-    const auto registration = reinterpret_cast<decltype(&relevo_plugin_register)>(
-        dlsym(library, "relevo_plugin_register"));
-    if (!registration) return bad("it has no symbol relevo_plugin_register; see RELEVO_PLUGIN");
 
-    const relevo_host host{sizeof(relevo_host), RELEVO_ABI_VERSION, &service, &fail};
-    relevo_module module{};
-    module.size = sizeof module;
-    try {
-        if (registration(&host, &module) != RELEVO_OK) {
-            std::printf("its registration failed: %s", reason[0] ? reason : "no reason given");
-            return kBad;
+  private:
+    void write(std::string_view text) const {
+        while (!text.empty()) {
+            const ssize_t written = ::write(fd_, text.data(), text.size());
+            if (written < 0 && errno == EINTR) continue;
+            if (written <= 0) _exit(0);
+            text.remove_prefix(static_cast<std::size_t>(written));
         }
-    } catch (const std::exception& error) {
-        std::printf("its registration threw an exception: %s", error.what());
-        return kBad;
-    } catch (...) {
-        return bad("its registration threw an exception");
     }
-    if (!module.id || std::strcmp(module.id, id) != 0) {
-        std::printf("expected the module of %s but got that of %s", id,
-                    module.id ? module.id : "nobody");
-        return kBad;
-    }
-    if (!module.create || !module.destroy) return bad("its table lacks create or destroy");
-    // Said aloud: a module may end the process with status 0 itself.
-    std::fputs("good", stdout);
-    return 0;
+    int fd_;
+};
+
+void read_parameters(StandInHost& host) {
+    char address[256];
+    int is_host = 0;
+    std::array<double, 4> v{};
+    while (std::scanf("%255s %d %lf %lf %lf %lf", address, &is_host, &v[0], &v[1], &v[2], &v[3]) ==
+           6)
+        host.add_parameter(address, is_host != 0, v);
 }
+
+class Trial {
+  public:
+    Trial(const Report& report, StandInHost& host) : report_(report), host_(host) {}
+
+    [[noreturn]] void run(const char* path, const char* id) {
+        report_.stage("loading it");
+        void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+        if (!library) report_.end(std::string("it cannot be loaded: ") + dlerror());
+        register_it(library, id);
+        call_it();
+        report_.end("");
+    }
+
+  private:
+    /// Calls one of the module's functions. @returns whether it did what it was asked to
+    template <typename Body>
+    bool call(const char* name, const Body& body) const {
+        report_.stage(name);
+        try {
+            return body() == RELEVO_OK;
+        } catch (const std::exception& error) {
+            report_.end(std::string(name) + " threw an exception: " + error.what());
+        } catch (...) {
+            report_.end(std::string(name) + " threw an exception");
+        }
+    }
+
+    void register_it(void* library, const char* id) {
+        const auto* version = static_cast<const uint32_t*>(dlsym(library, "relevo_plugin_abi"));
+        if (!version) report_.end("it has no symbol relevo_plugin_abi; see RELEVO_PLUGIN");
+        if (*version >> 16 != RELEVO_ABI_MAJOR)
+            report_.end("expected version " + std::to_string(RELEVO_ABI_MAJOR) +
+                        " of the plugin interface but got " + std::to_string(*version >> 16) + "." +
+                        std::to_string(*version & 0xffff) +
+                        "; build it with this program's relevo_plugin.h");
+        const auto registration = reinterpret_cast<decltype(&relevo_plugin_register)>(
+            dlsym(library, "relevo_plugin_register"));
+        if (!registration)
+            report_.end("it has no symbol relevo_plugin_register; see RELEVO_PLUGIN");
+        module_.size = sizeof module_;
+        if (!call("its registration", [&] { return registration(host_.host(), &module_); }))
+            report_.end("its registration failed: " +
+                        (host_.reason().empty() ? "no reason given" : host_.reason()));
+        if (!module_.id || std::strcmp(module_.id, id) != 0)
+            report_.end(std::string("expected the module of ") + id + " but got that of " +
+                        (module_.id ? module_.id : "nobody"));
+        if (!module_.create || !module_.destroy) report_.end("its table lacks create or destroy");
+    }
+
+    // What fails in good order here may do well with a device.
+    void call_it() {
+        void* instance = nullptr;
+        host_.start();
+        if (!call("its create()", [&] { return module_.create(host_.host(), &instance); })) return;
+        for (int frame = 0; module_.prepare && frame < kFrames; ++frame) {
+            host_.begin_frame(frame);
+            call("its prepare()", [&] { return module_.prepare(instance); });
+            host_.end_frame();
+        }
+        if (!instance) return;
+        call("its destroy()", [&] {
+            module_.destroy(instance);
+            return RELEVO_OK;
+        });
+    }
+
+    const Report& report_;
+    StandInHost& host_;
+    relevo_module module_{};
+};
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 3) return bad("usage: try_module LIBRARY ID");
-    const int status = try_it(argv[1], argv[2]);
-    std::fflush(stdout);
-    // Destructors of a bad library are not to be trusted either.
-    _Exit(status);
+    if (argc != 4) {
+        std::fputs("usage: try_module LIBRARY ID FOLDER\n", stderr);
+        return 2;
+    }
+    // A trial ends with who asked for it, and leaves no core file.
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_CORE, &none);
+    StandInHost host(argv[3]);
+    read_parameters(host);
+    Trial(Report(), host).run(argv[1], argv[2]);
 }

@@ -227,6 +227,8 @@ struct Context::Impl {
         std::array<GLint, 2> viewport{};
         glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
         info.max_picture_size = std::min({info.max_texture_size, viewport[0], viewport[1]});
+        glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &value);
+        info.max_volume_size = value;
         glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &value);
         info.max_array_layers = value;
         glGetInternalformativ(GL_RENDERBUFFER, GL_RGBA16F, GL_SAMPLES, 1, &value);

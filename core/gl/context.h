@@ -32,6 +32,7 @@ struct DeviceInfo {
     int max_texture_units = 0;  ///< of a fragment program
     int max_texture_size = 0;   ///< [px]
     int max_picture_size = 0;   ///< that can be drawn at once, each way [px]
+    int max_volume_size = 0;    ///< of a texture with three dimensions [px]
     int max_array_layers = 0;   ///< of an array texture
     int max_samples = 0;        ///< of a half-float colour target
     double max_anisotropy = 1;  ///< 1 where there is no anisotropic filter

@@ -140,6 +140,12 @@ Texture::Texture(TextureKind kind, Format format, Extent extent, int levels, std
       format_(format),
       extent_(extent),
       levels_(levels > 0 ? levels : full_chain(kind, extent)) {
+    // GL would leave a texture without storage, and say so only to a debug context.
+    if (levels_ > full_chain(kind, extent))
+        failed(fmt::format(
+            "gl::Texture: {}: expected at most {} levels of {} x {} x {} texels but "
+            "got {}",
+            label, full_chain(kind, extent), extent.width, extent.height, extent.depth, levels_));
     expect_no_error(label);
     if (kind == TextureKind::D2Array || kind == TextureKind::D3)
         glTextureStorage3D(name(), levels_, info(format).internal, extent.width, extent.height,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -8,6 +9,22 @@
 /// What the module `image_formats` offers: every format but PNG, through OpenImageIO. It is a
 /// module of its own, loaded on first use, because OpenImageIO's libraries take 0.3 s to load.
 namespace relevo::image {
+
+/// A picture with longer sides, or that takes more memory, is not read.
+inline constexpr std::uint64_t kMostSide_px = 32768;
+inline constexpr std::uint64_t kMostPictureBytes = std::uint64_t{1} << 30;
+
+/// Why a picture of that size is not read; empty where it is.
+/// @param pixel_bytes  of all channels
+inline std::string size_fault(std::uint64_t width_px, std::uint64_t height_px,
+                              std::uint64_t pixel_bytes) {
+    if (width_px > 0 && height_px > 0 && width_px <= kMostSide_px && height_px <= kMostSide_px &&
+        width_px * height_px * pixel_bytes <= kMostPictureBytes)
+        return {};
+    return "expected 1 to " + std::to_string(kMostSide_px) + " pixels a side and at most " +
+           std::to_string(kMostPictureBytes >> 20) + " MiB of them but got " +
+           std::to_string(width_px) + " x " + std::to_string(height_px);
+}
 
 struct FormatsModule {
     /// Each returns an empty text on success, else the reason for failing.

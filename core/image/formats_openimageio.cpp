@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <OpenImageIO/imageio.h>
 
 #include "image/formats.h"
@@ -27,7 +29,13 @@ std::string read(const std::filesystem::path& path, Pixels<T>& image) {
     const auto input = OIIO::ImageInput::open(path.string());
     if (!input) return OIIO::geterror();
     const OIIO::ImageSpec& spec = input->spec();
-    if (spec.nchannels > 4) return "more than four channels";
+    if (spec.nchannels < 1 || spec.nchannels > 4) return "expected one to four channels";
+    if (const std::string reason =
+            size_fault(static_cast<std::uint64_t>(std::max(spec.width, 0)),
+                       static_cast<std::uint64_t>(std::max(spec.height, 0)),
+                       static_cast<std::uint64_t>(spec.nchannels) * sizeof(T));
+        !reason.empty())
+        return reason;
     image = Pixels<T>(spec.width, spec.height, spec.nchannels);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<T>::value,
                            image.values.data()))

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/input_file.h"
 #include "base/output_file.h"
 #include "base/paths.h"
 #include "image/formats.h"
@@ -117,6 +118,7 @@ void write(const std::filesystem::path& path, const ImageF& image, const Metadat
 Image8 read(const std::filesystem::path& path) {
     const Format* format = format_of(path);
     if (format && std::string_view(format->name) == "png") return read_png(path);
+    const InputFile only_regular(path, "image");
     Image8 image;
     const std::string reason = formats_module().read8(path, image);
     if (!reason.empty()) bad_input(fmt::format("image: {}: {}", path.string(), reason));
@@ -124,6 +126,7 @@ Image8 read(const std::filesystem::path& path) {
 }
 
 ImageF read_float(const std::filesystem::path& path) {
+    const InputFile only_regular(path, "image");
     ImageF image;
     const std::string reason = formats_module().read_float(path, image);
     if (!reason.empty()) bad_input(fmt::format("image: {}: {}", path.string(), reason));

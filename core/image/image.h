@@ -67,7 +67,7 @@ void write(const std::filesystem::path& path, const ImageF& image, const Metadat
            bool overwrite = false);
 
 /// Reads a picture of any of those formats as 8-bit sRGB values.
-/// @throws Error (BadInput) if it is missing or broken
+/// @throws Error (BadInput) if it is missing, broken or no regular file, or too large to be read
 Image8 read(const std::filesystem::path& path);
 
 /// Reads a picture as the values in the file, an 8-bit one scaled to 0..1.

@@ -11,13 +11,12 @@
 #include <string_view>
 #include <utility>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/input_file.h"
 
 namespace relevo::image {
 namespace {
@@ -259,14 +258,6 @@ std::vector<std::size_t> Reader::level_offsets(const Header& h, const FormatInfo
     return offsets;
 }
 
-/// A file descriptor that is closed at the end of its scope.
-struct Descriptor {
-    int fd = -1;
-    ~Descriptor() {
-        if (fd >= 0) close(fd);
-    }
-};
-
 }  // namespace
 
 std::size_t bytes_per_texel(TextureFormat format) {
@@ -328,21 +319,16 @@ void TextureData::Unmap::operator()(const std::byte* bytes) const {
 }
 
 TextureData read_ktx(const std::filesystem::path& path) {
-    const auto cannot_be_read = [&](const char* reason) {
-        bad_input(fmt::format("image::read_ktx: {}: cannot be read, {}", path.string(), reason));
-    };
-    const Descriptor file{open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-    if (file.fd < 0) cannot_be_read(std::strerror(errno));
-    struct stat status {};
-    if (fstat(file.fd, &status) != 0) cannot_be_read(std::strerror(errno));
-    if (!S_ISREG(status.st_mode)) cannot_be_read("it is not a regular file");
-    const auto size = static_cast<std::size_t>(status.st_size);
+    const InputFile file(path, "image::read_ktx");
+    const auto size = static_cast<std::size_t>(file.size());
 
     TextureData texture;
     std::span<const std::byte> bytes;
     if (size > 0) {
-        void* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd, 0);
-        if (memory == MAP_FAILED) cannot_be_read(std::strerror(errno));
+        void* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
+        if (memory == MAP_FAILED)
+            bad_input(fmt::format("image::read_ktx: {}: cannot be read, {}", path.string(),
+                                  std::strerror(errno)));
         texture.mapped_ = {static_cast<const std::byte*>(memory), TextureData::Unmap{size}};
         bytes = {texture.mapped_.get(), size};
     }

@@ -7,8 +7,11 @@
 
 #include <fmt/format.h>
 #include <png.h>
+#include <unistd.h>
 
 #include "base/error.h"
+#include "base/input_file.h"
+#include "image/formats.h"
 
 namespace relevo::image {
 namespace {
@@ -38,6 +41,33 @@ int colour_type(int channels) {
         default:
             return PNG_COLOR_TYPE_RGB_ALPHA;
     }
+}
+
+void read_bytes(png_structp png, png_bytep to, std::size_t count) {
+    const int descriptor = *static_cast<const int*>(png_get_io_ptr(png));
+    while (count > 0) {
+        const ssize_t got = ::read(descriptor, to, count);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) png_error(png, std::strerror(errno));
+        if (got == 0) png_error(png, "the file ends too early");
+        to += got;
+        count -= static_cast<std::size_t>(got);
+    }
+}
+
+/// Says so where a file is too short for the pixels that it claims, before there is memory for
+/// them: deflate makes at most 1032 bytes of one (zlib's Technical Details).
+void check_whole(const std::string& subject, png_structp png, png_infop info,
+                 std::uint64_t file_bytes) {
+    constexpr std::uint64_t kMostInflated = 1032;
+    const png_uint_32 width = png_get_image_width(png, info);
+    const png_uint_32 height = png_get_image_height(png, info);
+    const std::uint64_t bytes = std::uint64_t{png_get_rowbytes(png, info)} * height;
+    if (bytes > kMostInflated * file_bytes)
+        failed(
+            fmt::format("image: {}: a file of {} bytes cannot hold {} x {} pixels; it is "
+                        "damaged",
+                        subject, file_bytes, width, height));
 }
 
 }  // namespace
@@ -84,9 +114,7 @@ void write_png(const std::filesystem::path& path, const Image8& image, const Met
 
 Image8 read_png(const std::filesystem::path& path, Metadata* metadata) {
     std::string subject = path.string();
-    const File file(std::fopen(path.c_str(), "rb"));
-    if (!file)
-        bad_input(fmt::format("image: {}: cannot be read, {}", subject, std::strerror(errno)));
+    const InputFile input(path, "image");
     struct Reader {
         png_structp png = nullptr;
         png_infop info = nullptr;
@@ -94,16 +122,21 @@ Image8 read_png(const std::filesystem::path& path, Metadata* metadata) {
     } reader;
     reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &subject, on_error, on_warning);
     reader.info = png_create_info_struct(reader.png);
-    png_init_io(reader.png, file.get());
+    int descriptor = input.descriptor();
+    png_set_read_fn(reader.png, &descriptor, read_bytes);
     try {
         png_read_info(reader.png, reader.info);
+        check_whole(subject, reader.png, reader.info, input.size());
         png_set_expand(reader.png);
         png_set_scale_16(reader.png);
         png_set_interlace_handling(reader.png);
         png_read_update_info(reader.png, reader.info);
-        Image8 image(static_cast<int>(png_get_image_width(reader.png, reader.info)),
-                     static_cast<int>(png_get_image_height(reader.png, reader.info)),
-                     png_get_channels(reader.png, reader.info));
+        const std::uint64_t width = png_get_image_width(reader.png, reader.info);
+        const std::uint64_t height = png_get_image_height(reader.png, reader.info);
+        const int channels = png_get_channels(reader.png, reader.info);
+        if (const std::string reason = size_fault(width, height, channels); !reason.empty())
+            failed(fmt::format("image: {}: {}", subject, reason));
+        Image8 image(static_cast<int>(width), static_cast<int>(height), channels);
         std::vector<png_bytep> rows;
         for (int y = 0; y < image.height; ++y)
             rows.push_back(image.row(y));

@@ -4,18 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "effect/manifest.h"
+#include "effect/texture_files.h"
 #include "gl/texture.h"
 
 namespace relevo::render {
 
-/// The textures of all enabled effects, on the device. KTX 2 files go there as they are; pictures
-/// are decoded, and get mipmaps where the manifest says so.
+/// The textures of all enabled effects, on the device. They get mipmaps where the manifest says so
+/// and the files have none.
 class EffectTextures {
   public:
     EffectTextures() = default;
-    /// @throws Error (BadInput) for a file that is missing or broken, and layers of different sizes
-    EffectTextures(const std::vector<effect::TextureSpec>& specs, double anisotropy);
+    /// @pre  effect::check_limits() of this device
+    /// @throws Error (Failed) where the device has no memory for them
+    EffectTextures(const std::vector<const effect::LoadedTexture*>& textures, double anisotropy);
 
     /// Null if no effect asked for it.
     const gl::Texture* find(const std::string& resource) const;

@@ -15,38 +15,20 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/paths.h"
 #include "base/text.h"
 #include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/vertex_array.h"
+#include "render/native_textures.h"
+#include "shader/driver_log.h"
+#include "shader/tokenizer.h"
 
 namespace relevo::render {
 namespace {
 
 constexpr unsigned kFrameBinding = 0;
-
-struct FormatRow {
-    std::int32_t abi;
-    gl::Format format;
-    int floats;
-};
-constexpr std::array kFormats = {
-    FormatRow{RELEVO_FORMAT_R32F, gl::Format::R32F, 1},
-    FormatRow{RELEVO_FORMAT_RG32F, gl::Format::RG32F, 2},
-    FormatRow{RELEVO_FORMAT_RGBA32F, gl::Format::RGBA32F, 4},
-    FormatRow{RELEVO_FORMAT_RG16F, gl::Format::RG16F, 2},
-    FormatRow{RELEVO_FORMAT_RGBA16F, gl::Format::RGBA16F, 4},
-    FormatRow{RELEVO_FORMAT_DEPTH32F, gl::Format::Depth32F, 1},
-    FormatRow{RELEVO_FORMAT_R16F, gl::Format::R16F, 1},
-    FormatRow{RELEVO_FORMAT_RGBA8, gl::Format::RGBA8, 4},
-};
-
-const FormatRow* format_row(std::int32_t abi) {
-    const auto found = std::find_if(kFormats.begin(), kFormats.end(),
-                                    [&](const FormatRow& row) { return row.abi == abi; });
-    return found == kFormats.end() ? nullptr : &*found;
-}
 
 /// Writes as much of `full` as the other side knows of.
 template <typename Struct>
@@ -76,6 +58,18 @@ void write_vector(const glm::dvec3& from, double (&to)[3]) {
 glm::dmat3 axes_of(const relevo_box& box) {
     return {vector_of(box.right), vector_of(box.up), vector_of(box.towards)};
 }
+
+/// Switches off at its end, however that comes, what draw_depth() switches on.
+struct DepthState {
+    DepthState() = default;
+    DepthState(const DepthState&) = delete;
+    DepthState& operator=(const DepthState&) = delete;
+    ~DepthState() {
+        for (const GLenum capability :
+             {GL_CULL_FACE, GL_CLIP_DISTANCE0, GL_DEPTH_CLAMP, GL_DEPTH_TEST})
+            glDisable(capability);
+    }
+};
 
 /// What relevo_frame says beside the ground.
 struct FrameState {
@@ -107,13 +101,7 @@ struct NativeHost::Impl {
     relevo_draw_1 draw_table{};
     relevo_terrain_1 terrain_table{};
 
-    struct Texture {
-        gl::Texture texture;
-        std::string resource;
-        int floats = 0;
-    };
-    std::map<relevo_texture, Texture> textures;
-    relevo_texture last_texture = 0;
+    NativeTextures textures;
     std::vector<gl::Program> programs;
     gl::VertexArray no_inputs;
     gl::Buffer frame_block{sizeof(FrameBlock), "sun frame block"};
@@ -129,7 +117,8 @@ struct NativeHost::Impl {
           use_depth(std::move(d)),
           values(v),
           width_px(width),
-          height_px(height) {
+          height_px(height),
+          textures(m.id(), c.info()) {
         host.size = sizeof(relevo_host);
         host.owner = this;
         host.abi_version = RELEVO_ABI_VERSION;
@@ -140,7 +129,13 @@ struct NativeHost::Impl {
         fill_tables();
     }
     ~Impl() {
-        if (instance) module.functions().destroy(instance);
+        if (!instance) return;
+        const effect::ModuleCall call(module.process(), "destroy()");
+        try {
+            module.functions().destroy(instance);
+        } catch (...) {
+            log::warning(module.process().message("destroy()", "threw an exception"));
+        }
     }
 
     static Impl& of(const relevo_host* h) { return *static_cast<const OwnHost*>(h)->owner; }
@@ -166,10 +161,19 @@ struct NativeHost::Impl {
         try {
             body(impl);
             return RELEVO_OK;
+        } catch (const std::bad_alloc&) {
+            impl.reason = "there is not enough memory";
         } catch (const std::exception& error) {
             impl.reason = error.what();
-            return RELEVO_FAILED;
         }
+        return RELEVO_FAILED;
+    }
+
+    /// The same for a body that draws or waits for the device, whose time is not the module's.
+    template <typename Body>
+    static relevo_status serve_device(void* self, const Body& body) noexcept {
+        const effect::ModuleCall::Pause pause;
+        return serve(self, body);
     }
 
     [[noreturn]] void refuse(const std::string& what) const { failed(what); }
@@ -177,12 +181,6 @@ struct NativeHost::Impl {
     const FrameState& now() const {
         if (!frame) refuse("no frame is drawn now; ask inside prepare()");
         return *frame;
-    }
-
-    Texture& texture(relevo_texture name) {
-        const auto found = textures.find(name);
-        if (found == textures.end()) refuse(fmt::format("there is no texture {}", name));
-        return found->second;
     }
 
     void fill_tables() {
@@ -213,44 +211,52 @@ struct NativeHost::Impl {
         frame_table = {sizeof frame_table, this, [](void* self, relevo_frame* out) {
                            return serve(self, [&](Impl& impl) { impl.describe_frame(out); });
                        }};
-        texture_table = {
-            sizeof texture_table,
-            this,
-            [](void* self, const relevo_texture_info* info, relevo_texture* out) {
-                return serve(self, [&](Impl& impl) { *out = impl.make_texture(copy_in(info)); });
-            },
-            [](void* self, relevo_texture name) { of(self).textures.erase(name); },
-            [](void* self, relevo_texture name) {
-                return serve(self, [&](Impl& impl) { impl.texture(name).texture.make_mipmaps(); });
-            },
-            [](void* self, relevo_texture name, std::int32_t layer, float* out,
-               std::uint64_t count) {
-                return serve(self, [&](Impl& impl) { impl.read_texture(name, layer, out, count); });
-            }};
+        texture_table = {sizeof texture_table,
+                         this,
+                         [](void* self, const relevo_texture_info* info, relevo_texture* out) {
+                             return serve_device(self, [&](Impl& impl) {
+                                 *out = impl.textures.create(copy_in(info));
+                             });
+                         },
+                         [](void* self, relevo_texture name) {
+                             const effect::ModuleCall::Pause pause;
+                             of(self).textures.destroy(name);
+                         },
+                         [](void* self, relevo_texture name) {
+                             return serve_device(
+                                 self, [&](Impl& impl) { impl.textures.get(name).make_mipmaps(); });
+                         },
+                         [](void* self, relevo_texture name, std::int32_t layer, float* out,
+                            std::uint64_t count) {
+                             return serve_device(self, [&](Impl& impl) {
+                                 impl.textures.read(name, layer, out, count);
+                             });
+                         }};
         draw_table = {sizeof draw_table, this,
                       [](void* self, const char* file, relevo_program* out) {
-                          return serve(self, [&](Impl& impl) { *out = impl.make_program(file); });
+                          return serve_device(self,
+                                              [&](Impl& impl) { *out = impl.make_program(file); });
                       },
                       [](void* self, const relevo_draw* draw) {
-                          return serve(self, [&](Impl& impl) { impl.run(copy_in(draw)); });
+                          return serve_device(self, [&](Impl& impl) { impl.run(copy_in(draw)); });
                       }};
         terrain_table = {sizeof terrain_table, this,
                          [](void* self, relevo_box* box) {
-                             return serve(self, [&](Impl& impl) {
+                             return serve_device(self, [&](Impl& impl) {
                                  if (!impl.fill_box(box, nullptr, 0))
                                      impl.refuse("this DEM has no ground");
                              });
                          },
                          [](void* self, double nearer_than_m, relevo_box* box) {
                              bool any = false;
-                             const relevo_status status = serve(self, [&](Impl& impl) {
+                             const relevo_status status = serve_device(self, [&](Impl& impl) {
                                  any = impl.fill_box(box, &impl.now().picture, nearer_than_m);
                              });
                              return any ? status : RELEVO_FAILED;
                          },
                          [](void* self, const relevo_box* box, double tolerance_m,
                             relevo_texture target, std::int32_t* level) {
-                             return serve(self, [&](Impl& impl) {
+                             return serve_device(self, [&](Impl& impl) {
                                  const int drawn =
                                      impl.draw_depth(copy_in(box), tolerance_m, target);
                                  if (level) *level = drawn;
@@ -279,68 +285,31 @@ struct NativeHost::Impl {
         copy_out(full, out);
     }
 
-    relevo_texture make_texture(const relevo_texture_info& info) {
-        const FormatRow* row = format_row(info.format);
-        if (!row) refuse(fmt::format("{} is no format of a texture", info.format));
-        const int most = context.info().max_texture_size;
-        if (info.width < 1 || info.height < 1 || info.width > most || info.height > most ||
-            info.layers < 0 || info.layers > context.info().max_array_layers)
-            refuse(
-                fmt::format("expected a texture of up to {0} x {0} but got {1} x {2}, {3} layers",
-                            most, info.width, info.height, info.layers));
-        Texture made;
-        made.resource = info.name ? module.id() + '.' + info.name : std::string();
-        made.floats = row->floats;
-        made.texture =
-            gl::Texture(info.layers > 0 ? gl::TextureKind::D2Array : gl::TextureKind::D2,
-                        row->format, {info.width, info.height, std::max(info.layers, 1)},
-                        info.levels, made.resource.empty() ? module.id() : made.resource);
-        made.texture.set_sampling(info.filter == RELEVO_FILTER_NEAREST  ? gl::Filter::Nearest
-                                  : info.filter == RELEVO_FILTER_LINEAR ? gl::Filter::Linear
-                                                                        : gl::Filter::Mipmap,
-                                  gl::Wrap::Clamp);
-        if (!made.resource.empty())
-            for (auto& [other, texture] : textures)
-                if (texture.resource == made.resource) texture.resource.clear();
-        textures.emplace(++last_texture, std::move(made));
-        return last_texture;
-    }
-
-    void read_texture(relevo_texture name, int layer, float* out, std::uint64_t count) {
-        const Texture& from = texture(name);
-        const gl::Extent extent = from.texture.extent();
-        const std::uint64_t a_layer = std::uint64_t{1} * static_cast<unsigned>(extent.width) *
-                                      static_cast<unsigned>(extent.height) *
-                                      static_cast<unsigned>(from.floats);
-        const gl::Format format = from.texture.format();
-        const bool floats =
-            gl::texel_bytes(format) == 4 * from.floats && format != gl::Format::RGBA8;
-        if (!floats) refuse("only textures of 32-bit floats can be read");
-        if (layer < 0 || layer >= extent.depth || count < a_layer)
-            refuse(fmt::format("expected room for {} floats and a layer below {} but got {} and {}",
-                               a_layer, extent.depth, count, layer));
-        std::vector<float> all(a_layer * static_cast<unsigned>(extent.depth));
-        from.texture.read(0, std::as_writable_bytes(std::span(all)));
-        std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(a_layer) * layer, a_layer, out);
-    }
-
-    relevo_program make_program(const char* file) {
-        const std::filesystem::path path = module.folder() / file;
+    relevo_program make_program(const char* name) {
+        const auto path = file_inside(module.folder(), name);
+        if (!path)
+            refuse(fmt::format("render: {}: expected a file of the plugin's own folder but got {}",
+                               module.folder().string(), name));
+        const std::string file = path->string();
         const std::string vertex =
             "#version 450 core\n"
             "void main() {\n"
             "    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0,\n"
             "                       gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);\n"
             "}\n";
-        const std::string fragment =
-            fmt::format(
-                "#version 450 core\nlayout(location = 0) uniform vec4 values[{}];\n#line 1\n",
-                RELEVO_MOST_VALUES) +
-            read_text(path, "render");
+        const std::string head =
+            fmt::format("#version 450 core\nlayout(location = 0) uniform vec4 values[{}];\n",
+                        RELEVO_MOST_VALUES);
+        const std::string own = shader::unix_lines(read_text(*path, "render"));
         gl::Program::Failure failure;
-        auto program = gl::Program::build(vertex, fragment, path.filename().string(), failure);
-        if (!program)
-            refuse(fmt::format("{}: the driver refuses it\n{}", path.string(), failure.log));
+        auto program = gl::Program::build(vertex, head + own, path->filename().string(), failure);
+        if (!program) {
+            shader::LineMap lines(2);
+            for (int line = 1; line <= 1 + std::count(own.begin(), own.end(), '\n'); ++line)
+                lines.push_back({module.id(), file, line});
+            refuse(fmt::format("{}: the driver refuses it\n{}", file,
+                               shader::parse_driver_log(failure.log, lines).text()));
+        }
         programs.push_back(std::move(*program));
         return static_cast<relevo_program>(programs.size());
     }
@@ -353,14 +322,14 @@ struct NativeHost::Impl {
             refuse(fmt::format("expected up to {} inputs and {} values but got {} and {}",
                                RELEVO_MOST_INPUTS, RELEVO_MOST_VALUES, draw.input_count,
                                draw.value_count));
-        const gl::Texture& target = texture(draw.target).texture;
+        const gl::Texture& target = textures.get(draw.target);
         if (draw.layer < 0 || draw.layer >= target.extent().depth || draw.level < 0 ||
             draw.level >= target.levels() || target.format() == gl::Format::Depth32F)
             refuse("expected a layer and a level of a colour texture");
         const gl::Framebuffer framebuffer(target, draw.level, draw.layer, module.id());
         programs[draw.program - 1].use();
         for (int i = 0; i < draw.input_count; ++i)
-            texture(draw.inputs[i]).texture.bind(static_cast<unsigned>(i));
+            textures.get(draw.inputs[i]).bind(static_cast<unsigned>(i));
         if (draw.value_count > 0) glUniform4fv(0, draw.value_count, draw.values);
         glDisable(GL_DEPTH_TEST);
         framebuffer.bind();
@@ -382,7 +351,7 @@ struct NativeHost::Impl {
 
     int draw_depth(const relevo_box& box, double tolerance_m, relevo_texture target) {
         const FrameState& state = now();
-        const gl::Texture& depth_texture = texture(target).texture;
+        const gl::Texture& depth_texture = textures.get(target);
         if (depth_texture.format() != gl::Format::Depth32F ||
             depth_texture.kind() != gl::TextureKind::D2)
             refuse("expected a target of RELEVO_FORMAT_DEPTH32F without layers");
@@ -390,6 +359,8 @@ struct NativeHost::Impl {
         const glm::dvec3 low = vector_of(box.low), high = vector_of(box.high);
         if (!(low.x < high.x && low.y < high.y && low.z < high.z))
             refuse("expected a box whose sides are longer than nothing");
+        if (!(tolerance_m >= 0))
+            refuse(fmt::format("expected a tolerance of 0 m or more but got {}", tolerance_m));
         const glm::dvec3 origin_m = axes * (0.5 * (low + high));
 
         LodView view;
@@ -420,6 +391,7 @@ struct NativeHost::Impl {
 
         const gl::Framebuffer framebuffer({}, &depth_texture, module.id());
         framebuffer.bind();
+        const DepthState left_as_found;
         glEnable(GL_DEPTH_TEST);
         glDepthMask(GL_TRUE);
         framebuffer.clear_depth(0);
@@ -434,18 +406,28 @@ struct NativeHost::Impl {
         }
         use_depth(state.terrain);
         state.terrain.draw(tiles, origin_m);
-        glDisable(GL_CULL_FACE);
-        glDisable(GL_CLIP_DISTANCE0);
-        glDisable(GL_DEPTH_CLAMP);
-        glDisable(GL_DEPTH_TEST);
         return tiles.finest_level();
     }
 
-    /// Calls into the module.
-    void call(const char* what, relevo_status status) const {
-        if (status != RELEVO_OK)
-            failed(fmt::format("render: {}: {}: {}", module.library().string(), what,
-                               reason.empty() ? "no reason given" : reason));
+    /// Calls a function of the module.
+    /// @param what  as a message says that it fails
+    /// @throws Error (Failed) if it does, or throws
+    template <typename Body>
+    void call(const char* function, const char* what, const Body& body) {
+        reason.clear();
+        bool good = false;
+        try {
+            const effect::ModuleCall guard(module.process(), function);
+            good = body() == RELEVO_OK;
+        } catch (const std::exception& error) {
+            reason = fmt::format("its {} threw an exception: {}", function, error.what());
+        } catch (...) {
+            reason = fmt::format("its {} threw an exception", function);
+        }
+        if (!good)
+            failed(fmt::format("render: {}: {}: {}; --disable {} goes on without it",
+                               module.library().string(), what,
+                               reason.empty() ? "no reason given" : reason, module.id()));
     }
 };
 
@@ -453,7 +435,8 @@ NativeHost::NativeHost(const effect::NativeModule& module, gl::Context& context,
                        shader::ParamStore& values, int width_px, int height_px)
     : impl_(std::make_unique<Impl>(module, context, std::move(use_depth), values, width_px,
                                    height_px)) {
-    impl_->call("it cannot start", module.functions().create(&impl_->host, &impl_->instance));
+    impl_->call("create()", "it cannot start",
+                [&] { return module.functions().create(&impl_->host, &impl_->instance); });
 }
 
 NativeHost::NativeHost(NativeHost&&) noexcept = default;
@@ -465,16 +448,16 @@ void NativeHost::prepare(Terrain& terrain, const Ground& ground, const FrameInpu
     const auto& functions = impl_->module.functions();
     if (!functions.prepare) return;
     impl_->frame.emplace(FrameState{terrain, ground, inputs, block, picture});
-    impl_->reason.clear();
-    const relevo_status status = functions.prepare(impl_->instance);
-    impl_->frame.reset();
-    impl_->call("it cannot prepare a frame", status);
+    const struct EndOfFrame {
+        Impl& impl;
+        ~EndOfFrame() { impl.frame.reset(); }
+    } end_of_frame{*impl_};
+    impl_->call("prepare()", "it cannot prepare a frame",
+                [&] { return functions.prepare(impl_->instance); });
 }
 
 const gl::Texture* NativeHost::find(std::string_view resource) const {
-    for (const auto& [name, texture] : impl_->textures)
-        if (!texture.resource.empty() && texture.resource == resource) return &texture.texture;
-    return nullptr;
+    return impl_->textures.find(resource);
 }
 
 const std::string& NativeHost::id() const {

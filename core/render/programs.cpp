@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "shader/driver_log.h"
@@ -57,9 +59,10 @@ shader::Define height_steps_define(const shader::Stitched& geometry) {
 
 }  // namespace
 
-std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
-                                         const shader::StitchInput& input,
-                                         const ProgramOptions& options) {
+namespace {
+
+std::vector<ProgramText> stitch_all(const shader::CoreTexts& core, const shader::StitchInput& input,
+                                    const ProgramOptions& options) {
     shader::ProgramRecipe geometry{.vertex_main = "terrain.vert.glsl",
                                    .fragment_main = "geometry.frag.glsl",
                                    .shaded_by = "terrain.frag.glsl"};
@@ -105,6 +108,34 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
     return programs;
 }
 
+/// How to go on without what a driver refuses.
+std::string remedy(const shader::Stitched& stitched, const std::string& blamed) {
+    if (blamed == "core") return "";
+    std::set<std::string> ids;
+    if (blamed.empty())
+        for (const shader::HookUse& use : stitched.hooks)
+            ids.insert(use.providers.begin(), use.providers.end());
+    else
+        ids.insert(blamed);
+    if (ids.empty()) return "";
+    return fmt::format("\n--disable {} goes on without {}", fmt::join(ids, ","),
+                       ids.size() == 1 ? "it" : "them");
+}
+
+}  // namespace
+
+std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
+                                         const shader::StitchInput& input,
+                                         const ProgramOptions& options) {
+    try {
+        return stitch_all(core, input, options);
+    } catch (const shader::AuthorError& error) {
+        if (error.owner() == "core") throw;
+        throw Error(error.code(), fmt::format("{}; --disable {} goes on without it", error.what(),
+                                              error.owner()));
+    }
+}
+
 void dump_programs(const std::vector<ProgramText>& programs, const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -131,8 +162,9 @@ LinkedProgram link_program(const ProgramText& text) {
     const char* where = vertex                                                   ? "vertex side"
                         : failure.stage == gl::Program::Failure::Stage::Fragment ? "fragment side"
                                                                                  : "link";
-    failed(fmt::format("render: program {}: {}: the driver refuses it\n{}", text.name, where,
-                       shader::parse_driver_log(failure.log, stage.lines).text()));
+    const shader::DriverLog log = shader::parse_driver_log(failure.log, stage.lines);
+    failed(fmt::format("render: program {}: {}: the driver refuses it\n{}{}", text.name, where,
+                       log.text(), remedy(text.stitched, log.blamed())));
 }
 
 }  // namespace relevo::render

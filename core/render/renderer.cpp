@@ -15,6 +15,7 @@
 #include "gl/program.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "render/draw_watch.h"
 #include "render/native_host.h"
 #include "render/programs.h"
 
@@ -28,6 +29,20 @@ constexpr unsigned kParamsBinding = 1;
 /// a little aliasing at a slant looks better than blur.
 constexpr double kFootprintWithoutAnisotropy = 2.5;
 constexpr double kAnisotropy = 8;
+
+/// Pixels that are drawn at once under a watch: as many as a usual picture has.
+constexpr double kMostWatched_px = 1 << 21;
+
+/// Draws reach no pixel outside while this lives.
+struct Scissor {
+    Scissor(int x, int y, int width, int height) {
+        glScissor(x, y, width, height);
+        glEnable(GL_SCISSOR_TEST);
+    }
+    Scissor(const Scissor&) = delete;
+    Scissor& operator=(const Scissor&) = delete;
+    ~Scissor() { glDisable(GL_SCISSOR_TEST); }
+};
 
 constexpr const char* kNormalAddress = "terrain.normal";
 
@@ -50,6 +65,7 @@ struct Renderer::Impl {
     RendererOptions options;
     double anisotropy;
     std::vector<ProgramText> texts;
+    std::optional<DrawWatch> watch;  // until the first frame is drawn
     LinkedProgram geometry, terrain, background;
     std::optional<LinkedProgram> background_night;  // from the first night on
     std::optional<LinkedProgram> post;
@@ -76,7 +92,8 @@ struct Renderer::Impl {
           options(o),
           // A software renderer pays for every tap of an anisotropic filter (four times the frame).
           anisotropy(c.info().device.software ? 1 : std::min(kAnisotropy, c.info().max_anisotropy)),
-          texts(stitch(effects, c.info().max_texture_units, !o.radiance)),
+          texts(stitch(effects, c.info().max_texture_units, o)),
+          watch(std::in_place, effects.stitch.snippets),
           geometry(link("geometry")),
           terrain(link("terrain")),
           background(link("background")),
@@ -149,15 +166,18 @@ struct Renderer::Impl {
     }
 
     static std::vector<ProgramText> stitch(const EffectInputs& effects, int max_texture_units,
-                                           bool shown) {
+                                           const RendererOptions& options) {
         shader::StitchInput input = effects.stitch;
         input.max_texture_units = max_texture_units;
         const shader::FolderTexts core(share_dir() / "shaders");
         const bool vertex_normals = input.values && input.values->find(kNormalAddress) &&
                                     input.values->value(kNormalAddress)[0] == 1;
-        return stitch_programs(
-            core, input,
-            {.vertex_normals = vertex_normals, .depth = !effects.modules.empty(), .shown = shown});
+        std::vector<ProgramText> texts = stitch_programs(core, input,
+                                                         {.vertex_normals = vertex_normals,
+                                                          .depth = !effects.modules.empty(),
+                                                          .shown = !options.radiance});
+        if (!options.dump_shaders.empty()) dump_programs(texts, options.dump_shaders);
+        return texts;
     }
 
     const ProgramText* find_text(const std::string& name) const {
@@ -177,11 +197,49 @@ struct Renderer::Impl {
     const LinkedProgram& background_of(const FrameBlock& block) {
         const ProgramText* const night = find_text("background_night");
         if (!night || block.eye_sun.w >= radians(kNight_deg)) return background;
-        if (!background_night) background_night = link_program(*night);
+        if (!background_night) background_night = link(*night);
         return *background_night;
     }
 
-    LinkedProgram link(const char* name) const { return link_program(text(name)); }
+    LinkedProgram link(const char* name) { return link(text(name)); }
+
+    LinkedProgram link(const ProgramText& program) {
+        const DrawWatch::Turn turn(watch, program, 0);
+        return link_program(program);
+    }
+
+    /// Draws, in the first frame under a watch.
+    /// @param parts  pixels and triangles
+    template <typename Draw>
+    void watched(const char* name, double parts, const Draw& draw) {
+        const DrawWatch::Turn turn(watch, text(name), parts);
+        draw();
+        if (watch) context.finish();
+    }
+
+    double pixels() const { return double{1} * options.width_px * options.height_px; }
+
+    /// Draws the ground. In the first frame of a large picture its vertices come alone before, so
+    /// that those that never end are found as soon as in a small one.
+    void draw_ground(Terrain& ground, const FrameInputs& inputs) {
+        const auto draw_tiles = [&] { ground.draw(tiles, inputs.camera.eye_m); };
+        if (watch && pixels() > kMostWatched_px) {
+            const Scissor corner(0, 0, 1, 1);
+            watched("geometry", tiles.triangles(), draw_tiles);
+        }
+        watched("geometry", pixels() + tiles.triangles(), draw_tiles);
+    }
+
+    /// Draws a program over the picture, in the first frame piece by piece for the same reason.
+    void draw_picture(const char* name) {
+        if (!watch || pixels() <= kMostWatched_px)
+            return watched(name, pixels(), [&] { draw_fullscreen(); });
+        const int rows = std::max(1, static_cast<int>(kMostWatched_px / options.width_px));
+        for (int y = 0; y < options.height_px; y += rows) {
+            const Scissor band(0, y, options.width_px, rows);
+            watched(name, kMostWatched_px, [&] { draw_fullscreen(); });
+        }
+    }
 
     /// Binds what a program reads, by the units that the stitcher gave out.
     void bind(const LinkedProgram& program, const Terrain& ground) {
@@ -244,7 +302,8 @@ struct Renderer::Impl {
 
         if (!natives.empty()) {
             for (NativeHost& native : natives) {
-                native.prepare(ground, about, inputs, block, tiles);
+                watched("depth", pixels(),
+                        [&] { native.prepare(ground, about, inputs, block, tiles); });
                 if (native.take_changes() && params_block.size() > 0)
                     params_block.write(shader::pack(texts.front().stitched.params, values));
                 passed(native.id().c_str());
@@ -259,7 +318,7 @@ struct Renderer::Impl {
         glDepthFunc(GL_GREATER);
         if (ground.has_holes()) glEnable(GL_CLIP_DISTANCE0);
         bind(geometry, ground);
-        ground.draw(tiles, inputs.camera.eye_m);
+        draw_ground(ground, inputs);
         glDisable(GL_CLIP_DISTANCE0);
         passed("geometry");
 
@@ -271,19 +330,19 @@ struct Renderer::Impl {
         glDepthMask(GL_FALSE);
         glDepthFunc(GL_LESS);
         bind(terrain, ground);
-        draw_fullscreen();
+        draw_picture("terrain");
         passed("terrain");
         light_target.bind();
         glDepthFunc(GL_EQUAL);
         bind(background_of(block), ground);
-        draw_fullscreen();
+        draw_picture("background");
         glDisable(GL_DEPTH_TEST);
         passed("background");
 
         if (post) {
             post_target.bind();
             bind(*post, ground);
-            draw_fullscreen();
+            draw_picture("post");
             passed("post");
         }
         if (options.antialias) {
@@ -306,6 +365,7 @@ struct Renderer::Impl {
             passed("antialias");
         }
         context.check_errors();
+        watch.reset();
     }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -23,12 +24,15 @@ struct RendererOptions {
     /// Keep the linear radiance for read_radiance(). Without it shading ends in the colours of the
     /// picture at once, which saves a pass over it.
     bool radiance = true;
+    /// Folder that the programs' texts are written to before a driver sees them; empty: none.
+    std::filesystem::path dump_shaders{};
 };
 
 /// The enabled effects, as drawing needs them.
 struct EffectInputs {
     shader::StitchInput stitch;  ///< its units are the device's, whatever is set
-    std::vector<effect::TextureSpec> textures;
+    /// No larger than the device takes (effect::check_limits). Need not outlive the constructor.
+    std::vector<const effect::LoadedTexture*> textures;
     std::vector<effect::DisplaceSpec> displaces;
     /// Of native effects; must outlive the renderer.
     std::vector<const effect::NativeModule*> modules;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -70,8 +71,8 @@ class ParamReader {
                              glsl_name(param_.type), trimmed(text)));
         param_.initial = *value;
         if (!param_.is_host && !is_valid(param_, *value))
-            fail(fmt::format("expected a default that is {} but got {}", describe_values(param_),
-                             trimmed(text)));
+            fail(fmt::format("expected a default that is {} but got {}",
+                             expected_values(param_, *value), trimmed(text)));
     }
 
   private:
@@ -153,6 +154,14 @@ class ParamReader {
                 fmt::format("expected range(min, max), two numbers of which the first is less, "
                             "but got {}",
                             written(word)));
+        const bool whole = param_.type == ParamType::Int;
+        const double most = whole ? std::numeric_limits<int>::max()
+                                  : static_cast<double>(std::numeric_limits<float>::max());
+        if (*min < -most || *max > most)
+            fail(
+                fmt::format("expected a range within {0:.10g} and {1:.10g}, as {2} can hold, but "
+                            "got {3}",
+                            -most, most, whole ? "an int" : "a float", written(word)));
         param_.range = ParamRange{*min, *max};
     }
 
@@ -235,8 +244,12 @@ std::vector<AnnotationWord> parse_annotation(std::string_view text, std::string_
             ++at;
     };
     const auto fail = [&](const std::string& message) {
-        source_error(file, line, fmt::format("//@{}: {}", text, message));
+        source_error(file, line, fmt::format("//@{}: {}", printable(text), message));
     };
+    // Tabs are blanks here.
+    std::string plain(text);
+    std::replace(plain.begin(), plain.end(), '\t', ' ');
+    if (plain != printable(plain)) fail("expected UTF-8 without control characters");
     for (skip_blanks(); at < text.size(); skip_blanks()) {
         AnnotationWord word;
         while (at < text.size() && is_name(text[at]))

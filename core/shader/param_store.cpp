@@ -80,7 +80,8 @@ void ParamStore::set(std::string_view address, const ParamValue& value) {
     const Param& known = settable(address);
     if (!is_valid(known, value))
         bad_input(fmt::format(
-            "shader::ParamStore: {}: expected {} but got {}", address, describe_values(known),
+            "shader::ParamStore: {}: expected {} but got {}", address,
+            expected_values(known, value),
             fmt::join(value.begin(), value.begin() + component_count(known.type), ",")));
     values_.insert_or_assign(known.address, Entry{known.type, value});
 }
@@ -94,6 +95,11 @@ void ParamStore::write_host(std::string_view address, const ParamValue& value) {
     if (!known.is_host)
         bad_input(fmt::format("shader::ParamStore: {}: not a host parameter; only people set it",
                               address));
+    // Without a range, but to be sent as a whole number.
+    const bool whole = known.type == ParamType::Int || known.type == ParamType::Bool;
+    if (whole && !is_valid(known, value))
+        bad_input(fmt::format("shader::ParamStore: {}: expected {} but got {}", address,
+                              describe_values(known), value[0]));
     values_.insert_or_assign(known.address, Entry{known.type, value});
 }
 

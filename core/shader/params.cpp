@@ -14,6 +14,8 @@
 namespace relevo::shader {
 namespace {
 
+constexpr double kMostFloat = static_cast<double>(std::numeric_limits<float>::max());
+
 bool is_colour(const Param& param) {
     return param.role == ParamRole::Colour || param.role == ParamRole::ColourSrgb;
 }
@@ -123,11 +125,19 @@ std::string describe_values(const Param& param) {
     return text;
 }
 
+std::string expected_values(const Param& param, const ParamValue& given) {
+    const bool too_large = std::any_of(given.begin(), given.end(),
+                                       [](double v) { return !(std::abs(v) <= kMostFloat); });
+    std::string text = describe_values(param);
+    if (too_large && !param.range) text += fmt::format(", none beyond {:.6g} in size", kMostFloat);
+    return text;
+}
+
 bool is_valid(const Param& param, const ParamValue& value) {
     const int count = component_count(param.type);
     for (int i = 0; i < count; ++i) {
         const double v = value[static_cast<std::size_t>(i)];
-        if (!(std::abs(v) <= static_cast<double>(std::numeric_limits<float>::max()))) return false;
+        if (!(std::abs(v) <= kMostFloat)) return false;
         if (param.range && !(v >= param.range->min && v <= param.range->max)) return false;
     }
     switch (param.type) {
@@ -149,7 +159,7 @@ ParamValue parse_value(const Param& param, std::string_view text) {
     const std::optional<ParamValue> value = read_value(param, trimmed(text));
     if (!value || !is_valid(param, *value))
         bad_input(fmt::format("shader::parse_value: {}: expected {} but got \"{}\"", param.address,
-                              describe_values(param), text));
+                              expected_values(param, value.value_or(ParamValue{})), text));
     return *value;
 }
 

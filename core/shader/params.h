@@ -65,6 +65,9 @@ std::string format_value(const Param& param, const ParamValue& value);
 /// What a value of the parameter must be: "a float in [0, 2] 1/km", "one of linear, square".
 std::string describe_values(const Param& param);
 
+/// The same for a value that was given, where there is more to say: numbers beyond a float's.
+std::string expected_values(const Param& param, const ParamValue& given);
+
 /// Whether the value is one the parameter may have.
 bool is_valid(const Param& param, const ParamValue& value);
 

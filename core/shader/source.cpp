@@ -144,7 +144,23 @@ class Parser {
                                             name, prefix, name, name));
     }
 
+    /// Only conditions may stand inside a piece, whose directives nobody else looks at.
+    void check_directives_inside(std::size_t first, Item::Kind kind,
+                                 const std::vector<std::string>& names) const {
+        for (std::size_t i = first; i < at_; ++i) {
+            if (token(i).kind != TokenKind::Directive) continue;
+            const std::vector<Token> words = directive_tokens(source_.text, token(i), source_.file);
+            const std::string_view what = words.empty() ? "if" : source_.str(words[0]);
+            if (what == "define" || what == "undef" || !is_one_of(what, kDirectives))
+                fail(token(i).line,
+                     fmt::format("#{} inside {}; move it out of the {}", what,
+                                 names.empty() ? "a declaration" : names.front(),
+                                 kind == Item::Kind::Function ? "function" : "declaration"));
+        }
+    }
+
     void add(Item::Kind kind, std::size_t first, std::vector<std::string> names, int name_line) {
+        if (token(first).kind != TokenKind::Directive) check_directives_inside(first, kind, names);
         Item item;
         item.kind = kind;
         item.names = std::move(names);
@@ -350,14 +366,6 @@ class Parser {
             fail(line, fmt::format("expected {{ or ; behind the head of {} but got {}", text,
                                    written(at_)));
         at_ = behind_brackets(at_);
-        for (std::size_t i = first; i < at_; ++i) {
-            if (token(i).kind != TokenKind::Directive) continue;
-            const std::vector<Token> words = directive_tokens(source_.text, token(i), source_.file);
-            const std::string_view what = words.empty() ? "if" : source_.str(words[0]);
-            if (what == "define" || what == "undef" || !is_one_of(what, kDirectives))
-                fail(token(i).line,
-                     fmt::format("#{} inside {}; move it out of the function", what, text));
-        }
         add(Item::Kind::Function, first, {text}, line);
         if (is_snippet() && text.substr(source_.owner.size(), 4) == "_on_")
             check_unconditional(line, text);

@@ -8,9 +8,21 @@
 namespace relevo::shader {
 namespace {
 
-constexpr std::array<std::string_view, 8> kOwnedByCore = {
-    "gl_Position",  "gl_PointSize",  "gl_ClipDistance", "gl_CullDistance",
-    "gl_FragDepth", "gl_SampleMask", "gl_Layer",        "gl_ViewportIndex"};
+constexpr std::array<std::string_view, 10> kOwnedByCore = {
+    "gl_Position",   "gl_PointSize", "gl_ClipDistance",  "gl_CullDistance", "gl_FragDepth",
+    "gl_SampleMask", "gl_Layer",     "gl_ViewportIndex", "gl_FragColor",    "gl_FragData"};
+constexpr std::array<std::string_view, 7> kBarriers = {"barrier",
+                                                       "memoryBarrier",
+                                                       "memoryBarrierAtomicCounter",
+                                                       "memoryBarrierBuffer",
+                                                       "memoryBarrierImage",
+                                                       "memoryBarrierShared",
+                                                       "groupMemoryBarrier"};
+
+template <std::size_t N>
+bool is_among(const std::array<std::string_view, N>& words, std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 struct Open {
     char bracket;
@@ -89,23 +101,41 @@ class Brackets {
     std::vector<Branch> branches_;
 };
 
+void check_word(const Source& source, const Token& token) {
+    const std::string_view word = source.str(token);
+    const auto fail = [&](const std::string& message) {
+        source_error(source.file, token.line, message);
+    };
+    if (word.find("__") != std::string_view::npos)
+        fail(fmt::format("{}: GLSL keeps names with __ to itself", word));
+    if (is_among(kOwnedByCore, word))
+        fail(fmt::format("{} is core's; a plugin moves the ground in {}_on_displace", word,
+                         source.owner));
+    if (word == "discard")
+        fail(
+            "discard: every pixel has to be written, or it keeps what another frame left there; "
+            "leave the arguments as they are instead");
+    if (is_among(kBarriers, word))
+        fail(fmt::format("{}: a plugin writes nothing that another would have to wait for", word));
+    if (word.substr(0, 5) == "hook_")
+        fail(fmt::format("{}: only core's main programs call hooks", word));
+}
+
 }  // namespace
 
 void check_words(const Source& source) {
     if (source.kind != SourceKind::Snippet) return;
     for (const Token& token : source.tokens) {
-        if (token.kind != TokenKind::Word) continue;
-        const std::string_view word = source.str(token);
-        const auto fail = [&](const std::string& message) {
-            source_error(source.file, token.line, message);
-        };
-        if (word.find("__") != std::string_view::npos)
-            fail(fmt::format("{}: GLSL keeps names with __ to itself", word));
-        if (std::find(kOwnedByCore.begin(), kOwnedByCore.end(), word) != kOwnedByCore.end())
-            fail(fmt::format("{} is core's; a plugin moves the ground in {}_on_displace", word,
-                             source.owner));
-        if (word.substr(0, 5) == "hook_")
-            fail(fmt::format("{}: only core's main programs call hooks", word));
+        if (token.kind == TokenKind::Word) check_word(source, token);
+        if (token.kind != TokenKind::Directive) continue;
+        // What a macro puts together is not looked at again.
+        for (const Token& word : directive_tokens(source.text, token, source.file)) {
+            if (word.kind == TokenKind::Word) check_word(source, word);
+            if (source.str(word) == "#" || source.str(word) == "\"")
+                source_error(
+                    source.file, word.line,
+                    fmt::format("{} has no place in a directive of GLSL 4.50", source.str(word)));
+        }
     }
 }
 

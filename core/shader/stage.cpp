@@ -89,8 +89,9 @@ void Stage::add_includes(const Source& source, std::vector<std::string>& pending
     for (const Include& include : source.includes) {
         const Source* const lib = library_.find(SourceKind::Lib, include.name);
         if (!lib)
-            bad_input(fmt::format("shader::stitch: {}:{}: {}: core has no such file", source.file,
-                                  include.line, include.name));
+            throw AuthorError(source.owner,
+                              fmt::format("shader::stitch: {}:{}: {}: core has no such file",
+                                          source.file, include.line, include.name));
         if (std::find(pending.begin(), pending.end(), include.name) != pending.end())
             failed(fmt::format("shader::stitch: {}:{}: {} includes itself", source.file,
                                include.line, include.name));
@@ -150,8 +151,9 @@ void Stage::lift(const std::string& name, Lifted lifted) {
     if (lifted.owner == "core" && lifted.sampler && other.sampler &&
         lifted.sampler->type == other.sampler->type)
         return;
-    bad_input(fmt::format("shader::stitch: {}:{}: {} is declared already, in {}:{}", lifted.file,
-                          lifted.line, name, other.file, other.line));
+    throw AuthorError(lifted.owner,
+                      fmt::format("shader::stitch: {}:{}: {} is declared already, in {}:{}",
+                                  lifted.file, lifted.line, name, other.file, other.line));
 }
 
 // ---- look-ups
@@ -177,7 +179,7 @@ void Stage::fail(const Place& place, std::string_view message) const {
     const Source& source = *unit_of(place).source;
     const std::string text =
         fmt::format("shader::stitch: {}:{}: {}", source.file, item(place).name_line, message);
-    if (source.kind == SourceKind::Snippet) bad_input(text);
+    if (source.kind == SourceKind::Snippet) throw AuthorError(source.owner, text);
     failed(text);
 }
 

@@ -92,7 +92,8 @@ class Stitcher {
             const std::string where =
                 fmt::format("shader::stitch: {}:{}: {}", read->file, read->line, read->name);
             if (!written || !vertex_.reaches(read->name))
-                bad_input(
+                throw AuthorError(
+                    reader.owner_of(read->name),
                     fmt::format("{}: the fragment side reads it ({}), but nothing that {} "
                                 "calls writes it",
                                 where, reader.trail(read->name), program_.vertex_main));
@@ -124,7 +125,7 @@ class Stitcher {
                                                    return texture.unit.resource == s->resource;
                                                });
                 if (same != textures.end()) {
-                    add_reader(*same, sampler);
+                    add_reader(*same, sampler, owner);
                 } else if ((owner == "core") == core_ones && is_shared(*sampler) == shared) {
                     textures.push_back(
                         {{0, sampler->name, sampler->type, sampler->resource, owner}, {sampler}});
@@ -141,10 +142,11 @@ class Stitcher {
         return false;
     }
 
-    static void add_reader(Texture& texture, const Sampler* sampler) {
+    static void add_reader(Texture& texture, const Sampler* sampler, const std::string& owner) {
         const Sampler& first = *texture.samplers.front();
         if (sampler->type != first.type)
-            bad_input(
+            throw AuthorError(
+                owner,
                 fmt::format("shader::stitch: {}:{}: {}: expected a {} for the texture {}, as "
                             "in {}:{}, but got a {}",
                             sampler->file, sampler->line, sampler->name, first.type, first.resource,

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "shader/core_texts.h"
 #include "shader/line_map.h"
 #include "shader/param_store.h"
@@ -72,11 +74,24 @@ struct Stitched {
     int varying_targets = 0;
 };
 
+/// What a plugin's author can mend. The others' effects could be drawn without that plugin.
+class AuthorError : public Error {
+  public:
+    /// @param owner  id of the plugin
+    AuthorError(std::string owner, const std::string& message)
+        : Error(ErrorCode::BadInput, message), owner_(std::move(owner)) {}
+    const std::string& owner() const { return owner_; }
+
+  private:
+    std::string owner_;
+};
+
 /// Puts a program together (docs/architecture.md, sections 4 and 7). Reads from `core` the two
 /// mains, lib/types.glsl, lib/frame.glsl, defaults.glsl and what is included. Of all of them, and
 /// of the snippets, only what the two `main` functions reach is in the texts; equal input gives
 /// equal bytes, and no path of a file is in them.
-/// @throws Error (BadInput) for what a plugin's author can mend: `shader::stitch: file:line: ...`
+/// @throws AuthorError (BadInput) `shader::stitch: file:line: ...`
+/// @throws Error (BadInput) for two providers of an exclusive hook
 /// @throws Error (Failed) for core's own texts, and for more textures than units
 Stitched stitch(const CoreTexts& core, const ProgramRecipe& program, const StitchInput& input);
 

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "shader/stitch.h"
 
 namespace relevo::shader {
 namespace {
@@ -13,11 +14,12 @@ namespace {
 // Outputs 1 to 7 beside the place: GL guarantees eight.
 constexpr int kMaxTargets = 7;
 
-int components(const Varying& varying) {
+int components(const Varying& varying, const std::string& owner) {
     if (varying.type == "float" || varying.type == "int" || varying.type == "uint") return 1;
     if (varying.type.size() == 4 && varying.type.substr(0, 3) == "vec")
         return varying.type[3] - '0';
-    bad_input(
+    throw AuthorError(
+        owner,
         fmt::format("shader::stitch: {}:{}: {}: expected a varying of type float, int, uint, "
                     "vec2, vec3 or vec4 but got {}",
                     varying.file, varying.line, varying.name, varying.type));
@@ -34,7 +36,7 @@ StoredVaryings::StoredVaryings(const Stage& shading, const std::string& program)
     std::vector<int> used;
     for (const Varying* varying : shading.varyings()) {
         if (shading.owner_of(varying->name) == "core") continue;
-        const int count = components(*varying);
+        const int count = components(*varying, shading.owner_of(varying->name));
         std::size_t target = 0;
         while (target < used.size() && used[target] + count > 4)
             ++target;

@@ -42,6 +42,7 @@ class Scanner {
             } else if (c == ' ' || c == '\t' || c == '\v' || c == '\f') {
                 advance(1);
             } else if (continues()) {
+                check_continuation();
                 advance(2);
             } else if (starts("//") || starts("/*")) {
                 comment();
@@ -65,6 +66,16 @@ class Scanner {
     // 3.2).
     bool continues() const { return starts("\\\n"); }
 
+    // A word or a mark in two halves would be another one for the driver than it is here.
+    void check_continuation() const {
+        const auto is_blank = [](char c) {
+            return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\n';
+        };
+        if (at_ > 0 && !is_blank(text_[at_ - 1]) && at_ + 2 < text_.size() &&
+            !is_blank(text_[at_ + 2]))
+            fail("\\ joins this line and the next without a blank between them; add one");
+    }
+
     void advance(std::size_t count) {
         for (; count > 0; --count, ++at_) {
             ++column_;
@@ -84,8 +95,11 @@ class Scanner {
                 advance(continues() ? 2 : 1);
         } else {
             advance(2);
-            while (at_ < end_ && !starts("*/"))
+            while (at_ < end_ && !starts("*/")) {
+                if (text_[at_] == '*' && at_ + 1 < end_ && text_[at_ + 1] == '\\')
+                    fail("* and \\ side by side in a comment may end it; put a blank between them");
                 advance(1);
+            }
             if (at_ == end_) source_error(file_, result.line, "/* is never closed");
             advance(2);
         }
@@ -98,6 +112,7 @@ class Scanner {
         Token token{TokenKind::Directive, at_, 0, line_, column_};
         while (at_ < end_ && text_[at_] != '\n') {
             if (continues()) {
+                check_continuation();
                 advance(2);
             } else if (starts("//")) {
                 break;

@@ -1,3 +1,9 @@
+#include <filesystem>
+#include <fstream>
+
+#include <sys/stat.h>
+
+#include "base/paths.h"
 #include "base/text.h"
 #include "support/support.h"
 
@@ -27,6 +33,70 @@ TEST(Text, NearestSuggestsOnlyCloseWords) {
 TEST(Text, ReadingAMissingFileNamesIt) {
     EXPECT_EQ(test::error_of([] { read_text("/nowhere/a.txt", "text"); }),
               "exit 3: text: /nowhere/a.txt: cannot be read, No such file or directory");
+}
+
+TEST(Text, WhatIsNoRegularFileIsNotWaitedFor) {
+    const std::filesystem::path folder = test::scratch_dir("text_special");
+    const std::string pipe = (folder / "pipe").string();
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const std::string& path : {pipe, std::string("/dev/zero"), folder.string()})
+        EXPECT_EQ(test::error_of([&] { read_text(path, "text"); }),
+                  "exit 3: text: " + path + ": cannot be read, it is not a regular file");
+}
+
+TEST(Text, AGiantFileIsRefusedUnread) {
+    const std::filesystem::path path = test::scratch_dir("text_giant") / "giant";
+    std::ofstream(path) << "a";
+    EXPECT_EQ(read_text(path, "text"), "a");
+    std::filesystem::resize_file(path, kMostTextBytes);
+    EXPECT_EQ(read_text(path, "text").size(), kMostTextBytes);
+    std::filesystem::resize_file(path, std::uintmax_t{1} << 40);
+    EXPECT_EQ(test::error_of([&] { read_text(path, "text"); }),
+              "exit 3: text: " + path.string() +
+                  ": expected a text of at most 16 MiB but got a longer one");
+}
+
+TEST(Text, FilesThatTheKernelMakesUpAreReadWhole) {
+    EXPECT_NE(read_text("/proc/self/status", "text").find("Pid:"), std::string::npos);
+}
+
+TEST(Text, PrintableHasNoControlCharactersAndIsUtf8) {
+    EXPECT_EQ(printable("Gr\xc3\xbc\xc3\x9f Gott \xf0\x9f\x8c\x84"),
+              "Gr\xc3\xbc\xc3\x9f Gott \xf0\x9f\x8c\x84");
+    EXPECT_EQ(printable("a\x1b[31mb\nc\x7f"), "a?[31mb?c?");
+    EXPECT_EQ(printable("\xc2\x9b"), "?");  // a control character in two bytes
+    EXPECT_EQ(printable("\xfc"
+                        "ber"),
+              "?ber");                                 // Latin-1
+    EXPECT_EQ(printable("\xc0\xaf"), "??");            // too long a way to write /
+    EXPECT_EQ(printable("\xed\xa0\x80"), "???");       // half of a surrogate pair
+    EXPECT_EQ(printable("\xf4\x90\x80\x80"), "????");  // beyond U+10FFFF
+    EXPECT_EQ(printable("\xe2\x82"), "??");            // ends too early
+    EXPECT_EQ(printable(""), "");
+}
+
+TEST(Paths, AFileInsideAFolderIsNotReachedFromIt) {
+    const std::filesystem::path folder = test::scratch_dir("paths_inside");
+    std::filesystem::create_directories(folder / "own/deep");
+    std::ofstream(folder / "secret") << "s";
+    std::ofstream(folder / "own/deep/a") << "a";
+    std::filesystem::create_symlink(folder / "secret", folder / "own/link");
+    std::filesystem::create_symlink("deep/a", folder / "own/near");
+    std::filesystem::create_symlink(folder / "own", folder / "other");
+    const auto inside = [&](const char* name) {
+        return file_inside(folder / "own", name).has_value();
+    };
+    EXPECT_TRUE(inside("deep/a"));
+    EXPECT_TRUE(inside("near"));
+    EXPECT_TRUE(inside("deep/../deep/a"));
+    EXPECT_TRUE(inside("missing"));
+    EXPECT_FALSE(inside("../secret"));
+    EXPECT_FALSE(inside("deep/../../secret"));
+    EXPECT_FALSE(inside("link"));
+    EXPECT_FALSE(inside((folder / "own/deep/a").c_str()));
+    EXPECT_FALSE(inside("."));
+    EXPECT_FALSE(inside(""));
+    EXPECT_EQ(file_inside(folder / "other", "deep/a"), folder / "other/deep/a");
 }
 
 }  // namespace

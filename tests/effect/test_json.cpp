@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "effect/json.h"
@@ -58,6 +59,47 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Json, DeepNestingIsRefused) {
     EXPECT_EQ(error_of([] { parse_json("who", "a.json", std::string(100000, '[')); }),
               "exit 3: who: a.json:1: nested deeper than 64 levels");
+}
+
+TEST(Json, BytesThatAreNoUtf8AreNamedInAMessageThatIs) {
+    EXPECT_EQ(
+        error_of([] { parse_json("who", "a.json", "{\n\"a\": \"\xff\"}"); }),
+        "exit 3: who: a.json:2: syntax error while parsing value - invalid string: ill-formed "
+        "UTF-8 byte; last read: '\"?'");
+    EXPECT_EQ(
+        error_of([] { parse_json("who", "a.json", "{\xff}"); }),
+        "exit 3: who: a.json:1: syntax error while parsing object key - invalid literal; last "
+        "read: '{?'; expected string literal");
+}
+
+TEST(Json, NumbersBeyondADoubleHaveNoRawText) {
+    EXPECT_EQ(error_of([] { parse_json("who", "a.json", "{\n\"a\": 1e999}"); }),
+              "exit 3: who: a.json:2: number overflow parsing '1e999'");
+}
+
+TEST(Json, TextsThatATerminalWouldObeyAreRefused) {
+    const Json json = parse_json("who", "a.json", R"({"name": "a\u001b[2J", "words": ["b\n"]})");
+    ObjectReader object("who", "a.json", "", json);
+    EXPECT_EQ(error_of([&] { object.string("name"); }),
+              "exit 3: who: a.json:1: name: expected a text without control characters but got "
+              "\"a?[2J\"");
+    EXPECT_EQ(error_of([&] { object.boolean("name", true); }),
+              "exit 3: who: a.json:1: name: expected true or false but got \"a?[2J\"");
+    EXPECT_EQ(error_of([&] { object.strings("words"); }),
+              "exit 3: who: a.json:1: words: expected a list of texts without control characters "
+              "but got \"b?\" in it");
+}
+
+TEST(Json, ManyKeysTakeNoLongerThanTheyShould) {
+    std::string text = "{";
+    for (int i = 0; i < 90000; ++i)
+        text += fmt::format("{}\"k{}\":1", i > 0 ? "," : "", i);
+    EXPECT_EQ(parse_json("who", "a.json", text + "}").members.size(), 90000u);
+}
+
+TEST(Json, LongFilesAreRefused) {
+    EXPECT_EQ(error_of([] { parse_json("who", "a.json", std::string(kMostJsonBytes + 1, ' ')); }),
+              "exit 3: who: a.json: expected at most 1024 KiB but got 1025");
 }
 
 }  // namespace

@@ -1,10 +1,17 @@
+#include <algorithm>
+#include <cctype>
 #include <random>
+#include <set>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include "base/text.h"
 #include "effect/manifest.h"
 #include "effect/plugins.h"
+#include "shader/source.h"
 
 namespace relevo::effect::test {
 namespace {
@@ -280,6 +287,105 @@ TEST(Manifest, AMangledFileIsReadOrRefused) {
         }
     }
     EXPECT_GT(refused, 200);
+}
+
+TEST(Manifest, FilesThatAreLinksOutOfTheFolderAreRefused) {
+    const Plugins plugins;
+    plugins.write("secret.glsl", kHook);
+    plugins.write("data/shared.png", "");
+    std::filesystem::create_directories(plugins.plugins() / "haze");
+    std::filesystem::create_symlink(plugins.folder() / "secret.glsl",
+                                    plugins.plugins() / "haze/link.glsl");
+    plugins.write("plugins/haze/plugin.json",
+                  std::string("{") + kHead + ",\n\"glsl\": [\"link.glsl\"]}");
+    EXPECT_EQ(plugins.relative(
+                  error_of([&] { load_manifest(plugins.plugins() / "haze", plugins.data()); })),
+              "exit 3: effect::load: plugins/haze/plugin.json:2: glsl: expected a file of the "
+              "plugin's own folder but got link.glsl");
+    // A folder that is a link itself is where its plugin is.
+    plugins.add("bump");
+    std::filesystem::create_directory_symlink(plugins.plugins() / "bump",
+                                              plugins.folder() / "elsewhere");
+    EXPECT_EQ(load_manifest(plugins.folder() / "elsewhere", plugins.data()).id, "bump");
+}
+
+TEST(Manifest, FilesThatAreNoneAreRefused) {
+    const Plugins plugins;
+    plugins.add("haze", R"("glsl": ["pipe.glsl"])");
+    ASSERT_EQ(mkfifo((plugins.plugins() / "haze/pipe.glsl").c_str(), 0600), 0);
+    EXPECT_EQ(plugins.relative(
+                  error_of([&] { load_manifest(plugins.plugins() / "haze", plugins.data()); })),
+              "exit 3: effect::load: plugins/haze/plugin.json:1: glsl: plugins/haze/pipe.glsl: it "
+              "is not a regular file");
+    std::filesystem::remove(plugins.plugins() / "haze/plugin.json");
+    ASSERT_EQ(mkfifo((plugins.plugins() / "haze/plugin.json").c_str(), 0600), 0);
+    const Registry registry = plugins.load();
+    ASSERT_EQ(registry.broken().size(), 1u);
+    EXPECT_EQ(plugins.relative(registry.broken()[0].error),
+              "effect::load: plugins/haze/plugin.json: cannot be read, it is not a regular file");
+}
+
+TEST(Manifest, LongGlslIsRefused) {
+    const Plugins plugins;
+    plugins.add("haze", "", kHook + std::string(1 << 20, '\n'));
+    EXPECT_EQ(plugins.relative(
+                  error_of([&] { load_effect(plugins.plugins() / "haze", plugins.data()); })),
+              "exit 3: effect::load: plugins/haze/haze.glsl: expected at most 1024 KiB but got "
+              "1025");
+}
+
+/// What the globals of core's own shaders begin with, "sun" of sun_light.
+std::set<std::string> core_prefixes() {
+    std::set<std::string> names, prefixes;
+    const std::filesystem::path folder = relevo::test::source_dir() / "shaders";
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        const std::string file = entry.path().filename().string();
+        if (entry.path().extension() != ".glsl") continue;
+        const auto kind = file.ends_with(".vert.glsl")   ? shader::SourceKind::VertexMain
+                          : file.ends_with(".frag.glsl") ? shader::SourceKind::FragmentMain
+                                                         : shader::SourceKind::Lib;
+        const shader::Source source =
+            shader::parse_source(kind, "core", file, read_text(entry.path(), "test"));
+        for (const shader::Item& item : source.items)
+            names.insert(item.names.begin(), item.names.end());
+        for (const shader::Sampler& sampler : source.samplers)
+            names.insert(sampler.name);
+        for (const shader::Varying& varying : source.varyings)
+            names.insert(varying.name);
+    }
+    for (const shader::Hook& hook : shader::hooks())
+        names.insert(std::string(hook.name));
+    for (const std::string& name : names) {
+        const std::size_t end = name.find('_');
+        const bool id = end != std::string::npos && end > 0 && name[0] >= 'a' && name[0] <= 'z' &&
+                        std::all_of(name.begin(), name.begin() + static_cast<std::ptrdiff_t>(end),
+                                    [](char c) { return std::islower(c) || std::isdigit(c); });
+        if (id) prefixes.insert(name.substr(0, end));
+    }
+    return prefixes;
+}
+
+TEST(Manifest, NoIdIsWhatCoresNamesBeginWith) {
+    std::set<std::string> words = core_prefixes();
+    EXPECT_EQ(words.count("background"), 1u);
+    // Passes and stages of a frame, and words of the command line.
+    words.insert({"select", "geometry", "terrain", "post", "edges", "antialias", "all", "none"});
+    const std::string guide =
+        read_text(relevo::test::source_dir() / "docs/plugin-guide.md", "test");
+    const std::size_t list = guide.find("`id` cannot be a word that core uses");
+    ASSERT_NE(list, std::string::npos);
+    std::string listed = guide.substr(list, guide.find("\n\n", list) - list);
+    std::replace(listed.begin(), listed.end(), '\n', ' ');
+    for (const std::string& word : words) {
+        const Plugins plugins;
+        plugins.add(word);
+        EXPECT_EQ(plugins.relative(
+                      error_of([&] { load_manifest(plugins.plugins() / word, plugins.data()); })),
+                  fmt::format("exit 3: effect::load: plugins/{0}/plugin.json:1: id: {0} is a word "
+                              "of core's; choose another",
+                              word));
+        EXPECT_NE(listed.find(" " + word), std::string::npos) << word;
+    }
 }
 
 // ---- manifest and GLSL together

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/paths.h"
-#include "effect/native_module.h"
+#include "effect/loaded_selection.h"
 #include "effect/plugins.h"
 
 namespace relevo::effect::test {
@@ -27,14 +27,14 @@ class Native : public Plugins {
     std::string error() const {
         const Registry registry = load();
         return relative(relevo::test::error_of(
-            [&] { NativeModule::load(registry.effect("native", "test").manifest); }));
+            [&] { NativeModule::load(registry.effect("native", "test").manifest, {}); }));
     }
 };
 
 TEST(NativeModule, AGoodOneIsLoaded) {
     const Native plugins("good");
     const Registry registry = plugins.load();
-    const NativeModule module = NativeModule::load(registry.effect("native", "test").manifest);
+    const NativeModule module = NativeModule::load(registry.effect("native", "test").manifest, {});
     EXPECT_EQ(module.id(), "native");
     EXPECT_EQ(module.library(), plugins.plugins() / "native/native.so");
     void* instance = &instance;
@@ -48,7 +48,7 @@ TEST(NativeModule, TheGuidesExampleIsOne) {
     std::filesystem::copy(relevo::test::build_dir() / "tests/modules/tide.so",
                           plugins.plugins() / "tide/tide.so");
     const Registry registry = plugins.load();
-    EXPECT_EQ(NativeModule::load(registry.effect("tide", "test").manifest).id(), "tide");
+    EXPECT_EQ(NativeModule::load(registry.effect("tide", "test").manifest, {}).id(), "tide");
 }
 
 TEST(NativeModule, EveryFaultIsAMessageThatNamesTheFile) {
@@ -104,25 +104,40 @@ TEST(NativeModule, ABadOneIsOffAndSoIsWhatRequiresIt) {
     plugins.add("glow", R"("requires": ["magic"])");
     plugins.add("plain");
     const Registry registry = plugins.load();
-    const NativeSelection chosen = select_and_load(registry, {}, {});
+    const LoadedSelection chosen = select_and_load(registry, {}, {}, {});
     EXPECT_THAT(ids(chosen.selection), ElementsAre("plain"));
     EXPECT_TRUE(chosen.modules.empty());
-    ASSERT_EQ(chosen.selection.notices.size(), 2u);
-    EXPECT_EQ(plugins.relative(chosen.selection.notices[0]),
+    EXPECT_TRUE(chosen.selection.notices.empty());
+    ASSERT_EQ(chosen.selection.warnings.size(), 2u);
+    EXPECT_EQ(plugins.relative(chosen.selection.warnings[0]),
               "native is off: effect::load: plugins/native/native.so: its registration ended in a "
-              "segmentation fault");
-    EXPECT_EQ(chosen.selection.notices[1], "glow is off: it requires magic, native is off");
+              "segmentation fault; --disable native leaves it out");
+    EXPECT_EQ(chosen.selection.warnings[1],
+              "glow is off: it requires magic, native is off; --disable glow leaves it out");
 }
 
-TEST(NativeModule, ABadOneThatIsAskedForIsANoticeToo) {
-    const Native plugins("throws");
+TEST(NativeModule, ABadOneThatIsAskedForByNameIsAnError) {
+    const Native plugins("throws", R"("provides": ["magic"])");
+    plugins.add("glow", R"("requires": ["magic"])");
     plugins.add("plain");
     const Registry registry = plugins.load();
-    Switches switches;
-    switches.only = {"native", "plain"};
-    const NativeSelection chosen = select_and_load(registry, {}, switches);
-    EXPECT_THAT(ids(chosen.selection), ElementsAre("plain"));
-    EXPECT_EQ(chosen.selection.notices.size(), 1u);
+    const auto error = [&](const Switches& switches) {
+        return plugins.relative(
+            relevo::test::error_of([&] { select_and_load(registry, {}, switches, {}); }));
+    };
+    const std::string reason =
+        "exit 3: effect::select: native: it cannot be switched on: effect::load: "
+        "plugins/native/native.so: its registration threw an exception: no good today; take it out "
+        "of ";
+    using Words = std::vector<std::string>;
+    EXPECT_EQ(error({.only = Words{"native", "plain"}}), reason + "--only");
+    EXPECT_EQ(error({.enable = {"native"}}), reason + "--enable");
+    EXPECT_EQ(error({.only = Words{"glow"}}),
+              "exit 3: effect::select: glow: it cannot be switched on: it requires magic, native "
+              "is off; take it out of --only");
+    EXPECT_EQ(error({.only = Words{"plain"}}), "no error");
+    const Preset preset{"winter", "winter.json", "", {.only = Words{"native", "plain"}}, {}};
+    EXPECT_EQ(select_and_load(registry, {preset}, {}, {}).selection.warnings.size(), 1u);
 }
 
 TEST(NativeModule, OneThatIsOffIsNotTried) {
@@ -131,7 +146,9 @@ TEST(NativeModule, OneThatIsOffIsNotTried) {
     const Registry registry = plugins.load();
     Switches switches;
     switches.disable = {"native"};
-    EXPECT_TRUE(select_and_load(registry, {}, switches).selection.notices.empty());
+    const LoadedSelection chosen = select_and_load(registry, {}, switches, {});
+    EXPECT_TRUE(chosen.selection.notices.empty());
+    EXPECT_TRUE(chosen.selection.warnings.empty());
 }
 
 }  // namespace

@@ -74,6 +74,34 @@ TEST(Registry, ABrokenPluginTakesNoOtherDown) {
               "unexpected end of input; expected string literal");
 }
 
+TEST(Registry, ABrokenPluginMayBeDisabled) {
+    const Plugins plugins;
+    plugins.add("bump");
+    plugins.add("haze", "", "}");
+    const Registry registry = plugins.load();
+    EXPECT_TRUE(registry.is_broken("haze"));
+    EXPECT_FALSE(registry.is_broken("bump"));
+    EXPECT_EQ(select(registry, {}, {.disable = {"haze"}}).effects.size(), 1u);
+    EXPECT_EQ(plugins.relative(error_of([&] { select(registry, {}, {.enable = {"haze"}}); })),
+              "exit 3: effect::select: haze: this plugin could not be loaded: shader::parse: "
+              "plugins/haze/haze.glsl:1: } closes nothing");
+}
+
+TEST(Registry, OneByteThatIsNoUtf8BreaksItsPluginAlone) {
+    const Plugins plugins;
+    plugins.add("bump");
+    plugins.add("haze",
+                "\"description\": \"N\xe4"
+                "he\"");
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(registry), ElementsAre("bump"));
+    ASSERT_EQ(registry.broken().size(), 1u);
+    EXPECT_EQ(
+        plugins.relative(registry.broken()[0].error),
+        "effect::load: plugins/haze/plugin.json:1: syntax error while parsing value - invalid "
+        "string: ill-formed UTF-8 byte; last read: '\"N?h'");
+}
+
 TEST(Registry, OfTwoWithOneIdTheFirstStays) {
     const Plugins plugins;
     plugins.add("haze");

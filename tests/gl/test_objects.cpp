@@ -58,6 +58,15 @@ TEST_F(GlObjects, TexturesKeepTheirTexels) {
     EXPECT_EQ(back, texels);
 }
 
+TEST_F(GlObjects, TexturesHaveNoMoreLevelsThanTheirSides) {
+    EXPECT_EQ(Texture(TextureKind::D2, Format::R8, {8, 3, 1}, 4, "small").levels(), 4);
+    EXPECT_EQ(
+        test::error_of([] {
+            Texture(TextureKind::D2, Format::R8, {8, 3, 1}, 5, "small");
+        }),
+        "exit 1: gl::Texture: small: expected at most 4 levels of 8 x 3 x 1 texels but got 5");
+}
+
 TEST(Texture, LargerThanTheDevicesMemorySaysHowLarge) {
     const Context context{ContextOptions{}};
     const int layers = context.info().max_array_layers;

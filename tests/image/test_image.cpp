@@ -1,5 +1,8 @@
 #include <cmath>
+#include <cstdint>
 #include <fstream>
+
+#include <sys/stat.h>
 
 #include "image/image.h"
 #include "support/support.h"
@@ -88,6 +91,65 @@ TEST_F(ImageFiles, BrokenFilesAreErrorsNotCrashes) {
     write(dir_ / "whole.png", gradient(64, 64, 3));
     std::filesystem::resize_file(dir_ / "whole.png", 200);
     EXPECT_EQ(test::error_of([&] { read(dir_ / "whole.png"); }).substr(0, 8), "exit 3: ");
+}
+
+/// A PNG of grey pixels that claims a size and holds next to nothing.
+std::string hollow_png(std::uint32_t width, std::uint32_t height, std::size_t filling) {
+    const auto number = [](std::uint32_t value) {
+        std::string bytes;
+        for (int shift = 24; shift >= 0; shift -= 8)
+            bytes += static_cast<char>(value >> shift & 0xff);
+        return bytes;
+    };
+    const auto chunk = [&](const std::string& name, const std::string& data) {
+        const std::string body = name + data;
+        std::uint32_t crc = 0xffffffff;  // ISO 3309, as the PNG specification's annex D has it
+        for (const char c : body) {
+            crc ^= static_cast<unsigned char>(c);
+            for (int bit = 0; bit < 8; ++bit)
+                crc = crc & 1 ? 0xedb88320 ^ crc >> 1 : crc >> 1;
+        }
+        return number(static_cast<std::uint32_t>(data.size())) + body + number(~crc);
+    };
+    const std::string header =
+        number(width) + number(height) + std::string("\x08\x00\x00\x00\x00", 5);
+    return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("IDAT", std::string(filling, 'x')) +
+           chunk("IEND", "");
+}
+
+TEST_F(ImageFiles, APngThatClaimsMoreThanItHoldsTakesNoMemory) {
+    const std::string path = (dir_ / "hollow.png").string();
+    const auto error_of = [&](std::uint32_t width, std::uint32_t height, std::size_t filling) {
+        std::ofstream(path, std::ios::binary) << hollow_png(width, height, filling);
+        return test::error_of([&] { read(path); });
+    };
+    EXPECT_EQ(error_of(1000000, 1000000, 10),
+              "exit 3: image: " + path +
+                  ": a file of 67 bytes cannot hold 1000000 x 1000000 pixels; it is damaged");
+    EXPECT_EQ(error_of(30000, 30000, 1000),
+              "exit 3: image: " + path +
+                  ": a file of 1057 bytes cannot hold 30000 x 30000 pixels; it is damaged");
+    EXPECT_EQ(
+        error_of(40000, 10, 1000),
+        "exit 3: image: " + path +
+            ": expected 1 to 32768 pixels a side and at most 1024 MiB of them but got 40000 x "
+            "10");
+    EXPECT_EQ(error_of(32768, 32769, 1100000).substr(0, 8), "exit 3: ");
+}
+
+TEST_F(ImageFiles, ThatAreNoRegularFilesAreNotWaitedFor) {
+    for (const char* name : {"pipe.png", "pipe.jpg"}) {
+        const std::string path = (dir_ / name).string();
+        ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+        EXPECT_EQ(test::error_of([&] { read(path); }),
+                  "exit 3: image: " + path + ": cannot be read, it is not a regular file");
+    }
+}
+
+TEST_F(ImageFiles, HighlyCompressedOnesAreRead) {
+    const Image8 flat(3000, 2000, 4);
+    write(dir_ / "flat.png", flat);
+    EXPECT_EQ(compare(read(dir_ / "flat.png"), flat).worst, 0);
 }
 
 TEST(ImageCompare, MeasuresWhatDiffers) {

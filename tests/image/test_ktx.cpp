@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "image/ktx.h"
 #include "support/support.h"
@@ -275,6 +276,11 @@ TEST(Ktx, WhatIsNoFileSaysSo) {
     EXPECT_EQ(test::error_of([&] { read_ktx(dir); }),
               fmt::format("exit 3: image::read_ktx: {}: cannot be read, it is not a regular file",
                           dir.string()));
+    const auto pipe = dir / "pipe.ktx2";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_EQ(test::error_of([&] { read_ktx(pipe); }),
+              fmt::format("exit 3: image::read_ktx: {}: cannot be read, it is not a regular file",
+                          pipe.string()));
     const auto nowhere = dir / "missing" / "texture.ktx2";
     EXPECT_EQ(
         test::error_of([&] { write_ktx(nowhere, counted(TextureFormat::R8, 2, 2, 1, 1)); }),

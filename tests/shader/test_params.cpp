@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstring>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/log.h"
@@ -113,6 +114,43 @@ TEST(ParamValues, AHexColourIsLinearLight) {
     const Param with_alpha = param("uniform vec4 haze_a = vec4(1); //@ colour");
     EXPECT_EQ(parse_value(with_alpha, "#bcbcbc80")[3], 128 / 255.0);  // alpha is no light
     EXPECT_NEAR(parse_value(param(kColour), "#0a0a0a")[1], 10 / 255.0 / 12.92, 1e-12);
+}
+
+TEST(ParamValues, BeyondAFloatSayWhy) {
+    const auto error = [](const char* declaration, const char* text) {
+        return error_of([&] { parse_value(param(declaration), text); });
+    };
+    const std::string head = "exit 3: shader::parse_value: haze.a: expected ";
+    EXPECT_EQ(error(kDirection, "1e99,0,0"),
+              head +
+                  "a direction, three numbers east,north,up that are not all zero, none beyond "
+                  "3.40282e+38 in size but got \"1e99,0,0\"");
+    EXPECT_EQ(error("uniform vec2 haze_a = vec2(0);", "1e99,0"),
+              head +
+                  "two numbers with commas between, none beyond 3.40282e+38 in size but got "
+                  "\"1e99,0\"");
+    EXPECT_EQ(error(kFloat, "1e99"), head + "a number in [0, 2] 1/km but got \"1e99\"");
+    EXPECT_EQ(error(kFloat, "2.0000000000000004"),
+              head + "a number in [0, 2] 1/km but got \"2.0000000000000004\"");
+    EXPECT_EQ(
+        error_of([] { param("uniform float haze_a = 5e98; //@ range(0, 1e99)"); }),
+        "exit 3: shader::parse: haze.glsl:1: haze_a: expected a range within -3.402823466e+38 "
+        "and 3.402823466e+38, as a float can hold, but got range(0, 1e99)");
+    EXPECT_EQ(error_of([] { param("uniform int haze_a = 5; //@ range(0, 1e10)"); }),
+              "exit 3: shader::parse: haze.glsl:1: haze_a: expected a range within -2147483647 and "
+              "2147483647, as an int can hold, but got range(0, 1e10)");
+}
+
+TEST(ParamStore, WritesWholeNumbersOnlyWhereTheyFit) {
+    ParamStore store;
+    store.declare({param("uniform int haze_a = 0; //@ host")});
+    store.write_host("haze.a", {7});
+    for (const double bad : {1e99, 0.5, std::nan("")})
+        EXPECT_EQ(error_of([&] { store.write_host("haze.a", {bad}); }),
+                  fmt::format("exit 3: shader::ParamStore: haze.a: expected a whole number but got "
+                              "{}",
+                              bad));
+    EXPECT_EQ(store.value("haze.a")[0], 7);
 }
 
 struct BadValue {

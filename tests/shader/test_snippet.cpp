@@ -201,8 +201,83 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"Main", "void main() {}",
             "1: main is core's; a plugin hooks into it with functions named haze_on_<hook>"},
         Bad{"Position", "\nvoid haze_f() { gl_Position.x = 1.0; }",
-            "2: gl_Position is core's; a plugin moves the ground in haze_on_displace"}),
+            "2: gl_Position is core's; a plugin moves the ground in haze_on_displace"},
+        Bad{"PositionInAMacro", "\n#define haze_P gl_Position\n",
+            "2: gl_Position is core's; a plugin moves the ground in haze_on_displace"},
+        Bad{"Depth", "void haze_on_albedo(inout Surface s) { gl_FragDepth = 0.0; }",
+            "1: gl_FragDepth is core's; a plugin moves the ground in haze_on_displace"},
+        Bad{"HookInAMacro", "#define haze_A hook_albedo",
+            "1: hook_albedo: only core's main programs call hooks"}),
     [](const auto& test) { return test.param.name; });
+
+const std::string kDiscard =
+    "discard: every pixel has to be written, or it keeps what another frame left there; leave the "
+    "arguments as they are instead";
+const std::string kDiscard1 = "1: " + kDiscard, kDiscard3 = "3: " + kDiscard;
+
+INSTANTIATE_TEST_SUITE_P(
+    Forbidden, SnippetError,
+    testing::Values(
+        Bad{"Discard",
+            "void haze_on_albedo(inout Surface s) {\n"
+            "    if (s.height_m < 0.0)\n        discard;\n}",
+            kDiscard3.c_str()},
+        Bad{"DiscardInAMacro", "#define haze_DROP(x) if (x) discard", kDiscard1.c_str()},
+        Bad{"DiscardUnderIf", "#if HAS_sky\n\nvoid haze_f() { discard; }\n#endif",
+            kDiscard3.c_str()},
+        Bad{"DiscardAsAnArgument", "#define haze_DO(x) x\n\nvoid haze_f() { haze_DO(discard); }",
+            kDiscard3.c_str()},
+        Bad{"DiscardPasted", "#define haze_DROP dis ## card",
+            "1: # has no place in a directive of GLSL 4.50"},
+        Bad{"DiscardInTwoLines", "\nvoid haze_f() { dis\\\ncard; }",
+            "2: \\ joins this line and the next without a blank between them; add one"},
+        Bad{"DiscardInThreeLines", "\nvoid haze_f() { dis\\\n\\\ncard; }",
+            "2: \\ joins this line and the next without a blank between them; add one"},
+        Bad{"DiscardInTwoLinesOfAMacro", "#define haze_DROP dis\\\ncard",
+            "1: \\ joins this line and the next without a blank between them; add one"},
+        Bad{"CommentThatTheDriverEndsEarlier", "void haze_f() { /* *\\\n/ discard; /* */ }",
+            "1: * and \\ side by side in a comment may end it; put a blank between them"},
+        Bad{"CommentThatTheDriverBegins", "void haze_f() { /\\\n/ }\n}",
+            "1: \\ joins this line and the next without a blank between them; add one"},
+        Bad{"Barrier", "void haze_f() { memoryBarrier(); }",
+            "1: memoryBarrier: a plugin writes nothing that another would have to wait for"},
+        Bad{"Image", "uniform image2D haze_i;",
+            "1: haze_i: expected a parameter of type float, int, bool, vec2, vec3 or vec4, or a "
+            "sampler, but got image2D"},
+        Bad{"Atomic", "uniform atomic_uint haze_i;",
+            "1: haze_i: expected a parameter of type float, int, bool, vec2, vec3 or vec4, or a "
+            "sampler, but got atomic_uint"},
+        Bad{"DefineInAStruct", "struct haze_S {\n#define haze_A 1\n    float x;\n};",
+            "2: #define inside haze_S; move it out of the declaration"},
+        Bad{"LineInAStruct", "struct haze_S {\n#line 9\n    float x;\n};",
+            "2: #line inside haze_S; move it out of the declaration"},
+        Bad{"ExtensionInAnArgument", "void haze_f(\n#extension all : enable\n) {}",
+            "2: #extension inside haze_f; move it out of the function"},
+        Bad{"PragmaInAnInitialiser", "const float haze_a[1] = float[1](\n#pragma x\n1.0);",
+            "2: #pragma inside haze_a; move it out of the declaration"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(Snippet, ContinuedMacrosAndCommentsAreAccepted) {
+    const Snippet snippet = parse(
+        "#define haze_MAX(a, b) \\\n    max(a, b)\n"
+        "// discard is not \\\n used here: discard\n"
+        "/* nor discard \\\n here **/\n"
+        "void haze_on_albedo(inout Surface s) {}\n");
+    EXPECT_EQ(snippet.hooks.size(), 1u);
+}
+
+TEST(Snippet, AnnotationsAreUtf8WithoutControlCharacters) {
+    EXPECT_EQ(
+        parse("uniform bool haze_a = true; //@\tlabel(\"Nebelstärke\")").source.params.at(0).label,
+        "Nebelstärke");
+    EXPECT_EQ(
+        error_of([] { parse("\nuniform bool haze_a = true; //@ label(\"\xe4\")"); }),
+        "exit 3: shader::parse: haze.glsl:2: //@ label(\"?\"): expected UTF-8 without control "
+        "characters");
+    EXPECT_EQ(error_of([] { parse("uniform bool haze_a = true; //@ label(\"\x1b[2J\")"); }),
+              "exit 3: shader::parse: haze.glsl:1: //@ label(\"?[2J\"): expected UTF-8 without "
+              "control characters");
+}
 
 INSTANTIATE_TEST_SUITE_P(
     Text, SnippetError,

@@ -17,7 +17,7 @@
 #include "base/parallel_for.h"
 #include "base/units.h"
 #include "dem/load.h"
-#include "effect/native_module.h"
+#include "effect/loaded_selection.h"
 #include "gl/context.h"
 #include "render/ground.h"
 #include "render/renderer.h"
@@ -300,7 +300,7 @@ class Drawn {
 
   private:
     struct Chosen {
-        effect::NativeSelection native;
+        effect::LoadedSelection native;
         std::unique_ptr<render::Renderer> renderer;
     };
 
@@ -313,7 +313,7 @@ class Drawn {
     Chosen select(const std::vector<std::string>& only) {
         effect::Switches switches;
         switches.only = only;
-        Chosen chosen{effect::select_and_load(registry_, {}, switches), nullptr};
+        Chosen chosen{effect::select_and_load(registry_, {}, switches, values_), nullptr};
         render::EffectInputs inputs;
         inputs.stitch.snippets = chosen.native.selection.snippets();
         inputs.stitch.capabilities = chosen.native.selection.capabilities;

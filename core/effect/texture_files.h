@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "effect/manifest.h"
+#include "image/ktx.h"
+
+namespace relevo::effect {
+
+/// A texture that a plugin brings, read and checked: only a device can still refuse it.
+struct LoadedTexture {
+    TextureSpec spec;
+    /// One; of an array, its layers in order. All have the same format, sides and levels.
+    std::vector<image::TextureData> layers;
+
+    /// Whether the files bring the mipmaps that the manifest asks for.
+    bool has_mipmaps() const { return spec.mipmaps && layers.front().levels() > 1; }
+};
+
+/// Reads a texture's files. KTX 2 files are mapped as they lie; pictures are decoded.
+/// @throws Error (BadInput) `effect::load: FILE: ...` for a file that is missing or broken, is of
+///         another kind than the manifest says, or does not fit the other layers
+LoadedTexture load_texture(const TextureSpec& spec);
+
+/// The longest sides of textures that a device takes [px].
+struct TextureLimits {
+    int side_px = 0;         ///< of a flat texture
+    int volume_side_px = 0;  ///< of a volume
+    int layers = 0;          ///< of an array
+};
+
+/// @throws Error (BadInput) `effect::load: FILE: ...` for a texture that is larger
+void check_limits(const LoadedTexture& texture, const TextureLimits& limits);
+
+}  // namespace relevo::effect

@@ -1,0 +1,108 @@
+#include "render/native_textures.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace relevo::render {
+namespace {
+
+struct FormatRow {
+    std::int32_t abi;
+    gl::Format format;
+    int floats;
+};
+constexpr std::array kFormats = {
+    FormatRow{RELEVO_FORMAT_R32F, gl::Format::R32F, 1},
+    FormatRow{RELEVO_FORMAT_RG32F, gl::Format::RG32F, 2},
+    FormatRow{RELEVO_FORMAT_RGBA32F, gl::Format::RGBA32F, 4},
+    FormatRow{RELEVO_FORMAT_RG16F, gl::Format::RG16F, 2},
+    FormatRow{RELEVO_FORMAT_RGBA16F, gl::Format::RGBA16F, 4},
+    FormatRow{RELEVO_FORMAT_DEPTH32F, gl::Format::Depth32F, 1},
+    FormatRow{RELEVO_FORMAT_R16F, gl::Format::R16F, 1},
+    FormatRow{RELEVO_FORMAT_RGBA8, gl::Format::RGBA8, 4},
+};
+
+const FormatRow* format_row(std::int32_t abi) {
+    const auto found = std::find_if(kFormats.begin(), kFormats.end(),
+                                    [&](const FormatRow& row) { return row.abi == abi; });
+    return found == kFormats.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+NativeTextures::NativeTextures(std::string plugin, const gl::DeviceInfo& device)
+    : plugin_(std::move(plugin)), device_(device) {}
+
+const NativeTextures::Made& NativeTextures::at(relevo_texture name) const {
+    const auto found = textures_.find(name);
+    if (found == textures_.end()) failed(fmt::format("there is no texture {}", name));
+    return found->second;
+}
+
+gl::Texture& NativeTextures::get(relevo_texture name) {
+    return const_cast<gl::Texture&>(std::as_const(*this).get(name));
+}
+
+relevo_texture NativeTextures::create(const relevo_texture_info& info) {
+    const FormatRow* row = format_row(info.format);
+    if (!row) failed(fmt::format("{} is no format of a texture", info.format));
+    const int most = device_.max_texture_size;
+    if (info.width < 1 || info.height < 1 || info.width > most || info.height > most ||
+        info.layers < 0 || info.layers > device_.max_array_layers)
+        failed(fmt::format("expected a texture of up to {0} x {0} but got {1} x {2}, {3} layers",
+                           most, info.width, info.height, info.layers));
+    const int longest = std::max(info.width, info.height);
+    const int full = std::bit_width(static_cast<unsigned>(longest));
+    if (info.levels < 0 || info.levels > full)
+        failed(fmt::format("expected 0 to {} levels of {} x {} texels but got {}", full, info.width,
+                           info.height, info.levels));
+    if (info.filter < RELEVO_FILTER_NEAREST || info.filter > RELEVO_FILTER_MIPMAP)
+        failed(fmt::format("{} is no filter of a texture", info.filter));
+    Made made;
+    made.resource = info.name ? plugin_ + '.' + info.name : std::string();
+    made.floats = row->floats;
+    made.texture = gl::Texture(info.layers > 0 ? gl::TextureKind::D2Array : gl::TextureKind::D2,
+                               row->format, {info.width, info.height, std::max(info.layers, 1)},
+                               info.levels, made.resource.empty() ? plugin_ : made.resource);
+    made.texture.set_sampling(info.filter == RELEVO_FILTER_NEAREST  ? gl::Filter::Nearest
+                              : info.filter == RELEVO_FILTER_LINEAR ? gl::Filter::Linear
+                                                                    : gl::Filter::Mipmap,
+                              gl::Wrap::Clamp);
+    if (!made.resource.empty())
+        for (auto& [other, texture] : textures_)
+            if (texture.resource == made.resource) texture.resource.clear();
+    textures_.emplace(++last_, std::move(made));
+    return last_;
+}
+
+void NativeTextures::read(relevo_texture name, int layer, float* out, std::uint64_t count) const {
+    const Made& from = at(name);
+    const gl::Extent extent = from.texture.extent();
+    const std::uint64_t a_layer = std::uint64_t{1} * static_cast<unsigned>(extent.width) *
+                                  static_cast<unsigned>(extent.height) *
+                                  static_cast<unsigned>(from.floats);
+    const gl::Format format = from.texture.format();
+    const bool floats = gl::texel_bytes(format) == 4 * from.floats && format != gl::Format::RGBA8;
+    if (!floats) failed("only textures of 32-bit floats can be read");
+    if (layer < 0 || layer >= extent.depth || count < a_layer)
+        failed(fmt::format("expected room for {} floats and a layer below {} but got {} and {}",
+                           a_layer, extent.depth, count, layer));
+    std::vector<float> all(a_layer * static_cast<unsigned>(extent.depth));
+    from.texture.read(0, std::as_writable_bytes(std::span(all)));
+    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(a_layer) * layer, a_layer, out);
+}
+
+const gl::Texture* NativeTextures::find(std::string_view resource) const {
+    for (const auto& [name, made] : textures_)
+        if (!made.resource.empty() && made.resource == resource) return &made.texture;
+    return nullptr;
+}
+
+}  // namespace relevo::render

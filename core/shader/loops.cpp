@@ -1,0 +1,105 @@
+#include "shader/loops.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "base/text.h"
+
+namespace relevo::shader {
+namespace {
+
+constexpr double kMostTurns = 10000;
+
+class Reader {
+  public:
+    explicit Reader(const Source& source) : source_(source) {}
+
+    std::vector<int> run() {
+        std::vector<int> lines;
+        for (std::size_t i = 0; i < source_.tokens.size(); ++i) {
+            const std::string_view word = str(i);
+            if (word == "while" || (word == "for" && !is_bounded(i)))
+                lines.push_back(source_.tokens[i].line);
+        }
+        return lines;
+    }
+
+  private:
+    std::string_view str(std::size_t i) const {
+        return i < source_.tokens.size() && source_.tokens[i].kind != TokenKind::Directive
+                   ? source_.str(source_.tokens[i])
+                   : std::string_view();
+    }
+
+    /// Behind what closes the bracket at `i`.
+    std::size_t behind(std::size_t i) const {
+        int depth = 0;
+        do {
+            depth += str(i) == "(" || str(i) == "{";
+            depth -= str(i) == ")" || str(i) == "}";
+            ++i;
+        } while (depth > 0 && i < source_.tokens.size());
+        return i;
+    }
+
+    bool is_constant(std::size_t i) const {
+        if (const std::optional<double> number = parse_number(str(i))) return *number <= kMostTurns;
+        const std::string_view name = str(i);
+        for (const Param& param : source_.params)
+            if (param.name == name)
+                return param.is_static && param.range && param.range->max <= kMostTurns;
+        return std::any_of(source_.items.begin(), source_.items.end(), [&](const Item& item) {
+            const bool known =
+                std::find(item.names.begin(), item.names.end(), name) != item.names.end();
+            return known && (item.kind == Item::Kind::Macro ||
+                             (item.kind == Item::Kind::Declaration && str(item.first) == "const"));
+        });
+    }
+
+    /// Whether the tokens [first, last) write to a variable.
+    bool writes(std::string_view name, std::size_t first, std::size_t last) const {
+        constexpr std::array<std::string_view, 7> kWriting = {
+            "=", "+=", "-=", "*=", "/=", "++", "--"};
+        const auto is_writing = [&](std::string_view mark) {
+            return std::find(kWriting.begin(), kWriting.end(), mark) != kWriting.end();
+        };
+        for (std::size_t i = first; i < last; ++i)
+            if (str(i) == name &&
+                (is_writing(str(i + 1)) || str(i - 1) == "++" || str(i - 1) == "--"))
+                return true;
+        return false;
+    }
+
+    /// @param head  of a for
+    bool is_bounded(std::size_t head) const {
+        const std::size_t close = behind(head + 1);  // behind the )
+        std::vector<std::size_t> semicolons;
+        for (std::size_t i = head + 1; i < close; ++i)
+            if (str(i) == ";") semicolons.push_back(i);
+        if (semicolons.size() != 2) return false;
+        const std::size_t condition = semicolons[0] + 1;
+        const std::string_view name = str(condition), mark = str(condition + 1);
+        const bool compares = mark == "<" || mark == "<=" || mark == ">" || mark == ">=";
+        if (!compares || semicolons[1] != condition + 3 || !is_constant(condition + 2))
+            return false;
+        const std::size_t step = semicolons[1] + 1;
+        std::size_t end = close;  // of the body
+        if (str(close) == "{")
+            end = behind(close);
+        else
+            while (end < source_.tokens.size() && str(end) != ";")
+                ++end;
+        return writes(name, step, close) && !writes(name, close, end);
+    }
+
+    const Source& source_;
+};
+
+}  // namespace
+
+std::vector<int> open_loops(const Source& source) {
+    return Reader(source).run();
+}
+
+}  // namespace relevo::shader

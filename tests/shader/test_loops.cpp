@@ -1,0 +1,46 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shader/loops.h"
+#include "shader/snippet.h"
+
+namespace relevo::shader {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+std::vector<int> loops(const std::string& body) {
+    return open_loops(parse_snippet("haze", "haze.glsl",
+                                    "const int haze_N = 8;\n"
+                                    "#define haze_M 4\n"
+                                    "uniform int haze_s = 2; //@ range(1, 64) static\n"
+                                    "uniform int haze_u = 2; //@ range(1, 64)\n"
+                                    "void haze_f(inout float x, int k) {\n" +
+                                        body + "\n}\n")
+                          .source);
+}
+
+TEST(Loops, WithAConstantBoundEnd) {
+    for (const char* head :
+         {"int i = 0; i < 8; ++i", "int i = 0; i < haze_N; i++", "int i = 0; i <= haze_M; i += 2",
+          "int i = 9; i > 0; --i", "int i = 0; i < haze_s; ++i"}) {
+        EXPECT_THAT(loops(std::string("for (") + head + ") { x += float(i); }"), IsEmpty()) << head;
+        EXPECT_THAT(loops(std::string("for (") + head + ") x += float(i);"), IsEmpty()) << head;
+    }
+    EXPECT_THAT(loops("for (int i = 0; i < 8; ++i) {\nfor (int j = 0; j < 8; ++j) x += 1.0;\n}"),
+                IsEmpty());
+}
+
+TEST(Loops, OthersAreOpen) {
+    for (const char* loop :
+         {"while (x > 0.0) x -= 0.1;", "do { x -= 0.1; } while (x > 0.0);", "for (;;) x += 1.0;",
+          "for (int i = 0; i < k; ++i) x += 1.0;", "for (int i = 0; i < haze_u; ++i) x += 1.0;",
+          "for (int i = 0; i < 20000; ++i) x += 1.0;", "for (int i = 0; i < 8; x += 1.0) {}",
+          "for (int i = 0; i < 8; ++i) { i = 0; }", "for (int i = 0; i < 8; ++i) --i;",
+          "for (int i = 0; i != 8; ++i) {}", "for (int i = 0; i < 8 || x > 0.0; ++i) {}"})
+        EXPECT_THAT(loops(loop), ElementsAre(6)) << loop;
+}
+
+}  // namespace
+}  // namespace relevo::shader
