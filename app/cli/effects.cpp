@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "base/log.h"
 
 namespace relevo::cli {
@@ -17,6 +19,23 @@ render::EffectInputs ActiveEffects::inputs() const {
     for (const effect::NativeModule& module : modules)
         inputs.modules.push_back(&module);
     return inputs;
+}
+
+void ActiveEffects::add_inputs(FilesInUse& files) const {
+    for (const std::string& preset : preset_files)
+        files.add_input(preset, "the preset");
+    for (const effect::Effect& effect : registry.effects()) {
+        const effect::Manifest& manifest = effect.manifest;
+        const std::string what = fmt::format("a file of the plugin {},", effect.id());
+        files.add_input(manifest.file, what);
+        for (const std::filesystem::path& glsl : manifest.glsl)
+            files.add_input(glsl, what);
+        for (const effect::TextureSpec& texture : manifest.textures)
+            for (const std::filesystem::path& file : texture.files)
+                files.add_input(file, what);
+    }
+    for (const effect::NativeModule& module : modules)
+        files.add_input(module.library(), fmt::format("the module of the plugin {},", module.id()));
 }
 
 void EffectArguments::add_to(CLI::App& verb) {
@@ -71,7 +90,7 @@ std::unique_ptr<ActiveEffects> EffectArguments::active(bool aloud) const {
     active->registry = effect::Registry::load_installed({plugin_path.begin(), plugin_path.end()});
     std::vector<effect::Preset> loaded;
     for (const std::string& preset : presets)
-        loaded.push_back(effect::load_preset(preset));
+        active->preset_files.push_back(loaded.emplace_back(effect::load_preset(preset)).file);
     effect::Switches switches;
     if (only_option && only_option->count() > 0) {
         switches.only.emplace();

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/files_in_use.h"
 #include "effect/native_module.h"
 #include "effect/selection.h"
 #include "render/renderer.h"
@@ -18,9 +19,12 @@ struct ActiveEffects {
     effect::Selection selection;  // points into registry
     std::vector<effect::NativeModule> modules;
     shader::ParamStore values;
+    std::vector<std::string> preset_files;
 
     /// For a renderer; valid as long as this is.
     render::EffectInputs inputs() const;
+    /// Adds presets, and the files of all plugins. @throws Error as FilesInUse::add_input
+    void add_inputs(FilesInUse& files) const;
 };
 
 /// --only, --enable, --disable, --set, --preset and --plugin-path.

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/effects.h"
+#include "cli/shared.h"
 
 namespace relevo::cli {
 namespace {
@@ -49,7 +50,7 @@ void list(const effect::Registry& registry, bool json) {
             broken.push_back(
                 {{"id", effect.id}, {"folder", effect.folder.string()}, {"error", effect.error}});
         const nlohmann::ordered_json all = {{"plugins", plugins}, {"broken", broken}};
-        fmt::print("{}\n", all.dump(2));
+        fmt::print("{}", json_text(all));
         return;
     }
     for (const effect::Effect& effect : registry.effects())
@@ -61,7 +62,7 @@ void list(const effect::Registry& registry, bool json) {
 
 void info(const effect::Effect& effect, bool json) {
     if (json) {
-        fmt::print("{}\n", json_of(effect).dump(2));
+        fmt::print("{}", json_text(json_of(effect)));
         return;
     }
     const effect::Manifest& manifest = effect.manifest;

@@ -3,11 +3,13 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "dem/files_of.h"
 #include "geo/geodetic.h"
 #include "light/event_time.h"
 #include "sun/event_time.h"
@@ -64,6 +66,17 @@ void DemArguments::add_to(CLI::App& verb) {
             "is near (1024)")
         ->check(in_range(1, 1 << 20))
         ->group("DEM");
+}
+
+void DemArguments::add_inputs(FilesInUse& files) const {
+    for (const std::string& path : paths)
+        files.add_input(path, "the DEM");
+}
+
+void DemArguments::add_further_inputs(FilesInUse& files) const {
+    if (!files.replaces_any()) return;
+    for (const std::filesystem::path& path : dem::files_of(paths))
+        files.add_input(path, "a file that the DEM is read from,");
 }
 
 void TimeArguments::add_to(CLI::App& verb) {
@@ -196,6 +209,10 @@ CLI::Validator in_range(double min, double max) {
                            : fmt::format("expected {:.10g} to {:.10g} but got {}", min, max, text);
             },
             fmt::format("{:.10g} to {:.10g}", min, max)};
+}
+
+std::string json_text(const nlohmann::ordered_json& json) {
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 glm::ivec2 parse_size(const std::string& text) {

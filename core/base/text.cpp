@@ -44,6 +44,59 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
+namespace {
+
+/// The length of the UTF-8 sequence at the start of the text; 0 where there is none that is valid
+/// (RFC 3629: no overlong ones, no surrogates) and no control character (C0, DEL, C1).
+std::size_t printable_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+    };
+    const unsigned first = byte(0);
+    if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+    if (first < 0xc2 || first > 0xf4) return 0;
+    // The second byte's range excludes C1 controls, overlong forms, surrogates and what is beyond
+    // U+10FFFF.
+    const unsigned low = first == 0xc2 ? 0xa0 : first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
+    const unsigned high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
+    if (byte(1) < low || byte(1) > high) return 0;
+    const std::size_t length = first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    for (std::size_t i = 2; i < length; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    return length;
+}
+
+std::string printable(std::string_view text, std::string_view kept) {
+    std::string result;
+    result.reserve(text.size());
+    while (!text.empty()) {
+        const std::size_t length = std::max<std::size_t>(
+            printable_length(text), kept.find(text[0]) != std::string_view::npos);
+        if (length > 0)
+            result += text.substr(0, length);
+        else if (text[0] == '\n')
+            result += "\\n";
+        else if (text[0] == '\t')
+            result += "\\t";
+        else if (text[0] == '\r')
+            result += "\\r";
+        else
+            result += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+        text.remove_prefix(std::max<std::size_t>(1, length));
+    }
+    return result;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+    return printable(text, "");
+}
+
+std::string printable_lines(std::string_view text) {
+    return printable(text, "\n\t");
+}
+
 std::optional<double> parse_number(std::string_view text) {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
     double value = 0;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "image/image.h"
 
@@ -10,11 +12,12 @@
 namespace relevo::image {
 
 struct FormatsModule {
-    /// Each returns an empty text on success, else the reason for failing.
-    std::string (*write8)(const std::filesystem::path&, const std::string& format, const Image8&,
-                          const Metadata&);
-    std::string (*write_float)(const std::filesystem::path&, const std::string& format,
-                               const ImageF&, const Metadata&);
+    /// Each returns an empty text on success, else the reason for failing. Encoders fill memory: of
+    /// a disk that is full some would say nothing.
+    std::string (*encode8)(std::vector<std::byte>& bytes, const std::string& format, const Image8&,
+                           const Metadata&);
+    std::string (*encode_float)(std::vector<std::byte>& bytes, const std::string& format,
+                                const ImageF&, const Metadata&);
     std::string (*read8)(const std::filesystem::path&, Image8&);
     std::string (*read_float)(const std::filesystem::path&, ImageF&);
 };

@@ -29,5 +29,21 @@ TEST(Text, ReadingAMissingFileNamesIt) {
               "exit 3: text: /nowhere/a.txt: cannot be read, No such file or directory");
 }
 
+TEST(Text, PrintableNamesStayOnTheirLine) {
+    for (const auto& [text, expected] : std::vector<std::pair<std::string, std::string>>{
+             {"", ""},
+             {"Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\x8f\x94.tif",
+              "Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\x8f\x94.tif"},
+             {"a\nb\tc\rd", "a\\nb\\tc\\rd"},
+             {std::string("\0\x1f\x7f", 3), "\\x00\\x1f\\x7f"},
+             {"\xc2\x80\xc2\x9f\xc2\xa0", "\\xc2\\x80\\xc2\\x9f\xc2\xa0"},  // C1 ends at U+00A0
+             {"\xc0\xaf\xe0\x80\xaf", "\\xc0\\xaf\\xe0\\x80\\xaf"},         // overlong
+             {"\xed\xa0\x80\xed\x9f\xbf", "\\xed\\xa0\\x80\xed\x9f\xbf"},   // a surrogate
+             {"\xf4\x90\x80\x80\xf5", "\\xf4\\x90\\x80\\x80\\xf5"},         // above U+10FFFF
+             {"\xe2\x82", "\\xe2\\x82"}})
+        EXPECT_EQ(printable(text), expected);
+    EXPECT_EQ(printable_lines("a\nb\tc\x1b"), "a\nb\tc\\x1b");
+}
+
 }  // namespace
 }  // namespace relevo
