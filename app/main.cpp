@@ -114,13 +114,15 @@ void fill_standard_streams() {
 }
 
 /// Writes out what the stream still holds; the reason where some of the output is lost.
-std::optional<std::string> close_standard_output() {
+/// @param earlier  the reason, where a print has failed already
+std::optional<std::string> close_standard_output(const std::string& earlier) {
     const bool was_lost = std::ferror(stdout);
     errno = 0;
     bool lost = std::fflush(stdout) != 0;
     // Network file systems say at a close what has not arrived.
     if (const int copy = dup(STDOUT_FILENO); copy >= 0) lost = close(copy) != 0 || lost;
     if (!was_lost && !lost) return std::nullopt;
+    if (!earlier.empty()) return earlier;
     return errno != 0 ? std::strerror(errno) : "some of it is lost";
 }
 
@@ -156,15 +158,20 @@ Failure failure_of(const std::exception& error) {
                            error.what())};
 }
 
-int run_and_report(int argc, char** argv) {
+/// @param lost_output  where a print to standard output failed, why
+int run_and_report(int argc, char** argv, std::string& lost_output) {
     try {
         return run(argc, argv);
     } catch (const relevo::Error& error) {
         relevo::log::error(error.what());
         return error.exit_status();
     } catch (const std::exception& error) {
-        // fmt throws where it cannot print; close_standard_output() says so.
-        if (std::ferror(stdout)) return 0;
+        if (std::ferror(stdout)) {
+            // fmt throws where it cannot print.
+            const auto* print = dynamic_cast<const std::system_error*>(&error);
+            lost_output = print ? print->code().message() : error.what();
+            return 0;
+        }
         const Failure failure = failure_of(error);
         relevo::log::error(failure.message);
         return failure.status;
@@ -176,8 +183,9 @@ int run_and_report(int argc, char** argv) {
 int main(int argc, char** argv) {
     fill_standard_streams();
     relevo::remove_partial_files_at_signals();
-    const int status = run_and_report(argc, argv);
-    const std::optional<std::string> lost = close_standard_output();
+    std::string lost_output;
+    const int status = run_and_report(argc, argv, lost_output);
+    const std::optional<std::string> lost = close_standard_output(lost_output);
     if (!lost || status != 0) return status;
     relevo::log::error(fmt::format("standard output: cannot be written, {}", *lost));
     return static_cast<int>(relevo::ErrorCode::Failed);

@@ -261,6 +261,7 @@ void add_capture(CLI::App& app) {
             ->group("Diagnosis");
     verb.add_option("--repeat", arguments->repeat, "Further frames to time")
         ->needs(timings)
+        ->check(whole_number())
         ->check(CLI::NonNegativeNumber)
         ->group("Diagnosis");
     verb.add_option("--dump-shaders", arguments->dump_shaders,
@@ -270,9 +271,10 @@ void add_capture(CLI::App& app) {
         try {
             capture(*arguments);
         } catch (const std::bad_alloc&) {
-            failed(fmt::format("capture: --size {}: not enough memory for the picture and the DEM; "
-                               "use a smaller --size or --memory",
-                               printable(arguments->size)));
+            failed(
+                fmt::format("capture: --size {}: not enough memory for the picture and the DEM; "
+                            "use a smaller --size or --memory",
+                            printable(arguments->size)));
         }
     });
 }

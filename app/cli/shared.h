@@ -85,6 +85,9 @@ struct ViewArguments {
 /// A number with both ends included; else "expected 0.1 to 170 but got 500".
 CLI::Validator in_range(double min, double max);
 
+/// A whole number that an int holds; else "expected a whole number but got 1.5".
+CLI::Validator whole_number();
+
 /// JSON as the contract has it, two blanks a level. Text that is not UTF-8, such as a file's name,
 /// has U+FFFD for what cannot be said.
 std::string json_text(const nlohmann::ordered_json& json);

@@ -34,7 +34,7 @@ void DaysArguments::add_to(CLI::App& verb) {
 }
 
 void DaysArguments::add_year_to(CLI::App& verb) {
-    verb.add_option("--year", year, "All days of a year, 1900 to 2100");
+    verb.add_option("--year", year, "All days of a year, 1900 to 2100")->check(whole_number());
     verb.add_option("--tz", zone, "Time zone that days are counted by: Europe/Zurich, +05:30");
 }
 

@@ -93,13 +93,14 @@ std::string encode_tiff(std::vector<std::byte>& bytes, OIIO::ImageOutput& output
     } const file;
     if (file.descriptor < 0) return std::strerror(errno);
     const std::string name = "/proc/self/fd/" + std::to_string(file.descriptor);
-    if (std::string reason = put(output, name, spec, image); !reason.empty()) return reason;
+    const std::string reason = put(output, name, spec, image);
     struct stat status {};
     rlimit limit{};
     if (fstat(file.descriptor, &status) != 0) return std::strerror(errno);
     if (getrlimit(RLIMIT_FSIZE, &limit) == 0 &&
         static_cast<rlim_t>(status.st_size) >= limit.rlim_cur)
         return std::string("cannot be written, ") + std::strerror(EFBIG);
+    if (!reason.empty()) return reason;
     Pixels<T> again(image.width, image.height, image.channels);
     const auto input = OIIO::ImageInput::create("tiff");
     OIIO::ImageSpec found;

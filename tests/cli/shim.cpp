@@ -4,6 +4,7 @@
 #include <cstdarg>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
 #include <fcntl.h>
 #include <sys/syscall.h>
@@ -17,6 +18,13 @@ bool refuses(const char* what) {
 }
 
 }  // namespace
+
+/// "memory": there are no 256 KiB in one piece.
+void* operator new(std::size_t size) {
+    void* const memory = size > (1U << 18) && refuses("memory") ? nullptr : std::malloc(size);
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
 
 extern "C" {
 

@@ -34,7 +34,7 @@ Result shell(const std::string& line, const std::vector<std::string>& arguments 
 
 std::vector<std::string> shim(const std::string& what) {
     return {std::string("LD_PRELOAD=") + RELEVO_TEST_SHIM, "RELEVO_SHIM=" + what,
-            "ASAN_OPTIONS=verify_asan_link_order=0"};
+            "ASAN_OPTIONS=verify_asan_link_order=0:alloc_dealloc_mismatch=0"};
 }
 
 /// A virtual raster that shows another.
@@ -383,13 +383,27 @@ TEST_F(Output, NamesThatAreNoTextBreakNeitherJsonNorMessages) {
 }
 
 TEST_F(Output, WithoutMemoryIsAnErrorThatSaysSo) {
-    // Enough to start, too little for the picture.
-    std::vector<std::string> arguments = capture(path("a.png"));
-    arguments[6] = "16384x16384";
-    const Result run = shell("ulimit -v 3000000; exec \"$0\" \"$@\"", arguments, kWithoutCache);
-    EXPECT_EQ(run.status, 1);
-    EXPECT_EQ(run.err, "");
+    const Result picture = relevo(capture(path("a.png")), shim("memory"));
+    EXPECT_EQ(picture.status, 1);
+    EXPECT_EQ(
+        picture.err,
+        "relevo: error: capture: --size 64x48: not enough memory for the picture and the DEM; "
+        "use a smaller --size or --memory\n");
     EXPECT_TRUE(names().empty());
+    const Result info = relevo({"info", bundled_dem()}, shim("memory"));
+    EXPECT_EQ(info.status, 1);
+    EXPECT_EQ(info.err,
+              "relevo: error: out of memory; use a smaller --size, a smaller --memory, or fewer "
+              "DEMs, or let the program have more (ulimit -v)\n");
+}
+
+TEST_F(Output, WithoutAWorkingFolderIsAnErrorThatSaysSo) {
+    std::filesystem::create_directory(dir_ / "gone");
+    const Result run =
+        shell("cd " + path("gone") + " && rmdir " + path("gone") + " && exec \"$0\" -q \"$@\"",
+              capture("a.png"));
+    EXPECT_EQ(run.status, 3);
+    EXPECT_EQ(run.err, "");
 }
 
 }  // namespace
