@@ -1,17 +1,28 @@
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
 #include <memory>
+#include <new>
 #include <optional>
 #include <span>
+#include <sstream>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/output_file.h"
 #include "base/text.h"
 #include "cli/commands.h"
 
@@ -67,9 +78,6 @@ int run(int argc, char** argv) {
     app.formatter(std::make_shared<HelpOfAll>());
     app.set_version_flag("--version", "relevo " RELEVO_VERSION);
     app.set_help_all_flag("--help-all", "Help of every command");
-    app.failure_message([](const CLI::App* verb, const CLI::Error& error) {
-        return fmt::format("relevo: error: {}; see {} --help\n", error.what(), command_of(verb));
-    });
     app.add_flag_callback(
         "-q,--quiet", [] { relevo::log::set_level(relevo::log::Level::Warning); },
         "Warnings and errors only");
@@ -87,21 +95,98 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         // Help and version are "errors" of CLI11 with status 0; the others are usage errors.
-        return app.exit(error) == 0 ? 0 : static_cast<int>(relevo::ErrorCode::Usage);
+        if (error.get_exit_code() != 0)
+            relevo::bad_usage(fmt::format("{}; see {} --help", error.what(), command_of(&app)));
+        std::ostringstream text;
+        app.exit(error, text, text);
+        fmt::print("{}", text.str());
     }
     return 0;
 }
 
-}  // namespace
+/// Has the three standard streams open: the first file to be opened would take the place of one
+/// that is closed, and get what is meant for it.
+void fill_standard_streams() {
+    for (int number = STDIN_FILENO; number <= STDERR_FILENO; ++number)
+        if (fcntl(number, F_GETFD) < 0 && errno == EBADF)
+            // What writes to standard output still fails; nobody waits for messages.
+            open("/dev/null", number == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+}
 
-int main(int argc, char** argv) {
+/// Writes out what the stream still holds; the reason where some of the output is lost.
+/// @param earlier  the reason, where a print has failed already
+std::optional<std::string> close_standard_output(const std::string& earlier) {
+    const bool was_lost = std::ferror(stdout);
+    errno = 0;
+    bool lost = std::fflush(stdout) != 0;
+    // Network file systems say at a close what has not arrived.
+    if (const int copy = dup(STDOUT_FILENO); copy >= 0) lost = close(copy) != 0 || lost;
+    if (!was_lost && !lost) return std::nullopt;
+    if (!earlier.empty()) return earlier;
+    return errno != 0 ? std::strerror(errno) : "some of it is lost";
+}
+
+/// What went wrong, as an Error would say it.
+struct Failure {
+    int status;
+    std::string message;
+};
+
+Failure out_of_memory() {
+    return {1,
+            "out of memory; use a smaller --size, a smaller --memory, or fewer DEMs, or let the "
+            "program have more (ulimit -v)"};
+}
+
+/// Of errors that are not ours: what the system refuses, and our own mistakes.
+Failure failure_of(const std::exception& error) {
+    if (dynamic_cast<const std::bad_alloc*>(&error)) return out_of_memory();
+    if (dynamic_cast<const std::length_error*>(&error)) return out_of_memory();
+    if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
+        return {3, fmt::format("{}: cannot be read, {}", relevo::printable(file->path1().string()),
+                               file->code().message())};
+    if (const auto* system = dynamic_cast<const std::system_error*>(&error)) {
+        if (system->code() == std::errc::not_enough_memory) return out_of_memory();
+        if (system->code() == std::errc::resource_unavailable_try_again)
+            return {1,
+                    "the system starts no further thread or process; end others, or let the "
+                    "program have more (ulimit -u)"};
+        return {1, fmt::format("the system refuses a call, {}; run it again with -v",
+                               system->code().message())};
+    }
+    return {1, fmt::format("a mistake in the program, {}; please report it with the command line",
+                           error.what())};
+}
+
+/// @param lost_output  where a print to standard output failed, why
+int run_and_report(int argc, char** argv, std::string& lost_output) {
     try {
         return run(argc, argv);
     } catch (const relevo::Error& error) {
         relevo::log::error(error.what());
         return error.exit_status();
     } catch (const std::exception& error) {
-        relevo::log::error(error.what());
-        return static_cast<int>(relevo::ErrorCode::Failed);
+        if (std::ferror(stdout)) {
+            // fmt throws where it cannot print.
+            const auto* print = dynamic_cast<const std::system_error*>(&error);
+            lost_output = print ? print->code().message() : error.what();
+            return 0;
+        }
+        const Failure failure = failure_of(error);
+        relevo::log::error(failure.message);
+        return failure.status;
     }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    fill_standard_streams();
+    relevo::remove_partial_files_at_signals();
+    std::string lost_output;
+    const int status = run_and_report(argc, argv, lost_output);
+    const std::optional<std::string> lost = close_standard_output(lost_output);
+    if (!lost || status != 0) return status;
+    relevo::log::error(fmt::format("standard output: cannot be written, {}", *lost));
+    return static_cast<int>(relevo::ErrorCode::Failed);
 }

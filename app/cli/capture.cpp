@@ -2,15 +2,16 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <future>
 #include <memory>
+#include <new>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/effects.h"
@@ -51,13 +52,13 @@ double milliseconds(Clock::time_point from, Clock::time_point to) {
 class Timings {
   public:
     void add(const std::string& stage, Clock::time_point began) {
-        stages_[stage] = milliseconds(began, Clock::now());
+        add(stage, milliseconds(began, Clock::now()));
     }
+    void add(const std::string& stage, double took_ms) { stages_[stage] = took_ms; }
 
     /// @param processor_ms  of all threads, for all frames
-    void write(const std::filesystem::path& path, const render::PassTimes& passes,
-               std::vector<double> frames_ms, double processor_ms, int triangles,
-               const gl::DeviceInfo& device) {
+    void write(OutputFile& file, const render::PassTimes& passes, std::vector<double> frames_ms,
+               double processor_ms, int triangles, const gl::DeviceInfo& device) {
         nlohmann::ordered_json json;
         json["device"] = device.renderer;
         json["triangles"] = triangles;
@@ -75,14 +76,20 @@ class Timings {
                 {"max_ms", frames_ms.back()},
                 {"processor_ms", processor_ms / static_cast<double>(frames_ms.size())}};
         }
-        std::ofstream file(path);
-        file << json.dump(2) << '\n';
-        if (!file.flush()) failed(fmt::format("--timings: {}: cannot be written", path.string()));
+        file.write(json_text(json));
+        file.finish();
     }
 
   private:
     Clock::time_point began_ = Clock::now();
     nlohmann::ordered_json stages_ = nlohmann::ordered_json::object();
+};
+
+/// The DEM, and how long it took.
+struct Loaded {
+    dem::Source source;
+    dem::Heightfield field;
+    double took_ms = 0;
 };
 
 constexpr int kDivider_px = 2;
@@ -117,20 +124,28 @@ SunSeen seen_from_eye(const render::FrameInputs& inputs, const render::Ground& g
 void capture(const Arguments& arguments) {
     Timings timings;
     const std::filesystem::path output = arguments.output;
-    image::check_output(output, arguments.overwrite);
     const glm::ivec2 size = parse_size(arguments.size);
+    image::check_format(output, size.x, size.y);
+    FilesInUse files;
+    arguments.dem.add_inputs(files);
+    OutputFile& picture_file = files.open_output(output, arguments.overwrite, "image");
+    const bool timed = !arguments.timings.empty();
+    OutputFile* const timings_file =
+        timed ? &files.open_output(arguments.timings, arguments.overwrite, "--timings") : nullptr;
+    arguments.dem.add_further_inputs(files);
     const scene::View view = arguments.view.view_of();
     std::optional<sun::ParsedTime> given_time;
     if (arguments.time.given() && !arguments.time.needs_dem()) given_time = arguments.time.parse();
 
     // The DEM is read on a thread of its own while the device starts and the programs are compiled.
-    auto loading = std::async(std::launch::async, [&] {
+    // Where the system gives no further thread it is read when it is waited for.
+    auto loading = std::async(std::launch::async | std::launch::deferred, [&] {
         const auto began = Clock::now();
         dem::Source source = dem::Source::open(arguments.dem.paths, arguments.dem.options);
         dem::Heightfield field = dem::load(source, arguments.dem.options.max_posts);
-        timings.add("load", began);
-        return std::pair(std::move(source), std::move(field));
+        return Loaded{std::move(source), std::move(field), milliseconds(began, Clock::now())};
     });
+    image::load_format(output);
     const auto device_began = Clock::now();
     const bool compared = !arguments.ab.empty();
     const std::unique_ptr<ActiveEffects> effects =
@@ -138,6 +153,7 @@ void capture(const Arguments& arguments) {
     const std::unique_ptr<ActiveEffects> others =
         compared ? arguments.effects.without(arguments.ab, *effects).active(/*aloud=*/false)
                  : nullptr;
+    effects->add_inputs(files);
     gl::Context context({.device = arguments.device});
     effects->fit(context.info());
     if (compared) others->fit(context.info(), /*aloud=*/false);
@@ -145,16 +161,20 @@ void capture(const Arguments& arguments) {
     const auto compile_began = Clock::now();
     render::RendererOptions options{.width_px = size.x,
                                     .height_px = size.y,
-                                    .radiance = image::holds_linear_light(output),
-                                    .dump_shaders = arguments.dump_shaders};
+                                    .radiance = image::holds_linear_light(output)};
+    if (!arguments.dump_shaders.empty())
+        options.stitched = [&](const std::vector<render::ProgramText>& texts) {
+            render::dump_programs(texts, arguments.dump_shaders, arguments.overwrite);
+        };
     render::Renderer renderer(context, effects->inputs(), options);
-    options.dump_shaders.clear();
+    options.stitched = nullptr;
     std::optional<render::Renderer> without;
     if (compared) without.emplace(context, others->inputs(), options);
     timings.add("compile", compile_began);
-    const auto loaded = loading.get();
-    const dem::Source& source = loaded.first;
-    const dem::Heightfield& dem = loaded.second;
+    const Loaded loaded = loading.get();
+    const dem::Source& source = loaded.source;
+    const dem::Heightfield& dem = loaded.field;
+    timings.add("load", loaded.took_ms);
     if (arguments.time.given() && !given_time) given_time = arguments.time.parse_over(source, dem);
 
     const auto upload_began = Clock::now();
@@ -192,7 +212,6 @@ void capture(const Arguments& arguments) {
     log::info(fmt::format("{}, {}: sun at {}{}", seen.from, sun::to_iso(utc), seen.sun,
                           given_time ? "" : "; no --time given, so a summer morning was taken"));
 
-    const bool timed = !arguments.timings.empty();
     render::PassTimes passes;
     const auto passes_began = Clock::now();
     renderer.render_frame(terrain, ground, inputs, timed ? &passes : nullptr);
@@ -219,7 +238,7 @@ void capture(const Arguments& arguments) {
         check_numbers();
         timings.add("readback", readback_began);
         const auto write_began = Clock::now();
-        image::write(output, picture, metadata, arguments.overwrite);
+        image::write(picture_file, picture, metadata);
         timings.add("write", write_began);
     } else {
         image::Image8 picture = renderer.read_picture(&not_numbers);
@@ -229,7 +248,7 @@ void capture(const Arguments& arguments) {
         check_numbers();
         timings.add("readback", readback_began);
         const auto write_began = Clock::now();
-        image::write(output, picture, metadata, arguments.overwrite);
+        image::write(picture_file, picture, metadata);
         timings.add("write", write_began);
     }
 
@@ -244,7 +263,7 @@ void capture(const Arguments& arguments) {
         }
         const double processor_ms =
             1e3 * static_cast<double>(std::clock() - processor_began) / CLOCKS_PER_SEC;
-        timings.write(arguments.timings, passes, frames_ms, processor_ms, renderer.triangles(),
+        timings.write(*timings_file, passes, frames_ms, processor_ms, renderer.triangles(),
                       context.info());
     }
 }
@@ -259,7 +278,7 @@ void add_capture(CLI::App& app) {
                     "Picture to write: png, jpg, webp, tif, or exr in linear light")
         ->required();
     verb.add_option("--size", arguments->size, "Width and height in pixels, 1280x1024");
-    verb.add_flag("--overwrite", arguments->overwrite, "Replace an existing picture");
+    verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
     arguments->time.add_to(verb);
     arguments->refraction.add_to(verb);
     arguments->view.add_to(verb);
@@ -281,12 +300,22 @@ void add_capture(CLI::App& app) {
             ->group("Diagnosis");
     verb.add_option("--repeat", arguments->repeat, "Further frames to time")
         ->needs(timings)
+        ->check(whole_number())
         ->check(CLI::NonNegativeNumber)
         ->group("Diagnosis");
     verb.add_option("--dump-shaders", arguments->dump_shaders,
                     "Write the stitched programs into a folder")
         ->group("Diagnosis");
-    verb.callback([arguments] { capture(*arguments); });
+    verb.callback([arguments] {
+        try {
+            capture(*arguments);
+        } catch (const std::bad_alloc&) {
+            failed(
+                fmt::format("capture: --size {}: not enough memory for the picture and the DEM; "
+                            "use a smaller --size or --memory",
+                            printable(arguments->size)));
+        }
+    });
 }
 
 }  // namespace relevo::cli

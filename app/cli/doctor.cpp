@@ -11,6 +11,7 @@
 #include "base/parallel_for.h"
 #include "base/paths.h"
 #include "cli/commands.h"
+#include "cli/shared.h"
 #include "dem/versions.h"
 #include "effect/registry.h"
 #include "gl/context.h"
@@ -190,7 +191,7 @@ void doctor(const std::string& wanted, bool as_json) {
         json["plugins"] = plugins.ids;
         json["broken_plugins"] = plugins.broken;
         json["advice"] = advice;
-        fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+        fmt::print("{}", json_text(json));
     } else {
         const auto line = [](std::string_view name, const std::string& value) {
             fmt::print("{:<10} {}\n", name, value);

@@ -44,6 +44,23 @@ render::EffectInputs ActiveEffects::inputs() const {
     return inputs;
 }
 
+void ActiveEffects::add_inputs(FilesInUse& files) const {
+    for (const effect::Preset& preset : presets)
+        files.add_input(preset.file, "the preset");
+    for (const effect::Effect& effect : registry.effects()) {
+        const effect::Manifest& manifest = effect.manifest;
+        const std::string what = fmt::format("a file of the plugin {},", effect.id());
+        files.add_input(manifest.file, what);
+        for (const std::filesystem::path& glsl : manifest.glsl)
+            files.add_input(glsl, what);
+        for (const effect::TextureSpec& texture : manifest.textures)
+            for (const std::filesystem::path& file : texture.files)
+                files.add_input(file, what);
+    }
+    for (const effect::NativeModule& module : loaded.modules)
+        files.add_input(module.library(), fmt::format("the module of the plugin {},", module.id()));
+}
+
 void EffectArguments::add_to(CLI::App& verb) {
     only_option =
         verb.add_option("--only", only, "These effects and no others (an empty list: none)")

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/files_in_use.h"
 #include "effect/loaded_selection.h"
 #include "gl/context.h"
 #include "render/renderer.h"
@@ -26,6 +27,8 @@ struct ActiveEffects {
     void fit(const gl::DeviceInfo& device, bool aloud = true);
     /// For a renderer; valid as long as this is.
     render::EffectInputs inputs() const;
+    /// Adds presets, and the files of all plugins. @throws Error as FilesInUse::add_input
+    void add_inputs(FilesInUse& files) const;
 };
 
 /// --only, --enable, --disable, --set, --preset and --plugin-path.

@@ -104,7 +104,7 @@ void add_info(CLI::App& app) {
                 {"elevation_deg", degrees(sun.elevation_rad)},
                 {"apparent_elevation_deg", degrees(air.apparent_rad(sun.elevation_rad))}};
             json["position_net"] = {{"piece_posts", net.posts}, {"error_m", net.worst_m}};
-            fmt::print("{}\n", json.dump(2));
+            fmt::print("{}", json_text(json));
             return;
         }
         fmt::print("{}", dem::to_text(summary));

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/effects.h"
+#include "cli/shared.h"
 
 namespace relevo::cli {
 namespace {
@@ -39,11 +40,6 @@ nlohmann::ordered_json json_of(const effect::Effect& effect) {
             {"parameters", params}};
 }
 
-/// Folders may have names that are no UTF-8, which JSON has to be.
-std::string text_of(const nlohmann::ordered_json& json) {
-    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
 void list(const effect::Registry& registry, bool json) {
     if (json) {
         nlohmann::ordered_json plugins = nlohmann::ordered_json::array();
@@ -54,7 +50,7 @@ void list(const effect::Registry& registry, bool json) {
             broken.push_back(
                 {{"id", effect.id}, {"folder", effect.folder.string()}, {"error", effect.error}});
         const nlohmann::ordered_json all = {{"plugins", plugins}, {"broken", broken}};
-        fmt::print("{}\n", text_of(all));
+        fmt::print("{}", json_text(all));
         return;
     }
     for (const effect::Effect& effect : registry.effects())
@@ -66,7 +62,7 @@ void list(const effect::Registry& registry, bool json) {
 
 void info(const effect::Effect& effect, bool json) {
     if (json) {
-        fmt::print("{}\n", text_of(json_of(effect)));
+        fmt::print("{}", json_text(json_of(effect)));
         return;
     }
     const effect::Manifest& manifest = effect.manifest;

@@ -1,13 +1,17 @@
 #include "cli/shared.h"
 
+#include <charconv>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "dem/files_of.h"
 #include "geo/geodetic.h"
 #include "sun/event_time.h"
 
@@ -26,6 +30,7 @@ void DemArguments::add_to(CLI::App& verb) {
                     "Coordinate reference system instead of the file's (EPSG:n, WKT)")
         ->group("DEM");
     verb.add_option("--band", options.band, "Band that holds the heights, from 1")
+        ->check(whole_number())
         ->check(CLI::PositiveNumber)
         ->group("DEM");
     verb.add_option("--unit", options.unit, "Unit of the heights: m, ft, us-ft, cm, km")
@@ -61,8 +66,20 @@ void DemArguments::add_to(CLI::App& verb) {
             [this](int mib) { options.max_posts = (std::int64_t{mib} << 20) / kBytesAPost; },
             "MiB of heights that are kept; a larger DEM is averaged, and drawn in detail where it "
             "is near (1024)")
+        ->check(whole_number())
         ->check(in_range(1, 1 << 20))
         ->group("DEM");
+}
+
+void DemArguments::add_inputs(FilesInUse& files) const {
+    for (const std::string& path : paths)
+        files.add_input(path, "the DEM");
+}
+
+void DemArguments::add_further_inputs(FilesInUse& files) const {
+    if (!files.replaces_any()) return;
+    for (const std::filesystem::path& path : dem::files_of(paths))
+        files.add_input(path, "a file that the DEM is read from,");
 }
 
 void TimeArguments::add_to(CLI::App& verb) {
@@ -208,6 +225,27 @@ CLI::Validator in_range(double min, double max) {
                            : fmt::format("expected {:.10g} to {:.10g} but got {}", min, max, text);
             },
             fmt::format("{:.10g} to {:.10g}", min, max)};
+}
+
+CLI::Validator whole_number() {
+    return {[](const std::string& text) {
+                int value = 0;
+                const char* const end = text.data() + text.size();
+                const auto [last, error] = std::from_chars(text.data(), end, value);
+                return error == std::errc{} && last == end
+                           ? std::string()
+                           : fmt::format("expected a whole number{} but got {}",
+                                         error == std::errc::result_out_of_range && last == end
+                                             ? fmt::format(" of at most {}",
+                                                           std::numeric_limits<int>::max())
+                                             : "",
+                                         text);
+            },
+            ""};
+}
+
+std::string json_text(const nlohmann::ordered_json& json) {
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 glm::ivec2 parse_size(const std::string& text) {

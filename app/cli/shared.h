@@ -9,7 +9,9 @@
 #include <CLI/CLI.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <nlohmann/json_fwd.hpp>
 
+#include "base/files_in_use.h"
 #include "dem/load.h"
 #include "light/event_time.h"
 #include "scene/view.h"
@@ -27,6 +29,10 @@ struct DemArguments {
     dem::LoadOptions options;  ///< valid once the line has been parsed
 
     void add_to(CLI::App& verb);
+    /// Adds the files that are named. @throws Error as FilesInUse::add_input
+    void add_inputs(FilesInUse& files) const;
+    /// Adds those that belong to them, where an output replaces a file: finding them takes time.
+    void add_further_inputs(FilesInUse& files) const;
 };
 
 /// --time, --date and --tz.
@@ -80,6 +86,13 @@ struct ViewArguments {
 
 /// A number with both ends included; else "expected 0.1 to 170 but got 500".
 CLI::Validator in_range(double min, double max);
+
+/// A whole number that an int holds; else "expected a whole number but got 1.5".
+CLI::Validator whole_number();
+
+/// JSON as the contract has it, two blanks a level. Text that is not UTF-8, such as a file's name,
+/// has U+FFFD for what cannot be said.
+std::string json_text(const nlohmann::ordered_json& json);
 
 /// "1280x1024" as width and height. @throws Error (Usage)
 glm::ivec2 parse_size(const std::string& text);

@@ -115,7 +115,8 @@ void print_text(const light::Carpet& carpet, const light::TerrainHorizon& horizo
 
 void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
-    output.check();
+    FilesInUse files;
+    OutputFile* const file = output.open(files, arguments.terrain.dem);
     const DaysArguments::Days asked = arguments.days.parse();
     const auto step_s = sun::parse_duration_s(arguments.step);
     if (!step_s || *step_s != std::round(*step_s) || *step_s < 1 || *step_s > 86400)
@@ -142,7 +143,8 @@ void run(const Arguments& arguments) {
                         },
                     .csv = [&] { return csv_of(carpet, horizon); },
                     .json = [&] { return json_of(carpet, horizon); },
-                    .print = [&] { print_text(carpet, horizon); }});
+                    .print = [&] { print_text(carpet, horizon); }},
+                   file);
 }
 
 }  // namespace

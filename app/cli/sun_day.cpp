@@ -298,7 +298,8 @@ void print_days(const Result& result) {
 
 void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
-    output.check();
+    FilesInUse files;
+    OutputFile* const file = output.open(files, arguments.terrain.dem);
     Result result;
     result.asked = arguments.days.parse();
     const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
@@ -343,11 +344,11 @@ void run(const Arguments& arguments) {
         }
         return diagram.draw();
     };
-    output.deliver(
-        {.drawing = draw,
-         .csv = [&] { return csv_of(result); },
-         .json = [&] { return json_of(result); },
-         .print = [&] { result.asked.single ? print_day(result) : print_days(result); }});
+    output.deliver({.drawing = draw,
+                    .csv = [&] { return csv_of(result); },
+                    .json = [&] { return json_of(result); },
+                    .print = [&] { result.asked.single ? print_day(result) : print_days(result); }},
+                   file);
 }
 
 }  // namespace

@@ -124,7 +124,8 @@ light::Drawing draw(const Arguments& arguments, const std::optional<DaysArgument
 
 void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
-    output.check();
+    FilesInUse files;
+    OutputFile* const file = output.open(files, arguments.terrain.dem);
     std::optional<DaysArguments::Days> asked;
     if (arguments.days.given()) {
         asked = arguments.days.parse();
@@ -152,7 +153,8 @@ void run(const Arguments& arguments) {
     output.deliver({.drawing = [&] { return draw(arguments, asked, horizon, profile); },
                     .csv = [&] { return csv_of(horizon, profile); },
                     .json = [&] { return json_of(horizon, profile, sectors); },
-                    .print = [&] { print_text(horizon, profile); }});
+                    .print = [&] { print_text(horizon, profile); }},
+                   file);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ void DaysArguments::add_to(CLI::App& verb) {
 }
 
 void DaysArguments::add_year_to(CLI::App& verb) {
-    verb.add_option("--year", year, "All days of a year, 1900 to 2100");
+    verb.add_option("--year", year, "All days of a year, 1900 to 2100")->check(whole_number());
     verb.add_option("--tz", zone, "Time zone that days are counted by: Europe/Zurich, +05:30");
 }
 
@@ -196,35 +196,37 @@ std::string OutputArguments::ending() const {
     return ending.empty() ? ending : ending.substr(1);
 }
 
-void OutputArguments::check() const {
-    if (path.empty()) return;
+OutputFile* OutputArguments::open(FilesInUse& files, const DemArguments& dem) const {
+    if (path.empty()) return nullptr;
     if (std::find(endings.begin(), endings.end(), ending()) == endings.end())
         bad_usage(
             fmt::format("-o: {}: no format that this command writes, expected a name that "
                         "ends in {}",
                         path, fmt::join(endings, ", ")));
-    check_output_file(path, overwrite, "-o");
+    dem.add_inputs(files);
+    OutputFile& file = files.open_output(path, overwrite, "-o");
+    dem.add_further_inputs(files);
+    return &file;
 }
 
-void OutputArguments::deliver(const Forms& forms) const {
-    const auto json_text = [&] { return forms.json().dump(2) + "\n"; };
-    const std::string form = ending();
-    if (form == "svg")
-        write_text(path, light::to_svg(forms.drawing()), overwrite, "-o");
-    else if (form == "csv")
-        write_text(path, forms.csv(), overwrite, "-o");
-    else if (form == "json")
-        write_text(path, json_text(), overwrite, "-o");
-    else if (form == "png") {
-        const light::Drawing drawing = forms.drawing();
-        image::write(path, light::to_image(drawing, scale),
-                     {{"Software", "Relevo " RELEVO_VERSION},
-                      {"Title", drawing.title()},
-                      {"Description", drawing.description()}},
-                     overwrite);
+void OutputArguments::deliver(const Forms& forms, OutputFile* file) const {
+    if (file) {
+        const std::string form = ending();
+        if (form == "png") {
+            const light::Drawing drawing = forms.drawing();
+            image::write(*file, light::to_image(drawing, scale),
+                         {{"Software", "Relevo " RELEVO_VERSION},
+                          {"Title", drawing.title()},
+                          {"Description", drawing.description()}});
+        } else {
+            file->write(form == "svg"   ? light::to_svg(forms.drawing())
+                        : form == "csv" ? forms.csv()
+                                        : json_text(forms.json()));
+            file->finish();
+        }
     }
     if (json)
-        fmt::print("{}", json_text());
+        fmt::print("{}", json_text(forms.json()));
     else if (csv)
         fmt::print("{}", forms.csv());
     else if (path.empty())

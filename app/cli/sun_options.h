@@ -110,16 +110,18 @@ struct OutputArguments {
     bool overwrite = false, csv = false, json = false;
 
     void add_to(CLI::App& verb, const std::vector<std::string>& endings_of_verb);
-    /// Before any work is done. @throws Error (Usage) for an unknown ending, (BadInput) for a path
-    /// that cannot be written
-    void check() const;
+    /// Opens the file that -o names, before any work is done. Null without -o.
+    /// @param dem  what the verb reads besides
+    /// @throws Error (Usage) for an unknown ending, and as FilesInUse
+    OutputFile* open(FilesInUse& files, const DemArguments& dem) const;
     /// "svg"; empty without -o.
     std::string ending() const;
     bool is_drawing() const { return ending() == "svg" || ending() == "png"; }
 
     /// Writes the file that -o names, and on standard output what --csv or --json ask for; without
     /// any of them the text for people.
-    void deliver(const Forms& forms) const;
+    /// @param file  as open() gave it
+    void deliver(const Forms& forms, OutputFile* file) const;
 };
 
 /// "46.55,8.56" as --at takes it, whole.

@@ -48,7 +48,7 @@ void add_sun_position(CLI::App& sun_verb) {
                 {"right_ascension_deg", degrees(position.right_ascension_rad)},
                 {"semidiameter_deg", degrees(position.semidiameter_rad)},
                 {"equation_of_time_min", position.equation_of_time_s / 60}};
-            fmt::print("{}\n", json.dump(2));
+            fmt::print("{}", json_text(json));
             return;
         }
         fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(at.place),

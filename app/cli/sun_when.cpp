@@ -95,7 +95,8 @@ void print_text(const light::Alignments& found, const light::TerrainHorizon& hor
 
 void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
-    output.check();
+    FilesInUse files;
+    OutputFile* const file = output.open(files, arguments.terrain.dem);
     const DaysArguments::Days asked = arguments.days.parse();
     const geo::PlaceText over = geo::parse_place(arguments.over, "--over");
     const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
@@ -115,7 +116,8 @@ void run(const Arguments& arguments) {
     output.deliver({.drawing = {},
                     .csv = [&] { return csv_of(found, asked.zone); },
                     .json = [&] { return json_of(found, horizon, asked.zone); },
-                    .print = [&] { print_text(found, horizon, asked.zone); }});
+                    .print = [&] { print_text(found, horizon, asked.zone); }},
+                   file);
 }
 
 }  // namespace

@@ -6,8 +6,12 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "base/text.h"
+
 namespace relevo::log {
 namespace {
+
+constexpr std::string_view kPrefix = "relevo: ";
 
 struct State {
     std::mutex mutex;
@@ -20,13 +24,22 @@ struct State {
             "relevo", std::make_shared<spdlog::sinks::stderr_color_sink_st>());
         logger->set_level(spdlog::level::trace);
         // "relevo: warning: text"; a notice has no word before it.
-        logger->set_pattern("relevo: %v");
+        logger->set_pattern(std::string(kPrefix) + "%v");
     }
 };
 
 State& state() {
     static State instance;
     return instance;
+}
+
+/// A message may have several lines. None but the first begins as a message does: that would be a
+/// name's doing.
+std::string shown(std::string_view message) {
+    std::string text = printable_lines(message);
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; ++at)
+        if (text.compare(at + 1, kPrefix.size(), kPrefix) == 0) text.replace(at, 1, "\\n");
+    return text;
 }
 
 void write(Level level, std::string_view message) {
@@ -37,18 +50,19 @@ void write(Level level, std::string_view message) {
         s.sink(level, message);
         return;
     }
+    const std::string text = shown(message);
     switch (level) {
         case Level::Debug:
-            s.logger->debug("{}", message);
+            s.logger->debug("{}", text);
             break;
         case Level::Info:
-            s.logger->info("{}", message);
+            s.logger->info("{}", text);
             break;
         case Level::Warning:
-            s.logger->warn("warning: {}", message);
+            s.logger->warn("warning: {}", text);
             break;
         default:
-            s.logger->error("error: {}", message);
+            s.logger->error("error: {}", text);
             break;
     }
 }

@@ -1,40 +1,71 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
 /// Results in files: nothing is replaced unless asked for, and nothing is there in part.
 namespace relevo {
 
-/// Says before any work is done whether `path` can be written.
-/// @param who  what errors begin with
-/// @throws Error (BadInput) `who: path: what` if its folder does not exist or cannot be written to,
-///     if it is a folder itself, or if it exists and `overwrite` is false
-void check_output_file(const std::filesystem::path& path, bool overwrite, std::string_view who);
-
-/// A name beside `path` to write to, which is removed again unless it is moved to its place.
-class PartialFile {
+/// A result on its way to its file.
+///
+/// The constructor opens the place where the result is gathered, so that what cannot be written is
+/// refused before any work is done: an unnamed file in the folder of the result where the file
+/// system offers one, which vanishes however the process ends; elsewhere a file of a random name
+/// there, which the destructor and remove_partial_files() remove. finish() gives it its name.
+///
+/// A symbolic link is followed, and stays. A file that is replaced keeps its permissions, not its
+/// owner, and its other hard links keep the old content; a new one has those that the umask leaves.
+/// What is no regular file (a FIFO, a terminal, /dev/stdout) is written to as it is, at the end.
+class OutputFile {
   public:
-    explicit PartialFile(const std::filesystem::path& path);
-    ~PartialFile();
-    PartialFile(const PartialFile&) = delete;
-    PartialFile& operator=(const PartialFile&) = delete;
+    /// @param overwrite  an existing regular file may be replaced
+    /// @param who  what errors begin with
+    /// @throws Error (BadInput) `who: path: what` where the path is a folder, has none, exists and
+    ///     may not be replaced, is too long, or leads to where nothing can be written
+    OutputFile(const std::filesystem::path& path, bool overwrite, std::string_view who);
+    OutputFile(OutputFile&&) noexcept;
+    OutputFile& operator=(OutputFile&&) noexcept;
+    ~OutputFile();
 
-    const std::filesystem::path& path() const { return path_; }
+    const std::filesystem::path& path() const;  ///< as it was given
+    const std::string& who() const;
 
-    /// Gives the whole file its name.
-    /// @throws Error (Failed) where the name has been taken meanwhile and `overwrite` is false, and
+    /// Adds to the file. @throws Error (Failed) where the disk refuses
+    void write(std::span<const std::byte> bytes);
+    void write(std::string_view text);
+
+    /// Gives the file its name, once what was written is on the disk; called once.
+    /// @throws Error (Failed) where the name has been taken meanwhile and may not be replaced, and
     ///     where the disk refuses
-    void become(const std::filesystem::path& target, bool overwrite, std::string_view who) const;
+    void finish();
+
+    /// finish() would replace that file, by whichever of its names it is known.
+    bool replaces(const std::filesystem::path& other) const;
+    /// finish() would replace a file.
+    bool replaces_any() const;
+    /// Both would go to the same regular file.
+    bool same_as(const OutputFile& other) const;
 
   private:
-    std::filesystem::path path_;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
-/// Writes a text file.
-/// @throws Error as check_output_file, and (Failed) where the disk refuses
+/// Writes a text file whole: OutputFile, write() and finish().
+/// @throws Error as they do
 void write_text(const std::filesystem::path& path, std::string_view text, bool overwrite,
                 std::string_view who);
+
+/// Removes what OutputFile has under random names, of this process. Safe in a signal handler.
+void remove_partial_files() noexcept;
+
+/// Calls remove_partial_files() where a signal that asks for it ends the process (INT, TERM, HUP,
+/// QUIT, PIPE, XCPU), which ends by that signal nonetheless; what is ignored stays ignored. Also
+/// has writes beyond a limit on file sizes fail, instead of ending the process (XFSZ).
+void remove_partial_files_at_signals();
 
 }  // namespace relevo

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -23,24 +25,26 @@ int thread_count() {
 
 void parallel_for(int begin, int end, int grain, const std::function<void(int, int)>& body) {
     if (end <= begin) return;
-    const int length = end - begin;
-    grain = std::max(1, grain);
-    const int threads = std::min(thread_count(), (length + grain - 1) / grain);
+    // In 64 bits: the last pieces reach beyond `end`.
+    const std::int64_t length = std::int64_t{end} - begin;
+    const std::int64_t least = std::max(1, grain);
+    const auto threads = std::min<std::int64_t>(thread_count(), (length + least - 1) / least);
     if (threads <= 1) {
         body(begin, end);
         return;
     }
     // Several pieces a thread, so that an uneven load still keeps all of them busy.
-    const int piece = std::max(grain, length / (threads * 4));
-    std::atomic<int> next = begin;
+    const std::int64_t piece = std::max(least, length / (threads * 4));
+    std::atomic<std::int64_t> next = begin;
     std::mutex mutex;
     std::exception_ptr error;
     const auto work = [&] {
         for (;;) {
-            const int first = next.fetch_add(piece);
+            const std::int64_t first = next.fetch_add(piece);
             if (first >= end) return;
             try {
-                body(first, std::min(end, first + piece));
+                body(static_cast<int>(first),
+                     static_cast<int>(std::min<std::int64_t>(end, first + piece)));
             } catch (...) {
                 const std::lock_guard lock(mutex);
                 if (!error) error = std::current_exception();
@@ -49,8 +53,12 @@ void parallel_for(int begin, int end, int grain, const std::function<void(int, i
     };
     {
         std::vector<std::jthread> workers;
-        for (int i = 1; i < threads; ++i)
-            workers.emplace_back(work);
+        try {
+            for (std::int64_t i = 1; i < threads; ++i)
+                workers.emplace_back(work);
+        } catch (const std::system_error&) {
+            // The system gives no more threads (ulimit -u): those that there are do all of it.
+        }
         work();
     }
     if (error) std::rethrow_exception(error);

@@ -18,25 +18,6 @@ namespace {
 
 constexpr std::size_t kBlockBytes = 4096;
 
-/// Bytes of the character that a text begins with; 0 where that is no UTF-8 (RFC 3629, 4).
-std::size_t utf8_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) {
-        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-    };
-    const unsigned first = byte(0);
-    if (first < 0x80) return 1;
-    const std::size_t length = first >= 0xc2 && first <= 0xdf   ? 2
-                               : first >= 0xe0 && first <= 0xef ? 3
-                               : first >= 0xf0 && first <= 0xf4 ? 4
-                                                                : 0;
-    for (std::size_t i = 1; i < length; ++i)
-        if ((byte(i) & 0xc0) != 0x80) return 0;
-    // Too long a way to write it, surrogates, and what lies beyond U+10FFFF.
-    const bool bad = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
-                     (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90);
-    return bad ? 0 : length;
-}
-
 }  // namespace
 
 std::string read_text(const std::filesystem::path& path, std::string_view who) {
@@ -79,22 +60,57 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
-std::string printable(std::string_view text) {
+namespace {
+
+/// The length of the UTF-8 sequence at the start of the text; 0 where there is none that is valid
+/// (RFC 3629: no overlong ones, no surrogates) and no control character (C0, DEL, C1).
+std::size_t printable_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+    };
+    const unsigned first = byte(0);
+    if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+    if (first < 0xc2 || first > 0xf4) return 0;
+    // The second byte's range excludes C1 controls, overlong forms, surrogates and what is beyond
+    // U+10FFFF.
+    const unsigned low = first == 0xc2 ? 0xa0 : first == 0xe0 ? 0xa0 : first == 0xf0 ? 0x90 : 0x80;
+    const unsigned high = first == 0xed ? 0x9f : first == 0xf4 ? 0x8f : 0xbf;
+    if (byte(1) < low || byte(1) > high) return 0;
+    const std::size_t length = first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    for (std::size_t i = 2; i < length; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    return length;
+}
+
+std::string printable(std::string_view text, std::string_view kept) {
     std::string result;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t length = utf8_length(text.substr(at));
-        const auto byte = static_cast<unsigned char>(text[at]);
-        const bool control = length == 1 && (byte < 0x20 || byte == 0x7f);
-        // U+0080 to U+009F are control characters too.
-        const bool late_control =
-            length == 2 && byte == 0xc2 && static_cast<unsigned char>(text[at + 1]) < 0xa0;
-        if (length == 0 || control || late_control)
-            result += '?';
+    result.reserve(text.size());
+    while (!text.empty()) {
+        const std::size_t length = std::max<std::size_t>(
+            printable_length(text), kept.find(text[0]) != std::string_view::npos);
+        if (length > 0)
+            result += text.substr(0, length);
+        else if (text[0] == '\n')
+            result += "\\n";
+        else if (text[0] == '\t')
+            result += "\\t";
+        else if (text[0] == '\r')
+            result += "\\r";
         else
-            result += text.substr(at, length);
-        at += std::max<std::size_t>(length, 1);
+            result += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+        text.remove_prefix(std::max<std::size_t>(1, length));
     }
     return result;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+    return printable(text, "");
+}
+
+std::string printable_lines(std::string_view text) {
+    return printable(text, "\n\t");
 }
 
 std::optional<double> parse_number(std::string_view text) {

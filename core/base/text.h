@@ -23,8 +23,13 @@ std::vector<std::string> split(std::string_view text, char separator);
 /// Without blanks, tabs and line ends at both sides.
 std::string_view trimmed(std::string_view text);
 
-/// The text with `?` for each control character and each byte that is no UTF-8.
+/// Text for people to read on one line, a file's name above all: line breaks, other control
+/// characters and bytes that are not UTF-8 as \n, \t, \x1b. A name cannot end a line and go on as a
+/// message.
 std::string printable(std::string_view text);
+
+/// The same with line breaks and tabs as they are.
+std::string printable_lines(std::string_view text);
 
 /// A decimal number that fills the whole text ("1e-3", "-33.9"), whatever the locale; nothing else.
 /// Infinities and NaN are not numbers here.

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "image/image.h"
 
@@ -27,11 +29,12 @@ inline std::string size_fault(std::uint64_t width_px, std::uint64_t height_px,
 }
 
 struct FormatsModule {
-    /// Each returns an empty text on success, else the reason for failing.
-    std::string (*write8)(const std::filesystem::path&, const std::string& format, const Image8&,
-                          const Metadata&);
-    std::string (*write_float)(const std::filesystem::path&, const std::string& format,
-                               const ImageF&, const Metadata&);
+    /// Each returns an empty text on success, else the reason for failing. Encoders fill memory: of
+    /// a disk that is full some would say nothing.
+    std::string (*encode8)(std::vector<std::byte>& bytes, const std::string& format, const Image8&,
+                           const Metadata&);
+    std::string (*encode_float)(std::vector<std::byte>& bytes, const std::string& format,
+                                const ImageF&, const Metadata&);
     std::string (*read8)(const std::filesystem::path&, Image8&);
     std::string (*read_float)(const std::filesystem::path&, ImageF&);
 };

@@ -2,19 +2,24 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <mutex>
 #include <optional>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/log.h"
 #include "base/output_file.h"
 #include "base/paths.h"
+#include "base/text.h"
 #include "image/formats.h"
 #include "image/png.h"
 
@@ -25,12 +30,15 @@ struct Format {
     const char* ending;
     const char* name;  ///< as OpenImageIO calls it
     bool linear;
+    int largest_px;  ///< side
 };
 
-constexpr std::array kFormats{Format{".png", "png", false},   Format{".jpg", "jpeg", false},
-                              Format{".jpeg", "jpeg", false}, Format{".webp", "webp", false},
-                              Format{".tif", "tiff", false},  Format{".tiff", "tiff", false},
-                              Format{".exr", "openexr", true}};
+constexpr int kAnySize = std::numeric_limits<int>::max();
+constexpr std::array kFormats{
+    Format{".png", "png", false, kAnySize},   Format{".jpg", "jpeg", false, 65500},
+    Format{".jpeg", "jpeg", false, 65500},    Format{".webp", "webp", false, 16383},
+    Format{".tif", "tiff", false, kAnySize},  Format{".tiff", "tiff", false, kAnySize},
+    Format{".exr", "openexr", true, kAnySize}};
 
 const Format* format_of(const std::filesystem::path& path) {
     std::string ending = path.extension().string();
@@ -41,30 +49,97 @@ const Format* format_of(const std::filesystem::path& path) {
     return found == kFormats.end() ? nullptr : found;
 }
 
-const FormatsModule& formats_module() {
-    static const FormatsModule* const module = [] {
-        const std::filesystem::path path = module_dir() / "image_formats.so";
-        void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-        if (!library) failed(fmt::format("image: {}", dlerror()));
-        using Entry = const FormatsModule* (*)();
-        const auto entry = reinterpret_cast<Entry>(dlsym(library, "relevo_image_formats"));
-        if (!entry) failed(fmt::format("image: {}", dlerror()));
-        return entry();
-    }();
+const FormatsModule& formats_module(const std::filesystem::path& subject) {
+    static const FormatsModule* module = nullptr;
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    if (module) return *module;
+    const auto unusable = [&](const std::filesystem::path& path) {
+        const char* reason = dlerror();
+        failed(
+            fmt::format("image: {}: the module for pictures other than PNG cannot be loaded, "
+                        "{}; install OpenImageIO (libopenimageio2.4), or name a .png",
+                        printable(subject.string()), reason ? reason : path.string()));
+    };
+    const std::filesystem::path path = module_dir() / "image_formats.so";
+    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) unusable(path);
+    using Entry = const FormatsModule* (*)();
+    const auto entry = reinterpret_cast<Entry>(dlsym(library, "relevo_image_formats"));
+    if (!entry) unusable(path);
+    module = entry();
     return *module;
 }
 
-template <typename T, typename WriteOther>
-void write_whole(const std::filesystem::path& path, const Pixels<T>& image,
-                 const Metadata& metadata, bool overwrite, WriteOther write_other) {
-    check_output(path, overwrite);
-    const Format& format = *format_of(path);
+bool is_png(const Format& format) {
+    return std::string_view(format.name) == "png";
+}
+
+const Format& known_format(const std::filesystem::path& path) {
+    if (const Format* format = format_of(path)) return *format;
+    bad_input(
+        fmt::format("image: {}: not the name of a picture, expected an ending of png, jpg, "
+                    "webp, tif or exr",
+                    printable(path.string())));
+}
+
+/// libjpeg ends the process where it finds no memory. What ends it while an encoder works is that.
+class EncoderAtWork {
+  public:
+    explicit EncoderAtWork(const std::filesystem::path& path) : subject_(printable(path.string())) {
+        static std::once_flag once;
+        std::call_once(once, [] {
+            log::level();  // so that the log outlives what is registered here
+            std::atexit(end_of_process);
+        });
+        at_work = &subject_;
+    }
+    ~EncoderAtWork() { at_work = nullptr; }
+    EncoderAtWork(const EncoderAtWork&) = delete;
+    EncoderAtWork& operator=(const EncoderAtWork&) = delete;
+
+  private:
+    static void end_of_process() {
+        const std::string* subject = at_work;
+        if (!subject) return;
+        log::error(
+            fmt::format("image: {}: the encoder gave up, most likely for want of memory; "
+                        "use a smaller --size, or name a .png",
+                        *subject));
+        remove_partial_files();
+        _exit(static_cast<int>(ErrorCode::Failed));
+    }
+
+    static std::atomic<const std::string*> at_work;
+    std::string subject_;
+};
+
+std::atomic<const std::string*> EncoderAtWork::at_work = nullptr;
+
+template <typename T, typename Write>
+void write_whole(OutputFile& file, const Pixels<T>& image, Write write_pixels) {
+    const Format& format = known_format(file.path());
     if (format.linear != std::is_same_v<T, float>)
-        failed(fmt::format("image: {}: {} holds {}", path.string(), format.name,
+        failed(fmt::format("image: {}: {} holds {}", printable(file.path().string()), format.name,
                            format.linear ? "linear light" : "8-bit sRGB"));
-    const PartialFile part(path);
-    write_other(part.path(), format, image, metadata);
-    part.become(path, overwrite, "image");
+    check_format(file.path(), image.width, image.height);
+    write_pixels(format);
+    file.finish();
+}
+
+/// @param encode  FormatsModule's
+template <typename T, typename Encode>
+void write_other(OutputFile& file, const Format& format, const Pixels<T>& image,
+                 const Metadata& metadata, Encode encode) {
+    std::vector<std::byte> bytes;
+    std::string reason;
+    {
+        const EncoderAtWork at_work(file.path());
+        reason = encode(bytes, format.name, image, metadata);
+    }
+    if (!reason.empty())
+        failed(fmt::format("image: {}: {}", printable(file.path().string()), reason));
+    file.write(bytes);
 }
 
 }  // namespace
@@ -78,58 +153,63 @@ bool holds_linear_light(const std::filesystem::path& path) {
     return format && format->linear;
 }
 
-void check_output(const std::filesystem::path& path, bool overwrite) {
-    if (!is_picture_name(path))
-        bad_input(
-            fmt::format("image: {}: not the name of a picture, expected an ending of png, jpg, "
-                        "webp, tif or exr",
-                        path.string()));
-    check_output_file(path, overwrite, "image");
+void check_format(const std::filesystem::path& path, int width_px, int height_px) {
+    const Format& format = known_format(path);
+    if (std::max(width_px, height_px) > format.largest_px)
+        bad_input(fmt::format(
+            "image: {}: {} has sides of at most {} px, but this picture is {}x{}; "
+            "name another format",
+            printable(path.string()), format.name, format.largest_px, width_px, height_px));
+}
+
+void load_format(const std::filesystem::path& path) {
+    if (!is_png(known_format(path))) formats_module(path);
+}
+
+void write(OutputFile& file, const Image8& image, const Metadata& metadata) {
+    write_whole(file, image, [&](const Format& format) {
+        if (is_png(format))
+            write_png(file, image, metadata);
+        else
+            write_other(file, format, image, metadata, formats_module(file.path()).encode8);
+    });
+}
+
+void write(OutputFile& file, const ImageF& image, const Metadata& metadata) {
+    write_whole(file, image, [&](const Format& format) {
+        write_other(file, format, image, metadata, formats_module(file.path()).encode_float);
+    });
 }
 
 void write(const std::filesystem::path& path, const Image8& image, const Metadata& metadata,
            bool overwrite) {
-    write_whole(path, image, metadata, overwrite,
-                [&](const std::filesystem::path& part, const Format& format, const Image8& pixels,
-                    const Metadata& texts) {
-                    if (std::string_view(format.name) == "png") {
-                        write_png(part, pixels, texts);
-                        return;
-                    }
-                    const std::string reason =
-                        formats_module().write8(part, format.name, pixels, texts);
-                    if (!reason.empty())
-                        failed(fmt::format("image: {}: {}", path.string(), reason));
-                });
+    known_format(path);
+    OutputFile file(path, overwrite, "image");
+    write(file, image, metadata);
 }
 
 void write(const std::filesystem::path& path, const ImageF& image, const Metadata& metadata,
            bool overwrite) {
-    write_whole(path, image, metadata, overwrite,
-                [&](const std::filesystem::path& part, const Format& format, const ImageF& pixels,
-                    const Metadata& texts) {
-                    const std::string reason =
-                        formats_module().write_float(part, format.name, pixels, texts);
-                    if (!reason.empty())
-                        failed(fmt::format("image: {}: {}", path.string(), reason));
-                });
+    known_format(path);
+    OutputFile file(path, overwrite, "image");
+    write(file, image, metadata);
 }
 
 Image8 read(const std::filesystem::path& path) {
     const Format* format = format_of(path);
-    if (format && std::string_view(format->name) == "png") return read_png(path);
+    if (format && is_png(*format)) return read_png(path);
     const InputFile only_regular(path, "image");
     Image8 image;
-    const std::string reason = formats_module().read8(path, image);
-    if (!reason.empty()) bad_input(fmt::format("image: {}: {}", path.string(), reason));
+    const std::string reason = formats_module(path).read8(path, image);
+    if (!reason.empty()) bad_input(fmt::format("image: {}: {}", printable(path.string()), reason));
     return image;
 }
 
 ImageF read_float(const std::filesystem::path& path) {
     const InputFile only_regular(path, "image");
     ImageF image;
-    const std::string reason = formats_module().read_float(path, image);
-    if (!reason.empty()) bad_input(fmt::format("image: {}: {}", path.string(), reason));
+    const std::string reason = formats_module(path).read_float(path, image);
+    if (!reason.empty()) bad_input(fmt::format("image: {}: {}", printable(path.string()), reason));
     return image;
 }
 

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -17,6 +16,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/output_file.h"
 
 namespace relevo::image {
 namespace {
@@ -391,12 +391,9 @@ void write_ktx(const std::filesystem::path& path, const TextureData& texture) {
         offset += size;
     }
 
-    std::filesystem::path temporary = path;
-    temporary += fmt::format(".{}.part", getpid());
-    errno = 0;
-    std::ofstream file(temporary, std::ios::binary);
+    OutputFile file(path, /*overwrite=*/true, "image::write_ktx");
     const auto write = [&](const void* bytes, std::size_t size) {
-        file.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+        file.write({static_cast<const std::byte*>(bytes), size});
     };
     write(&header, sizeof header);
     write(index.data(), index.size() * sizeof(LevelIndex));
@@ -404,20 +401,13 @@ void write_ktx(const std::filesystem::path& path, const TextureData& texture) {
     write(kvd.data(), kvd.size());
     std::size_t written = header.kvd_offset + kvd.size();
     for (std::size_t l = header.levels; l-- > 0;) {
-        constexpr std::array<char, 4> kZeros{};
+        constexpr std::array<char, 8> kZeros{};
         write(kZeros.data(), index[l].offset - written);
         const auto level = texture.level(static_cast<int>(l));
         write(level.data(), level.size());
         written = index[l].offset + level.size();
     }
-    file.close();
-    std::error_code error;
-    if (file) std::filesystem::rename(temporary, path, error);
-    if (!file || error) {
-        const std::string reason = error ? error.message() : std::strerror(errno);
-        std::filesystem::remove(temporary, error);
-        failed(fmt::format("image::write_ktx: {}: cannot be written, {}", path.string(), reason));
-    }
+    file.finish();
 }
 
 }  // namespace relevo::image

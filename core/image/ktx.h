@@ -95,7 +95,7 @@ TextureData read_ktx(const std::filesystem::path& path);
 
 /// Writes a KTX 2 file that appears under its name only when whole.
 /// Key/value pairs are stored as given; `KTXwriter` is added where it is absent.
-/// @throws Error (Failed) `image::write_ktx: path: cannot be written, reason`
+/// @throws Error `image::write_ktx: path: what` as OutputFile
 void write_ktx(const std::filesystem::path& path, const TextureData& texture);
 
 }  // namespace relevo::image

@@ -1,13 +1,15 @@
 #include "render/programs.h"
 
 #include <algorithm>
-#include <fstream>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "base/output_file.h"
+#include "base/paths.h"
+#include "base/text.h"
 #include "shader/driver_log.h"
 
 namespace relevo::render {
@@ -136,16 +138,20 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
     }
 }
 
-void dump_programs(const std::vector<ProgramText>& programs, const std::filesystem::path& folder) {
+void dump_programs(const std::vector<ProgramText>& programs, const std::filesystem::path& folder,
+                   bool overwrite) {
+    constexpr std::string_view kWho = "--dump-shaders";
     std::error_code error;
     std::filesystem::create_directories(folder, error);
+    if (error)
+        bad_input(fmt::format("{}: {}: the folder cannot be made, {}", kWho,
+                              printable(folder.string()), error.message()));
+    if (std::filesystem::equivalent(folder, share_dir() / "shaders", error))
+        bad_input(fmt::format("{}: {}: is where the program's own shaders are; name another folder",
+                              kWho, printable(folder.string())));
     for (const ProgramText& program : programs) {
         const auto dump = [&](const char* ending, const std::string& text) {
-            const std::filesystem::path path = folder / (program.name + ending);
-            std::ofstream file(path, std::ios::binary);
-            file << text;
-            if (!file.flush())
-                failed(fmt::format("--dump-shaders: {}: cannot be written", path.string()));
+            write_text(folder / (program.name + ending), text, overwrite, kWho);
         };
         dump(".vert.glsl", program.stitched.vertex.text);
         dump(".frag.glsl", program.stitched.fragment.text);

@@ -44,8 +44,10 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
                                          const shader::StitchInput& input,
                                          const ProgramOptions& options);
 
-/// Writes every text as `<name>.vert.glsl` and `<name>.frag.glsl`. @throws Error (Failed)
-void dump_programs(const std::vector<ProgramText>& programs, const std::filesystem::path& folder);
+/// Writes every text as `<name>.vert.glsl` and `<name>.frag.glsl`.
+/// @throws Error (BadInput) for the folder of the program's own shaders, and as write_text
+void dump_programs(const std::vector<ProgramText>& programs, const std::filesystem::path& folder,
+                   bool overwrite);
 
 struct LinkedProgram {
     gl::Program program;

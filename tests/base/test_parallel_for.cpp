@@ -1,5 +1,9 @@
 #include <atomic>
+#include <limits>
 #include <vector>
+
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "base/parallel_for.h"
 #include "support/support.h"
@@ -29,6 +33,34 @@ TEST(ParallelFor, PassesAnErrorOn) {
                   });
               }),
               "exit 3: piece 0");
+}
+
+TEST(ParallelFor, DoesWithoutThreadsThatTheSystemDoesNotGive) {
+    EXPECT_EXIT(
+        {
+            thread_count();
+            // Root is exempt from the limit.
+            if (geteuid() == 0 && setresuid(65534, 65534, 65534) != 0) _exit(8);
+            const rlimit none{};
+            setrlimit(RLIMIT_NPROC, &none);
+            std::atomic<int> seen = 0;
+            const std::string error = test::error_of([&] {
+                parallel_for(0, 1000, 1, [&](int first, int last) { seen += last - first; });
+            });
+            _exit(error == "no error" && seen == 1000 ? 7 : 6);
+        },
+        testing::ExitedWithCode(7), "");
+}
+
+TEST(ParallelFor, ReachesTheGreatestNumber) {
+    constexpr int kMax = std::numeric_limits<int>::max();
+    std::atomic<std::int64_t> seen = 0;
+    parallel_for(-1, kMax, 1, [&](int first, int last) {
+        EXPECT_LE(-1, first);
+        EXPECT_LT(first, last);
+        seen += std::int64_t{last} - first;
+    });
+    EXPECT_EQ(seen, std::int64_t{kMax} + 1);
 }
 
 }  // namespace

@@ -60,21 +60,6 @@ TEST(Text, FilesThatTheKernelMakesUpAreReadWhole) {
     EXPECT_NE(read_text("/proc/self/status", "text").find("Pid:"), std::string::npos);
 }
 
-TEST(Text, PrintableHasNoControlCharactersAndIsUtf8) {
-    EXPECT_EQ(printable("Gr\xc3\xbc\xc3\x9f Gott \xf0\x9f\x8c\x84"),
-              "Gr\xc3\xbc\xc3\x9f Gott \xf0\x9f\x8c\x84");
-    EXPECT_EQ(printable("a\x1b[31mb\nc\x7f"), "a?[31mb?c?");
-    EXPECT_EQ(printable("\xc2\x9b"), "?");  // a control character in two bytes
-    EXPECT_EQ(printable("\xfc"
-                        "ber"),
-              "?ber");                                 // Latin-1
-    EXPECT_EQ(printable("\xc0\xaf"), "??");            // too long a way to write /
-    EXPECT_EQ(printable("\xed\xa0\x80"), "???");       // half of a surrogate pair
-    EXPECT_EQ(printable("\xf4\x90\x80\x80"), "????");  // beyond U+10FFFF
-    EXPECT_EQ(printable("\xe2\x82"), "??");            // ends too early
-    EXPECT_EQ(printable(""), "");
-}
-
 TEST(Paths, AFileInsideAFolderIsNotReachedFromIt) {
     const std::filesystem::path folder = test::scratch_dir("paths_inside");
     std::filesystem::create_directories(folder / "own/deep");
@@ -97,6 +82,22 @@ TEST(Paths, AFileInsideAFolderIsNotReachedFromIt) {
     EXPECT_FALSE(inside("."));
     EXPECT_FALSE(inside(""));
     EXPECT_EQ(file_inside(folder / "other", "deep/a"), folder / "other/deep/a");
+}
+
+TEST(Text, PrintableNamesStayOnTheirLine) {
+    for (const auto& [text, expected] : std::vector<std::pair<std::string, std::string>>{
+             {"", ""},
+             {"Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\x8f\x94.tif",
+              "Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\x8f\x94.tif"},
+             {"a\nb\tc\rd", "a\\nb\\tc\\rd"},
+             {std::string("\0\x1f\x7f", 3), "\\x00\\x1f\\x7f"},
+             {"\xc2\x80\xc2\x9f\xc2\xa0", "\\xc2\\x80\\xc2\\x9f\xc2\xa0"},  // C1 ends at U+00A0
+             {"\xc0\xaf\xe0\x80\xaf", "\\xc0\\xaf\\xe0\\x80\\xaf"},         // overlong
+             {"\xed\xa0\x80\xed\x9f\xbf", "\\xed\\xa0\\x80\xed\x9f\xbf"},   // a surrogate
+             {"\xf4\x90\x80\x80\xf5", "\\xf4\\x90\\x80\\x80\\xf5"},         // above U+10FFFF
+             {"\xe2\x82", "\\xe2\\x82"}})
+        EXPECT_EQ(printable(text), expected);
+    EXPECT_EQ(printable_lines("a\nb\tc\x1b"), "a\nb\tc\\x1b");
 }
 
 }  // namespace

@@ -166,6 +166,20 @@ TEST(BadUsage, EachHasItsMessage) {
     expect_no_picture({"capture"}, 2, "DEM is required; see relevo capture --help");
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--fov", "500"}, 2,
                       "--fov: expected 0.1 to 170 but got 500; see relevo capture --help");
+    for (const auto& [option, value] :
+         {std::pair{"--band", "1e99"}, {"--memory", "1.5"}, {"--repeat", "x"}})
+        expect_no_picture({"capture", bundled_dem(), "-o", out_png(), option, value}, 2,
+                          std::string(option) + ": expected a whole number but got " + value +
+                              "; see relevo capture --help");
+    expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--band", "4294967297"}, 2,
+                      "--band: expected a whole number of at most 2147483647 but got 4294967297; "
+                      "see relevo capture --help");
+    for (const char* zoom : {"1e99", "1e-99", "0", "-1"})
+        expect_no_picture(
+            {"capture", bundled_dem(), "-o", out_png(), "--view", std::string("zoom=") + zoom}, 2,
+            std::string("--view: zoom=") + zoom + ": expected a zoom of 0.001 to 1000000 but got " +
+                (zoom[1] == 'e' ? std::string(zoom).replace(1, 1, zoom[2] == '-' ? "e" : "e+")
+                                : zoom));
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--foo"}, 2,
                       "The following argument was not expected: --foo; see relevo capture --help");
     expect_no_picture(

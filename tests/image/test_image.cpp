@@ -4,6 +4,8 @@
 
 #include <sys/stat.h>
 
+#include <fmt/format.h>
+
 #include "image/image.h"
 #include "support/support.h"
 
@@ -69,15 +71,45 @@ TEST_F(ImageFiles, NothingIsLeftBehindByAFailure) {
     EXPECT_TRUE(std::filesystem::is_empty(dir_));
 }
 
+TEST_F(ImageFiles, OfAFullDiskAreErrorsInEveryFormat) {
+    for (const char* name : {"a.png", "a.jpg", "a.webp", "a.tif"}) {
+        std::filesystem::create_symlink("/dev/full", dir_ / name);
+        EXPECT_EQ(test::error_of([&] { write(dir_ / name, gradient(64, 48, 3)); }),
+                  "exit 1: image: " + (dir_ / name).string() +
+                      ": cannot be written, No space left on device");
+    }
+    std::filesystem::create_symlink("/dev/full", dir_ / "a.exr");
+    EXPECT_EQ(test::error_of([&] { write(dir_ / "a.exr", ImageF(64, 48, 3)); }),
+              "exit 1: image: " + (dir_ / "a.exr").string() +
+                  ": cannot be written, No space left on device");
+}
+
 TEST_F(ImageFiles, OutputsAreCheckedBeforeTheWork) {
-    EXPECT_EQ(test::error_of([&] { check_output(dir_ / "none" / "a.png", false); }),
+    const Image8 image = gradient(4, 4, 3);
+    EXPECT_EQ(test::error_of([&] { write(dir_ / "none" / "a.png", image); }),
               "exit 3: image: " + (dir_ / "none" / "a.png").string() + ": the folder " +
                   (dir_ / "none").string() + " does not exist; make it first");
-    EXPECT_EQ(test::error_of([&] { check_output(dir_ / "a.gif", false); }),
-              "exit 3: image: " + (dir_ / "a.gif").string() +
-                  ": not the name of a picture, expected an ending of png, jpg, webp, tif or exr");
+    const std::string gif =
+        "exit 3: image: " + (dir_ / "a.gif").string() +
+        ": not the name of a picture, expected an ending of png, jpg, webp, tif or exr";
+    EXPECT_EQ(test::error_of([&] { check_format(dir_ / "a.gif", 4, 4); }), gif);
+    EXPECT_EQ(test::error_of([&] { load_format(dir_ / "a.gif"); }), gif);
+    EXPECT_EQ(test::error_of([&] { write(dir_ / "a.gif", image); }), gif);
+    for (const auto& [name, largest_px] :
+         {std::pair{"a.jpg", 65500}, {"a.webp", 16383}, {"a.png", 100000}, {"a.tif", 100000}}) {
+        EXPECT_EQ(test::error_of([&, n = name, px = largest_px] { check_format(n, px, 2); }),
+                  "no error");
+        if (largest_px == 100000) continue;
+        EXPECT_EQ(test::error_of([&, n = name, px = largest_px] { check_format(n, 2, px + 1); }),
+                  fmt::format("exit 3: image: {}: {} has sides of at most {} px, but this picture "
+                              "is 2x{}; name another format",
+                              name, name[2] == 'j' ? "jpeg" : "webp", largest_px, largest_px + 1));
+    }
+    // A library that cannot go on may end the process: it is never asked.
+    EXPECT_EQ(test::error_of([&] { write(dir_ / "a.jpg", Image8(65501, 1, 3)); }).substr(0, 8),
+              "exit 3: ");
     std::filesystem::create_directory(dir_ / "folder.png");
-    EXPECT_EQ(test::error_of([&] { check_output(dir_ / "folder.png", true); }),
+    EXPECT_EQ(test::error_of([&] { write(dir_ / "folder.png", image, {}, true); }),
               "exit 3: image: " + (dir_ / "folder.png").string() + ": is a folder");
 }
 

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/output_file.h"
+
+namespace relevo {
+
+/// What a run reads and what it writes, so that no result replaces what it was made from, or
+/// another result. Files are told apart by what they are, not by their names: links do not matter.
+class FilesInUse {
+  public:
+    /// Adds a file that is read; one that does not exist is left to who reads it.
+    /// @param what  "the DEM"
+    /// @throws Error (BadInput) where an output would replace it
+    void add_input(const std::filesystem::path& path, std::string_view what);
+
+    /// Opens a file that is written; it lives as long as this.
+    /// @param who  the option that names it, "--timings"
+    /// @throws Error (BadInput) where it would replace an input, (Usage) where it is another
+    /// output,
+    ///     and as OutputFile does
+    OutputFile& open_output(const std::filesystem::path& path, bool overwrite,
+                            std::string_view who);
+
+    /// Some output would replace a file.
+    bool replaces_any() const;
+
+  private:
+    struct Input {
+        std::filesystem::path path;
+        std::string what;
+    };
+    std::vector<Input> inputs_;
+    std::deque<OutputFile> outputs_;
+};
+
+}  // namespace relevo

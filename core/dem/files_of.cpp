@@ -1,0 +1,77 @@
+#include "dem/files_of.h"
+
+#include <set>
+
+#include <cpl_string.h>
+#include <gdal.h>
+
+#include "base/error.h"
+#include "dem/gdal_support.h"
+#include "dem/interpret.h"
+
+namespace relevo::dem {
+namespace {
+
+constexpr int kDeepest = 16;  ///< virtual rasters of virtual rasters
+
+/// The file on this machine that a name of GDAL's leads to: "/vsizip//maps/alps.zip/alps.tif" is
+/// in /maps/alps.zip. Empty where there is none.
+std::filesystem::path file_behind(std::string name) {
+    std::error_code ignored;
+    // Several may be in front: "/vsizip/vsigzip/...", "/vsizip//vsigzip/...".
+    while (name.starts_with("/vsi")) {
+        const std::size_t end = name.find('/', 1);
+        if (end == std::string::npos) return {};
+        name.erase(0, name.compare(end + 1, 3, "vsi") == 0 || name.compare(end, 2, "//") == 0
+                          ? end
+                          : end + 1);
+        if (name.starts_with("//")) name.erase(0, 1);
+        if (name.starts_with('{')) name.erase(0, 1);
+    }
+    for (std::filesystem::path path = name; !path.empty(); path = path.parent_path()) {
+        if (std::filesystem::is_regular_file(path, ignored)) return path;
+        if (path == path.parent_path()) break;
+    }
+    return {};
+}
+
+class Collector {
+  public:
+    void add(const std::string& name, int depth) {
+        if (!seen_.insert(name).second || depth > kDeepest) return;
+        if (std::filesystem::path file = file_behind(name); !file.empty())
+            files_.push_back(std::move(file));
+        std::string path = name;
+        Dataset dataset;
+        try {
+            dataset = open_dataset(path);
+        } catch (const Error&) {
+            return;  // what reads it says so
+        }
+        char** const entries = GDALGetFileList(dataset.get());
+        for (char** entry = entries; entry && *entry; ++entry) {
+            const std::string source = *entry;
+            if (CPLString(source).tolower().rfind(".vrt") == source.size() - 4)
+                add(source, depth + 1);
+            else if (std::filesystem::path file = file_behind(source); !file.empty())
+                files_.push_back(std::move(file));
+        }
+        CSLDestroy(entries);
+    }
+    std::vector<std::filesystem::path> take() { return std::move(files_); }
+
+  private:
+    std::set<std::string> seen_;
+    std::vector<std::filesystem::path> files_;
+};
+
+}  // namespace
+
+std::vector<std::filesystem::path> files_of(std::span<const std::string> paths) {
+    Collector collector;
+    for (const std::string& path : paths)
+        collector.add(path, 0);
+    return collector.take();
+}
+
+}  // namespace relevo::dem

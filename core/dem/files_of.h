@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace relevo::dem {
+
+/// Every file on this machine that the rasters are read from: themselves, what lies beside them
+/// (georeference, overviews, statistics), the sources of virtual rasters, whatever their depth, the
+/// archives that hold any of them. Names that cannot be opened give what is there of their name.
+/// Opens each raster, and reads no heights.
+/// @param paths  as Source::open() takes them
+std::vector<std::filesystem::path> files_of(std::span<const std::string> paths);
+
+}  // namespace relevo::dem
