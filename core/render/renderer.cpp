@@ -176,7 +176,7 @@ struct Renderer::Impl {
                                                          {.vertex_normals = vertex_normals,
                                                           .depth = !effects.modules.empty(),
                                                           .shown = !options.radiance});
-        if (!options.dump_shaders.empty()) dump_programs(texts, options.dump_shaders);
+        if (options.stitched) options.stitched(texts);
         return texts;
     }
 

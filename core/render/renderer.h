@@ -1,6 +1,6 @@
 #pragma once
 
-#include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -24,8 +24,8 @@ struct RendererOptions {
     /// Keep the linear radiance for read_radiance(). Without it shading ends in the colours of the
     /// picture at once, which saves a pass over it.
     bool radiance = true;
-    /// Folder that the programs' texts are written to before a driver sees them; empty: none.
-    std::filesystem::path dump_shaders{};
+    /// Called with the programs' texts before a driver sees them, if there is one.
+    std::function<void(const std::vector<ProgramText>&)> stitched{};
 };
 
 /// The enabled effects, as drawing needs them.
