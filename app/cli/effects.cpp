@@ -106,7 +106,7 @@ EffectArguments EffectArguments::without(const std::vector<std::string>& ids,
     EffectArguments changed = *this;
     changed.enable.clear();
     changed.exactly.emplace();
-    for (const effect::Effect* effect : shown.selection.effects)
+    for (const effect::Effect* effect : shown.loaded.selection.effects)
         changed.exactly->push_back(effect->id());
     move_to(ids, *changed.exactly, changed.disable);
     return changed;

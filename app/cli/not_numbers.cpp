@@ -33,11 +33,11 @@ void refuse_not_numbers(const FaultyPicture& picture) {
     // Without its maker there are fewest; of several such effects, what others build upon takes
     // more of them along than the maker itself.
     Trial best{"", picture.pixels, 0};
-    for (const effect::Effect* effect : picture.effects.selection.effects) {
+    for (const effect::Effect* effect : picture.effects.loaded.selection.effects) {
         const auto rest =
             picture.arguments.without({effect->id()}, picture.effects).active(/*aloud=*/false);
         const Trial trial{effect->id(), not_numbers_of(picture, *rest),
-                          rest->selection.effects.size()};
+                          rest->loaded.selection.effects.size()};
         if (trial.pixels < best.pixels ||
             (trial.pixels == best.pixels && !best.id.empty() && trial.effects > best.effects))
             best = trial;

@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "effect/effect.h"
+#include "effect/texture_files.h"
 #include "gl/context.h"
 #include "render/ground.h"
 #include "render/renderer.h"
@@ -41,6 +42,7 @@ class Drawn {
           height_px_(height_px) {
         std::vector<shader::Param> params = render::core_params();
         render::EffectInputs inputs;
+        std::vector<effect::LoadedTexture> textures;
         const auto add = [&](const shader::Snippet& snippet) {
             params.insert(params.end(), snippet.source.params.begin(), snippet.source.params.end());
             inputs.stitch.snippets.push_back(&snippet);
@@ -49,8 +51,8 @@ class Drawn {
             for (const shader::Snippet& snippet : effect.snippets)
                 add(snippet);
             const effect::Manifest& manifest = effect.manifest;
-            inputs.textures.insert(inputs.textures.end(), manifest.textures.begin(),
-                                   manifest.textures.end());
+            for (const effect::TextureSpec& texture : manifest.textures)
+                textures.push_back(effect::load_texture(texture));
             inputs.stitch.capabilities.insert(inputs.stitch.capabilities.end(),
                                               manifest.provides.begin(), manifest.provides.end());
             if (manifest.displaces) inputs.displaces.push_back(*manifest.displaces);
@@ -61,6 +63,8 @@ class Drawn {
             add(snippets_.back());
             if (effect.displaces) inputs.displaces.push_back(*effect.displaces);
         }
+        for (const effect::LoadedTexture& texture : textures)
+            inputs.textures.push_back(&texture);
         values_.declare(params);
         for (const auto& [address, value] : settings)
             values_.set(address, value);
