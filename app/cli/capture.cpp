@@ -159,9 +159,8 @@ void capture(const Arguments& arguments) {
     if (compared) others->fit(context.info(), /*aloud=*/false);
     timings.add("device", device_began);
     const auto compile_began = Clock::now();
-    render::RendererOptions options{.width_px = size.x,
-                                    .height_px = size.y,
-                                    .radiance = image::holds_linear_light(output)};
+    render::RendererOptions options{
+        .width_px = size.x, .height_px = size.y, .radiance = image::holds_linear_light(output)};
     if (!arguments.dump_shaders.empty())
         options.stitched = [&](const std::vector<render::ProgramText>& texts) {
             render::dump_programs(texts, arguments.dump_shaders, arguments.overwrite);

@@ -1,5 +1,6 @@
 #include "base/watchdog.h"
 
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -43,6 +44,10 @@ std::chrono::milliseconds patience() {
 }
 
 void end_program(const char* message) noexcept {
+    // Of two that end it at once, the second only waits.
+    static std::atomic_flag ending;
+    while (ending.test_and_set())
+        ::pause();
     write_all("relevo: error: ");
     write_all(message);
     write_all("\n");

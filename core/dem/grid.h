@@ -73,8 +73,8 @@ class Grid {
     /// The middle of the grid, on the ellipsoid.
     geo::Geodetic center() const;
 
-    /// Share of posts that the CRS has a place for, from a sample all over the grid: below 1 where a
-    /// map of the world has corners beside the globe, or where rows go on past a pole.
+    /// Share of posts that the CRS has a place for, from a sample all over the grid: below 1 where
+    /// a map of the world has corners beside the globe, or where rows go on past a pole.
     double share_on_earth() const;
 
     /// Ground metres from post to post at the centre: x along a row, y along a column. Geodesic,

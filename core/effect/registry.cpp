@@ -20,7 +20,7 @@ bool is_plugin(const std::filesystem::path& folder) {
         std::filesystem::symlink_status(folder / "plugin.json", ignored));
 }
 
-/// The folder's own name, "haze" of "." too.
+/// The folder's own name, "dust" of "." too.
 std::string name_of(const std::filesystem::path& folder) {
     std::error_code error;
     const std::filesystem::path whole = std::filesystem::absolute(folder, error).lexically_normal();

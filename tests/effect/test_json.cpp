@@ -65,11 +65,11 @@ TEST(Json, BytesThatAreNoUtf8AreNamedInAMessageThatIs) {
     EXPECT_EQ(
         error_of([] { parse_json("who", "a.json", "{\n\"a\": \"\xff\"}"); }),
         "exit 3: who: a.json:2: syntax error while parsing value - invalid string: ill-formed "
-        "UTF-8 byte; last read: '\"?'");
+        "UTF-8 byte; last read: '\"\\xff'");
     EXPECT_EQ(
         error_of([] { parse_json("who", "a.json", "{\xff}"); }),
         "exit 3: who: a.json:1: syntax error while parsing object key - invalid literal; last "
-        "read: '{?'; expected string literal");
+        "read: '{\\xff'; expected string literal");
 }
 
 TEST(Json, NumbersBeyondADoubleHaveNoRawText) {
@@ -82,12 +82,12 @@ TEST(Json, TextsThatATerminalWouldObeyAreRefused) {
     ObjectReader object("who", "a.json", "", json);
     EXPECT_EQ(error_of([&] { object.string("name"); }),
               "exit 3: who: a.json:1: name: expected a text without control characters but got "
-              "\"a?[2J\"");
+              "\"a\\x1b[2J\"");
     EXPECT_EQ(error_of([&] { object.boolean("name", true); }),
-              "exit 3: who: a.json:1: name: expected true or false but got \"a?[2J\"");
+              "exit 3: who: a.json:1: name: expected true or false but got \"a\\x1b[2J\"");
     EXPECT_EQ(error_of([&] { object.strings("words"); }),
               "exit 3: who: a.json:1: words: expected a list of texts without control characters "
-              "but got \"b?\" in it");
+              "but got \"b\\n\" in it");
 }
 
 TEST(Json, ManyKeysTakeNoLongerThanTheyShould) {

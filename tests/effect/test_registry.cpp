@@ -99,7 +99,7 @@ TEST(Registry, OneByteThatIsNoUtf8BreaksItsPluginAlone) {
     EXPECT_EQ(
         plugins.relative(registry.broken()[0].error),
         "effect::load: plugins/haze/plugin.json:1: syntax error while parsing value - invalid "
-        "string: ill-formed UTF-8 byte; last read: '\"N?h'");
+        "string: ill-formed UTF-8 byte; last read: '\"N\\xe4h'");
 }
 
 TEST(Registry, OfTwoWithOneIdTheFirstStays) {

@@ -2,9 +2,8 @@
 #include <cstdint>
 #include <fstream>
 
-#include <sys/stat.h>
-
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "image/image.h"
 #include "support/support.h"

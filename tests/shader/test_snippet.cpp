@@ -272,10 +272,10 @@ TEST(Snippet, AnnotationsAreUtf8WithoutControlCharacters) {
         "Nebelstärke");
     EXPECT_EQ(
         error_of([] { parse("\nuniform bool haze_a = true; //@ label(\"\xe4\")"); }),
-        "exit 3: shader::parse: haze.glsl:2: //@ label(\"?\"): expected UTF-8 without control "
+        "exit 3: shader::parse: haze.glsl:2: //@ label(\"\\xe4\"): expected UTF-8 without control "
         "characters");
     EXPECT_EQ(error_of([] { parse("uniform bool haze_a = true; //@ label(\"\x1b[2J\")"); }),
-              "exit 3: shader::parse: haze.glsl:1: //@ label(\"?[2J\"): expected UTF-8 without "
+              "exit 3: shader::parse: haze.glsl:1: //@ label(\"\\x1b[2J\"): expected UTF-8 without "
               "control characters");
 }
 

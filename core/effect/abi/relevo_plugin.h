@@ -65,9 +65,9 @@ typedef struct relevo_module {
     relevo_status (*prepare)(void* instance);
 } relevo_module;
 
-/* What a module exports. Every function is called in a process of its own first, where a crash harms
- * nobody: the services there have no device behind them, textures hold zeros, and the DEM is a box.
- * relevo_plugin_register() is offered no service but "relevo.log". */
+/* What a module exports. Every function is called in a process of its own first, where a crash
+ * harms nobody: the services there have no device behind them, textures hold zeros, and the DEM is
+ * a box. relevo_plugin_register() is offered no service but "relevo.log". */
 extern RELEVO_PLUGIN_EXPORT const uint32_t relevo_plugin_abi;
 RELEVO_PLUGIN_EXPORT relevo_status relevo_plugin_register(const relevo_host* host,
                                                           relevo_module* module);
