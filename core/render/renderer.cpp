@@ -302,7 +302,10 @@ struct Renderer::Impl {
 
         if (!natives.empty()) {
             for (NativeHost& native : natives) {
-                watched("depth", pixels(),
+                // Twice its patience at least: a module that hangs by itself is named by its own
+                // deadline, not by this one.
+                constexpr double kMapParts = 4e6;
+                watched("depth", std::max(pixels(), kMapParts),
                         [&] { native.prepare(ground, about, inputs, block, tiles); });
                 if (native.take_changes() && params_block.size() > 0)
                     params_block.write(shader::pack(texts.front().stitched.params, values));

@@ -5,6 +5,7 @@
 #include <cstdarg>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 #include <thread>
 
 #include <fcntl.h>
@@ -27,6 +28,12 @@ bool offers_unnamed = true;
 bool offers_noreplace = true;
 bool offers_links = true;
 int fsync_error = 0;
+
+void note(const char* call) {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    calls.emplace_back(call);
+}
 
 int refused(int error) {
     errno = error;
@@ -53,26 +60,26 @@ int openat(int folder, const char* path, int flags, ...) {
 int fsync(int file) {
     struct stat status {};
     fstat(file, &status);
-    calls.emplace_back(S_ISDIR(status.st_mode) ? "sync folder" : "sync file");
+    note(S_ISDIR(status.st_mode) ? "sync folder" : "sync file");
     if (fsync_error != 0) return refused(fsync_error);
     return static_cast<int>(syscall(SYS_fsync, file));
 }
 
 int linkat(int from_folder, const char* from, int to_folder, const char* to, int flags) noexcept {
-    calls.emplace_back("link");
+    note("link");
     if (!offers_links) return refused(EPERM);
     return static_cast<int>(syscall(SYS_linkat, from_folder, from, to_folder, to, flags));
 }
 
 int renameat2(int from_folder, const char* from, int to_folder, const char* to,
               unsigned flags) noexcept {
-    calls.emplace_back("rename to a free name");
+    note("rename to a free name");
     if (!offers_noreplace) return refused(EINVAL);
     return static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
 }
 
 int renameat(int from_folder, const char* from, int to_folder, const char* to) noexcept {
-    calls.emplace_back("rename");
+    note("rename");
     return static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, 0));
 }
 }

@@ -213,24 +213,6 @@ TEST(InfoVerb, SparseFilesAreReadWhereTheyStoreSomething) {
     EXPECT_NE(info.out.find("heights    321.0 to 321.0 m\n"), std::string::npos) << info.out;
 }
 
-TEST(DemOptions, MemoryIsInMiB) {
-    // 600 000 heights are 2.3 MiB, and two rows have no means.
-    Raster raster;
-    raster.columns = 300'000;
-    raster.rows = 2;
-    raster.geotransform = {{500000, 1, 0, 5200000, 0, -1}};
-    const std::string path = write_raster(dir() / "narrow.tif", raster);
-    const std::string out = (dir() / "narrow.png").string();
-    expect_failure({"capture", path, "-o", out, "--memory", "2"}, 3,
-                   "dem::load: " + path +
-                       ": memory for its heights, expected at most 2 MiB but got 3: 300000 x 2 "
-                       "posts are too narrow for means; pass --memory 3, or cut it up with "
-                       "gdal_translate");
-    const Result run = relevo({"-q", "capture", path, "-o", out, "--memory", "3", "--size", "64x48",
-                               "--device", "software"});
-    EXPECT_EQ(run.status, 0) << run.err;
-}
-
 TEST(DemOptions, TakeTheirValues) {
     Raster picture;
     picture.driver = "PNG";

@@ -56,25 +56,6 @@ TEST(Folder, ItsRastersAreOneDemInTheOrderOfTheirNames) {
     EXPECT_EQ(load(paths).grid.columns(), 24);
 }
 
-TEST(Folder, WhatBelongsToARasterIsNone) {
-    const std::filesystem::path dir = made("parts");
-    Raster masked = tile(0);
-    masked.mask = [](int column, int) { return column > 0; };
-    masked.type = "Int16";
-    test::add_overviews(write_raster(dir / "a.tif", masked), {2});
-    std::ofstream(dir / "a.tif.aux.xml") << "<PAMDataset/>";
-    std::ofstream(dir / "a.tfw") << "30\n0\n0\n-30\n500015\n5199985\n";
-    Raster raw = tile(1);
-    raw.driver = "EHdr";
-    raw.type = "Int16";
-    write_raster(dir / "b.bil", raw);  // with b.hdr and b.prj
-    std::ofstream(dir / ".hidden.tif") << "x";
-    const Opened opened(dir);
-    EXPECT_THAT(opened.files, ElementsAre("a.tif", "b.bil"));
-    EXPECT_THAT(opened.said, IsEmpty());
-    EXPECT_EQ(load(dir.string()).about.statistics.holes, 4);
-}
-
 TEST(Folder, AVirtualRasterStandsForItsTiles) {
     const std::filesystem::path dir = made("virtual");
     write_raster(dir / "a.tif", tile(0));

@@ -204,29 +204,5 @@ TEST(Guard, AProcessWithoutFilesLeftSaysSo) {
     EXPECT_EQ(message, "cannot be read, Too many open files; allow more of them with ulimit -n");
 }
 
-TEST(Guard, AnArchiveBesideItsHeaderIsAnArchive) {
-    const std::filesystem::path dir = folder() / "archive";
-    std::filesystem::create_directories(dir);
-    Raster raster;
-    raster.driver = "EHdr";
-    raster.type = "Int16";
-    raster.columns = raster.rows = 64;
-    raster.value = [](int column, int row, int) { return (column * 97 + row * 61) % 1999; };
-    write_raster(dir / "alps.bil", raster);
-    // Stored, so that the archive is as long as the header wants.
-    ASSERT_EQ(std::system(("cd " + dir.string() +
-                           " && python3 -c \"import zipfile; z = zipfile.ZipFile('alps.zip', 'w');"
-                           " [z.write('alps.' + e) for e in ('bil', 'hdr', 'prj')]\""
-                           " && cp alps.zip alps.7z")
-                              .c_str()),
-              0);
-    const Heightfield f = load((dir / "alps.zip").string());
-    EXPECT_EQ(f.about.driver, "EHdr");
-    EXPECT_EQ(f.height_m, load((dir / "alps.bil").string()).height_m);
-    EXPECT_EQ(refusal((dir / "alps.7z").string()),
-              "an archive or a compressed file, expected a raster, or a .zip, .tar or .gz of one; "
-              "unpack it first");
-}
-
 }  // namespace
 }  // namespace relevo::dem

@@ -323,10 +323,10 @@ TEST(Load, HeightsThatTheEarthHasNotAreMentioned) {
     raster.value = [](int column, int, int) { return column == 0 ? -32000.0 : 50; };
     const Heightfield f = loaded("outliers.tif", raster);
     EXPECT_EQ(f.about.statistics.outliers, 4);
-    EXPECT_THAT(
-        f.about.assumptions,
-        Contains("4 heights are below -11500 m or above 9000 m, which the Earth has not, and "
-                 "are drawn as they are; --nodata V makes V a hole, --unit sets the unit"));
+    EXPECT_THAT(f.about.assumptions,
+                Contains(testing::StartsWith(
+                    "4 heights are below -11500 m or above 9000 m, which the Earth has not, and "
+                    "are drawn as they are; --nodata V makes V a hole, --unit sets the unit")));
 }
 
 TEST(Load, OtherFormats) {
@@ -357,29 +357,6 @@ TEST(Load, OtherFormats) {
 TEST(Load, InputsOfACommandLineAreNotNone) {
     EXPECT_EQ(test::error_of([&] { load(std::span<const std::string>{}); }),
               "exit 3: dem::load: no DEM, expected one file or more");
-}
-
-TEST(Load, TheAdviceOnAFrameIsInStoredNumbers) {
-    // 300 feet around ground of 1300 feet and more, scaled: 10 (h - 100).
-    Raster raster;
-    raster.type = "Int16";
-    raster.columns = raster.rows = 20;
-    raster.nodata = -9999;
-    raster.unit = "ft";
-    raster.scale = 0.1;
-    raster.offset = 100;
-    raster.value = [](int column, int row, int) {
-        return column < 2 || row < 2 || column > 17 || row > 17 ? 2000.0 : 12000.0 + column;
-    };
-    const Heightfield f = loaded("frame_in_feet.tif", raster);
-    EXPECT_FLOAT_EQ(f.height_m.at(0, 0), 91.44F);
-    EXPECT_THAT(f.about.guesses,
-                ElementsAre("the edge is 91.44 m all around and the ground beside it 305 m off, "
-                            "perhaps what is left around a turned raster; --nodata 2000 makes it a "
-                            "hole"));
-    EXPECT_EQ(
-        load((folder() / "frame_in_feet.tif").string(), {.nodata = 2000}).about.statistics.holes,
-        400 - 16 * 16);
 }
 
 TEST(Load, HeightsThatTheEarthHasNotMayBeInAnotherUnit) {

@@ -199,36 +199,6 @@ TEST(Mosaic, GapsAreHolesAndSaid) {
                             "hole"));
 }
 
-TEST(Mosaic, FilesOnDifferentContinentsAreWarnedOf) {
-    Raster alps, andes, near;
-    for (Raster* raster : {&alps, &andes, &near}) {
-        raster->crs = "EPSG:4326";
-        raster->columns = raster->rows = 40;
-    }
-    alps.geotransform = {{8, 0.01, 0, 47, 0, -0.01}};
-    near.geotransform = {{8.4, 0.01, 0, 47, 0, -0.01}};
-    andes.geotransform = {{-70, 0.01, 0, -32, 0, -0.01}};
-    const Paths paths{write_raster(folder() / "alps.tif", alps),
-                      write_raster(folder() / "alps_near.tif", near),
-                      write_raster(folder() / "andes.tif", andes)};
-    std::vector<std::string> warnings;
-    log::set_sink([&](log::Level level, std::string_view text) {
-        if (level == log::Level::Warning) warnings.emplace_back(text);
-    });
-    const Heightfield f = load(paths);
-    const std::string warning =
-        paths[1] + " and " + paths[2] +
-        " are 11735 km apart: the files cover 0.0075 % of the DEM that they make, the rest is one "
-        "hole; are they meant to be one DEM?";
-    EXPECT_THAT(warnings, ElementsAre(warning));
-    EXPECT_THAT(f.about.assumptions, Contains(warning));
-    EXPECT_THAT(f.about.guesses, testing::IsEmpty());
-    warnings.clear();
-    load(Paths{paths[0], paths[1]});
-    EXPECT_THAT(warnings, testing::IsEmpty());
-    log::set_sink({});
-}
-
 TEST(Mosaic, MeansAreThoseOfTheWhole) {
     // The same heights as one file and as four tiles, one with an overview.
     const auto rough = [](int c, int r) { return 400 + (c * 37 + r * 91) % 211 + 0.5 * c; };

@@ -90,13 +90,13 @@ TEST_F(NotNumbers, AreCounted) {
 }
 
 TEST_F(NotNumbers, NameTheMakerAndNotWhatItStandsOn) {
-    add("ground", "void ground_on_albedo(inout Surface s) { s.diffuse = vec3(0.4); }\n",
+    add("soil", "void soil_on_albedo(inout Surface s) { s.diffuse = vec3(0.4); }\n",
         R"(, "provides": ["soil"])");
     add("sick",
         "uniform float sick_zero = 0.0; //@ range(-1, 1)\n"
         "void sick_on_material(inout Surface s) { s.diffuse /= sick_zero; }\n",
         R"(, "requires": ["soil"], "after": ["soil"])");
-    EXPECT_EQ(take({"--only", "ground,sick"}).err, message("sick", 64 * 48, 64 * 48));
+    EXPECT_EQ(take({"--only", "soil,sick"}).err, message("sick", 64 * 48, 64 * 48));
     add("worse",
         "uniform float worse_zero = 0.0; //@ range(-1, 1)\n"
         "void worse_on_lit(in Surface s, inout vec3 radiance) {\n"

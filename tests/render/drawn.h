@@ -37,6 +37,7 @@ class Drawn {
           double pixel_error = 0, const std::vector<effect::Effect>& shipped = {},
           const std::vector<std::pair<std::string, std::string>>& settings = {})
         : dem_(std::move(field)),
+          shipped_(shipped),
           ground_(render::make_ground(dem_)),
           width_px_(width_px),
           height_px_(height_px) {
@@ -47,7 +48,7 @@ class Drawn {
             params.insert(params.end(), snippet.source.params.begin(), snippet.source.params.end());
             inputs.stitch.snippets.push_back(&snippet);
         };
-        for (const effect::Effect& effect : shipped) {
+        for (const effect::Effect& effect : shipped_) {
             for (const shader::Snippet& snippet : effect.snippets)
                 add(snippet);
             const effect::Manifest& manifest = effect.manifest;
@@ -132,6 +133,7 @@ class Drawn {
 
   private:
     dem::Heightfield dem_;
+    std::vector<effect::Effect> shipped_;
     render::Ground ground_;
     int width_px_, height_px_;
     std::vector<shader::Snippet> snippets_;
