@@ -203,9 +203,10 @@ TEST_P(OutputFiles, OfAFullDiskAreErrors) {
         {
             remove_partial_files_at_signals();
             rlimit limit{};
-            limit.rlim_cur = limit.rlim_max = 100;
+            limit.rlim_cur = limit.rlim_max =
+                8192;  // room for the message, which goes to a file too
             setrlimit(RLIMIT_FSIZE, &limit);
-            const std::string text(1000, 'x');
+            const std::string text(100000, 'x');
             const std::string error = error_of([&] { write_text(path_, text, false, "test"); });
             fputs(error.c_str(), stderr);
             _exit(7);
