@@ -5,6 +5,8 @@
 //! Shading is deferred because small triangles cost a software renderer a whole block of 4 x 4
 //! pixels each, and a GPU a block of 2 x 2: this way that block runs these few lines only.
 
+//@ include lib/finite.glsl
+
 in vec2 post;
 in float height_m;
 in float height_from_eye_m;
@@ -37,6 +39,11 @@ void main() {
     // A sliver that the near plane has cut to nothing has no coordinates in llvmpipe; its neighbours
     // cover the pixel.
     if (isnan(height_m)) discard;
-    place_out = uvec4(normal_source, floatBitsToUint(height_m), floatBitsToUint(1.0 / gl_FragCoord.w));
+    uint height = floatBitsToUint(height_m);
+#ifdef DISPLACED
+    const uint no_number = 0x7fc00000u;
+    height = abs(height_m) > 1e-5 * kNowhere_m ? no_number : height;
+#endif
+    place_out = uvec4(normal_source, height, floatBitsToUint(1.0 / gl_FragCoord.w));
     store_varyings();
 }

@@ -125,7 +125,7 @@ void main() {
     vec4 over = vec4(0.0);
     hook_display(s, over);
     // What is stored may be clamped to a number.
-    float numbers = finite(vec4(radiance, 0.0)) * finite(over);
+    float numbers = finite(vec4(radiance, s.height_m)) * finite(over);
     radiance = exposed(radiance);
 #ifdef SHOWN
     light_out = shown(radiance, over, numbers);

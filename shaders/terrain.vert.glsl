@@ -4,6 +4,7 @@
 //!           post that has a height and one that has none
 //! source    morphing after F. Strugar, J. Graphics, GPU and Game Tools 14(4), 2009: render/lod.h
 
+//@ include lib/finite.glsl
 //@ include lib/ground.glsl
 
 layout(location = 0) in vec2 grid;  // 0..64, and a little beyond for the rim that hangs down
@@ -67,6 +68,12 @@ void main() {
     v.drawn_height_m = height.r * frame.height_range.z;
     vec3 in_place = v.position_m;
     hook_displace(v, v.position_m);
+#ifdef DISPLACED
+    // A vertex that is nowhere takes its triangles out of the picture without a word: it stays where
+    // it was, and the pixels around are told of by a height that no ground has.
+    bool nowhere = finite(vec4(v.position_m, 0.0)) == 0.0;
+    v.position_m = nowhere ? in_place : v.position_m;
+#endif
     v.distance_m = length(v.position_m);
     v.drawn_height_m += dot(v.position_m - in_place, v.up);
     hook_vertex(v);
@@ -91,6 +98,9 @@ void main() {
     // Short of the last post, so that it lies in a page as all others do.
     post = vec2(net_v.w, net_uv.w) + clamp(vertex, vec2(0.0), limit - 0.01) * net_uuv.w;
     height_m = height.r;
+#ifdef DISPLACED
+    height_m = nowhere ? kNowhere_m : height_m;
+#endif
 #ifdef HEIGHT_STEPS
     height_from_eye_m = height.r - frame.eye_m.w / frame.height_range.z;
 #endif

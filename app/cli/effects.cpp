@@ -104,7 +104,9 @@ EffectArguments EffectArguments::with(const std::vector<std::string>& ids) const
 EffectArguments EffectArguments::without(const std::vector<std::string>& ids,
                                          const ActiveEffects& shown) const {
     EffectArguments changed = *this;
+    // What is shown says which effects are on, whatever was asked for.
     changed.enable.clear();
+    changed.disable.clear();
     changed.exactly.emplace();
     for (const effect::Effect* effect : shown.loaded.selection.effects)
         changed.exactly->push_back(effect->id());

@@ -14,12 +14,19 @@
 
 namespace relevo::render {
 
-bool has_overlay(const shader::StitchInput& input) {
+namespace {
+
+/// Whether an effect answers a hook.
+bool answers(const shader::StitchInput& input, std::string_view hook) {
     return std::any_of(
-        input.snippets.begin(), input.snippets.end(), [](const shader::Snippet* snippet) {
-            return std::any_of(snippet->hooks.begin(), snippet->hooks.end(),
-                               [](const auto& hook) { return hook.hook->name == "display"; });
-        });
+        input.snippets.begin(), input.snippets.end(),
+        [&](const shader::Snippet* snippet) { return snippet->find(hook) != nullptr; });
+}
+
+}  // namespace
+
+bool has_overlay(const shader::StitchInput& input) {
+    return answers(input, "display");
 }
 
 namespace {
@@ -75,6 +82,7 @@ std::vector<ProgramText> stitch_all(const shader::CoreTexts& core, const shader:
         geometry.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
         terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
     }
+    if (answers(input, "displace")) geometry.defines.push_back({"DISPLACED", ""});
     std::vector<shader::Define> ends;  // what the shading programs end in
     if (options.shown)
         ends.push_back({"SHOWN", ""});
@@ -89,11 +97,13 @@ std::vector<ProgramText> stitch_all(const shader::CoreTexts& core, const shader:
     }
     programs.push_back({"geometry", shader::stitch(core, geometry, input)});
     programs.push_back({"terrain", shader::stitch(core, terrain, input)});
+    std::vector<shader::Define> depth_defines{{"TERRAIN_DEPTH", ""}};
+    if (answers(input, "displace")) depth_defines.push_back({"DISPLACED", ""});
     if (options.depth)
         programs.push_back({"depth", shader::stitch(core,
                                                     {.vertex_main = "terrain.vert.glsl",
                                                      .fragment_main = "depth.frag.glsl",
-                                                     .defines = {{"TERRAIN_DEPTH", ""}}},
+                                                     .defines = depth_defines},
                                                     input)});
     for (const std::string name : {"background", "post", "edges", "antialias"}) {
         if (name == "post" && options.shown) continue;

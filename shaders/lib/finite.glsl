@@ -6,3 +6,6 @@ float finite(in vec4 values) {
     const uint ones = 0x7f800000u;
     return any(equal(floatBitsToUint(values) & ones, uvec4(ones))) ? 0.0 : 1.0;
 }
+
+/// The height that a vertex hands on which an effect moved nowhere; no ground has it [m].
+const float kNowhere_m = 1e35;

@@ -1,5 +1,6 @@
 // Light that is no number, or infinite: no picture, and the effect's name.
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -103,6 +104,31 @@ TEST_F(NotNumbers, NameTheMakerAndNotWhatItStandsOn) {
         "    if (gl_FragCoord.x < 10.0) radiance += vec3(1.0 / worse_zero);\n"
         "}\n");
     EXPECT_EQ(take({"--only", "sick,worse"}).err, message("sick", 64 * 48, 64 * 48, "480"));
+    // Also where the comparison alone switches one of them on.
+    EXPECT_EQ(take({"--only", "sick,worse", "--disable", "worse", "--ab", "worse"}).err,
+              message("sick", 64 * 48, 64 * 48, "480"));
+}
+
+TEST_F(NotNumbers, OfPlacesAreSeenToo) {
+    // A vertex that is nowhere would take its triangles along: a hole without a word.
+    add("sick",
+        "uniform float sick_zero = 0.0; //@ range(-1, 1)\n"
+        "void sick_on_displace(in VertexFrame v, inout vec3 position_m) {\n"
+        "    if (v.ground_m.x > 0.0) position_m *= 1.0 / sick_zero;\n"
+        "}\n",
+        R"(, "displaces": {"up_m": 1})");
+    const Result run = take({"--only", "sick"});
+    EXPECT_EQ(run.status, 1);
+    // The eastern half, and the triangles that reach into it.
+    int pixels = 0;
+    ASSERT_EQ(std::sscanf(run.err.c_str(),
+                          "relevo: error: capture: sick: expected light that is a number in every "
+                          "pixel but got %d of",
+                          &pixels),
+              1)
+        << run.err;
+    EXPECT_NEAR(pixels, 32 * 48, 2 * 48);
+    EXPECT_EQ(run.err, message("sick", pixels, 64 * 48));
 }
 
 TEST_F(NotNumbers, OfTheSkyAreSeenToo) {

@@ -6,7 +6,9 @@
 
 #include "base/units.h"
 #include "dem/load.h"
+#include "drawn.h"
 #include "gl/context.h"
+#include "light/fields.h"
 #include "render/ground.h"
 #include "render/renderer.h"
 #include "scene/view.h"
@@ -242,6 +244,25 @@ TEST(Lod, NothingPopsOnASlowPath) {
         off_m, mean_m, worst_m, kFrames, switches);
     EXPECT_GE(switches, 4);
     EXPECT_LT(worst_m, 1.7 * mean_m);
+}
+
+TEST(Lod, TheRimHangsDownByTwoPixels) {
+    // A tile seen from beside, level with its flat ground: all that is drawn of it is its rim.
+    const dem::Heightfield flat = test::field_of(33, 33, {500000, 10, 0, 100, 0, -10}, "EPSG:32631",
+                                                 [](int, int) { return 0; });
+    test::Drawn drawn(flat, {test::kBrightSky}, 320, 256);
+    geo::Geodetic eye = flat.grid.place(16, 80);
+    const Ground& ground = drawn.ground();
+    drawn.frame().camera = scene::heading_camera(
+        ground.frame.to_local(eye), ground.frame.axes(eye.lat_rad, eye.lon_rad), 0, 0, radians(40));
+    const image::ImageF picture = drawn.radiance();
+    for (int x = 140; x < 180; ++x) {
+        int rows = 0;
+        for (int y = 0; y < picture.height; ++y)
+            rows += !test::is_sky(picture, x, y);
+        EXPECT_GE(rows, 2) << x;
+        EXPECT_LE(rows, 3) << x;
+    }
 }
 
 }  // namespace

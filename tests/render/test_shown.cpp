@@ -76,5 +76,35 @@ TEST(Picture, IsTheSameWithAndWithoutKeepingItsRadiance) {
     EXPECT_LE(image::compare(pictures[0], pictures[1]).worst, 1);
 }
 
+TEST(Picture, OfALargeFirstFrameIsWhole) {
+    // It is drawn in bands under a watch, the next one at once.
+    constexpr int kSide_px = 1500;
+    const dem::Heightfield dem =
+        dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
+    const Ground ground = make_ground(dem);
+    gl::Context context({.device = "software", .debug = true});
+    shader::ParamStore values;
+    values.declare(core_params());
+    EffectInputs no_effects;
+    no_effects.stitch.values = &values;
+    FrameInputs inputs;
+    const geo::Geodetic place = ground.frame.origin();
+    inputs.sun = make_sun_light(sun::position(sun::parse_time("2026-06-21T15:30Z").utc, place),
+                                sun::Refraction::standard(place), ground, dem.grid);
+    inputs.camera =
+        scene::orbit_camera({200, 20, 1.5}, points_to_show(dem, ground, 1), radians(40), 1);
+    Renderer renderer(context, no_effects, {.width_px = kSide_px, .height_px = kSide_px});
+    Terrain terrain(dem, ground.frame, {.max_array_layers = context.info().max_array_layers});
+    renderer.render_frame(terrain, ground, inputs);
+    const image::Image8 first = renderer.read_picture();
+    renderer.render_frame(terrain, ground, inputs);
+    EXPECT_EQ(first.values, renderer.read_picture().values);
+    // Nothing of it is as the device left its memory.
+    int black = 0;
+    for (int y = 0; y < kSide_px; ++y)
+        black += first.row(y)[0] == 0 && first.row(y)[1] == 0 && first.row(y)[2] == 0;
+    EXPECT_EQ(black, 0);
+}
+
 }  // namespace
 }  // namespace relevo::render
