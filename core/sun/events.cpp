@@ -80,6 +80,18 @@ class Path {
                 extremes_.push_back(sample(
                     extreme(elevation, coarse[i].t_s, coarse[i + 2].t_s, here > before ? 1 : -1)));
         }
+        // One in the first or the last step that is nearer to the end of the span than to its
+        // neighbour shows in no three samples.
+        for (const std::size_t i : {std::size_t{0}, coarse.size() - 2}) {
+            const Sample &a = coarse[i], &b = coarse[i + 1];
+            for (const double sign : {1.0, -1.0}) {
+                const Sample found = sample(extreme(elevation, a.t_s, b.t_s, sign));
+                if (found.t_s - a.t_s > 2 * kExtreme_s && b.t_s - found.t_s > 2 * kExtreme_s &&
+                    sign * found.elevation_rad >
+                        std::max(sign * a.elevation_rad, sign * b.elevation_rad))
+                    extremes_.push_back(found);
+            }
+        }
         samples_.insert(samples_.end(), extremes_.begin(), extremes_.end());
         std::sort(samples_.begin(), samples_.end(),
                   [](const Sample& a, const Sample& b) { return a.t_s < b.t_s; });
