@@ -64,7 +64,10 @@ class Instant {
     friend Instant operator-(Instant instant, double seconds) { return instant + -seconds; }
     /// Seconds from `b` to `a`, without leap seconds.
     friend constexpr double operator-(Instant a, Instant b) {
-        return static_cast<double>(a.unix_us_ - b.unix_us_) * 1e-6;
+        std::int64_t us = 0;
+        if (__builtin_sub_overflow(a.unix_us_, b.unix_us_, &us))
+            return static_cast<double>(a.unix_us_) * 1e-6 - static_cast<double>(b.unix_us_) * 1e-6;
+        return static_cast<double>(us) * 1e-6;
     }
 
   private:

@@ -110,6 +110,7 @@ TEST(Doubt, TerrainBeyondTheDemMattersWhereTheSunShines) {
     ASSERT_FALSE(winter.open.empty());
     for (const OpenSector& sector : winter.open) {
         EXPECT_GT(degrees(sector.from_azimuth_rad), 120);
+        EXPECT_LT(sector.from_azimuth_rad, sector.to_azimuth_rad);  // not through the north
         EXPECT_LT(degrees(sector.to_azimuth_rad), 235);
         EXPECT_GT(sector.least_m, 100);
         EXPECT_LT(sector.least_m, 520);

@@ -114,6 +114,8 @@ TEST(Date, WhatTheCalendarDoesNotHoldIsAnErrorAndNoOtherDate) {
     for (const double seconds :
          {1e13, -1e13, 1e20, 1e308, static_cast<double>(NAN), static_cast<double>(INFINITY)})
         EXPECT_NE(error_of([&] { now + seconds; }).find(years), std::string::npos) << seconds;
+    EXPECT_DOUBLE_EQ(Instant::from_unix_us(INT64_MAX) - Instant::from_unix_us(INT64_MIN),
+                     std::exp2(64) * 1e-6);
     for (const std::int64_t us : {INT64_MAX, INT64_MIN, INT64_MIN + 1, INT64_MAX / 2})
         for (const int decimals : {0, 3, 6}) {
             const Instant far = Instant::from_unix_us(us);
