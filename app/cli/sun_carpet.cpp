@@ -39,7 +39,17 @@ std::vector<MonthSums> months_of(const light::Carpet& carpet) {
     return months;
 }
 
-ordered_json json_of(const light::Carpet& carpet, const light::TerrainHorizon& horizon) {
+/// Where holes of the DEM leave the light open; empty where they do not.
+std::string holes_text(const light::Carpet& carpet, const light::Doubt& doubt) {
+    if (doubt.holes.empty()) return {};
+    return fmt::format(
+        "not known: {:.2f} h of the direct sun, through holes of the DEM {}, where "
+        "ground as high as its highest post would hide it",
+        carpet.not_known_s / 3600, sectors_text(doubt.holes));
+}
+
+ordered_json json_of(const light::Carpet& carpet, const light::TerrainHorizon& horizon,
+                     const light::Doubt& doubt) {
     ordered_json json;
     json["place"] = place_json(horizon.place());
     json["zone"] = carpet.zone.name();
@@ -48,6 +58,11 @@ ordered_json json_of(const light::Carpet& carpet, const light::TerrainHorizon& h
     json["horizon_definition"] = horizon.description();
     json["direct_sun_h"] = carpet.lit_s / 3600;
     json["level_horizon_h"] = carpet.level_s / 3600;
+    const bool holes = !doubt.holes.empty();
+    if (holes) {
+        json["not_known_h"] = carpet.not_known_s / 3600;
+        json["hole_sectors"] = sectors_json(doubt.holes);
+    }
     ordered_json& months = json["months"] = ordered_json::array();
     for (const MonthSums& month : months_of(carpet))
         months.push_back(
@@ -56,23 +71,30 @@ ordered_json json_of(const light::Carpet& carpet, const light::TerrainHorizon& h
     for (std::size_t i = 0; i < carpet.days.size(); ++i) {
         const light::LightDay& day = carpet.days[i];
         ordered_json lit = ordered_json::array();
-        for (const light::LitInterval& interval : day.lit)
+        for (const light::LitInterval& interval : day.lit) {
             lit.push_back({{"first_utc", utc_json(interval.begin.utc)},
                            {"last_utc", utc_json(interval.end.utc)}});
+            if (!interval.not_known.empty())
+                lit.back()["not_known"] = spans_json(interval.not_known);
+        }
         days.push_back({{"date", sun::to_string(day.date)},
                         {"direct_sun", lit},
                         {"direct_sun_h", day.lit_s / 3600},
                         {"level_horizon_h", carpet.day_level_s[i] / 3600}});
+        if (holes) days.back()["not_known_h"] = day.not_known_s / 3600;
     }
     return json;
 }
 
-std::string csv_of(const light::Carpet& carpet, const light::TerrainHorizon& horizon) {
-    std::string text =
-        csv_remarks({fmt::format("{}, {:.1f} m; columns: what there is at that time of day in {}",
-                                 geo::degrees_text(horizon.place()), horizon.place().height_m,
-                                 carpet.zone.name()),
-                     carpet.definition, horizon.description()});
+std::string csv_of(const light::Carpet& carpet, const light::TerrainHorizon& horizon,
+                   const light::Doubt& doubt) {
+    std::vector<std::string> remarks{
+        fmt::format("{}, {:.1f} m; columns: what there is at that time of day in {}",
+                    geo::degrees_text(horizon.place()), horizon.place().height_m,
+                    carpet.zone.name()),
+        carpet.definition, horizon.description()};
+    if (!doubt.holes.empty()) remarks.push_back(holes_text(carpet, doubt));
+    std::string text = csv_remarks(remarks);
     text += "date,direct_sun_h,level_horizon_h";
     for (int column = 0; column < carpet.light.width(); ++column) {
         const long ms = std::lround(carpet.time_of_day_s(column) * 1000);
@@ -93,7 +115,8 @@ std::string csv_of(const light::Carpet& carpet, const light::TerrainHorizon& hor
     return text;
 }
 
-void print_text(const light::Carpet& carpet, const light::TerrainHorizon& horizon) {
+void print_text(const light::Carpet& carpet, const light::TerrainHorizon& horizon,
+                const light::Doubt& doubt) {
     fmt::print("place               {}, {:.0f} m\n", geo::degrees_text(horizon.place()),
                horizon.place().height_m);
     fmt::print("year                {}, {}\n\n", carpet.year, carpet.zone.name());
@@ -111,6 +134,7 @@ void print_text(const light::Carpet& carpet, const light::TerrainHorizon& horizo
         dark += day.lit.empty();
     fmt::print("\ndays without direct sun: {}\n\n{}\n{}\n", dark, carpet.definition,
                horizon.description());
+    if (!doubt.holes.empty()) fmt::print("{}\n", holes_text(carpet, doubt));
 }
 
 void run(const Arguments& arguments) {
@@ -130,7 +154,9 @@ void run(const Arguments& arguments) {
         horizon, arguments.light.light(horizon.place(), arguments.place.eye_height_m));
     const light::Carpet carpet =
         light::carpet(direct, asked.first.year, asked.zone, static_cast<int>(std::lround(*step_s)));
-    arguments.terrain.check(horizon, horizon.profile(1440));
+    const light::Doubt doubt = light::doubt_of(
+        direct, carpet.days, horizon.profile(kDoubtDirections), arguments.terrain.highest_m);
+    warn_of(doubt);
 
     output.deliver({.drawing =
                         [&] {
@@ -141,9 +167,9 @@ void run(const Arguments& arguments) {
                             chart.horizon_definition = horizon.description();
                             return chart.draw();
                         },
-                    .csv = [&] { return csv_of(carpet, horizon); },
-                    .json = [&] { return json_of(carpet, horizon); },
-                    .print = [&] { print_text(carpet, horizon); }},
+                    .csv = [&] { return csv_of(carpet, horizon, doubt); },
+                    .json = [&] { return json_of(carpet, horizon, doubt); },
+                    .print = [&] { print_text(carpet, horizon, doubt); }},
                    file);
 }
 

@@ -46,19 +46,13 @@ struct Result {
     std::vector<sun::Day> days;
     std::vector<light::LightDay> light;  ///< beside days, where there is a DEM
     std::string light_definition, horizon_definition;
+    light::Doubt doubt;
 };
 
 const char* polar_of(const sun::Day& day) {
     return day.sun == sun::Crossing::AboveAllDay   ? "day"
            : day.sun == sun::Crossing::BelowAllDay ? "night"
                                                    : nullptr;
-}
-
-ordered_json spans_json(const std::vector<sun::TimeSpan>& spans) {
-    ordered_json array = ordered_json::array();
-    for (const sun::TimeSpan& span : spans)
-        array.push_back({{"begin_utc", utc_json(span.begin)}, {"end_utc", utc_json(span.end)}});
-    return array;
 }
 
 ordered_json day_json(const Result& result, std::size_t i) {
@@ -81,7 +75,7 @@ ordered_json day_json(const Result& result, std::size_t i) {
                           {"elevation_deg", angle_deg(event.elevation_rad)}});
     if (!result.light.empty()) {
         ordered_json& lit = json["direct_sun"] = ordered_json::array();
-        for (const light::LitInterval& interval : result.light[i].lit)
+        for (const light::LitInterval& interval : result.light[i].lit) {
             lit.push_back(
                 {{"first_utc", utc_json(interval.begin.utc)},
                  {"last_utc", utc_json(interval.end.utc)},
@@ -91,7 +85,11 @@ ordered_json day_json(const Result& result, std::size_t i) {
                  {"last_apparent_elevation_deg", angle_deg(interval.end.elevation_rad)},
                  {"from_midnight", interval.begin.midnight},
                  {"to_midnight", interval.end.midnight}});
+            if (!interval.not_known.empty())
+                lit.back()["not_known"] = spans_json(interval.not_known);
+        }
         json["direct_sun_h"] = result.light[i].lit_s / 3600;
+        if (!result.doubt.holes.empty()) json["not_known_h"] = result.light[i].not_known_s / 3600;
     }
     return json;
 }
@@ -115,6 +113,7 @@ ordered_json json_of(const Result& result) {
         json["light_definition"] = result.light_definition;
         json["horizon_definition"] = result.horizon_definition;
     }
+    if (!result.doubt.holes.empty()) json["hole_sectors"] = sectors_json(result.doubt.holes);
     if (result.asked.single) {
         json.update(day_json(result, 0));
     } else {
@@ -128,17 +127,28 @@ ordered_json json_of(const Result& result) {
     return json;
 }
 
+/// Where holes of the DEM leave the light open.
+std::string holes_text(const Result& result) {
+    return fmt::format(
+        "not known: direct sun through holes of the DEM {}, where ground as high as "
+        "its highest post would hide it",
+        sectors_text(result.doubt.holes));
+}
+
 std::string csv_of(const Result& result) {
     std::vector<std::string> remarks{result.definition, kTwilights};
     if (!result.light.empty()) {
         remarks.push_back(result.light_definition);
         remarks.push_back(result.horizon_definition);
     }
+    const bool holes = !result.doubt.holes.empty();
+    if (holes) remarks.push_back(holes_text(result));
     std::string text = csv_remarks(remarks) + "date,polar";
     for (const EventKind kind : kKinds)
         text += fmt::format(",{}", sun::name_of(kind));
     text += ",day_length_h,golden_hour,blue_hour";
     if (!result.light.empty()) text += ",direct_sun,direct_sun_h";
+    if (holes) text += ",not_known,not_known_h";
     text += '\n';
     const sun::Zone& zone = result.asked.zone;
     const auto spans = [&](const auto& list, const auto& begin, const auto& end) {
@@ -172,6 +182,14 @@ std::string csv_of(const Result& result) {
                     result.light[i].lit, [](const light::LitInterval& s) { return s.begin.utc; },
                     [](const light::LitInterval& s) { return s.end.utc; }),
                 result.light[i].lit_s / 3600);
+        if (holes) {
+            std::vector<sun::TimeSpan> not_known;
+            for (const light::LitInterval& interval : result.light[i].lit)
+                not_known.insert(not_known.end(), interval.not_known.begin(),
+                                 interval.not_known.end());
+            text +=
+                fmt::format(",{},{:.4f}", of_spans(not_known), result.light[i].not_known_s / 3600);
+        }
         text += '\n';
     }
     return text;
@@ -220,6 +238,13 @@ void print_definitions(const Result& result) {
     fmt::print("\n{}\n{}\n", result.definition, kTwilights);
     if (!result.light.empty())
         fmt::print("{}\n{}\n", result.light_definition, result.horizon_definition);
+    if (!result.doubt.holes.empty()) fmt::print("{}\n", holes_text(result));
+}
+
+/// ", of it 0:01:17 not known"; empty where all is known.
+std::string not_known_text(const light::LightDay& day) {
+    if (day.not_known_s <= 0) return {};
+    return fmt::format(", of it {} not known", hours_text(std::max(1.0, day.not_known_s)));
 }
 
 void print_day(const Result& result) {
@@ -256,12 +281,16 @@ void print_day(const Result& result) {
     if (!result.light.empty()) {
         const light::LightDay& light = result.light.front();
         for (const light::LitInterval& lit : light.lit)
-            fmt::print("direct sun          {} to {}  azimuth {:6.2f} to {:6.2f}\n",
+            fmt::print("direct sun          {} to {}  azimuth {:6.2f} to {:6.2f}{}\n",
                        lit.begin.midnight ? "midnight" : clock_text(lit.begin.utc, zone),
                        lit.end.midnight ? "midnight" : clock_text(lit.end.utc, zone),
-                       degrees(lit.begin.azimuth_rad), degrees(lit.end.azimuth_rad));
+                       degrees(lit.begin.azimuth_rad), degrees(lit.end.azimuth_rad),
+                       lit.not_known.empty() ? ""
+                       : lit.all_unknown()   ? "  not known: a hole of the DEM"
+                                             : fmt::format("  not known {}: a hole of the DEM",
+                                                           spans_text(lit.not_known, zone)));
         if (light.lit.empty()) fmt::print("direct sun          none\n");
-        fmt::print("direct sun, total   {}\n", hours_text(light.lit_s));
+        fmt::print("direct sun, total   {}{}\n", hours_text(light.lit_s), not_known_text(light));
     }
     print_seasons(result);
     print_definitions(result);
@@ -287,6 +316,7 @@ void print_days(const Result& result) {
             for (const light::LitInterval& interval : result.light[i].lit)
                 fmt::print("  {}-{}", clock_text(interval.begin.utc, zone),
                            interval.end.midnight ? "24:00:00" : clock_text(interval.end.utc, zone));
+            fmt::print("{}", not_known_text(result.light[i]));
         }
         if (const char* polar = polar_of(day)) fmt::print("  polar {}", polar);
         fmt::print("\n");
@@ -310,8 +340,10 @@ void run(const Arguments& arguments) {
         const light::TerrainHorizon& horizon = view->horizon;
         result.place = horizon.place();
         direct.emplace(horizon, arguments.light.light(result.place, eye_height_m));
-        arguments.terrain.check(horizon, horizon.profile(1440));
         result.light = direct->days(result.asked.first, result.asked.last, result.asked.zone);
+        result.doubt = light::doubt_of(*direct, result.light, horizon.profile(kDoubtDirections),
+                                       arguments.terrain.highest_m);
+        warn_of(result.doubt);
         for (const light::LightDay& day : result.light)
             result.days.push_back(day.flat);
         result.light_definition = direct->definition();
@@ -339,6 +371,7 @@ void run(const Arguments& arguments) {
         if (direct) {
             diagram.terrain = &direct->skyline();
             diagram.terrain_definition = result.horizon_definition;
+            diagram.holes = direct->holes();
             if (result.asked.single) diagram.light = result.light.front();
             diagram.light_definition = result.light_definition;
         }

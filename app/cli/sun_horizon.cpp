@@ -30,8 +30,7 @@ ordered_json number_or_null(double value) {
 }
 
 ordered_json json_of(const light::TerrainHorizon& horizon,
-                     const std::vector<light::HorizonPoint>& profile,
-                     const std::vector<light::OpenSector>& sectors) {
+                     const std::vector<light::HorizonPoint>& profile, const light::Doubt& doubt) {
     ordered_json json;
     json["place"] = place_json(horizon.place());
     json["eye_m"] = horizon.eye_m();
@@ -48,21 +47,33 @@ ordered_json json_of(const light::TerrainHorizon& horizon,
                           {"hole", p.hole}});
     }
     ordered_json& open = json["open_sectors"] = ordered_json::array();
-    for (const light::OpenSector& s : sectors)
+    for (const light::OpenSector& s : doubt.open)
         open.push_back({{"from_azimuth_deg", angle_deg(s.from_azimuth_rad)},
                         {"to_azimuth_deg", angle_deg(s.to_azimuth_rad)},
                         {"reach_m", s.reach_m},
-                        {"needed_m", s.needed_m}});
+                        {"needed_m", s.needed_m},
+                        {"least_m", s.least_m}});
+    if (!doubt.holes.empty()) json["hole_sectors"] = sectors_json(doubt.holes);
     return json;
 }
 
+/// Where holes of the DEM leave the horizon open.
+std::string holes_text(const light::Doubt& doubt) {
+    return fmt::format(
+        "not known: the horizon {}, where ground as high as the DEM's highest post would stand "
+        "over "
+        "it in a hole",
+        sectors_text(doubt.holes));
+}
+
 std::string csv_of(const light::TerrainHorizon& horizon,
-                   const std::vector<light::HorizonPoint>& profile) {
+                   const std::vector<light::HorizonPoint>& profile, const light::Doubt& doubt) {
+    std::vector<std::string> remarks{
+        fmt::format("eye at {}, {:.2f} m", geo::degrees_text(horizon.place()), horizon.eye_m()),
+        horizon.description()};
+    if (!doubt.holes.empty()) remarks.push_back(holes_text(doubt));
     std::string text =
-        csv_remarks({fmt::format("eye at {}, {:.2f} m", geo::degrees_text(horizon.place()),
-                                 horizon.eye_m()),
-                     horizon.description()}) +
-        "azimuth_deg,horizon_deg,distance_m,lat_deg,lon_deg,height_m\n";
+        csv_remarks(remarks) + "azimuth_deg,horizon_deg,distance_m,lat_deg,lon_deg,height_m\n";
     for (const light::HorizonPoint& p : profile) {
         text += fmt::format("{:.6g},{:.5f}", degrees(p.azimuth_rad), degrees(p.elevation_rad));
         const geo::Geodetic at = horizon.place_of(p);
@@ -76,7 +87,7 @@ std::string csv_of(const light::TerrainHorizon& horizon,
 }
 
 void print_text(const light::TerrainHorizon& horizon,
-                const std::vector<light::HorizonPoint>& profile) {
+                const std::vector<light::HorizonPoint>& profile, const light::Doubt& doubt) {
     fmt::print("place               {}, {:.1f} m, eye at {:.1f} m\n\n",
                geo::degrees_text(horizon.place()), horizon.place().height_m, horizon.eye_m());
     fmt::print("azimuth       horizon   distance   height\n");
@@ -85,9 +96,10 @@ void print_text(const light::TerrainHorizon& horizon,
         fmt::print("{:5.1f} {:<4}  {:7.3f} deg", azimuth_deg, compass_point(azimuth_deg),
                    degrees(p.elevation_rad));
         if (std::isnan(p.distance_m))
-            fmt::print("   beyond the DEM\n");
+            fmt::print("   beyond the DEM{}\n", p.hole ? "  not known: a hole of the DEM" : "");
         else
-            fmt::print("  {:6.2f} km  {:5.0f} m\n", p.distance_m / 1000, p.height_m);
+            fmt::print("  {:6.2f} km  {:5.0f} m{}\n", p.distance_m / 1000, p.height_m,
+                       p.hole ? "  not known: a hole of the DEM" : "");
     };
     for (int k = 0; k < 16; ++k)
         line(22.5 * k);
@@ -97,6 +109,7 @@ void print_text(const light::TerrainHorizon& horizon,
     fmt::print("\nhighest\n");
     line(degrees(highest->azimuth_rad));
     fmt::print("\n{}\n", horizon.description());
+    if (!doubt.holes.empty()) fmt::print("{}\n", holes_text(doubt));
 }
 
 /// @param asked  the day or the year whose sun the panorama shows
@@ -148,12 +161,13 @@ void run(const Arguments& arguments) {
     const light::TerrainHorizon& horizon = view->horizon;
     const std::vector<light::HorizonPoint> profile =
         horizon.profile(static_cast<int>(std::lround(directions)));
-    const std::vector<light::OpenSector> sectors = arguments.terrain.check(horizon, profile);
+    const light::Doubt doubt = light::doubt_of(horizon, profile, arguments.terrain.highest_m);
+    warn_of(doubt);
 
     output.deliver({.drawing = [&] { return draw(arguments, asked, horizon, profile); },
-                    .csv = [&] { return csv_of(horizon, profile); },
-                    .json = [&] { return json_of(horizon, profile, sectors); },
-                    .print = [&] { print_text(horizon, profile); }},
+                    .csv = [&] { return csv_of(horizon, profile, doubt); },
+                    .json = [&] { return json_of(horizon, profile, doubt); },
+                    .print = [&] { print_text(horizon, profile, doubt); }},
                    file);
 }
 

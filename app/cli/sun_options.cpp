@@ -14,6 +14,23 @@
 #include "image/image.h"
 
 namespace relevo::cli {
+namespace {
+
+/// A whole number; of one that an int does not hold it is said which years there are.
+CLI::Validator year_number() {
+    return {[](const std::string& text) {
+                const std::size_t sign = text.starts_with('-');
+                const bool digits = text.size() > sign + 9 &&
+                                    text.find_first_not_of("0123456789", sign) == text.npos;
+                return digits
+                           ? fmt::format("the sun is computed for the years {} to {}, but got {}",
+                                         sun::kFirstYear, sun::kLastYear, text)
+                           : whole_number()(text);
+            },
+            ""};
+}
+
+}  // namespace
 
 void PlaceArguments::add_to(CLI::App& verb) {
     verb.add_option("--at", at, "Place: LAT,LON[,H]")->required();
@@ -34,7 +51,7 @@ void DaysArguments::add_to(CLI::App& verb) {
 }
 
 void DaysArguments::add_year_to(CLI::App& verb) {
-    verb.add_option("--year", year, "All days of a year, 1900 to 2100")->check(whole_number());
+    verb.add_option("--year", year, "All days of a year, 1900 to 2100")->check(year_number());
     verb.add_option("--tz", zone, "Time zone that days are counted by: Europe/Zurich, +05:30");
 }
 
@@ -143,39 +160,90 @@ std::unique_ptr<TerrainView> TerrainArguments::view_from(const PlaceArguments& p
                                          options);
 }
 
-std::vector<light::OpenSector> TerrainArguments::check(
-    const light::TerrainHorizon& horizon, const std::vector<light::HorizonPoint>& profile) const {
-    const double high_m = highest_m.value_or(horizon.posts().highest_m());
-    std::vector<light::OpenSector> sectors = horizon.open_sectors(profile, high_m);
-    if (sectors.empty()) return sectors;
-    // Directions that follow each other but for less than five degrees are one for a reader.
-    std::vector<light::OpenSector> merged;
-    for (const light::OpenSector& sector : sectors) {
-        if (!merged.empty() &&
-            sector.from_azimuth_rad - merged.back().to_azimuth_rad < radians(5)) {
-            light::OpenSector& last = merged.back();
-            last.to_azimuth_rad = sector.to_azimuth_rad;
-            last.reach_m = std::min(last.reach_m, sector.reach_m);
-            last.needed_m = std::max(last.needed_m, sector.needed_m);
+namespace {
+
+/// Directions that follow each other but for less than five degrees are one for a reader.
+template <typename Sector, typename Join>
+std::vector<Sector> merged(const std::vector<Sector>& sectors, const Join& join) {
+    std::vector<Sector> result;
+    for (const Sector& sector : sectors) {
+        if (!result.empty() &&
+            sector.from_azimuth_rad - result.back().to_azimuth_rad < radians(5)) {
+            result.back().to_azimuth_rad = sector.to_azimuth_rad;
+            join(result.back(), sector);
         } else {
-            merged.push_back(sector);
+            result.push_back(sector);
         }
     }
+    return result;
+}
+
+std::string sector_text(const light::Sector& sector) {
+    const double from_deg = degrees(sector.from_azimuth_rad);
+    const double to_deg = degrees(sector.to_azimuth_rad);
+    if (std::lround(from_deg) == std::lround(to_deg))
+        return fmt::format("at azimuth {:.0f} ({})", from_deg, compass_point(from_deg));
+    return fmt::format("from azimuth {:.0f} ({}) to {:.0f} ({})", from_deg, compass_point(from_deg),
+                       to_deg, compass_point(to_deg));
+}
+
+void warn_of_the_edge(const light::Doubt& doubt) {
     std::vector<std::string> parts;
-    for (const light::OpenSector& s : merged) {
-        const double from_deg = degrees(s.from_azimuth_rad), to_deg = degrees(s.to_azimuth_rad);
+    for (const light::OpenSector& s :
+         merged(doubt.open, [](light::OpenSector&to, const light::OpenSector&of) {
+             to.reach_m = std::min(to.reach_m, of.reach_m);
+             to.needed_m = std::max(to.needed_m, of.needed_m);
+             to.least_m = std::min(to.least_m, of.least_m);
+         }))
         parts.push_back(fmt::format(
-            "from azimuth {:.0f} ({}) to {:.0f} ({}) as far as {:.0f} km away, where the DEM "
-            "reaches {:.1f} km",
-            from_deg, compass_point(from_deg), to_deg, compass_point(to_deg), s.needed_m / 1000,
-            s.reach_m / 1000));
-    }
+            "above {:.0f} m {} as far as {:.0f} km away, where the DEM reaches {:.1f} km",
+            s.least_m, sector_text(s), s.needed_m / 1000, s.reach_m / 1000));
+    if (parts.empty()) return;
     log::warning(fmt::format(
-        "the blocking ridge may lie beyond the DEM, as terrain of {:.0f} m would stand over this "
-        "horizon {}; use a DEM that goes so far, or --highest with the height that terrain has "
-        "there at most",
-        high_m, fmt::join(parts, ", and ")));
-    return sectors;
+        "the blocking ridge may lie beyond the DEM, as terrain of up to {:.0f} m would {}: {}; use "
+        "a DEM that goes so far, or --highest with the height that terrain has there at most",
+        doubt.highest_m,
+        doubt.of_the_sun ? "hide sun that is taken to shine" : "stand over this horizon",
+        fmt::join(parts, ", and ")));
+}
+
+void warn_of_holes(const light::Doubt& doubt) {
+    if (doubt.holes.empty()) return;
+    log::warning(fmt::format(
+        "the DEM has holes {}: {}; a DEM without them settles it", sectors_text(doubt.holes),
+        doubt.of_the_sun
+            ? fmt::format("of the direct sun {} is not known, as ground in them could hide it",
+                          hours_text(std::max(1.0, doubt.not_known_s)))
+            : "ground in them could stand over this horizon"));
+}
+
+}  // namespace
+
+void warn_of(const light::Doubt& doubt) {
+    warn_of_the_edge(doubt);
+    warn_of_holes(doubt);
+}
+
+std::string sectors_text(const std::vector<light::Sector>& sectors) {
+    std::vector<std::string> parts;
+    for (const light::Sector& sector : merged(sectors, [](light::Sector&, const light::Sector&) {}))
+        parts.push_back(sector_text(sector));
+    return fmt::format("{}", fmt::join(parts, ", and "));
+}
+
+nlohmann::ordered_json sectors_json(const std::vector<light::Sector>& sectors) {
+    nlohmann::ordered_json array = nlohmann::ordered_json::array();
+    for (const light::Sector& s : sectors)
+        array.push_back({{"from_azimuth_deg", angle_deg(s.from_azimuth_rad)},
+                         {"to_azimuth_deg", angle_deg(s.to_azimuth_rad)}});
+    return array;
+}
+
+nlohmann::ordered_json spans_json(const std::vector<sun::TimeSpan>& spans) {
+    nlohmann::ordered_json array = nlohmann::ordered_json::array();
+    for (const sun::TimeSpan& span : spans)
+        array.push_back({{"begin_utc", utc_json(span.begin)}, {"end_utc", utc_json(span.end)}});
+    return array;
 }
 
 void OutputArguments::add_to(CLI::App& verb, const std::vector<std::string>& endings_of_verb) {

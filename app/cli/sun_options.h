@@ -12,6 +12,7 @@
 #include "cli/shared.h"
 #include "dem/posts.h"
 #include "light/direct_light.h"
+#include "light/doubt.h"
 #include "light/drawing.h"
 #include "light/horizon.h"
 #include "sun/events.h"
@@ -89,10 +90,20 @@ struct TerrainArguments {
     bool given() const { return !dem.paths.empty(); }
     /// Loads the DEM. @throws Error as dem::load and light::TerrainHorizon
     std::unique_ptr<TerrainView> view_from(const PlaceArguments& place) const;
-    /// Warns, once, of directions in which the blocking ridge may lie beyond the DEM.
-    std::vector<light::OpenSector> check(const light::TerrainHorizon& horizon,
-                                         const std::vector<light::HorizonPoint>& profile) const;
 };
+
+/// Warns, once each, of directions in which the blocking ridge may lie beyond the DEM, and of those
+/// in which it may stand in a hole.
+void warn_of(const light::Doubt& doubt);
+
+/// "from azimuth 64 (ENE) to 88 (E), and at azimuth 97 (E)", of directions that a reader tells
+/// apart; empty without any.
+std::string sectors_text(const std::vector<light::Sector>& sectors);
+
+nlohmann::ordered_json sectors_json(const std::vector<light::Sector>& sectors);
+nlohmann::ordered_json spans_json(const std::vector<sun::TimeSpan>& spans);
+
+constexpr int kDoubtDirections = 1440;  ///< of a profile that doubts are looked for in
 
 /// What a verb has to say, in each of its forms; each is made only where it is asked for.
 struct Forms {

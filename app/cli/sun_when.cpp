@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/units.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
@@ -36,10 +38,11 @@ ordered_json json_of(const light::Alignments& found, const light::TerrainHorizon
                      {"distance_m", found.sight.distance_m},
                      {"visible", found.sight.visible},
                      {"hidden_by_deg", angle_deg(found.sight.hidden_by_rad)}};
+    if (found.sight.hole) json["sight"]["hole"] = true;
     json["zone"] = zone.name();
     json["definition"] = found.definition;
     ordered_json& passages = json["passages"] = ordered_json::array();
-    for (const light::Alignment& p : found.passages)
+    for (const light::Alignment& p : found.passages) {
         passages.push_back({{"utc", utc_json(p.utc)},
                             {"local", sun::to_iso(p.utc, zone)},
                             {"date", sun::to_string(p.date)},
@@ -49,6 +52,8 @@ ordered_json json_of(const light::Alignments& found, const light::TerrainHorizon
                             {"azimuth_deg", angle_deg(p.azimuth_rad)},
                             {"apparent_elevation_deg", angle_deg(p.elevation_rad)},
                             {"sun_visible", p.sun_visible}});
+        if (p.hole) passages.back()["hole"] = true;
+    }
     return json;
 }
 
@@ -79,6 +84,8 @@ void print_text(const light::Alignments& found, const light::TerrainHorizon& hor
     if (!found.sight.visible)
         fmt::print("not seen            ground before it stands {:.3f} deg higher\n",
                    degrees(found.sight.hidden_by_rad));
+    if (found.sight.hole)
+        fmt::print("not known           whether it is seen, through a hole of the DEM\n");
     if (found.passages.empty())
         fmt::print("\nthe sun does not come that near on these days\n");
     else
@@ -89,7 +96,9 @@ void print_text(const light::Alignments& found, const light::TerrainHorizon& hor
                    sun::to_iso(p.utc, zone), degrees(p.separation_rad),
                    std::abs(degrees(p.right_rad)), p.right_rad < 0 ? "left" : "right",
                    std::abs(degrees(p.above_rad)), p.above_rad < 0 ? "below" : "above",
-                   p.sun_visible ? "" : "  behind terrain");
+                   !p.sun_visible ? "  behind terrain"
+                   : p.hole       ? "  not known: a hole of the DEM"
+                                  : "");
     fmt::print("\n{}\n{}\n", found.definition, horizon.description());
 }
 
@@ -112,6 +121,12 @@ void run(const Arguments& arguments) {
     options.refraction = arguments.refraction.at(horizon.place());
     const light::Alignments found =
         light::alignments(horizon, target, asked.first, asked.last, asked.zone, options);
+
+    if (found.sight.hole || std::any_of(found.passages.begin(), found.passages.end(),
+                                        [](const light::Alignment& p) { return p.hole; }))
+        log::warning(
+            "the DEM has holes in the way: ground in them could hide the summit or the sun over "
+            "it; a DEM without them settles it");
 
     output.deliver({.drawing = {},
                     .csv = [&] { return csv_of(found, asked.zone); },

@@ -24,8 +24,8 @@ std::vector<std::string> split(std::string_view text, char separator);
 std::string_view trimmed(std::string_view text);
 
 /// Text for people to read on one line, a file's name above all: line breaks, other control
-/// characters and bytes that are not UTF-8 as \n, \t, \x1b. A name cannot end a line and go on as a
-/// message.
+/// characters, noncharacters and bytes that are not UTF-8 as \n, \t, \x1b. A name cannot end a line
+/// and go on as a message.
 std::string printable(std::string_view text);
 
 /// The same with line breaks and tabs as they are.

@@ -77,7 +77,9 @@ Alignments alignments(const TerrainHorizon& from, const geo::Geodetic& target, s
                             std::cos(result.sight.elevation_rad);
         passage.azimuth_rad = azimuth_rad;
         passage.elevation_rad = elevation_rad;
-        passage.sun_visible = elevation_rad > from.elevation_rad(azimuth_rad);
+        const HorizonPoint horizon = from.at(azimuth_rad);
+        passage.sun_visible = elevation_rad > horizon.elevation_rad;
+        passage.hole = passage.sun_visible && elevation_rad <= horizon.hole_rad;
         result.passages.push_back(passage);
     };
     const auto closest = [&](double a, double b) {  // golden section

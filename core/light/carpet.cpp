@@ -75,6 +75,7 @@ Carpet carpet(const DirectLight& light, int year, const sun::Zone& zone, int ste
     for (int row = 0; row < carpet.light.height(); ++row) {
         const LightDay& day = carpet.days[static_cast<std::size_t>(row)];
         carpet.lit_s += day.lit_s;
+        carpet.not_known_s += day.not_known_s;
         const sun::Day& level_day = level_days[static_cast<std::size_t>(row)];
         carpet.level_s += level_day.day_length_s;
         carpet.day_level_s.push_back(level_day.day_length_s);

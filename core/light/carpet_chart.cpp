@@ -48,11 +48,14 @@ Drawing CarpetChart::draw() const {
 
     std::string title = place_name.empty() ? "" : place_name + ": ";
     title += fmt::format("{}irect sun through {}", title.empty() ? 'D' : 'd', year);
-    const std::vector<std::string> lines{
+    std::vector<std::string> lines{
         fmt::format("{}, {}", place_text(place), carpet->zone.name()),
         fmt::format("{:.0f} hours of direct sun, {:.0f} over a level horizon ({:.0f} %)",
                     carpet->lit_s / 3600, carpet->level_s / 3600,
                     carpet->level_s > 0 ? 100 * carpet->lit_s / carpet->level_s : 0)};
+    if (carpet->not_known_s > 0)
+        lines.back() += fmt::format("; {:.3g} hours of direct sun not known for holes of the DEM",
+                                    carpet->not_known_s / 3600);
     drawing.describe(title, lines.back());
     add_title(drawing, kMargin, title, lines);
 

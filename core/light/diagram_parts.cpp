@@ -124,6 +124,9 @@ std::string light_text(const LightDay& day, const SunPaths& paths) {
     if (day.lit.size() == 1 && day.lit[0].begin.midnight && day.lit[0].end.midnight)
         text = "Direct sun all day";
     text += text.empty() ? "No direct sun" : " (" + duration_text(day.lit_s) + ")";
+    if (day.not_known_s > 0)
+        text += fmt::format(", {} of it not known for holes of the DEM",
+                            day.not_known_s < 30 ? "seconds" : duration_text(day.not_known_s));
     return text + "; over a level horizon " + duration_text(day.flat.day_length_s);
 }
 

@@ -19,6 +19,7 @@ constexpr int kDirections = 18000;  // 0.02 degrees, which the sun takes 5 s for
 constexpr double kCoarse_s = 1920;  // halved until clear, or
 constexpr double kFine_s = 1.875;
 constexpr double kRoot_s = 1e-3;
+constexpr double kHole_s = 5;
 
 // The sun's way over the sky, with room for refraction, which never makes it faster than this, and
 // for its own motion.
@@ -34,6 +35,25 @@ class LightSearch {
   public:
     LightSearch(const DirectLight& light, const sun::PositionTable& table)
         : light_(light), table_(table) {}
+
+    /// When the sun stands in holes within an interval.
+    std::vector<sun::TimeSpan> not_known(const LitInterval& lit) {
+        std::vector<sun::TimeSpan> found;
+        if (light_.hole_rad_.empty()) return found;
+        begin_ = lit.begin.utc;
+        const double length_s = lit.length_s();
+        const int pieces = std::max(1, static_cast<int>(std::ceil(length_s / kHole_s)));
+        bool before = false;
+        for (int i = 0; i < pieces; ++i) {
+            const bool here = in_hole(moment(length_s * (i + 0.5) / pieces));
+            if (here && !before) found.push_back({begin_ + length_s * i / pieces, {}});
+            if (here)
+                found.back().end =
+                    i + 1 == pieces ? lit.end.utc : begin_ + length_s * (i + 1) / pieces;
+            before = here;
+        }
+        return found;
+    }
 
     std::vector<LitInterval> lit(const sun::TimeSpan& span) {
         begin_ = span.begin;
@@ -74,6 +94,14 @@ class LightSearch {
                 break;
         }
         return 0;
+    }
+
+    bool in_hole(const Moment& m) const {
+        const auto n = light_.hole_rad_.size();
+        const double turns = m.azimuth_rad / (2 * kPi);
+        const auto before = static_cast<std::size_t>((turns - std::floor(turns)) * double(n)) % n;
+        return m.apparent_rad + limb() * m.semidiameter_rad <=
+               std::max(light_.hole_rad_[before], light_.hole_rad_[(before + 1) % n]);
     }
 
     /// How far what must stand over the terrain does so [rad].
@@ -154,7 +182,9 @@ class LightSearch {
     LightEdge light_edge(const Moment& at, bool midnight) const {
         return {begin_ + at.t_s, at.azimuth_rad, at.apparent_rad, midnight};
     }
-    void open(const Moment& at, bool midnight) { found_.push_back({light_edge(at, midnight), {}}); }
+    void open(const Moment& at, bool midnight) {
+        found_.push_back({light_edge(at, midnight), {}, {}});
+    }
     void close(const Moment& at, bool midnight) {
         found_.back().end = light_edge(at, midnight);
         if (found_.back().length_s() <= 0) found_.pop_back();
@@ -167,13 +197,40 @@ class LightSearch {
     std::vector<LitInterval> found_;
 };
 
+namespace {
+
+std::vector<double> elevations_of(const std::vector<HorizonPoint>& profile) {
+    std::vector<double> elevation_rad;
+    for (const HorizonPoint& point : profile)
+        elevation_rad.push_back(point.elevation_rad);
+    return elevation_rad;
+}
+
+}  // namespace
+
+double LitInterval::not_known_s() const {
+    double sum_s = 0;
+    for (const sun::TimeSpan& span : not_known)
+        sum_s += span.length_s();
+    return sum_s;
+}
+
 DirectLight::DirectLight(const TerrainHorizon& horizon, const LightOptions& options)
+    : DirectLight(horizon, options, horizon.profile(kDirections)) {}
+
+DirectLight::DirectLight(const TerrainHorizon& horizon, const LightOptions& options,
+                         const std::vector<HorizonPoint>& profile)
     : horizon_(horizon),
       options_(options),
-      skyline_(horizon, kDirections),
+      skyline_(elevations_of(profile)),
       observer_(horizon.place()),
       refraction_(options.refraction ? *options.refraction
                                      : sun::Refraction::standard(horizon.place())) {
+    if (std::any_of(profile.begin(), profile.end(), [](const HorizonPoint& p) { return p.hole; }))
+        for (const HorizonPoint& point : profile) {
+            holes_.push_back(point.hole);
+            hole_rad_.push_back(point.hole ? point.hole_rad : -kPi / 2);
+        }
     const char* part = options.limb == sun::Limb::Upper   ? "any part of the sun's disc"
                        : options.limb == sun::Limb::Lower ? "all of the sun's disc"
                                                           : "centre of the sun";
@@ -199,8 +256,11 @@ std::vector<LightDay> DirectLight::days(sun::Date first, sun::Date last, const s
         day.date = of_day.date;
         day.span = of_day.span;
         day.lit = LightSearch(*this, table).lit(day.span);
-        for (const LitInterval& interval : day.lit)
+        for (LitInterval& interval : day.lit) {
             day.lit_s += interval.length_s();
+            interval.not_known = LightSearch(*this, table).not_known(interval);
+            day.not_known_s += interval.not_known_s();
+        }
         day.flat = std::move(of_day);
         days.push_back(std::move(day));
     }

@@ -31,7 +31,13 @@ struct LightEdge {
 
 struct LitInterval {
     LightEdge begin, end;
+    /// Stretches of it, to 5 s, when the sun stands in a hole of the DEM, lower than ground as high
+    /// as the DEM's highest post would: whether it shines then is not known.
+    std::vector<sun::TimeSpan> not_known = {};
     double length_s() const { return end.utc - begin.utc; }
+    double not_known_s() const;
+    /// There is light only because of holes.
+    bool all_unknown() const { return !not_known.empty() && not_known_s() >= length_s() - 1e-3; }
 };
 
 /// Direct light on a local day.
@@ -40,6 +46,7 @@ struct LightDay {
     sun::TimeSpan span;            ///< the local day
     std::vector<LitInterval> lit;  ///< in order; empty: the sun does not reach the point
     double lit_s = 0;              ///< together
+    double not_known_s = 0;        ///< of it, for holes of the DEM
     sun::Day flat;                 ///< the same day over a flat horizon
 };
 
@@ -68,6 +75,8 @@ class DirectLight {
 
     const TerrainHorizon& horizon() const { return horizon_; }
     const Skyline& skyline() const { return skyline_; }
+    /// Directions of the skyline, where a hole of the DEM may hide higher ground; empty: none.
+    const std::vector<bool>& holes() const { return holes_; }
     const sun::Observer& observer() const { return observer_; }
     const sun::Refraction& refraction() const { return refraction_; }
     sun::Limb limb() const { return options_.limb; }
@@ -77,10 +86,14 @@ class DirectLight {
 
   private:
     friend class LightSearch;
+    DirectLight(const TerrainHorizon& horizon, const LightOptions& options,
+                const std::vector<HorizonPoint>& profile);
 
     const TerrainHorizon& horizon_;
     LightOptions options_;
     Skyline skyline_;
+    std::vector<double> hole_rad_;  // HorizonPoint's; empty: no hole matters
+    std::vector<bool> holes_;
     sun::Observer observer_;
     sun::Refraction refraction_;
     std::string definition_;

@@ -25,9 +25,9 @@ constexpr int kOther = 556;  // accented letters; the degree sign is 400
 
 }  // namespace
 
-void Drawing::describe(std::string title, std::string description) {
-    title_ = std::move(title);
-    description_ = std::move(description);
+void Drawing::describe(const std::string& title, const std::string& description) {
+    title_ = printable(title);
+    description_ = printable(description);
 }
 
 // Items are made in place: of a variant's temporaries GCC 12 says at -O3 that they may not be
@@ -62,8 +62,8 @@ void Drawing::circle(const glm::dvec2& center, double radius, const Pen& pen) {
     items_.emplace_back(std::in_place_type<Circle>, Circle{center, radius, pen});
 }
 
-void Drawing::text(const glm::dvec2& at, std::string words, const Lettering& lettering) {
-    items_.emplace_back(std::in_place_type<Text>, Text{at, std::move(words), lettering});
+void Drawing::text(const glm::dvec2& at, const std::string& words, const Lettering& lettering) {
+    items_.emplace_back(std::in_place_type<Text>, Text{at, printable(words), lettering});
 }
 
 void Drawing::clip(const Rect& rect) {

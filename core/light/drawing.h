@@ -46,7 +46,8 @@ struct Rect {
 
 /// A drawing of lines, areas and words, in units of a pixel, y downwards. What comes later lies on
 /// top. Letters are Helvetica's widths everywhere: Liberation Sans, Arial and Nimbus Sans share
-/// them.
+/// them. Words are as printable() leaves them: neither SVG nor Cairo takes control characters, or
+/// bytes that are not UTF-8.
 class Drawing {
   public:
     Drawing(double width, double height) : width_(width), height_(height) {}
@@ -55,7 +56,7 @@ class Drawing {
     double height() const { return height_; }
 
     /// For readers that do not see: the SVG's title and description, and the PNG's metadata.
-    void describe(std::string title, std::string description);
+    void describe(const std::string& title, const std::string& description);
 
     /// Open lines, or areas where `closed`; not-a-number points part a line in two.
     void path(std::vector<glm::dvec2> points, const Pen& pen, bool closed = false);
@@ -63,7 +64,7 @@ class Drawing {
     void rect(const Rect& rect, const Pen& pen);
     void circle(const glm::dvec2& center, double radius, const Pen& pen);
     /// @param at  on the base line
-    void text(const glm::dvec2& at, std::string words, const Lettering& lettering);
+    void text(const glm::dvec2& at, const std::string& words, const Lettering& lettering);
 
     /// Everything until end_clip() is cut to a rectangle or a circle.
     void clip(const Rect& rect);

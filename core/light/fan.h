@@ -35,6 +35,10 @@ class Fan {
     /// @param azimuth_rad  clockwise from true north
     void trace(double azimuth_rad, std::vector<TracePoint>& line) const;
 
+    /// Exactly where the line is at a distance, on the grid or beyond it; NaN where its CRS cannot
+    /// express that.
+    glm::dvec2 post(double azimuth_rad, double distance_m) const;
+
   private:
     struct Ring {
         double distance_m = 0;
@@ -42,7 +46,6 @@ class Fan {
         std::vector<glm::dvec2> posts;
     };
     Ring ring(double distance_m) const;
-    glm::dvec2 post(double azimuth_rad, double distance_m) const;
     bool straight(const Ring& from, const Ring& middle, const Ring& to) const;
     void refine(const Ring& from, const Ring& to, int depth);
 

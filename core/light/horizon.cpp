@@ -29,6 +29,16 @@ constexpr double kSnap_cells = 1e-3;
 constexpr double kChunk_cells = 32;
 constexpr double kNear_posts = 1.5;  // of a target, that do not hide it
 
+// Of the eye above the ground, as sun::RiseRule has it: the sun is refracted by the air at the
+// ground, and higher up lines of sight no longer bend alike.
+constexpr double kHighestEye_m = 10'000;
+constexpr double kDeepest_m = -12'000;
+constexpr double kHighestGround_m = 31'000;  // where sun::Refraction ends
+// An arc of 0.13 of the Earth's curvature from here to the sea's horizon is bent by 0.6 degrees, as
+// light is by all of the air; nothing higher up is seen along such arcs.
+constexpr double kHighestTarget_m = 20'000;
+constexpr double kFarthestSeen_m = 1e6;  // nothing on Earth is seen from 1000 km
+
 /// Where points stand in the sky of a viewpoint. `rise` over `run` is the tangent of the apparent
 /// elevation of a point of height h at the distance s; rise falls with s, run grows.
 struct RoundGround {
@@ -69,6 +79,14 @@ template <typename G>
 double tangent(const G& ground, double h, double s) {
     if (std::isinf(s)) return 0;
     return ground.rise(h, s) / ground.run(h, s);
+}
+
+/// The height at the distance s whose elevation has this tangent; both sides are linear in it.
+template <typename G>
+double height_m(const G& ground, double tangent, double s) {
+    const double rise = ground.rise(0, s), rise_a_m = ground.rise(1, s) - rise;
+    const double run = ground.run(0, s), run_a_m = ground.run(1, s) - run;
+    return (tangent * run - rise) / (rise_a_m - tangent * run_a_m);
 }
 
 /// Radius of the ellipsoid's curvature in a direction: Euler's formula.
@@ -396,7 +414,19 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
     const dem::Grid& grid = posts.grid();
     place_ = grid.place(post_.x, post_.y);
     place_.height_m = ground_m_;
+    if (!(ground_m_ >= kDeepest_m && ground_m_ <= kHighestGround_m))
+        bad_input(
+            fmt::format("light::horizon: {}: the ground is at {:.0f} m there, expected a height of "
+                        "the Earth; pass --unit cm where the DEM's heights are centimetres, or "
+                        "--nodata V where V is no height",
+                        place_text(place_), ground_m_));
     eye_m_ = options.eye_above_ground ? ground_m_ + options.eye_height_m : options.eye_height_m;
+    if (!(eye_m_ - ground_m_ <= kHighestEye_m))
+        bad_input(
+            fmt::format("light::horizon: {}: the eye at {:.10g} m, expected at most {:.0f} m above "
+                        "the ground, which is at {:.1f} m there; higher up lines of sight bend "
+                        "otherwise",
+                        place_text(place_), eye_m_, kHighestEye_m, ground_m_));
     if (eye_m_ < ground_m_)
         bad_input(
             fmt::format("light::horizon: {}: the eye at {:.1f} m is under the ground, which "
@@ -484,14 +514,46 @@ HorizonPoint TerrainHorizon::at(double azimuth_rad) const {
             point.distance_m = point.height_m = kNaN;
             point.post = glm::dvec2(kNaN);
         }
-        if (scan.first_hole_m < kInfinity) {
-            const double high_m = posts_->highest_m();
-            const double hole_m =
-                std::min(farthest_rise_m(ground, high_m, scan.first_hole_m), scan.last_hole_m);
-            point.hole = std::atan(tangent(ground, high_m, hole_m)) > point.elevation_rad;
-        }
     });
+    point.hole_rad = hole_rad(azimuth_rad, scan);
+    point.hole = point.hole_rad > point.elevation_rad;
     return point;
+}
+
+/// How high terrain as high as the highest post would stand in the holes that a look has met.
+double TerrainHorizon::hole_rad(double azimuth_rad, const Scan& scan) const {
+    double elevation_rad = -kPi / 2;
+    if (!(scan.first_hole_m < kInfinity)) return elevation_rad;
+    with_ground(azimuth_rad, [&](const auto& ground) {
+        const double high_m = posts_->highest_m();
+        const double hole_m =
+            std::min(farthest_rise_m(ground, high_m, scan.first_hole_m), scan.last_hole_m);
+        elevation_rad = std::atan(tangent(ground, high_m, hole_m));
+    });
+    return elevation_rad;
+}
+
+/// How far the DEM goes towards a point of the horizon, also where the look ended before its edge.
+double TerrainHorizon::edge_m(const HorizonPoint& point) const {
+    if (!fan_) return point.reach_m;
+    const auto outside = [&](double distance_m) {
+        const glm::dvec2 post = fan_->post(point.azimuth_rad, distance_m);
+        const dem::Grid& grid = posts_->grid();
+        return !(post.x >= -kSnap_cells && post.x <= grid.columns() - 1 + kSnap_cells &&
+                 post.y >= -kSnap_cells && post.y <= grid.rows() - 1 + kSnap_cells);
+    };
+    double inside_m = point.reach_m, outside_m = 1.01 * point.reach_m + 1;
+    if (outside(outside_m)) return point.reach_m;
+    while (outside_m < kFarthestSeen_m && !outside(outside_m)) {
+        inside_m = outside_m;
+        outside_m *= 2;
+    }
+    if (outside_m >= kFarthestSeen_m) return kFarthestSeen_m;
+    while (outside_m - inside_m > 1) {
+        const double middle_m = (inside_m + outside_m) / 2;
+        (outside(middle_m) ? outside_m : inside_m) = middle_m;
+    }
+    return inside_m;
 }
 
 double TerrainHorizon::elevation_within_rad(double azimuth_rad, double distance_m) const {
@@ -518,54 +580,94 @@ geo::Geodetic TerrainHorizon::place_of(const HorizonPoint& point) const {
 }
 
 std::vector<OpenSector> TerrainHorizon::open_sectors(const std::vector<HorizonPoint>& profile,
-                                                     double highest_m) const {
-    // How far terrain of that height would stand over the horizon; 0 where the DEM reaches that
-    // far.
-    const auto needed_m = [&](const HorizonPoint& point) {
-        double needed = 0;
+                                                     double highest_m,
+                                                     const std::vector<double>& matters_rad) const {
+    // Sectors of one direction each; none where the DEM reaches far enough.
+    const auto open = [&](std::size_t i) {
+        const HorizonPoint& point = profile[i];
+        OpenSector found;
+        const double over_rad = matters_rad.empty() ? point.elevation_rad
+                                                    : std::max(point.elevation_rad, matters_rad[i]);
+        if (!(over_rad < kPi / 2)) return found;
         with_ground(point.azimuth_rad, [&](const auto& ground) {
-            const double level = std::tan(point.elevation_rad);
-            double low = farthest_rise_m(ground, highest_m, std::max(point.reach_m, 1.0));
-            if (tangent(ground, highest_m, low) <= level + 1e-9) return;
-            constexpr double kFarthest_m = 1e6;  // nothing on Earth is seen from 1000 km
-            double high = kFarthest_m;
+            const double level = std::tan(over_rad);
+            const auto stands_over = [&](double reach_m) {
+                return tangent(ground, highest_m,
+                               farthest_rise_m(ground, highest_m, std::max(reach_m, 1.0))) >
+                       level + 1e-9;
+            };
+            if (!stands_over(point.reach_m)) return;
+            found.reach_m = edge_m(point);
+            if (!stands_over(found.reach_m)) return;
+            const double from_m = std::max(found.reach_m, 1.0);
+            double low = farthest_rise_m(ground, highest_m, from_m);
+            double high = kFarthestSeen_m;
             while (high - low > 1) {
                 const double middle = (low + high) / 2;
                 (tangent(ground, highest_m, middle) > level ? low : high) = middle;
             }
-            needed = high;
+            found.needed_m = high;
+            // A line of sight that goes down is lowest farther away.
+            const double lowest_at_m =
+                level < 0 ? -level * ground.radius_m / (1 - ground.refraction) : 0;
+            found.least_m =
+                height_m(ground, level, std::clamp(lowest_at_m, from_m, std::max(from_m, high)));
         });
-        return needed;
+        return found;
     };
-    std::vector<double> needed(profile.size());
-    std::transform(profile.begin(), profile.end(), needed.begin(), needed_m);
-
-    const std::size_t n = profile.size();
-    const auto closed =
-        std::find(needed.begin(), needed.end(), 0.0) - needed.begin();  // n: open all round
-    std::vector<OpenSector> sectors;
-    bool open = false;
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t k = (static_cast<std::size_t>(closed) + i) % n;
-        if (needed[k] == 0) {
-            open = false;
-            continue;
-        }
-        if (!open)
-            sectors.push_back({profile[k].azimuth_rad, profile[k].azimuth_rad, kInfinity, 0});
-        open = true;
-        OpenSector& sector = sectors.back();
-        sector.to_azimuth_rad = profile[k].azimuth_rad;
-        sector.reach_m = std::min(sector.reach_m, profile[k].reach_m);
-        sector.needed_m = std::max(sector.needed_m, needed[k]);
+    std::vector<OpenSector> all(profile.size());
+    std::vector<bool> is_open(profile.size());
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+        all[i] = open(i);
+        is_open[i] = all[i].needed_m > 0;
     }
-    std::sort(sectors.begin(), sectors.end(), [](const OpenSector& a, const OpenSector& b) {
+    std::vector<OpenSector> sectors;
+    for (const Sector& sector : sectors_of(is_open)) {
+        const auto n = profile.size();
+        const auto index = [&](double azimuth_rad) {
+            return static_cast<std::size_t>(std::lround(azimuth_rad / (2 * kPi) * double(n))) % n;
+        };
+        const std::size_t first = index(sector.from_azimuth_rad);
+        const std::size_t last = index(sector.to_azimuth_rad);
+        OpenSector joined{
+            {profile[first].azimuth_rad, profile[last].azimuth_rad}, kInfinity, 0, kInfinity};
+        for (std::size_t i = first;; i = (i + 1) % n) {
+            joined.reach_m = std::min(joined.reach_m, all[i].reach_m);
+            joined.needed_m = std::max(joined.needed_m, all[i].needed_m);
+            joined.least_m = std::min(joined.least_m, all[i].least_m);
+            if (i == last) break;
+        }
+        sectors.push_back(joined);
+    }
+    return sectors;
+}
+
+std::vector<Sector> sectors_of(const std::vector<bool>& holds) {
+    const std::size_t n = holds.size();
+    const auto azimuth_rad = [&](std::size_t i) { return 2 * kPi * double(i) / double(n); };
+    // From behind a direction for which it does not hold; n: it holds all round.
+    const auto closed =
+        static_cast<std::size_t>(std::find(holds.begin(), holds.end(), false) - holds.begin());
+    std::vector<Sector> sectors;
+    bool within = false;
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t k = (closed + i) % n;
+        if (holds[k] && !within) sectors.push_back({azimuth_rad(k), azimuth_rad(k)});
+        within = holds[k];
+        if (within) sectors.back().to_azimuth_rad = azimuth_rad(k);
+    }
+    std::sort(sectors.begin(), sectors.end(), [](const Sector& a, const Sector& b) {
         return a.from_azimuth_rad < b.from_azimuth_rad;
     });
     return sectors;
 }
 
 Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
+    if (!(target.height_m >= kDeepest_m && target.height_m <= kHighestTarget_m))
+        bad_input(fmt::format(
+            "light::horizon: {}: the target at {:.10g} m, expected {:.0f} to {:.0f}; no "
+            "landscape has such a height",
+            place_text(target), target.height_m, kDeepest_m, kHighestTarget_m));
     Sight sight;
     if (fan_) {
         const geo::Geodesic way = geo::geodesic(place_, target);
@@ -577,6 +679,11 @@ Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
         sight.azimuth_rad = turned(std::atan2(way.x, way.y) - true_north_on_map_rad_);
         sight.distance_m = glm::length(way) * map_unit_m_;
     }
+    if (!(sight.distance_m <= kFarthestSeen_m))
+        bad_input(fmt::format(
+            "light::horizon: {}: the target is {:.0f} km away, expected at most {:.0f}; "
+            "nothing on Earth is seen from so far",
+            place_text(target), sight.distance_m / 1000, kFarthestSeen_m / 1000));
     const glm::dvec2 spacing_m = posts_->grid().post_spacing_m();
     Scan scan;
     scan.until_m = sight.distance_m - kNear_posts * std::max(spacing_m.x, spacing_m.y);
@@ -587,6 +694,7 @@ Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
     sight.elevation_rad = std::atan(level);
     if (scan.until_m > 0) look(sight.azimuth_rad, scan);
     sight.visible = scan.best <= level;
+    sight.hole = sight.visible && hole_rad(sight.azimuth_rad, scan) > sight.elevation_rad;
     if (!sight.visible) sight.hidden_by_rad = std::atan(scan.best) - sight.elevation_rad;
     return sight;
 }

@@ -26,6 +26,7 @@ enum class Ground {
 };
 
 struct HorizonOptions {
+    /// 0 to 10 000 m above the ground, which the sun's light is computed for.
     double eye_height_m = 0;
     bool eye_above_ground = true;  ///< else above the zero of the DEM's heights
     /// Terrestrial refraction: the curvature of a line of sight in units of the Earth's. 0.13 is
@@ -48,19 +49,31 @@ struct HorizonPoint {
     double distance_m = 0;
     glm::dvec2 post{0};   ///< column and row of the blocking point; NaN likewise
     double height_m = 0;  ///< of the blocking point; NaN likewise
-    double reach_m = 0;   ///< how far the DEM goes this way
+    /// How far the DEM was looked at this way: to its edge, or to where nothing in it could be
+    /// seen.
+    double reach_m = 0;
     /// A hole of the DEM lies where terrain as high as its highest post would stand over this
     /// horizon.
     bool hole = false;
+    /// How high such terrain would stand in the nearest hole; -pi/2 without one.
+    double hole_rad = -1.5707963267948966;
+};
+
+/// Directions that follow each other.
+struct Sector {
+    double from_azimuth_rad = 0;  ///< clockwise to
+    double to_azimuth_rad = 0;    ///< the last one; of directions on a profile
 };
 
 /// Directions in which the DEM is too small for its horizon to be sure.
-struct OpenSector {
-    double from_azimuth_rad = 0;  ///< clockwise to
-    double to_azimuth_rad = 0;    ///< the last one; of directions on a profile
-    double reach_m = 0;           ///< the least that the DEM goes there
-    double needed_m = 0;          ///< as far as it would have to go
+struct OpenSector : Sector {
+    double reach_m = 0;   ///< the least that the DEM goes there
+    double needed_m = 0;  ///< as far as it would have to go
+    double least_m = 0;   ///< terrain beyond it that is no higher changes nothing
 };
+
+/// Of the Earth: Mount Everest [m].
+inline constexpr double kHighestTerrain_m = 8850;
 
 /// Another point as seen from a viewpoint.
 struct Sight {
@@ -69,6 +82,9 @@ struct Sight {
     double distance_m = 0;
     bool visible = false;      ///< no ground of the DEM stands before it
     double hidden_by_rad = 0;  ///< elevation of that ground over the point; 0 where visible
+    /// It is seen through a hole of the DEM, where terrain as high as its highest post would hide
+    /// it.
+    bool hole = false;
 };
 
 class Fan;
@@ -90,8 +106,9 @@ class TerrainHorizon {
     /// @param posts  outlives this
     /// @param place  its height plays no part
     /// @throws Error (BadInput) where the point is outside of the DEM or in a hole of it, where
-    ///     the eye is under the ground, for a refraction that no air has, for a map without metres;
-    ///     here and later where the file is damaged that posts are read from
+    ///     the ground is at a height that has no air, where the eye is under the ground or more
+    ///     than 10 km above it, for a refraction that no air has, for a map without metres; here
+    ///     and later where the file is damaged that posts are read from
     TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& place,
                    const HorizonOptions& options = {});
     /// The same over heights in memory.
@@ -128,11 +145,15 @@ class TerrainHorizon {
     /// DEM, and how far it could: a DEM that reaches that far would settle it.
     /// @param profile    of this horizon
     /// @param highest_m  above the DEM's zero
-    std::vector<OpenSector> open_sectors(const std::vector<HorizonPoint>& profile,
-                                         double highest_m) const;
+    /// @param matters_rad  for each direction of the profile, what must be hidden to matter, where
+    ///     that stands over the horizon: the lowest sun; infinity: nothing. Empty: the horizon
+    std::vector<OpenSector> open_sectors(const std::vector<HorizonPoint>& profile, double highest_m,
+                                         const std::vector<double>& matters_rad = {}) const;
 
     /// Another point, by its height above the DEM's zero. The DEM within one and a half posts of
     /// it does not hide it.
+    /// @throws Error (BadInput) for a height that is not within -12 to 20 km, a point farther away
+    ///     than 1000 km
     Sight sight(const geo::Geodetic& target) const;
 
     /// Azimuth from the map's north of the direction that is true north here, to turn map azimuths
@@ -147,6 +168,8 @@ class TerrainHorizon {
     void look(double azimuth_rad, Scan& scan) const;
     template <typename Body>
     void with_ground(double azimuth_rad, const Body& body) const;
+    double hole_rad(double azimuth_rad, const Scan& scan) const;
+    double edge_m(const HorizonPoint& point) const;
 
     TerrainHorizon(std::unique_ptr<const dem::Posts> owned, const geo::Geodetic& place,
                    const HorizonOptions& options);
@@ -161,6 +184,9 @@ class TerrainHorizon {
     double true_north_on_map_rad_ = 0;
     double map_unit_m_ = 1;
 };
+
+/// Directions of a profile for which something holds, in order; the last may go through north.
+std::vector<Sector> sectors_of(const std::vector<bool>& holds);
 
 /// The highest post within a radius of a place, with its height: the summit that was meant. The
 /// place itself, with its interpolated height, where no post is near enough or the radius is 0.

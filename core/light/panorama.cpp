@@ -66,6 +66,7 @@ class Panorama {
         add_sky();
         if (paths_) add_paths();
         add_ridges();
+        add_holes();
         add_level();
         drawing.end_clip();
         add_axes();
@@ -230,6 +231,20 @@ class Panorama {
                             .width = b == n - 1 ? 1.3 : 0.7},
                            true);
         }
+    }
+
+    void add_holes() {
+        const std::vector<HorizonPoint>& p = *of_.profile;
+        const glm::dvec2 half(plot().width / static_cast<double>(p.size()) / 2, 0);
+        std::vector<glm::dvec2> line;
+        for (const HorizonPoint& point : p) {
+            const glm::dvec2 at(x(point.azimuth_rad), y(point.elevation_rad));
+            const bool goes_on = !line.empty() && line.back().x < at.x;  // not round the back
+            if (!point.hole || !goes_on) line.emplace_back(std::nan(""));
+            if (point.hole) line.insert(line.end(), {at - half, at + half});
+            marks_holes_ |= point.hole;
+        }
+        drawing_->path(std::move(line), {.stroke = kHole, .width = 3});
     }
 
     double nearness(int band) const {
@@ -407,6 +422,7 @@ class Panorama {
             drawing_->text({at + 18, y}, words, {.size = 11.5, .color = kInk});
             at += 18 + text_width(words, 11.5) + 12;
         }
+        if (marks_holes_) add_key(*drawing_, at, y, {.stroke = kHole, .width = 3}, kHoleWords);
     }
 
     const HorizonPanorama& of_;
@@ -414,6 +430,7 @@ class Panorama {
     double middle_rad_ = kPi, low_deg_ = 0, high_deg_ = 90;
     std::vector<std::string> foot_;
     std::vector<double> bands_m_;
+    bool marks_holes_ = false;
     Drawing* drawing_ = nullptr;
 };
 

@@ -10,20 +10,11 @@
 namespace relevo::light {
 namespace {
 
-std::vector<double> elevations(const TerrainHorizon& horizon, int count) {
-    std::vector<double> elevation_rad;
-    for (const HorizonPoint& point : horizon.profile(count))
-        elevation_rad.push_back(point.elevation_rad);
-    return elevation_rad;
-}
-
 Skyline::Range joined(const Skyline::Range& a, const Skyline::Range& b) {
     return {std::min(a.lowest_rad, b.lowest_rad), std::max(a.highest_rad, b.highest_rad)};
 }
 
 }  // namespace
-
-Skyline::Skyline(const TerrainHorizon& horizon, int count) : Skyline(elevations(horizon, count)) {}
 
 Skyline::Skyline(std::vector<double> elevation_rad) {
     assert(!elevation_rad.empty());

@@ -2,8 +2,6 @@
 
 #include <vector>
 
-#include "light/horizon.h"
-
 namespace relevo::light {
 
 /// A horizon all round, tabulated, with the lowest and the highest of any stretch of it.
@@ -11,8 +9,6 @@ class Skyline {
   public:
     /// @param elevation_rad  from north on, clockwise, equally spaced; at least one
     explicit Skyline(std::vector<double> elevation_rad);
-    /// @param count  of directions
-    Skyline(const TerrainHorizon& horizon, int count);
 
     int count() const { return static_cast<int>(levels_.front().size()); }
     double step_rad() const;

@@ -95,6 +95,7 @@ Drawing SunPathDiagram::draw() const {
     if (light) foot.push_back("D" + light_definition.substr(1) + ".");
     if (terrain) foot.push_back("T" + terrain_definition.substr(1) + ".");
 
+    const bool marks_holes = terrain && std::find(holes.begin(), holes.end(), true) != holes.end();
     const double top = 82 + 18.0 * (day.has_value() + light.has_value());
     const glm::dvec2 center(kWidth / 2, top + 40 + kRadius);
     const double keys_y = center.y + kRadius + 66;
@@ -156,6 +157,21 @@ Drawing SunPathDiagram::draw() const {
             area.push_back(disc.outside(2 * kPi * i / kSteps, 2));
         drawing.path(area, {.fill = kTerrain}, true);
         drawing.path(ring, {.stroke = kRidge, .width = 1.2});
+        for (const Sector& hole : marks_holes ? sectors_of(holes) : std::vector<Sector>()) {
+            // A hole of one direction has a width, too.
+            const double step_rad = 2 * kPi / static_cast<double>(holes.size());
+            const double from_rad = hole.from_azimuth_rad - step_rad;
+            double turn_rad = hole.to_azimuth_rad + step_rad - from_rad;
+            if (hole.to_azimuth_rad < hole.from_azimuth_rad) turn_rad += 2 * kPi;
+            const int steps = 1 + static_cast<int>(turn_rad / radians(0.25));
+            std::vector<glm::dvec2> line;
+            for (int i = 0; i <= steps; ++i) {
+                const double azimuth_rad = from_rad + turn_rad * i / steps;
+                line.push_back(
+                    disc.point(azimuth_rad, std::max(0.0, terrain->elevation_rad(azimuth_rad))));
+            }
+            drawing.path(std::move(line), {.stroke = kHole, .width = 3});
+        }
     }
     disc.elevations(south_of_sun ? kPi : 0);
     drawing.end_clip();
@@ -224,8 +240,9 @@ Drawing SunPathDiagram::draw() const {
     x = add_key(drawing, x, keys_y + 20, {.stroke = kFaint, .width = 1.2, .dash = {0.1, 3.2}},
                 "21 Jun to 21 Dec");
     if (terrain)
-        add_key(drawing, x, keys_y + 20, {.fill = kTerrain, .stroke = kRidge, .width = 1},
-                "terrain");
+        x = add_key(drawing, x, keys_y + 20, {.fill = kTerrain, .stroke = kRidge, .width = 1},
+                    "terrain");
+    if (marks_holes) add_key(drawing, x, keys_y + 20, {.stroke = kHole, .width = 3}, kHoleWords);
     add_foot(drawing, kMargin, foot);
     return drawing;
 }

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "light/direct_light.h"
 #include "light/drawing.h"
@@ -21,6 +22,8 @@ struct SunPathDiagram {
     std::optional<sun::Day> day;
     const Skyline* terrain = nullptr;  ///< stands in the sky where there is one
     std::string terrain_definition;
+    /// DirectLight::holes() of it; marked where there are any.
+    std::vector<bool> holes;
     std::optional<LightDay> light;  ///< of `day`, where there is terrain
     std::string light_definition;
 

@@ -80,6 +80,18 @@ class Path {
                 extremes_.push_back(sample(
                     extreme(elevation, coarse[i].t_s, coarse[i + 2].t_s, here > before ? 1 : -1)));
         }
+        // One in the first or the last step that is nearer to the end of the span than to its
+        // neighbour shows in no three samples.
+        for (const std::size_t i : {std::size_t{0}, coarse.size() - 2}) {
+            const Sample &a = coarse[i], &b = coarse[i + 1];
+            for (const double sign : {1.0, -1.0}) {
+                const Sample found = sample(extreme(elevation, a.t_s, b.t_s, sign));
+                if (found.t_s - a.t_s > 2 * kExtreme_s && b.t_s - found.t_s > 2 * kExtreme_s &&
+                    sign * found.elevation_rad >
+                        std::max(sign * a.elevation_rad, sign * b.elevation_rad))
+                    at_ends_.push_back(found);
+            }
+        }
         samples_.insert(samples_.end(), extremes_.begin(), extremes_.end());
         std::sort(samples_.begin(), samples_.end(),
                   [](const Sample& a, const Sample& b) { return a.t_s < b.t_s; });
@@ -91,15 +103,24 @@ class Path {
             return s.elevation_rad - threshold_rad(s.distance_au);
         };
         const auto height_at = [&](double t) { return height(sample(t)); };
+        std::vector<Sample> samples = samples_;
+        for (const Sample& extreme : at_ends_) {
+            const auto after =
+                std::upper_bound(samples.begin(), samples.end(), extreme,
+                                 [](const Sample& a, const Sample& b) { return a.t_s < b.t_s; });
+            const bool above = height(extreme) > 0;
+            if (above != (height(*after) > 0) && above != (height(*(after - 1)) > 0))
+                samples.insert(after, extreme);
+        }
         Crossings found;
         double above_since_s = 0;
-        bool above = height(samples_.front()) > 0;
+        bool above = height(samples.front()) > 0;
         const bool above_at_first = above;
-        for (std::size_t i = 0; i + 1 < samples_.size(); ++i) {
-            const double a = height(samples_[i]), b = height(samples_[i + 1]);
+        for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+            const double a = height(samples[i]), b = height(samples[i + 1]);
             if ((b > 0) == above) continue;
             const double t =
-                sign_change(height_at, samples_[i].t_s, a, samples_[i + 1].t_s, b, kRoot_s);
+                sign_change(height_at, samples[i].t_s, a, samples[i + 1].t_s, b, kRoot_s);
             above = b > 0;
             (above ? found.rising_s : found.setting_s).push_back(t);
             if (above)
@@ -151,6 +172,7 @@ class Path {
     const TimeSpan& span_;
     const Observer& observer_;
     std::vector<Sample> samples_, extremes_;
+    std::vector<Sample> at_ends_;  // extremes that only a threshold between them and the end needs
 };
 
 /// What of `spans` is in none of `others`.

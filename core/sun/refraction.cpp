@@ -23,6 +23,8 @@ constexpr double kTropopause_m = 11'000;
 constexpr double kTop_m = 80'000;
 constexpr double kWaterExponent = 18.36;  // of temperature, in the pressure of water vapour
 constexpr int kEntries = 512;
+constexpr double kLowestAir_m = -1400;    // 1193 hPa; no land is lower than -430 m
+constexpr double kHighestAir_m = 31'000;  // 10 hPa: a hundredth of the air lies above
 
 void check_air(const Air& air) {
     if (!(air.pressure_hpa >= 10 && air.pressure_hpa <= 1200))
@@ -270,9 +272,16 @@ Refraction Refraction::integrated(const Atmosphere& atmosphere) {
 }
 
 Refraction Refraction::standard(const geo::Geodetic& place) {
+    // Ground so low is a sea's floor, and the air over that begins at the sea.
+    const double height_m = place.height_m < kLowestAir_m ? 0 : place.height_m;
+    if (height_m > kHighestAir_m) {
+        Refraction vacuum;
+        vacuum.description_ = fmt::format("no refraction, above the air at {:.0f} m", height_m);
+        return vacuum;
+    }
     Atmosphere atmosphere;
-    atmosphere.height_m = place.height_m;
-    atmosphere.air = standard_air(place.height_m);
+    atmosphere.height_m = height_m;
+    atmosphere.air = standard_air(height_m);
     atmosphere.latitude_rad = place.lat_rad;
     return integrated(atmosphere);
 }

@@ -57,7 +57,10 @@ class Refraction {
     /// Astronomical Almanac (1992), 3.281; Auer and Standish, Astron. J. 119 (2000) 2472.
     static Refraction integrated(const Atmosphere& atmosphere);
 
-    /// Integrated, for the ICAO standard atmosphere at the place's height.
+    /// Integrated, for the ICAO standard atmosphere at the place's height. Above 31 km, over all
+    /// but a hundredth of the air, none: a level ray bends by 27 arcsec there
+    /// (tests/sun/test_refraction.cpp). Lower than -1400 m there is no land but a sea's floor, over
+    /// which the air of sea level is taken.
     static Refraction standard(const geo::Geodetic& place);
 
     double apparent_rad(double true_rad) const;

@@ -1,6 +1,6 @@
 #include "sun/time.h"
 
-#include <cassert>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -20,7 +20,27 @@ constexpr std::int64_t kMinute_us = 60 * kSecond_us;
 constexpr std::int64_t kHour_us = 60 * kMinute_us;
 constexpr std::int64_t kDay_us = 24 * kHour_us;
 
+// What four digits hold; far within what the calendar of the library counts.
+constexpr int kFirstWritten = 1, kLastWritten = 9999;
+constexpr std::int64_t kFarthest_us = 253'402'300'799'999'999;  // the end of the year 9999
+
+void check_year(std::int64_t year) {
+    if (year < kFirstWritten || year > kLastWritten)
+        bad_input(fmt::format("sun::Date: year {}: the sun is computed for the years {} to {}",
+                              year, kFirstYear, kLastYear));
+}
+
+/// Nearer to 1970 than the years that can be written; the first of them end the same way.
+void check_moment(std::int64_t us) {
+    if (us > kFarthest_us || us < -kFarthest_us)
+        bad_input(
+            fmt::format("sun::Instant: {:.4g} s from 1970: the sun is computed for the years "
+                        "{} to {}",
+                        static_cast<double>(us) * 1e-6, kFirstYear, kLastYear));
+}
+
 std::int64_t day_number(Date date) {
+    check_year(date.year);
     using date::day, date::month, date::year, date::sys_days;
     return sys_days{year{date.year} / month{static_cast<unsigned>(date.month)} /
                     day{static_cast<unsigned>(date.day)}}
@@ -29,7 +49,10 @@ std::int64_t day_number(Date date) {
 }
 
 Date date_of(std::int64_t days) {
+    constexpr std::int64_t kFarthest_days = kFarthest_us / kDay_us;
+    check_moment(std::clamp(days, -kFarthest_days - 1, kFarthest_days + 1) * kDay_us);
     const date::year_month_day ymd{date::sys_days{date::days{days}}};
+    check_year(static_cast<int>(ymd.year()));
     return {static_cast<int>(ymd.year()), static_cast<int>(static_cast<unsigned>(ymd.month())),
             static_cast<int>(static_cast<unsigned>(ymd.day()))};
 }
@@ -42,6 +65,7 @@ std::int64_t stamp_us(const CivilTime& civil) {
 }
 
 CivilTime civil_of(std::int64_t us) {
+    check_moment(us);
     const std::int64_t days = (us >= 0 ? us : us - (kDay_us - 1)) / kDay_us;
     const std::int64_t rest = us - days * kDay_us;
     return {date_of(days), static_cast<int>(rest / kHour_us),
@@ -50,6 +74,7 @@ CivilTime civil_of(std::int64_t us) {
 }
 
 std::int64_t rounded_us(std::int64_t us, int decimals) {
+    check_moment(us);
     std::int64_t unit = kSecond_us;
     for (int i = 0; i < decimals; ++i)
         unit /= 10;
@@ -86,12 +111,19 @@ CivilTime Instant::utc() const {
 }
 
 Instant operator+(Instant instant, double seconds) {
-    assert(std::abs(seconds) < 1e12);
-    return Instant::from_unix_us(instant.unix_us_ + std::llround(seconds * 1e6));
+    constexpr double kLongest_s = 1e12;  // so that a count of 64 bits holds it
+    std::int64_t sum_us = 0;
+    if (!(std::abs(seconds) <= kLongest_s) ||
+        __builtin_add_overflow(instant.unix_us_, std::llround(seconds * 1e6), &sum_us))
+        bad_input(
+            fmt::format("sun::Instant: {:.4g} s later: the sun is computed for the years {} "
+                        "to {}",
+                        seconds, kFirstYear, kLastYear));
+    return Instant::from_unix_us(sum_us);
 }
 
 Date add_days(Date date, int days) {
-    return date_of(day_number(date) + days);
+    return date_of(day_number(date) + std::int64_t{days});
 }
 
 int days_between(Date from, Date to) {
@@ -146,6 +178,11 @@ void FieldReader::check(std::string_view field, int value, int least, int most) 
 }
 
 std::optional<Date> FieldReader::date() {
+    // A year of more than four digits is one, but none that is computed.
+    const std::size_t end = rest_.find_first_not_of("0123456789");
+    if (end != std::string_view::npos && end > 4 && rest_[end] == '-')
+        fail(fmt::format("the sun is computed for the years {} to {}, but got {}", kFirstYear,
+                         kLastYear, rest_.substr(0, end)));
     const auto year = digits(4);
     if (!year || !take('-')) return std::nullopt;
     const auto month = digits(2);

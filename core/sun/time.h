@@ -38,7 +38,9 @@ struct CivilTime {
 /// UTC is kept near to by those very seconds, so nothing is lost: sun/earth_rotation.h knows them.
 /// Before 1962 there was no UTC of today's kind, and an instant there is UT1.
 ///
-/// Values outside 1900-2100 can be held and compared; what cannot be computed for them throws.
+/// Values outside 1900-2100 can be held and compared; what cannot be computed for them throws. The
+/// calendar goes from the year 1 to 9999: dates and moments outside of it are an Error (BadInput)
+/// wherever one is made from the other.
 class Instant {
   public:
     constexpr Instant() = default;  ///< 1970-01-01T00:00Z
@@ -57,12 +59,15 @@ class Instant {
 
     friend constexpr auto operator<=>(Instant, Instant) = default;
     /// Rounded to the nearest microsecond.
-    /// @param seconds  some thousand years at most: a count of 64 bits holds 292 000
+    /// @throws Error (BadInput) for more than 1e12 s, and what a count of 64 bits does not hold
     friend Instant operator+(Instant instant, double seconds);
     friend Instant operator-(Instant instant, double seconds) { return instant + -seconds; }
     /// Seconds from `b` to `a`, without leap seconds.
     friend constexpr double operator-(Instant a, Instant b) {
-        return static_cast<double>(a.unix_us_ - b.unix_us_) * 1e-6;
+        std::int64_t us = 0;
+        if (__builtin_sub_overflow(a.unix_us_, b.unix_us_, &us))
+            return static_cast<double>(a.unix_us_) * 1e-6 - static_cast<double>(b.unix_us_) * 1e-6;
+        return static_cast<double>(us) * 1e-6;
     }
 
   private:

@@ -207,19 +207,20 @@ TEST(SunHorizonVerb, WarnsWhereTheRidgeMayLieBeyondTheDem) {
         relevo({"sun", "horizon", bundled_dem(), "--at", "36.30,-84.40", "--csv"});
     EXPECT_EQ(near_edge.status, 0);
     EXPECT_TRUE(near_edge.err.starts_with(
-        "relevo: warning: the blocking ridge may lie beyond the DEM, as terrain of 1076 m would "
-        "stand over this horizon from azimuth "))
+        "relevo: warning: the blocking ridge may lie beyond the DEM, as terrain of up to 1076 m "
+        "would stand over this horizon: above "))
         << near_edge.err;
     // Directions less than five degrees apart are one for a reader, not for a program.
     const Result broken =
         relevo({"sun", "horizon", bundled_dem(), "--at", "36.30,-84.30", "--json"});
     EXPECT_EQ(json::parse(broken.out)["open_sectors"].size(), 4U);
-    EXPECT_EQ(broken.err,
-              "relevo: warning: the blocking ridge may lie beyond the DEM, as terrain of 1076 m "
-              "would stand over this horizon from azimuth 301 (WNW) to 307 (NW) as far as 14 km "
-              "away, where the DEM reaches 11.9 km, and from azimuth 328 (NNW) to 347 (NNW) as far "
-              "as 57 km away, where the DEM reaches 16.6 km; use a DEM that goes so far, or "
-              "--highest with the height that terrain has there at most\n");
+    EXPECT_EQ(
+        broken.err,
+        "relevo: warning: the blocking ridge may lie beyond the DEM, as terrain of up to 1076 "
+        "m would stand over this horizon: above 1037 m from azimuth 301 (WNW) to 307 (NW) as "
+        "far as 14 km away, where the DEM reaches 11.9 km, and above 786 m from azimuth 328 "
+        "(NNW) to 347 (NNW) as far as 57 km away, where the DEM reaches 16.6 km; use a DEM "
+        "that goes so far, or --highest with the height that terrain has there at most\n");
     const Result low = relevo(
         {"sun", "horizon", bundled_dem(), "--at", "36.30,-84.40", "--csv", "--highest", "200"});
     EXPECT_EQ(low.err, "");

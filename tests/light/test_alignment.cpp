@@ -116,6 +116,59 @@ TEST(Alignments, SayWhetherTheTargetAndTheSunAreSeen) {
     }
 }
 
+TEST(Alignments, OfHighTargetsAreMeasuredOnTheSky) {
+    // Points above a place to the south, 30, 45 and 60 degrees up: along the horizon the sun's way
+    // is shorter by the cosine of that.
+    const dem::Heightfield field = pole(false);
+    const TerrainHorizon here(field, field.grid.place(100, 100));
+    const sun::Refraction air = sun::Refraction::standard(here.place());
+    AlignmentOptions options;
+    options.tolerance_rad = radians(2);
+    for (const double up_deg : {30.0, 45.0, 60.0}) {
+        geo::Geodetic target = field.grid.place(100, 160);
+        target.height_m = 100 + 1800 * std::tan(radians(up_deg));
+        const Alignments found =
+            alignments(here, target, {2026, 1, 1}, {2026, 12, 31}, kZurich, options);
+        EXPECT_TRUE(found.sight.visible);
+        EXPECT_NEAR(degrees(found.sight.elevation_rad), up_deg, 0.05);
+        ASSERT_GE(found.passages.size(), 8U) << up_deg;
+        double farthest_right_rad = 0;
+        for (const Alignment& p : found.passages) {
+            const sun::Position sun = sun::position(p.utc, here.place());
+            const double e = air.apparent_rad(sun.elevation_rad), f = found.sight.elevation_rad;
+            const double aside = std::remainder(sun.azimuth_rad - found.sight.azimuth_rad, 2 * kPi);
+            const double cosine =
+                std::sin(e) * std::sin(f) + std::cos(e) * std::cos(f) * std::cos(aside);
+            EXPECT_NEAR(degrees(std::acos(std::min(1.0, cosine))), degrees(p.separation_rad), 1e-4);
+            EXPECT_NEAR(degrees(p.above_rad), degrees(e - f), 1e-4);
+            EXPECT_NEAR(std::hypot(p.right_rad, p.above_rad), p.separation_rad, radians(0.03));
+            EXPECT_NEAR(degrees(p.right_rad), degrees(aside * std::cos(f)), 1e-4);
+            EXPECT_TRUE(p.sun_visible);
+            farthest_right_rad = std::max(farthest_right_rad, std::abs(p.right_rad));
+        }
+        EXPECT_GT(found.passages.size(), 0U);
+    }
+}
+
+TEST(Alignments, TargetsThatNoLandscapeHasAreErrors) {
+    const dem::Heightfield field = pole(false);
+    const TerrainHorizon here(field, field.grid.place(100, 100));
+    geo::Geodetic target = field.grid.place(100, 160);
+    for (const double height_m : {1e9, 20'001.0, -12'001.0, -1e308, static_cast<double>(INFINITY),
+                                  static_cast<double>(NAN)}) {
+        target.height_m = height_m;
+        const std::string error = error_of([&] { here.sight(target); });
+        EXPECT_TRUE(error.starts_with("exit 3: light::horizon: 46.98233,9: the target at ") &&
+                    error.ends_with(", expected -12000 to 20000; no landscape has such a height"))
+            << error;
+    }
+    target.height_m = 20'000;
+    EXPECT_TRUE(here.sight(target).visible);
+    EXPECT_EQ(error_of([&] { here.sight(geo::geodetic_deg(-33.9, 18.4, 1000)); }),
+              "exit 3: light::horizon: -33.9,18.4: the target is 9009 km away, expected at most "
+              "1000; nothing on Earth is seen from so far");
+}
+
 TEST(Alignments, ErrorsSayWhatIsWrong) {
     const dem::Heightfield field = pole(false);
     const TerrainHorizon here(field, field.grid.place(100, 100));

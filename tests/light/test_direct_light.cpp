@@ -282,6 +282,125 @@ TEST(DirectLight, GoesOnOverMidnightInThePolarDay) {
     EXPECT_EQ(winter.lit_s, 0);
 }
 
+TEST(DirectLight, OfTheFirstAndTheLastHourOfADayIsFound) {
+    // 14 July 2026 beside the polar circle, on a plain: the sun is down for some minutes to some
+    // hours around its lowest point, up to 50 minutes before or after midnight.
+    const Date date{2026, 7, 14};
+    const Zone zone = Zone::fixed(3600);
+    int first_hour = 0, last_hour = 0;
+    for (const double minutes : {-50.0, -30.0, -12.0, 12.0, 30.0, 50.0})
+        for (const double lat_deg : {67.2, 67.4, 67.5, 67.55, 67.6}) {
+            const double lon_deg = 15 + 1.5 - minutes / 4;
+            const dem::Heightfield field =
+                test::field_of(101, 101, {lon_deg - 0.1, 0.002, 0, lat_deg + 0.05, 0, -0.001},
+                               "EPSG:4326", [](int, int) { return 10.0; });
+            const TerrainHorizon horizon(field, field.grid.place(50, 50));
+            const DirectLight light(horizon);
+            const LightDay day = light.day(date, zone);
+            const sun::PositionTable table(day.span.begin, day.span.end);
+            std::vector<double> changes_s;
+            bool before = false;
+            for (double t_s = 0; t_s <= day.span.length_s(); t_s += 20) {
+                const glm::dvec3 sun = table.vector_au(day.span.begin + t_s, light.observer());
+                const bool lit = light.refraction().apparent_rad(sun::elevation_of(sun)) >
+                                 horizon.elevation_rad(sun::azimuth_of(sun));
+                if (t_s > 0 && lit != before) changes_s.push_back(t_s - 10);
+                before = lit;
+            }
+            std::vector<double> edges_s;
+            for (const LitInterval& lit : day.lit)
+                for (const LightEdge& edge : {lit.begin, lit.end})
+                    if (!edge.midnight) edges_s.push_back(edge.utc - day.span.begin);
+            ASSERT_EQ(edges_s.size(), changes_s.size()) << lat_deg << " " << minutes;
+            for (std::size_t i = 0; i < edges_s.size(); ++i) {
+                EXPECT_NEAR(edges_s[i], changes_s[i], 10.1) << lat_deg << " " << minutes;
+                first_hour += edges_s[i] < 3600;
+                last_hour += edges_s[i] > 23 * 3600;
+            }
+        }
+    EXPECT_GE(first_hour, 8);
+    EXPECT_GE(last_hour, 8);
+}
+
+/// The elevation of the sun's upper (1) or lower (-1) limb, as seen [rad]: the disc's radius is of
+/// the day's distance, and the air lifts the limb by its own elevation, not the centre's.
+double limb_rad(Instant utc, const DirectLight& light, int sign) {
+    const sun::Position p = sun::position(utc, light.horizon().place());
+    return light.refraction().apparent_rad(
+        p.elevation_rad + sign * std::asin(696'000e3 / 149'597'870.7e3 / p.distance_au));
+}
+
+TEST(DirectLight, LimbsAreThoseOfTheFlattenedDiscOfTheDay) {
+    // From 300 m over a plain: a horizon half a degree below the level one, where the air shortens
+    // the disc by a fifth; then walls all round of 30 to 60 degrees.
+    constexpr double kLimit_s = 1.0;
+    for (const double up_deg : {-0.5, 30.0, 45.0, 60.0}) {
+        HorizonOptions options;
+        if (up_deg > 0)
+            options.least_elevation_rad = radians(up_deg);
+        else
+            options.eye_height_m = 300;
+        const dem::Heightfield field = near_47_north([](int, int) { return 100.0; });
+        const TerrainHorizon horizon(field, field.grid.place(100, 100), options);
+        // Near the Earth's farthest and nearest to the sun, discs differ by 3 %.
+        for (const Date date : {Date{2026, 1, 3}, {2026, 4, 20}, {2026, 7, 6}}) {
+            std::map<sun::Limb, LightDay> days;
+            for (const sun::Limb limb : {sun::Limb::Upper, sun::Limb::Center, sun::Limb::Lower}) {
+                LightOptions of;
+                of.limb = limb;
+                const DirectLight light(horizon, of);
+                const LightDay day = light.day(date, kZurich);
+                const int sign = limb == sun::Limb::Upper ? 1 : limb == sun::Limb::Lower ? -1 : 0;
+                for (const LitInterval& lit : day.lit)
+                    for (const LightEdge& edge : {lit.begin, lit.end}) {
+                        const bool begins = edge.utc == lit.begin.utc;
+                        const double horizon_rad = horizon.elevation_rad(edge.azimuth_rad);
+                        EXPECT_NEAR(degrees(horizon_rad), up_deg, 0.05);
+                        // A limit of time, at the sun's own speed there.
+                        const double before = limb_rad(edge.utc - kLimit_s, light, sign);
+                        const double after = limb_rad(edge.utc + kLimit_s, light, sign);
+                        EXPECT_LT(begins ? before : after, horizon_rad)
+                            << up_deg << " " << sun::to_string(date) << " " << sign;
+                        EXPECT_GT(begins ? after : before, horizon_rad)
+                            << up_deg << " " << sun::to_string(date) << " " << sign;
+                    }
+                days[limb] = day;
+            }
+            if (days[sun::Limb::Lower].lit.empty()) continue;
+            EXPECT_GT(days[sun::Limb::Upper].lit_s, days[sun::Limb::Center].lit_s + 60);
+            EXPECT_GT(days[sun::Limb::Center].lit_s, days[sun::Limb::Lower].lit_s + 60);
+        }
+    }
+}
+
+TEST(DirectLight, InADepressionIsThatOfItsOwnHorizon) {
+    // The Dead Sea's shore: all heights are below zero, a scarp of 300 m in the east.
+    const dem::Heightfield field =
+        test::field_of(201, 201, {35.4, 0.0005, 0, 31.6, 0, -0.0005}, "EPSG:4326",
+                       [](int column, int) { return column >= 150 ? -130.0 : -430.0; });
+    const TerrainHorizon horizon(field, field.grid.place(100, 100));
+    EXPECT_EQ(horizon.place().height_m, -430);
+    const double scarp_m =
+        geo::geodesic(field.grid.place(100, 100), field.grid.place(150, 100)).distance_m;
+    EXPECT_NEAR(std::tan(horizon.elevation_rad(radians(90))), 300 / scarp_m, 5e-4);
+    // Nothing but the plain at its own height in the west.
+    EXPECT_NEAR(degrees(horizon.elevation_rad(radians(270))), 0, 1e-3);
+    const DirectLight light(horizon);
+    const LightDay day = light.day({2026, 3, 20}, Zone::fixed(7200));
+    ASSERT_EQ(day.lit.size(), 1U);
+    EXPECT_NEAR(degrees(day.lit[0].begin.elevation_rad), degrees(std::atan(300 / scarp_m)), 0.05);
+    EXPECT_NEAR(degrees(day.lit[0].end.elevation_rad), 0, 1e-3);
+    // The same landscape at 1000 m: the air is thinner, the horizon the same.
+    const dem::Heightfield raised =
+        test::field_of(201, 201, {35.4, 0.0005, 0, 31.6, 0, -0.0005}, "EPSG:4326",
+                       [](int column, int) { return column >= 150 ? 1300.0 : 1000.0; });
+    const TerrainHorizon above(raised, raised.grid.place(100, 100));
+    for (int i = 0; i < 360; ++i)
+        EXPECT_NEAR(degrees(above.elevation_rad(radians(i))),
+                    degrees(horizon.elevation_rad(radians(i))), 2e-3)
+            << i;
+}
+
 TEST(DirectLight, DoesNotReachTheBottomOfAWell) {
     const dem::Heightfield field = near_47_north([](int column, int row) {
         return std::hypot(column - 100, row - 100) < 2 ? 100.0 : 400.0;

@@ -82,6 +82,26 @@ TEST(Drawing, SvgSaysWhatWasDrawn) {
         "</svg>\n");
 }
 
+TEST(Drawing, WordsWithoutAFormAreEscapedInSvgAndInPixels) {
+    // XML 1.0 takes no control characters but tabs and line ends, nothing that is not UTF-8, and
+    // not U+FFFE or U+FFFF; Cairo ends a drawing with an error at what is not UTF-8, and at
+    // noncharacters.
+    const std::string odd =
+        "a\x01\x1b[31m\n\t\x7f\xff\xc3(\xed\xa0\x80\xef\xbf\xbe\xc2\x85 S\xc3\xa3o";
+    Drawing drawing(200, 50);
+    drawing.describe(odd, odd);
+    drawing.text({10, 20}, odd, {});
+    const std::string svg = to_svg(drawing);
+    const std::string seen =
+        "a\\x01\\x1b[31m\\n\\t\\x7f\\xff\\xc3(\\xed\\xa0\\x80\\xef\\xbf\\xbe\\xc2\\x85 S\xc3\xa3o";
+    EXPECT_NE(svg.find("<title>" + seen + "</title>\n<desc>" + seen + "</desc>"), std::string::npos)
+        << svg;
+    EXPECT_NE(svg.find(">" + seen + "</text>"), std::string::npos) << svg;
+    for (const char c : svg)
+        EXPECT_TRUE(c == '\n' || static_cast<unsigned char>(c) >= 0x20);
+    EXPECT_EQ(to_image(drawing, 1).width, 200);
+}
+
 TEST(Drawing, SvgLeavesOutPointsThatNobodySees) {
     Drawing drawing(400, 400);
     std::vector<glm::dvec2> circle;

@@ -356,6 +356,107 @@ TEST(TerrainHorizon, SaysHowFarTheDemWouldHaveToReach) {
     EXPECT_EQ(none.size(), 0U);
 }
 
+/// A strip of posts 500 m apart from west to east at 47 N, flat at 0 m but for one of its columns.
+dem::Heightfield strip(int columns, int column, double summit_m, double flat_m = 0) {
+    return field_of(columns, 21, {500000, 500, 0, 5205000, 0, -500}, "EPSG:32632",
+                    [=](int c, int) { return c == column ? summit_m : flat_m; });
+}
+
+TEST(TerrainHorizon, LooksAsFarAsASummitCanBeSeen) {
+    // Over a level sea, from the shore, 3000 m are seen from sqrt(2 R h / (1 - k)) = 209.6 km; from
+    // 100 m up from 38.3 km farther.
+    const double r_m = 6.3745e6 / 0.87;  // of the ellipsoid from east to west there
+    for (const double eye_m : {0.0, 100.0}) {
+        const double seen_m = std::sqrt(2 * r_m * 3000) + std::sqrt(2 * r_m * eye_m);
+        for (const double share : {0.3, 0.7, 0.97, 1.03}) {
+            const int column = 2 + static_cast<int>(share * seen_m / 500);
+            const dem::Heightfield field = strip(column + 60, column, 3000);
+            HorizonOptions options;
+            options.eye_height_m = eye_m;
+            options.outside_height_m = 0;
+            const TerrainHorizon horizon(field, field.grid.place(2, 10), options);
+            const geo::Geodetic summit = field.grid.place(column, 10);
+            const geo::Geodesic way = geo::geodesic(field.grid.place(2, 10), summit);
+            const HorizonPoint point = horizon.at(way.azimuth_rad);
+            if (share < 1) {
+                EXPECT_NEAR(point.distance_m, way.distance_m, 600) << share << " " << eye_m;
+                EXPECT_EQ(point.height_m, 3000) << share << " " << eye_m;
+                const double up_m = 3000 - eye_m - way.distance_m * way.distance_m / 2 / r_m;
+                EXPECT_NEAR(std::tan(point.elevation_rad), up_m / way.distance_m, 2e-4);
+            } else {
+                EXPECT_TRUE(std::isnan(point.height_m) || point.height_m == 0) << eye_m;
+                EXPECT_NEAR(degrees(point.elevation_rad), -degrees(std::sqrt(2 * eye_m / r_m)),
+                            0.02);
+            }
+        }
+    }
+}
+
+TEST(TerrainHorizon, ReachesToTheEdgeOfTheDem) {
+    // From a corner of a strip, and of one that is cut off at half the way: the summit behind the
+    // edge is gone, and it is said how far the DEM goes.
+    const dem::Heightfield whole = strip(120, 100, 1500), half = strip(60, 100, 1500, 0);
+    for (const dem::Heightfield* field : {&whole, &half}) {
+        const TerrainHorizon horizon(*field, field->grid.place(2, 10));
+        const geo::Geodesic way = geo::geodesic(field->grid.place(2, 10),
+                                                field->grid.place(field->grid.columns() - 1, 10));
+        const std::vector<HorizonPoint> profile = horizon.profile(1440);
+        const HorizonPoint east = horizon.at(way.azimuth_rad);
+        if (field == &whole) {
+            EXPECT_NEAR(east.reach_m, way.distance_m, 1);
+            EXPECT_GT(degrees(east.elevation_rad), 1.5);
+        } else {
+            EXPECT_NEAR(degrees(east.elevation_rad), 0, 1e-3);
+        }
+        // Terrain of 2500 m beyond either would be seen; the DEM ends where it ends, although the
+        // flat half holds nothing that is looked for.
+        for (const OpenSector& sector : horizon.open_sectors(profile, 2500)) {
+            if (sector.from_azimuth_rad > sector.to_azimuth_rad) continue;
+            EXPECT_GE(sector.reach_m, 500);
+        }
+        std::vector<double> only_east(profile.size(), kInfinity);
+        only_east[360] = radians(-90);
+        const auto open = horizon.open_sectors(profile, 2500, only_east);
+        ASSERT_EQ(open.size(), 1U);
+        EXPECT_EQ(degrees(open[0].from_azimuth_rad), 90);
+        EXPECT_NEAR(open[0].reach_m, way.distance_m, 100);
+        // The least height that stands over the horizon there: that of the line of sight.
+        const double r_m = 6.3745e6 / 0.87, s = open[0].reach_m;
+        EXPECT_NEAR(open[0].least_m, std::tan(profile[360].elevation_rad) * s + s * s / 2 / r_m,
+                    5 + 0.01 * open[0].least_m);
+    }
+}
+
+TEST(TerrainHorizon, TerrainBeyondMattersOnlyBeforeTheSun) {
+    const dem::Heightfield field = plain();
+    const TerrainHorizon horizon(field, middle(field));
+    const auto profile = horizon.profile(360);
+    ASSERT_EQ(horizon.open_sectors(profile, 400).size(), 1U);
+    std::vector<double> sun_rad(360, kInfinity);
+    EXPECT_TRUE(horizon.open_sectors(profile, 400, sun_rad).empty());
+    // The edge is 3 km away in the south: 300 m stand 5.7 degrees high there.
+    for (int i = 170; i < 190; ++i)
+        sun_rad[static_cast<std::size_t>(i)] = radians(6);
+    EXPECT_TRUE(horizon.open_sectors(profile, 400, sun_rad).empty());
+    for (int i = 175; i < 185; ++i)
+        sun_rad[static_cast<std::size_t>(i)] = radians(2);
+    const auto open = horizon.open_sectors(profile, 400, sun_rad);
+    ASSERT_EQ(open.size(), 1U);
+    EXPECT_NEAR(degrees(open[0].from_azimuth_rad), 175, 1e-9);
+    EXPECT_NEAR(degrees(open[0].to_azimuth_rad), 184, 1e-9);
+    EXPECT_NEAR(open[0].least_m, 100 + 3000 * std::tan(radians(2)), 2);
+    // Less the 4.9 m that the Earth falls away by.
+    EXPECT_NEAR(open[0].needed_m, 295.1 / std::tan(radians(2)), 30);
+    // From high up, lines of sight go down, and lower ground matters farther away.
+    HorizonOptions high;
+    high.eye_height_m = 3000;
+    const TerrainHorizon above(field, middle(field), high);
+    const auto below = above.open_sectors(above.profile(360), 2000);
+    ASSERT_EQ(below.size(), 1U);
+    EXPECT_NEAR(below[0].least_m, 100, 5);
+    EXPECT_GT(below[0].needed_m, 100e3);
+}
+
 TEST(TerrainHorizon, SeesASummitUnlessGroundStandsBeforeIt) {
     const dem::Heightfield field = bundled("jacksboro.tif");
     HorizonOptions options;
@@ -415,6 +516,27 @@ TEST(TerrainHorizon, ErrorsSayWhatIsWrong) {
     EXPECT_EQ(error_of([&] { TerrainHorizon(field, middle(field), options); }),
               "exit 3: light::horizon: 46.99852,9: the eye at 99.0 m is under the ground, which is "
               "at 100.0 m there; a height above the ground is written as 2agl");
+    options.eye_height_m = 1e9;
+    EXPECT_EQ(
+        error_of([&] { TerrainHorizon(field, middle(field), options); }),
+        "exit 3: light::horizon: 46.99852,9: the eye at 1000000000 m, expected at most 10000 m "
+        "above the ground, which is at 100.0 m there; higher up lines of sight bend "
+        "otherwise");
+    for (const double height_m : {10'100.1, 1e308, kInfinity, kNaN}) {
+        options.eye_height_m = height_m;
+        EXPECT_NE(error_of([&] {
+                      TerrainHorizon(field, middle(field), options);
+                  }).find("expected at most 10000 m above the ground"),
+                  std::string::npos)
+            << height_m;
+    }
+    options.eye_height_m = 10'100;
+    EXPECT_EQ(TerrainHorizon(field, middle(field), options).eye_m(), 10'100);
+    const dem::Heightfield centimetres = plain([](int, int) { return 112'300; });
+    EXPECT_EQ(error_of([&] { TerrainHorizon(centimetres, middle(centimetres)); }),
+              "exit 3: light::horizon: 46.99852,9: the ground is at 112300 m there, expected a "
+              "height of the Earth; pass --unit cm where the DEM's heights are centimetres, or "
+              "--nodata V where V is no height");
     options = {};
     options.refraction = 1.5;
     EXPECT_EQ(error_of([&] { TerrainHorizon(field, middle(field), options); }),

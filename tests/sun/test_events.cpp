@@ -414,6 +414,70 @@ TEST(Events, ASunThatOnlyGrazesTheHorizonIsNotMissed) {
     }
 }
 
+/// When the sun's centre crosses an elevation, up and down, looked for every 20 s.
+std::pair<std::vector<Instant>, std::vector<Instant>> crossings_of(const PositionTable& table,
+                                                                   const TimeSpan& span,
+                                                                   const Observer& observer,
+                                                                   double elevation_rad) {
+    constexpr double kStep_s = 20;
+    std::pair<std::vector<Instant>, std::vector<Instant>> found;
+    double before_rad = 0;
+    for (double t_s = 0; t_s <= span.length_s(); t_s += kStep_s) {
+        const double over_rad =
+            elevation_of(table.vector_au(span.begin + t_s, observer)) - elevation_rad;
+        if (t_s > 0 && (over_rad > 0) != (before_rad > 0))
+            (over_rad > 0 ? found.first : found.second)
+                .push_back(span.begin + t_s - kStep_s * over_rad / (over_rad - before_rad));
+        before_rad = over_rad;
+    }
+    return found;
+}
+
+TEST(Events, InTheFirstAndTheLastHourOfADayAreFound) {
+    // Beside the polar circle, 14 July 2026: the sun dips under the horizon around its lowest
+    // point, for a minute or for hours, and the clocks put that point up to 50 minutes before or
+    // after midnight.
+    const Date date{2026, 7, 14};
+    const Zone zone = Zone::fixed(3600);
+    const TimeSpan span = zone.day(date);
+    const PositionTable table(span.begin, span.end);
+    const double horizon_rad = radians(-50.0 / 60);
+    int pairs_first = 0, pairs_last = 0, short_first = 0, short_last = 0;
+    for (double minutes = -50; minutes <= 50; minutes += 5) {
+        for (double lat_deg = 67.3; lat_deg < 67.6; lat_deg += 0.004) {
+            const geo::Geodetic place = geo::geodetic_deg(lat_deg, 15 + 1.5 - minutes / 4);
+            const Observer observer(place);
+            const auto [rising, setting] = crossings_of(table, span, observer, horizon_rad);
+            const Day day = day_events(table, span, observer, {});
+            const std::vector<Instant> sunrises = day.all(EventKind::Sunrise);
+            const std::vector<Instant> sunsets = day.all(EventKind::Sunset);
+            // What lasts less than a step may be seen by the one and not by the other.
+            if (sunrises.size() + sunsets.size() > rising.size() + setting.size()) {
+                EXPECT_GT(day.day_length_s, span.length_s() - 45) << lat_deg;
+                continue;
+            }
+            ASSERT_EQ(sunrises.size(), rising.size()) << lat_deg << " " << minutes;
+            ASSERT_EQ(sunsets.size(), setting.size()) << lat_deg << " " << minutes;
+            for (std::size_t i = 0; i < rising.size(); ++i)
+                EXPECT_NEAR(sunrises[i] - rising[i], 0, 20) << lat_deg << " " << minutes;
+            for (std::size_t i = 0; i < setting.size(); ++i)
+                EXPECT_NEAR(sunsets[i] - setting[i], 0, 20) << lat_deg << " " << minutes;
+            for (std::size_t i = 0; i < rising.size() && i < setting.size(); ++i) {
+                const double length_s = rising[i] - setting[i];
+                if (length_s < 0) continue;
+                const double from_s = setting[i] - span.begin, left_s = span.end - rising[i];
+                pairs_first += from_s + length_s < 3600;
+                short_first += from_s + length_s < 1500;
+                pairs_last += left_s + length_s < 3600;
+                short_last += left_s + length_s < 1500;
+            }
+        }
+    }
+    // The test sees what it is for.
+    for (const int count : {pairs_first, pairs_last, short_first, short_last})
+        EXPECT_GT(count, 2);
+}
+
 TEST(Events, AYearIsTheSameAsItsDays) {
     const std::vector<Day> year = day_events({2026, 1, 1}, {2026, 12, 31}, kZurich, kBern);
     for (const std::size_t i : {0U, 87U, 88U, 200U, 297U, 364U}) {

@@ -111,6 +111,36 @@ TEST(Refraction, SaysWhatItIs) {
               "refraction integrated through the atmosphere, 899 hPa, 8.5 C, 1000 m");
 }
 
+TEST(Refraction, EndsWhereTheAirDoes) {
+    const Refraction high = Refraction::standard({0.8, 0, 303'000});
+    EXPECT_EQ(high.description(), "no refraction, above the air at 303000 m");
+    EXPECT_FALSE(high.bends());
+    for (const double deg : {-20.0, -0.5, 0.0, 45.0}) {
+        EXPECT_EQ(high.apparent_rad(radians(deg)), radians(deg));
+        EXPECT_EQ(high.true_rad(radians(deg)), radians(deg));
+    }
+    // What is lost where it ends.
+    const Refraction last = Refraction::standard({0.8, 0, 31'000});
+    EXPECT_TRUE(last.bends());
+    const double level_arcsec = -last.true_rad(0) / kArcsecond_rad;
+    RecordProperty("level_arcsec", std::to_string(level_arcsec));
+    EXPECT_GT(level_arcsec, 27);
+    EXPECT_LT(level_arcsec, 28);
+    EXPECT_EQ(Refraction::standard({0.8, 0, std::nextafter(31'000, 1e6)}).true_rad(0), 0);
+}
+
+TEST(Refraction, OverASeasFloorIsThatOfTheSea) {
+    const Refraction sea = Refraction::standard({0.8, 0, 0});
+    for (const double height_m : {-1401.0, -4000.0, -11'000.0}) {
+        const Refraction floor = Refraction::standard({0.8, 0, height_m});
+        EXPECT_EQ(floor.description(), sea.description());
+        EXPECT_EQ(floor.apparent_rad(0), sea.apparent_rad(0));
+    }
+    // The shore of the Dead Sea, and mines, have air of their own.
+    EXPECT_GT(Refraction::standard({0.55, 0, -430}).apparent_rad(0), sea.apparent_rad(0));
+    EXPECT_GT(Refraction::standard({0.55, 0, -1399}).apparent_rad(0), sea.apparent_rad(0));
+}
+
 TEST(Refraction, ImpossibleAirIsAnError) {
     EXPECT_EQ(test::error_of([] {
                   Refraction::saemundsson({101325, 10});

@@ -1,3 +1,6 @@
+#include <cmath>
+#include <cstdint>
+
 #include "sun/time.h"
 #include "support/support.h"
 
@@ -83,6 +86,43 @@ TEST(Date, WhatIsNoDateIsAnError) {
         error("2101-01-01"),
         "exit 3: sun::parse_date: 2101-01-01: the sun is computed for the years 1900 to 2100, "
         "but got 2101");
+    // A year of more than four digits is one, but none that is computed.
+    for (const std::string year : {"99999", "12026", "4294969322", "99999999999999999999"})
+        EXPECT_EQ(error(year + "-06-21"),
+                  "exit 3: sun::parse_date: " + year +
+                      "-06-21: the sun is computed for the years 1900 to 2100, but got " + year);
+}
+
+TEST(Date, WhatTheCalendarDoesNotHoldIsAnErrorAndNoOtherDate) {
+    using test::error_of;
+    const std::string years = ": the sun is computed for the years 1900 to 2100";
+    // The calendar's own years wrap at 32767: 99999 would be -31073.
+    for (const int year : {99999, 10000, 0, -1, 2'147'483'647, -2'147'483'647}) {
+        const std::string expected = "exit 3: sun::Date: year " + std::to_string(year) + years;
+        EXPECT_EQ(error_of([&] { Instant::from_utc({{year, 6, 21}}); }), expected);
+        EXPECT_EQ(error_of([&] { add_days({year, 6, 21}, 1); }), expected);
+        EXPECT_EQ(error_of([&] { days_between({2026, 6, 21}, {year, 6, 21}); }), expected);
+    }
+    EXPECT_EQ(to_string(add_days({9999, 12, 30}, 1)), "9999-12-31");
+    for (const int days : {3'000'000, 2'147'483'647, -3'000'000, -2'147'483'647})
+        EXPECT_NE(error_of([&] {
+                      add_days({2026, 6, 21}, days);
+                  }).find(years),
+                  std::string::npos)
+            << days;
+    const Instant now = Instant::from_utc({{2026, 6, 21}});
+    for (const double seconds :
+         {1e13, -1e13, 1e20, 1e308, static_cast<double>(NAN), static_cast<double>(INFINITY)})
+        EXPECT_NE(error_of([&] { now + seconds; }).find(years), std::string::npos) << seconds;
+    EXPECT_DOUBLE_EQ(Instant::from_unix_us(INT64_MAX) - Instant::from_unix_us(INT64_MIN),
+                     std::exp2(64) * 1e-6);
+    for (const std::int64_t us : {INT64_MAX, INT64_MIN, INT64_MIN + 1, INT64_MAX / 2})
+        for (const int decimals : {0, 3, 6}) {
+            const Instant far = Instant::from_unix_us(us);
+            EXPECT_NE(error_of([&] { to_iso(far, decimals); }).find(years), std::string::npos)
+                << us;
+            EXPECT_NE(error_of([&] { far.utc(); }).find(years), std::string::npos) << us;
+        }
 }
 
 }  // namespace
