@@ -31,9 +31,9 @@ void DemArguments::add_to(CLI::App& verb) {
         ->group("DEM");
     verb.add_option("--band", options.band, "Band that holds the heights, from 1")
         ->check(whole_number())
-        ->check(CLI::PositiveNumber)
+        ->check(in_range(1, std::numeric_limits<int>::max()))
         ->group("DEM");
-    verb.add_option("--unit", options.unit, "Unit of the heights: m, ft, us-ft, cm, km")
+    verb.add_option("--unit", options.unit, "Unit of the heights: m, ft, us-ft, cm, mm, dm, km")
         ->group("DEM");
     verb.add_option_function<std::string>(
             "--nodata",

@@ -23,13 +23,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool ends_like_archive(const fs::path& file) {
+/// The ending of a name, with its dot, in small letters.
+std::string ending_of(const fs::path& file) {
     std::string ending = file.extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    constexpr std::array<std::string_view, 4> kEndings = {".zip", ".tar", ".tgz", ".gz"};
-    return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+    return ending;
 }
+
+template <std::size_t N>
+bool ends_like(const fs::path& file, const std::array<std::string_view, N>& endings) {
+    return std::find(endings.begin(), endings.end(), ending_of(file)) != endings.end();
+}
+
+constexpr std::array<std::string_view, 4> kArchives = {".zip", ".tar", ".tgz", ".gz"};
+/// What GDAL has drivers for, and what beside "a.tif" is of it: overviews ("a.ovr" of other
+/// programs, "a.aux" and "a.rrd" of Erdas'), masks, descriptions for catalogues.
+constexpr std::array<std::string_view, 5> kOfAnother = {".ovr", ".aux", ".rrd", ".msk", ".json"};
 
 /// GDAL's driver for a file by its beginning and those beside it; empty where it has none.
 std::string driver_of(const fs::path& file) {
@@ -37,13 +47,36 @@ std::string driver_of(const fs::path& file) {
     return driver ? GDALGetDriverShortName(driver) : "";
 }
 
-/// Files that GDAL keeps beside "a.tif": its overviews, its mask, what it could not hold itself.
+/// Files that are kept beside "a.tif", "a.tif.ovr", or beside "a" of that, "a.prj".
+/// @param names  of rasters
 bool is_beside(const fs::path& file, const std::set<std::string>& names) {
-    const std::string name = file.filename().string();
+    const std::string& name = file.native();
     for (std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0;
          dot = name.rfind('.', dot - 1))
         if (names.contains(name.substr(0, dot))) return true;
     return false;
+}
+
+std::string without_ending(const RasterFile& one) {
+    return fs::path(one.path).replace_extension().string();
+}
+
+/// Leaves out what has its name before the dot from another raster, and is a part of that.
+void drop_parts_of_others(std::vector<RasterFile>& rasters) {
+    std::set<std::string> stems;
+    for (const RasterFile& one : rasters)
+        if (!ends_like(one.path, kOfAnother)) stems.insert(without_ending(one));
+    std::erase_if(rasters, [&](const RasterFile& one) {
+        return ends_like(one.path, kOfAnother) && stems.contains(without_ending(one));
+    });
+}
+
+/// A file for people about a whole folder.
+bool is_read_me(const fs::path& file) {
+    std::string name = file.stem().string();
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return name == "readme";
 }
 
 /// The files that a virtual raster names, as far as they are there.
@@ -64,26 +97,20 @@ std::set<std::string> parts_of(const std::string& path) {
     return parts;
 }
 
-struct Found {
-    fs::path path;
-    std::string driver;
-    std::uintmax_t bytes = 0;
-};
-
 /// A header makes a raster of every file that has its name before the dot; the largest has the
 /// cells.
-void keep_cells(std::vector<Found>& rasters) {
+void keep_cells(std::vector<RasterFile>& rasters) {
     constexpr std::array<std::string_view, 4> kByHeader = {"EHdr", "ENVI", "GenBin", "ISCE"};
-    const auto by_header = [&](const Found& one) {
+    const auto by_header = [&](const RasterFile& one) {
         return std::find(kByHeader.begin(), kByHeader.end(), one.driver) != kByHeader.end();
     };
     std::map<std::string, std::uintmax_t> most;
-    for (const Found& one : rasters) {
-        std::uintmax_t& bytes = most[one.path.stem().string()];
+    for (const RasterFile& one : rasters) {
+        std::uintmax_t& bytes = most[without_ending(one)];
         bytes = std::max(bytes, one.bytes);
     }
-    std::erase_if(rasters, [&](const Found& one) {
-        return by_header(one) && one.bytes < most[one.path.stem().string()];
+    std::erase_if(rasters, [&](const RasterFile& one) {
+        return by_header(one) && one.bytes < most[without_ending(one)];
     });
 }
 
@@ -100,6 +127,15 @@ std::vector<fs::path> sorted_entries(const std::string& folder) {
 
 }  // namespace
 
+void drop_parts(std::vector<RasterFile>& rasters) {
+    std::set<std::string> names;
+    for (const RasterFile& one : rasters)
+        names.insert(one.path.string());
+    std::erase_if(rasters, [&](const RasterFile& one) { return is_beside(one.path, names); });
+    drop_parts_of_others(rasters);
+    keep_cells(rasters);
+}
+
 std::vector<std::string> rasters_of(const std::string& path) {
     std::error_code error;
     if (!fs::is_directory(path, error)) return {path};
@@ -108,7 +144,7 @@ std::vector<std::string> rasters_of(const std::string& path) {
     GdalMessages messages;
     if (gdal_open(path)) return {path};
 
-    std::vector<Found> rasters;
+    std::vector<RasterFile> rasters;
     std::vector<fs::path> others;
     std::set<std::string> names;
     int folders = 0;
@@ -124,21 +160,20 @@ std::vector<std::string> rasters_of(const std::string& path) {
             others.push_back(entry);
         } else {
             refuse_unreadable(entry.string());
-            const std::string driver = ends_like_archive(entry) ? "archive" : driver_of(entry);
+            const std::string driver = ends_like(entry, kArchives) ? "archive" : driver_of(entry);
             if (driver.empty()) {
                 others.push_back(entry);
             } else {
                 rasters.push_back({entry, driver, fs::file_size(entry, error)});
-                names.insert(entry.filename().string());
+                names.insert(entry.string());
             }
         }
     }
-    std::erase_if(rasters, [&](const Found& one) { return is_beside(one.path, names); });
-    keep_cells(rasters);
+    drop_parts(rasters);
     std::set<std::string> parts;
-    for (const Found& one : rasters)
+    for (const RasterFile& one : rasters)
         if (one.driver == "VRT") parts.merge(parts_of(one.path.string()));
-    std::erase_if(rasters, [&](const Found& one) {
+    std::erase_if(rasters, [&](const RasterFile& one) {
         return parts.contains(fs::weakly_canonical(one.path, error).string());
     });
 
@@ -146,15 +181,14 @@ std::vector<std::string> rasters_of(const std::string& path) {
         refuse(path, fmt::format("a folder without a raster in it, expected a raster or a folder "
                                  "of rasters{}",
                                  folders > 0 ? "; name the folder in it that is meant" : ""));
-    std::set<std::string> stems;
     std::vector<std::string> paths;
-    for (const Found& one : rasters) {
-        stems.insert(one.path.stem().string());
+    for (const RasterFile& one : rasters) {
+        names.insert(without_ending(one));
         paths.push_back(one.path.string());
     }
     std::vector<std::string> left_out;
     for (const fs::path& other : others)
-        if (!is_beside(other, names) && !stems.contains(other.stem().string()))
+        if (!is_beside(other, names) && !is_read_me(other))
             left_out.push_back(other.filename().string());
     constexpr std::size_t kMostNamed = 3;
     if (!left_out.empty())

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,5 +16,16 @@ namespace relevo::dem {
 /// that are left out are named with log::info.
 /// @throws Error (BadInput) where a folder has no raster in it or cannot be read
 std::vector<std::string> rasters_of(const std::string& path);
+
+/// A file that GDAL takes for a raster.
+struct RasterFile {
+    std::filesystem::path path;
+    std::string driver;  ///< GDAL's short name of who does
+    std::uint64_t bytes = 0;
+};
+
+/// Leaves out those that are only parts of others: "a.tif.ovr" and "a.ovr" beside "a.tif", and what
+/// a header makes cells of besides the cells: "a.prj" beside "a.bil".
+void drop_parts(std::vector<RasterFile>& rasters);
 
 }  // namespace relevo::dem

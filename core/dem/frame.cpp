@@ -3,17 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
 namespace relevo::dem {
 
-void FrameEdge::add(const Array2d<float>& line_m) {
-    corners_ = corners_ && *line_m.begin() == height_m_ && *(line_m.end() - 1) == height_m_;
-    posts_ += static_cast<double>(line_m.size());
-    like_corner_ += static_cast<double>(std::count(line_m.begin(), line_m.end(), height_m_));
+void FrameEdge::add(std::span<const float> posts_m) {
+    others_ += std::ssize(posts_m) - std::count(posts_m.begin(), posts_m.end(), height_m_);
+}
+
+void FrameEdge::add(float height_m, std::int64_t posts) {
+    if (height_m != height_m_) others_ += posts;
 }
 
 bool FrameEdge::may_be_frame() const {
-    return corners_ && like_corner_ >= 0.95 * posts_;
+    return corners_ && static_cast<double>(posts_ - others_) >= 0.95 * static_cast<double>(posts_);
 }
 
 void FrameSteps::add(const Array2d<float>& part_m) {
@@ -47,17 +50,15 @@ std::optional<Frame> FrameSteps::frame() {
 
 std::optional<Frame> find_frame(const Array2d<float>& height_m) {
     const int columns = height_m.width(), rows = height_m.height();
-    FrameEdge edge(height_m.at(0, 0));
+    FrameEdge edge(height_m.at(0, 0), 2 * (std::int64_t{columns} + rows));
     for (const int row : {0, rows - 1}) {
-        Array2d<float> line(columns, 1);
-        std::copy_n(height_m.row(row).data(), columns, line.data());
-        edge.add(line);
+        edge.add_corner(height_m.at(0, row));
+        edge.add_corner(height_m.at(columns - 1, row));
+        edge.add(height_m.row(row));
     }
-    for (const int column : {0, columns - 1}) {
-        Array2d<float> line(1, rows);
-        for (int row = 0; row < rows; ++row)
-            line.at(0, row) = height_m.at(column, row);
-        edge.add(line);
+    for (int row = 0; row < rows; ++row) {
+        edge.add(height_m.row(row).first(1));
+        edge.add(height_m.row(row).last(1));
     }
     if (!edge.may_be_frame()) return std::nullopt;
     FrameSteps steps(edge.height_m());

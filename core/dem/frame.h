@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/array2d.h"
@@ -18,20 +20,26 @@ struct Frame {
 /// to the next post are higher than 20 m. An island in its sea has a beach.
 std::optional<Frame> find_frame(const Array2d<float>& height_m);
 
-/// The same in parts, for a DEM that memory does not hold. First its edge:
+/// The same in parts, for a DEM that memory does not hold. First its edge: the first and the last
+/// row, the first and the last column.
 class FrameEdge {
   public:
     /// @param height_m  of a corner
-    explicit FrameEdge(float height_m) : height_m_(height_m) {}
-    /// The first and the last row, the first and the last column, one after the other.
-    void add(const Array2d<float>& line_m);
+    /// @param posts     of all four lines, corners twice
+    FrameEdge(float height_m, std::int64_t posts) : height_m_(height_m), posts_(posts) {}
+    void add_corner(float height_m) { corners_ = corners_ && height_m == height_m_; }
+    void add(std::span<const float> posts_m);
+    /// So many posts of one height.
+    void add(float height_m, std::int64_t posts);
+    /// Whether it is one, as far as it is known; once false it remains so.
     bool may_be_frame() const;
     float height_m() const { return height_m_; }
 
   private:
     float height_m_;
+    std::int64_t posts_;
     bool corners_ = true;
-    double posts_ = 0, like_corner_ = 0;
+    std::int64_t others_ = 0;  // not like the corner
 };
 
 /// Then, where that may be a frame, what is inside.

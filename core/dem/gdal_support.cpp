@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include <cpl_conv.h>
 #include <cpl_error.h>
 #include <fmt/format.h>
 #include <gdal.h>
@@ -26,7 +27,18 @@ void prepare_gdal() {
         CPLSetErrorHandler(to_debug_log);
         GDALAllRegister();
         disarm_gdal();
+        // By itself it is a twentieth of the machine's memory, whatever --memory is.
+        constexpr GIntBig kMostCache = GIntBig{256} << 20;
+        if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr))
+            GDALSetCacheMax64(std::min(GDALGetCacheMax64(), kMostCache));
     });
+}
+
+void hold_blocks(std::int64_t bytes) {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr) && GDALGetCacheMax64() < bytes)
+        GDALSetCacheMax64(bytes);
 }
 
 GdalMessages::GdalMessages() {

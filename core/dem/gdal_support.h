@@ -1,15 +1,20 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace relevo::dem {
 
 /// Registers GDAL's drivers, once, takes from them what files from others could misuse (guard.h),
-/// and keeps GDAL from writing to standard error: what nobody collects goes to the debug log. Safe
+/// keeps its cache of blocks to 256 MiB (unless GDAL_CACHEMAX is set), and keeps GDAL from writing
+/// to standard error: what nobody collects goes to the debug log. Safe
 /// on several threads at once; everything here that uses GDAL calls it first. Takes 3 ms the first
 /// time; loading GDAL's own libraries, before main, takes 50.
 void prepare_gdal();
+
+/// Lets GDAL's cache have so much at least: blocks that it cannot hold are decoded for every read.
+void hold_blocks(std::int64_t bytes);
 
 /// Collects what GDAL says on this thread while it lives, instead of having it printed.
 class GdalMessages {

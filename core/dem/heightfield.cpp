@@ -71,6 +71,26 @@ Statistics statistics(const Array2d<float>& height_m, int columns, int rows) {
     return total;
 }
 
+Statistics statistics(float height_m, std::int64_t posts) {
+    if (posts == 0) return {};
+    Statistics all = statistics(Array2d<float>(1, 1, height_m));
+    all.valid *= posts;
+    all.holes *= posts;
+    all.outliers *= posts;
+    return all;
+}
+
+Statistics& Statistics::operator+=(const Statistics& others) {
+    if (others.valid > 0) {
+        min_m = valid > 0 ? std::min(min_m, others.min_m) : others.min_m;
+        max_m = valid > 0 ? std::max(max_m, others.max_m) : others.max_m;
+    }
+    valid += others.valid;
+    holes += others.holes;
+    outliers += others.outliers;
+    return *this;
+}
+
 double bilinear_m(const float* first_m, std::ptrdiff_t stride, double u, double v) {
     const auto weighted = [](float height_m, double weight) {
         // A hole with no part in the sum does not spoil it.

@@ -24,6 +24,8 @@ struct Statistics {
     double nodata_share() const {
         return static_cast<double>(holes) / static_cast<double>(valid + holes);
     }
+    /// Those of other posts besides.
+    Statistics& operator+=(const Statistics& others);
     friend bool operator==(const Statistics&, const Statistics&) = default;
 };
 
@@ -35,6 +37,9 @@ bool is_of_the_earth(double height_m);
 Statistics statistics(const Array2d<float>& height_m);
 /// Of the first columns and rows.
 Statistics statistics(const Array2d<float>& height_m, int columns, int rows);
+
+/// Of so many posts of one height, NaN for holes.
+Statistics statistics(float height_m, std::int64_t posts);
 
 /// The height in a cell of four posts, NaN where a hole takes part.
 /// @param first_m  the first of them, the others beside it and `stride` further

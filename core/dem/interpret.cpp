@@ -162,6 +162,7 @@ int chosen_band(const std::string& path, GDALDatasetH dataset, const LoadOptions
 
 void settle_unit(const std::string& path, GDALRasterBandH band, const geo::Crs& crs,
                  const LoadOptions& options, Description& about) {
+    constexpr std::size_t kLongestUnit = 40;  // of a damaged file it may be anything
     if (options.encoding != Encoding::None && options.unit.empty()) {
         about.unit_source = UnitSource::Encoding;
         return;
@@ -178,8 +179,8 @@ void settle_unit(const std::string& path, GDALRasterBandH band, const geo::Crs& 
         if (!unit)
             refuse(path,
                    fmt::format("band {} is in \"{}\", expected a unit of height; if these are "
-                               "heights, pass --unit m, ft, us-ft, cm or km",
-                               about.band, word));
+                               "heights, pass --unit m, ft, us-ft, cm, mm, dm or km",
+                               about.band, word.substr(0, kLongestUnit)));
         about.unit = *unit;
         about.unit_source = UnitSource::Band;
     } else if (crs.vertical()) {

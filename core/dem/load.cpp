@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <new>
+#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,9 +36,23 @@ std::string unit_advice(const Description& about) {
     return fmt::format("sets the unit, perhaps {}", fmt::join(fitting, " or "));
 }
 
+/// A number as a file of this type stores it, as --nodata takes it: in as few digits, from six, as
+/// give it again.
+std::string stored_text(const Description& about, double stored) {
+    const bool is_float = about.data_type == "Float32";
+    const auto same = [&](double other) {
+        return is_float ? static_cast<float>(other) == static_cast<float>(stored) : other == stored;
+    };
+    for (int digits = 6; digits < 17; ++digits)
+        if (const std::string text = fmt::format("{:.{}g}", stored, digits);
+            same(std::strtod(text.c_str(), nullptr)))
+            return text;
+    return fmt::format("{:.17g}", stored);
+}
+
 }  // namespace
 
-void report_heights(Description& about, const std::optional<Frame>& frame) {
+void report_heights(const Source& source, Description& about, const std::optional<Frame>& frame) {
     const Statistics& s = about.statistics;
     if (s.valid == 0)
         bad_input(fmt::format(
@@ -55,11 +71,9 @@ void report_heights(Description& about, const std::optional<Frame>& frame) {
     if (frame)
         guess(
             fmt::format("the edge is {:g} m all around and the ground beside it {:.0f} m off, "
-                        "perhaps what is left around a turned raster; --nodata {:g} makes it a "
+                        "perhaps what is left around a turned raster; --nodata {} makes it a "
                         "hole",
-                        frame->height_m, frame->step_m,
-                        (static_cast<double>(frame->height_m) - about.offset) / about.scale /
-                            about.unit.metres));
+                        frame->height_m, frame->step_m, stored_text(about, source.stored(0, 0))));
 }
 
 Heightfield load(const std::string& path, const LoadOptions& options) {
@@ -109,7 +123,7 @@ Heightfield load(const Source& source, std::int64_t max_posts) {
                         4.0 * static_cast<double>(max_posts) / kMiB));
     }
     about.statistics = statistics(height_m);
-    report_heights(about, about.statistics.valid > 0 ? find_frame(height_m) : std::nullopt);
+    report_heights(source, about, about.statistics.valid > 0 ? find_frame(height_m) : std::nullopt);
     Grid grid = reduction == 1 ? full : full.part(all, columns, rows);
     return {std::move(height_m), std::move(grid), std::move(about), reduction};
 }

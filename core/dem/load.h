@@ -22,8 +22,9 @@ Heightfield load(std::span<const std::string> paths, const LoadOptions& options 
 Heightfield load(const Source& source, std::int64_t max_posts);
 
 /// Says what heights look wrong, in the description and with log::info.
-/// @param about  with its statistics
+/// @param source  they are from
+/// @param about   with its statistics
 /// @throws Error (BadInput) where not one post has a height
-void report_heights(Description& about, const std::optional<Frame>& frame);
+void report_heights(const Source& source, Description& about, const std::optional<Frame>& frame);
 
 }  // namespace relevo::dem

@@ -13,6 +13,7 @@
 #include <gdal.h>
 
 #include "base/error.h"
+#include "dem/folder.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
@@ -101,26 +102,26 @@ Dataset open_archive(std::string& path) {
         return dataset;
     }
     char** entries = VSIReadDirRecursive(inside.c_str());
-    std::vector<std::string> rasters;
-    Dataset found;
+    std::vector<RasterFile> rasters;
     for (char** entry = entries; entry && *entry; ++entry) {
         const std::string name = fmt::format("{}/{}", inside, *entry);
         if (name.ends_with('/')) continue;
-        if (Dataset dataset = gdal_open(name)) {
-            rasters.push_back(name);
-            found = std::move(dataset);
-        }
+        VSIStatBufL status{};
+        if (const Dataset dataset = gdal_open(name);
+            dataset && VSIStatL(name.c_str(), &status) == 0)
+            rasters.push_back({name, GDALGetDriverShortName(GDALGetDatasetDriver(dataset.get())),
+                               static_cast<std::uint64_t>(status.st_size)});
     }
     CSLDestroy(entries);
+    drop_parts(rasters);
     if (rasters.size() > 1)
         refuse(path, fmt::format("an archive of {} rasters, expected one; name those that are "
                                  "meant, as in '{}'",
-                                 rasters.size(), rasters.front()));
-    if (found) {
-        path = rasters.front();
-        refuse_unsafe_vrt(path);
-    }
-    return found;
+                                 rasters.size(), rasters.front().path.string()));
+    if (rasters.empty()) return nullptr;
+    path = rasters.front().path.string();
+    refuse_unsafe_vrt(path);
+    return gdal_open(path);
 }
 
 }  // namespace

@@ -48,6 +48,7 @@ struct Piece {
     bool wide = false;         ///< stored numbers need doubles
     bool threads_pay = false;  ///< the driver decodes blocks one by one, whichever handle asks
     bool knows_holes = true;   ///< overviews were made by who knew which numbers are heights
+    int block_columns = 1;
     int block_rows = 1;
     std::vector<Level> levels;        ///< the raster itself, then its overviews
     std::optional<SparseMap> sparse;  ///< what of it the file does not store
@@ -60,6 +61,10 @@ struct Piece {
     /// Heights in metres of a window of a level, NaN for holes; row after row.
     /// @throws Error (BadInput) where they cannot all be read
     void read(void* dataset, const Level& level, const Window& window, float* height_m) const;
+
+    /// The number that the file stores for a post, which its height is made of.
+    /// @throws Error (BadInput) where it cannot be read
+    double stored(void* dataset, int column, int row) const;
 };
 
 /// Opens one file and settles what it means.

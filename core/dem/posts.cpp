@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "base/parallel_for.h"
-#include "dem/frame.h"
+#include "base/progress.h"
 #include "dem/load.h"
+#include "dem/survey.h"
 #include "dem/tile_cache.h"
 
 namespace relevo::dem {
@@ -21,7 +24,7 @@ constexpr int kSlab_rows = 512;              // those of the tallest usual block
 
 /// Blocks in a line of posts. Cells of a block share their last post with the next one.
 int blocks_of(int posts, int block) {
-    return std::max(1, (posts - 1 + block - 1) / block);
+    return std::max(1, (posts - 2) / block + 1);
 }
 
 /// The highest post of a block, infinity where it has a hole.
@@ -37,27 +40,6 @@ float highest_of(const Posts::View& view, const Window& posts) {
         }
     }
     return holes > 0 ? kInfinity : highest_m;
-}
-
-void add(Statistics& total, const Statistics& part) {
-    if (part.valid > 0) {
-        total.min_m = total.valid > 0 ? std::min(total.min_m, part.min_m) : part.min_m;
-        total.max_m = total.valid > 0 ? std::max(total.max_m, part.max_m) : part.max_m;
-    }
-    total.valid += part.valid;
-    total.holes += part.holes;
-    total.outliers += part.outliers;
-}
-
-/// What looks for a frame inside of a DEM, where its edge may be one.
-std::optional<FrameSteps> frame_steps_of(const Source& source) {
-    const int columns = source.grid().columns(), rows = source.grid().rows();
-    FrameEdge edge(source.read({0, 0, 1, 1}, 1, 1).at(0, 0));
-    for (const Window& line : {Window{0, 0, columns, 1}, Window{0, rows - 1, columns, 1},
-                               Window{0, 0, 1, rows}, Window{columns - 1, 0, 1, rows}})
-        edge.add(source.read(line, line.columns, line.rows));
-    if (!edge.may_be_frame()) return std::nullopt;
-    return FrameSteps(edge.height_m());
 }
 
 }  // namespace
@@ -78,25 +60,41 @@ struct Posts::Impl {
     void take(const Source& on_demand, std::int64_t max_posts);
 
   private:
-    Window posts_of_block(int column, int row) const;
-    void find_highest(const View& view, const Window& blocks);
+    template <typename Body>
+    void for_blocks(const Window& slab, const Body& body);
+    void find_highest(const View& view, const Window& slab);
     void go_through(std::int64_t slab_posts);
     void settle_holes();
 };
 
-/// Both ends of the cells included.
-Window Posts::Impl::posts_of_block(int column, int row) const {
-    const int first_column = column * block, first_row = row * block;
-    return {first_column, first_row, std::min(block, grid().columns() - 1 - first_column) + 1,
-            std::min(block, grid().rows() - 1 - first_row) + 1};
+/// Calls `body(highest_m, part)` for each block that has a part in a slab of posts, both ends of
+/// whose cells are in it.
+template <typename Body>
+void Posts::Impl::for_blocks(const Window& slab, const Body& body) {
+    const auto part = [&](int index, int first, int count) {  // of a block in a line of the slab
+        const std::int64_t begin = std::max<std::int64_t>(first, std::int64_t{index} * block);
+        const std::int64_t end =
+            std::min(std::int64_t{first} + count - 1, (std::int64_t{index} + 1) * block);
+        return std::pair(static_cast<int>(begin), static_cast<int>(end - begin + 1));
+    };
+    const int first_column = slab.column / block, first_row = slab.row / block;
+    const int columns = blocks_of(slab.column % block + slab.columns, block);
+    const int rows = blocks_of(slab.row % block + slab.rows, block);
+    const auto grain = static_cast<int>(std::max<std::int64_t>(
+        1, (1 << 18) / (std::int64_t{std::min(block, slab.rows)} * slab.columns)));
+    parallel_for(first_row, first_row + rows, grain, [&](int first, int last) {
+        for (int row = first; row < last; ++row)
+            for (int column = first_column; column < first_column + columns; ++column) {
+                const auto [x, width] = part(column, slab.column, slab.columns);
+                const auto [y, height] = part(row, slab.row, slab.rows);
+                body(block_highest_m.at(column, row), Window{x, y, width, height});
+            }
+    });
 }
 
-void Posts::Impl::find_highest(const View& view, const Window& blocks) {
-    const int grain = std::max(1, (1 << 18) / (block * block * blocks.columns));
-    parallel_for(blocks.row, blocks.row + blocks.rows, grain, [&](int first, int last) {
-        for (int row = first; row < last; ++row)
-            for (int column = blocks.column; column < blocks.column + blocks.columns; ++column)
-                block_highest_m.at(column, row) = highest_of(view, posts_of_block(column, row));
+void Posts::Impl::find_highest(const View& view, const Window& slab) {
+    for_blocks(slab, [&](float& highest_m, const Window& part) {
+        highest_m = std::max(highest_m, highest_of(view, part));
     });
 }
 
@@ -113,8 +111,9 @@ void Posts::Impl::take(const Heightfield& in_memory) {
     if (about.statistics.valid == 0) about.statistics = statistics(height_m);
     const int columns = blocks_of(height_m.width(), block),
               rows = blocks_of(height_m.height(), block);
-    block_highest_m = Array2d<float>(columns, rows);
-    find_highest({height_m.data(), height_m.width(), 0, 0}, {0, 0, columns, rows});
+    block_highest_m = Array2d<float>(columns, rows, -kInfinity);
+    find_highest({height_m.data(), height_m.width(), 0, 0},
+                 {0, 0, height_m.width(), height_m.height()});
     settle_holes();
 }
 
@@ -126,9 +125,9 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
     };
     while (blocks() > max_posts / 4)
         block *= 2;
-    block_highest_m =
-        Array2d<float>(blocks_of(grid().columns(), block), blocks_of(grid().rows(), block));
-    go_through(std::clamp(max_posts / 2, std::int64_t{block} * block, kMostSlab));
+    block_highest_m = Array2d<float>(blocks_of(grid().columns(), block),
+                                     blocks_of(grid().rows(), block), -kInfinity);
+    go_through(std::min(max_posts / 2, kMostSlab));
     settle_holes();
     tiles = std::make_unique<TileCache>(on_demand, max_posts - blocks());
 }
@@ -136,31 +135,51 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
 /// @param slab_posts  that memory has room for
 void Posts::Impl::go_through(std::int64_t slab_posts) {
     const int columns = grid().columns(), rows = grid().rows();
-    const int slab_rows = std::max(1, kSlab_rows / block);  // of blocks
-    const auto slab_columns = static_cast<int>(std::clamp<std::int64_t>(
-        slab_posts / (std::int64_t{slab_rows} * block * block), 1, columns));
+    // Whole blocks or, where one is more than there is room for, parts of them.
+    int side = std::min(block, kSlab_rows);
+    while (side > kLeastBlock && std::int64_t{side} * side > slab_posts)
+        side /= 2;
+    const auto fitting = [&](std::int64_t posts) {
+        return std::max(side, static_cast<int>(posts / side) * side);
+    };
+    const int slab_rows = fitting(std::min<std::int64_t>(kSlab_rows, slab_posts / side));
+    const int slab_columns = fitting(slab_posts / slab_rows);
     std::optional<FrameSteps> frame_steps = frame_steps_of(*source);
-    for (int row = 0; row < block_highest_m.height(); row += slab_rows)
-        for (int column = 0; column < block_highest_m.width(); column += slab_columns) {
-            const Window blocks{column, row,
-                                std::min(slab_columns, block_highest_m.width() - column),
-                                std::min(slab_rows, block_highest_m.height() - row)};
-            const Window first = posts_of_block(blocks.column, blocks.row);
-            const Window last =
-                posts_of_block(blocks.column + blocks.columns - 1, blocks.row + blocks.rows - 1);
-            const Window slab{first.column, first.row, last.column + last.columns - first.column,
-                              last.row + last.rows - first.row};
-            const Array2d<float> height_m = source->read(slab, slab.columns, slab.rows);
-            const View view{height_m.data(), height_m.width(), slab.column, slab.row};
-            find_highest(view, blocks);
-            if (frame_steps) frame_steps->add(height_m);
-            // The last column and row of a slab are the first of the next one, or the DEM's last.
+    Progress progress(about.path + ": reading all posts", double(columns) * rows);
+    for (int row = 0; row < rows - 1;) {
+        // Slabs share their last row and column with the next ones. What no file stores is one.
+        int count = std::min(slab_rows, rows - 1 - row), width = slab_columns;
+        if (const int blank = source->blank({0, row, columns, rows - row}).rows;
+            blank == rows - row || blank > slab_rows) {
+            count = blank == rows - row ? blank - 1 : (blank - 1) / slab_rows * slab_rows;
+            width = columns - 1;
+        }
+        for (int column = 0; column < columns - 1;) {
+            const Window slab{column, row, std::min(width, columns - 1 - column) + 1, count + 1};
+            // Counted are those that are not the first of a slab that follows.
             const bool ends_right = slab.column + slab.columns == columns;
             const bool ends_below = slab.row + slab.rows == rows;
-            add(about.statistics, statistics(height_m, slab.columns - (ends_right ? 0 : 1),
-                                             slab.rows - (ends_below ? 0 : 1)));
+            const int own_columns = slab.columns - (ends_right ? 0 : 1);
+            const int own_rows = slab.rows - (ends_below ? 0 : 1);
+            if (const Source::Blank blank = source->blank(slab); blank.rows == slab.rows) {
+                const float height_m = std::isnan(blank.height_m) ? kInfinity : blank.height_m;
+                for_blocks(slab, [&](float& highest_m, const Window&) {
+                    highest_m = std::max(highest_m, height_m);
+                });
+                about.statistics +=
+                    statistics(blank.height_m, std::int64_t{own_columns} * own_rows);
+            } else {
+                const Array2d<float> height_m = source->read(slab, slab.columns, slab.rows);
+                find_highest({height_m.data(), height_m.width(), slab.column, slab.row}, slab);
+                if (frame_steps) frame_steps->add(height_m);
+                about.statistics += statistics(height_m, own_columns, own_rows);
+            }
+            progress.add(double(own_columns) * own_rows);
+            column += slab.columns - 1;
         }
-    report_heights(about, frame_steps ? frame_steps->frame() : std::nullopt);
+        row += count;
+    }
+    report_heights(*source, about, frame_steps ? frame_steps->frame() : std::nullopt);
 }
 
 Posts::View Posts::Impl::view(const Window& window, std::vector<float>& buffer) const {

@@ -6,11 +6,14 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include "base/error.h"
 #include "base/parallel_for.h"
 
 namespace relevo::dem {
@@ -73,6 +76,11 @@ Pyramid::Pyramid(const Array2d<float>& posts_m)
 Pyramid::Pyramid(const Heightfield& means, const Source& source)
     : source_(&source), sizes_{{source.grid().columns(), source.grid().rows()}} {
     assert(means.reduction >= 2);
+    if (std::max(columns(), rows()) > kMostPosts)
+        bad_input(
+            fmt::format("dem::Pyramid: {}: {} x {} posts, expected at most {} a side to be "
+                        "drawn; cut it up with gdal_translate",
+                        means.about.path, columns(), rows(), kMostPosts));
     first_ = std::bit_width(static_cast<unsigned>(means.reduction));
     levels_.resize(static_cast<std::size_t>(first_));
     for (int level = 0; level < first_; ++level)
@@ -80,7 +88,8 @@ Pyramid::Pyramid(const Heightfield& means, const Source& source)
     // A mean says nothing of single posts without a height: that there may be some costs little.
     has_holes_ = true;
     levels_.push_back(nodes_of_means(means.height_m, {0, 0}, first_, {0, 0}, sizes_.back()));
-    sample_errors();
+    constexpr std::int64_t kAlways = 1 << 23;
+    sample_errors(std::max<std::int64_t>(kAlways, std::ssize(means.height_m) / 4));
     make_coarser_levels();
 }
 
@@ -97,7 +106,10 @@ glm::ivec2 Pyramid::size(int level) const {
 }
 
 glm::ivec2 Pyramid::post(int level, glm::ivec2 node) const {
-    return {std::min(node.x << level, columns() - 1), std::min(node.y << level, rows() - 1)};
+    const auto at = [level](int index, int posts) {
+        return static_cast<int>(std::min<std::int64_t>(std::int64_t{index} << level, posts - 1));
+    };
+    return {at(node.x, columns()), at(node.y, rows())};
 }
 
 float Pyramid::height(int level, int column, int row) const {
@@ -190,7 +202,9 @@ float mean_around(const HeightAt& height_at) {
 }
 
 Pyramid::Place place_in_coarser(int level, int node, int posts, int coarse_nodes) {
-    const auto post = [&](int n, int l) { return std::min(n << l, posts - 1); };
+    const auto post = [&](int n, int l) {
+        return static_cast<int>(std::min<std::int64_t>(std::int64_t{n} << l, posts - 1));
+    };
     const int from = std::min(node / 2, std::max(0, coarse_nodes - 2));
     const int first = post(from, level + 1), last = post(from + 1, level + 1);
     const int here = post(node, level);
@@ -277,8 +291,8 @@ Pyramid::Block Pyramid::read_block(int level, glm::ivec2 first, int columns, int
     Level nodes;
     if (level < 2) {
         // Posts, or their means with weights 1 2 1.
-        const glm::ivec2 low = glm::max((from << level) - level, glm::ivec2(0));
-        const glm::ivec2 high = glm::min((to << level) + level, posts - 1);
+        const glm::ivec2 low = glm::max(post(level, from) - level, glm::ivec2(0));
+        const glm::ivec2 high = glm::min(post(level, to) + level, posts - 1);
         const Window window{low.x, low.y, high.x - low.x + 1, high.y - low.y + 1};
         const Array2d<float> read = source_->read(window, window.columns, window.rows);
         nodes = {Array2d<float>(count.x, count.y), Array2d<std::uint8_t>(count.x, count.y), {}};
@@ -325,20 +339,47 @@ Pyramid::Block Pyramid::read_block(int level, glm::ivec2 first, int columns, int
     return block;
 }
 
-void Pyramid::sample_errors() {
+/// Levels up to `top` are compared with the posts of pieces that have 64 quads of that level. Where
+/// pieces for all levels would be too large, coarser ones are compared in larger pieces with means
+/// that lie as close as the nodes of `top`, and so on.
+/// @param max_nodes  posts or means of a piece
+void Pyramid::sample_errors(std::int64_t max_nodes) {
     sampled_.resize(static_cast<std::size_t>(first_ + 1));
     const glm::ivec2 posts = size(0);
-    const glm::ivec2 side = glm::min(glm::ivec2((kTileQuads << first_) + 1), posts);
-    for (int j = 0; j < kSamples; ++j) {
-        for (int i = 0; i < kSamples; ++i) {
-            const glm::ivec2 at = (posts - side) * glm::ivec2(i, j) / (kSamples - 1);
-            const Array2d<float> read = source_->read({at.x, at.y, side.x, side.y}, side.x, side.y);
-            const Pyramid part(read);
-            for (int level = 0; level < std::min(part.levels(), first_ + 1); ++level) {
-                Bounds& sampled = sampled_[static_cast<std::size_t>(level)];
-                sampled.error_m =
-                    std::max(sampled.error_m, part.error_m(level, &Bounds::error_m, 1));
-                sampled.rms_m = std::max(sampled.rms_m, part.error_m(level, &Bounds::rms_m, 1));
+    const auto side_of = [&](int level) {  // of a piece [posts]
+        const std::int64_t side = (std::int64_t{kTileQuads} << level) + 1;
+        return glm::ivec2(std::min<std::int64_t>(side, posts.x),
+                          std::min<std::int64_t>(side, posts.y));
+    };
+    const auto nodes = [&](int level, int base) {
+        const glm::ivec2 count = side_of(level) >> base;
+        return std::int64_t{count.x} * count.y;
+    };
+    for (int base = 0, top = 0; base < first_; base = top) {
+        top = first_;
+        while (top > base + 1 && nodes(top, base) > max_nodes)
+            --top;
+        const glm::ivec2 count = side_of(top) >> base, side = count << base;
+        const Bounds below = sampled_[static_cast<std::size_t>(base)];
+        for (int j = 0; j < kSamples; ++j) {
+            for (int i = 0; i < kSamples; ++i) {
+                const auto at = [](int room, int index) {
+                    return static_cast<int>(std::int64_t{room} * index / (kSamples - 1));
+                };
+                const Array2d<float> read = source_->read(
+                    {at(posts.x - side.x, i), at(posts.y - side.y, j), side.x, side.y}, count.x,
+                    count.y);
+                const Pyramid part(read);
+                for (int level = base; level <= top; ++level) {
+                    Bounds& sampled = sampled_[static_cast<std::size_t>(level)];
+                    // A level that the piece has no more is as far from the posts as its last one.
+                    const int own = std::min(level - base, part.levels() - 1);
+                    sampled.error_m = std::max(
+                        sampled.error_m, below.error_m + part.error_m(own, &Bounds::error_m, 1));
+                    sampled.rms_m =
+                        std::max(sampled.rms_m,
+                                 std::hypot(below.rms_m, part.error_m(own, &Bounds::rms_m, 1)));
+                }
             }
         }
     }

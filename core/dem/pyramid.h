@@ -30,10 +30,15 @@ class Pyramid {
     /// @param posts_m  level 0, NaN for holes; it must outlive this
     explicit Pyramid(const Array2d<float>& posts_m);
 
+    /// Posts along a side beyond which nothing is drawn: textures have 16384 pages of 256.
+    static constexpr int kMostPosts = 1 << 22;
+
     /// Of a DEM of which only means are in memory.
     /// @param means   as load() makes them of the source: a power of two posts to each
-    /// @param source  where finer levels are read from; both must outlive this
-    /// @throws Error (BadInput) where the file is damaged, also from block()
+    /// @param source  where finer levels are read from; both must outlive this. Of the pieces that
+    ///                are sampled, each takes a quarter of the means' memory at most, or 32 MiB.
+    /// @throws Error (BadInput) where the file is damaged, also from block(), and where it has more
+    ///     than kMostPosts a side
     Pyramid(const Heightfield& means, const Source& source);
 
     int levels() const { return static_cast<int>(sizes_.size()); }
@@ -117,7 +122,7 @@ class Pyramid {
     Level nodes_of_means(const Array2d<float>& means, glm::ivec2 first_mean, int level,
                          glm::ivec2 first, glm::ivec2 count) const;
     Block read_block(int level, glm::ivec2 first, int columns, int rows) const;
-    void sample_errors();
+    void sample_errors(std::int64_t max_nodes);
 
     const Array2d<float>* posts_m_ = nullptr;
     const Source* source_ = nullptr;

@@ -49,13 +49,14 @@ struct Parts {
     std::vector<Part> parts;
 };
 
-/// Cuts a line of posts into `count` parts of `each`, and keeps what lies on a piece.
+/// Cuts a line of posts into parts of `each`, and keeps what of [first_part, end_part) lies on a
+/// piece.
 /// @param begin  of the line, in posts of the piece
 /// @param per    cells in a post
 /// @param cells  of the piece, at that level
-Parts parts_within(double begin, double each, int count, double per, int cells) {
+Parts parts_within(double begin, double each, int first_part, int end_part, double per, int cells) {
     Parts result;
-    for (int i = 0; i < count; ++i) {
+    for (int i = first_part; i < end_part; ++i) {
         const double from = std::max(0.0, (begin + each * i) * per);
         const double to = std::min<double>(cells, (begin + each * (i + 1)) * per);
         // What is below a millionth of a cell is rounding.
@@ -79,13 +80,12 @@ struct Strip {
     std::size_t first = 0, width = 0;  // of their cells
 };
 
-/// As many parts as fit into some memory, one at least.
-std::vector<Strip> strips_of(const Parts& across) {
-    constexpr std::size_t kMostCells = std::size_t{1} << 18;
+/// As many parts as have so many cells, one at least.
+std::vector<Strip> strips_of(const Parts& across, std::size_t most_cells) {
     std::vector<Strip> strips;
     for (std::size_t i = 0; i < across.parts.size(); ++i) {
         const Part& part = across.parts[i];
-        if (strips.empty() || part.end() - strips.back().first > kMostCells)
+        if (strips.empty() || part.end() - strips.back().first > most_cells)
             strips.push_back({i, i, part.first, 0});
         strips.back().end = i + 1;
         strips.back().width = part.end() - strips.back().first;
@@ -107,17 +107,23 @@ bool is_empty(const Window& window) {
 
 /// Makes holes of posts that are not on the Earth.
 void cut_to_earth(const Grid& grid, Array2d<float>& height_m) {
-    parallel_for(0, grid.rows(), std::max(1, (1 << 14) / grid.columns()), [&](int first, int last) {
-        std::vector<glm::dvec2> posts(static_cast<std::size_t>(grid.columns()));
-        std::vector<geo::Geodetic> places(posts.size());
-        for (int row = first; row < last; ++row) {
-            for (std::size_t i = 0; i < posts.size(); ++i)
-                posts[i] = {static_cast<double>(i), row};
-            grid.place(posts, places);
-            for (int column = 0; column < grid.columns(); ++column)
-                if (!std::isfinite(places[static_cast<std::size_t>(column)].lat_rad))
-                    height_m.at(column, row) = kHole;
-        }
+    constexpr int kAtOnce = 1 << 14;  // of a row
+    parallel_for(0, grid.rows(), std::max(1, kAtOnce / grid.columns()), [&](int first, int last) {
+        std::vector<glm::dvec2> posts;
+        std::vector<geo::Geodetic> places;
+        for (int row = first; row < last; ++row)
+            for (int begin = 0; begin < grid.columns();) {
+                const int count = std::min(kAtOnce, grid.columns() - begin);
+                posts.resize(static_cast<std::size_t>(count));
+                places.resize(posts.size());
+                for (int i = 0; i < count; ++i)
+                    posts[static_cast<std::size_t>(i)] = {double(begin) + i, row};
+                grid.place(posts, places);
+                for (int i = 0; i < count; ++i)
+                    if (!std::isfinite(places[static_cast<std::size_t>(i)].lat_rad))
+                        height_m.at(begin + i, row) = kHole;
+                begin += count;
+            }
     });
 }
 
@@ -156,8 +162,8 @@ struct Source::Impl {
     Array2d<float> read_stored(const Window& window) const;
     Array2d<float> read_means(const Window& window, int columns, int rows) const;
     struct Sums;
-    void add_means(const Piece& piece, const Window& window, int columns, int rows, int first_row,
-                   Sums& sums, Progress* progress) const;
+    void add_means(const Piece& piece, const Window& window, int columns, int rows, Sums& sums,
+                   Progress* progress) const;
     Blank blank(const Window& window) const;
 };
 
@@ -237,28 +243,40 @@ Array2d<float> Source::Impl::read_stored(const Window& window) const {
     return height_m;
 }
 
-/// Sums over the parts of a window, in posts of the DEM; of some rows of parts.
+/// Sums over the parts of a window, in posts of the DEM; of some rows and columns of parts.
 struct Source::Impl::Sums {
+    int first_column = 0, first_row = 0;
     Array2d<double> height;  // of valid posts, times area
     Array2d<double> area;    // of them
 };
 
-/// @param first_row  of the parts that are summed
 void Source::Impl::add_means(const Piece& piece, const Window& window, int columns, int rows,
-                             int first_row, Sums& sums, Progress* progress) const {
+                             Sums& sums, Progress* progress) const {
     const double columns_each = window.columns / double(columns);
     const double rows_each = window.rows / double(rows);
     const Level& level = coarsest_level(piece, columns_each, rows_each);
     // Cells of the level in one post.
     const double per_column = level.columns / double(piece.place.columns);
     const double per_row = level.rows / double(piece.place.rows);
-    const auto across = parts_within(window.column - piece.place.column, columns_each, columns,
-                                     per_column, level.columns);
-    const auto down = parts_within(window.row + first_row * rows_each - piece.place.row, rows_each,
-                                   sums.height.height(), per_row, level.rows);
+    const auto across =
+        parts_within(window.column - piece.place.column, columns_each, sums.first_column,
+                     sums.first_column + sums.height.width(), per_column, level.columns);
+    const auto down = parts_within(window.row + sums.first_row * rows_each - piece.place.row,
+                                   rows_each, 0, sums.height.height(), per_row, level.rows);
     if (across.parts.empty() || down.parts.empty()) return;
-    const std::vector<Strip> strips = strips_of(across);
     const bool may_skip = piece.sparse && level.overview < 0;
+    // What is not stored is skipped strip by strip. Tiles that rows of parts have in common are
+    // decoded once: strips are as wide as GDAL's cache has room for their tiles, and are gone down
+    // one after the other.
+    constexpr std::size_t kMostCells = std::size_t{1} << 18, kFewestCells = std::size_t{1} << 13,
+                          kCached = std::size_t{1} << 24;
+    const bool tiled = static_cast<std::size_t>(piece.block_columns) <= kFewestCells / 2;
+    const std::size_t most_cells =
+        may_skip ? kFewestCells
+        : tiled  ? std::clamp(kCached / static_cast<std::size_t>(piece.block_rows), kFewestCells,
+                              kMostCells)
+                 : kMostCells;
+    const std::vector<Strip> strips = strips_of(across, most_cells);
 
     const auto add_rows = [&](int first, int last) {
         std::vector<float> cells;
@@ -267,7 +285,7 @@ void Source::Impl::add_means(const Piece& piece, const Window& window, int colum
         const auto add_strip = [&](void* dataset, int row, const Strip& strip) {
             const Part& lines = down.parts[static_cast<std::size_t>(row)];
             const auto add = [&](std::size_t i, double sum, double weight) {
-                const int column = across.first + static_cast<int>(i);
+                const int column = across.first - sums.first_column + static_cast<int>(i);
                 sums.height.at(column, down.first + row) += sum / (per_column * per_row);
                 sums.area.at(column, down.first + row) += weight / (per_column * per_row);
             };
@@ -315,18 +333,26 @@ void Source::Impl::add_means(const Piece& piece, const Window& window, int colum
                 add(i, sum, weight);
             }
         };
+        const auto tell = [&](const Strip& strip) {
+            if (progress) progress->add(rows_each * double(strip.end - strip.begin) / columns);
+        };
         borrow(piece, [&](void* dataset) {
-            for (int row = first; row < last; ++row) {
+            const int at_once = tiled ? last - first : 1;
+            for (int begin = first; begin < last; begin += at_once)
                 for (const Strip& strip : strips)
-                    add_strip(dataset, row, strip);
-                if (progress) progress->add(rows_each);
-            }
+                    for (int row = begin; row < std::min(last, begin + at_once); ++row) {
+                        add_strip(dataset, row, strip);
+                        tell(strip);
+                    }
         });
     };
     const auto width = static_cast<int>(across.parts.back().end() - across.parts.front().first);
     const int count = static_cast<int>(down.parts.size());
+    // Every thread has a cache of its own.
+    const int block_parts =
+        static_cast<int>(std::min<double>(count, piece.block_rows / (rows_each * per_row)));
     if (piece.threads_pay)
-        parallel_for(0, count, std::max(1, (1 << 17) / width), add_rows);
+        parallel_for(0, count, std::max({1, (1 << 17) / width, block_parts}), add_rows);
     else
         add_rows(0, count);
 }
@@ -340,19 +366,22 @@ Array2d<float> Source::Impl::read_means(const Window& window, int columns, int r
         progress.emplace(about.path + ": reading",
                          static_cast<double>(pieces.size()) * window.rows);
     // Sums take four times the memory of what they become.
-    const int band_rows = std::max(1, (1 << 22) / columns);
-    for (int first_row = 0; first_row < rows; first_row += band_rows) {
-        const int count = std::min(band_rows, rows - first_row);
-        Sums sums{Array2d<double>(columns, count), Array2d<double>(columns, count)};
-        for (const Piece& piece : pieces)
-            add_means(piece, window, columns, rows, first_row, sums,
-                      progress ? &*progress : nullptr);
-        for (int row = 0; row < count; ++row)
-            for (int column = 0; column < columns; ++column)
-                if (sums.area.at(column, row) >= 0.5 * area)
-                    result.at(column, first_row + row) =
-                        static_cast<float>(sums.height.at(column, row) / sums.area.at(column, row));
-    }
+    const int band_columns = std::min(columns, 1 << 20);
+    const int band_rows = std::max(1, (1 << 22) / band_columns);
+    for (int first_row = 0; first_row < rows; first_row += band_rows)
+        for (int first_column = 0; first_column < columns; first_column += band_columns) {
+            const int width = std::min(band_columns, columns - first_column);
+            const int height = std::min(band_rows, rows - first_row);
+            Sums sums{first_column, first_row, Array2d<double>(width, height),
+                      Array2d<double>(width, height)};
+            for (const Piece& piece : pieces)
+                add_means(piece, window, columns, rows, sums, progress ? &*progress : nullptr);
+            for (int row = 0; row < height; ++row)
+                for (int column = 0; column < width; ++column)
+                    if (sums.area.at(column, row) >= 0.5 * area)
+                        result.at(first_column + column, first_row + row) = static_cast<float>(
+                            sums.height.at(column, row) / sums.area.at(column, row));
+        }
     return result;
 }
 
@@ -373,6 +402,8 @@ void settle_earth(const Grid& grid, Description& about, bool& leaves_earth) {
         refuse(about.path, fmt::format("cells so large that beside its middle is no place on the "
                                        "Earth in {}; {}",
                                        grid.crs().name(), kRemedy));
+    if (!(spacing_m.x > 0 && spacing_m.y > 0))
+        refuse(about.path, "cells so small that posts beside each other are at one place");
     if (!leaves_earth) return;
     about.holes_by.emplace_back("earth");
     guess(about, fmt::format("some of its posts are not on the Earth in {}, and are holes",
@@ -483,6 +514,22 @@ Source::Blank Source::blank(const Window& window) const {
 
 int Source::block_rows() const {
     return impl_->tallest_block;
+}
+
+double Source::stored(int column, int row) const {
+    for (auto piece = impl_->pieces.rbegin(); piece != impl_->pieces.rend(); ++piece) {
+        const Window own = overlap({column, row, 1, 1}, piece->place);
+        if (is_empty(own)) continue;
+        double number = 0;
+        float height_m = kHole;
+        impl_->borrow(*piece, [&](void* dataset) {
+            const int x = column - piece->place.column, y = row - piece->place.row;
+            piece->read(dataset, piece->levels.front(), {x, y, 1, 1}, &height_m);
+            number = piece->stored(dataset, x, y);
+        });
+        if (!std::isnan(height_m)) return number;
+    }
+    return std::numeric_limits<double>::quiet_NaN();
 }
 
 Array2d<float> Source::read() const {

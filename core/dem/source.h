@@ -73,6 +73,11 @@ class Source {
     /// All posts, as stored.
     Array2d<float> read() const;
 
+    /// The number that a file stores for a post, as --nodata takes it: before scale, offset and
+    /// unit; of encoded colours the height [m]. Of several files, that of the one on top; NaN where
+    /// there is none.
+    double stored(int column, int row) const;
+
     /// Rows at the top of a window that need not be read, because no file stores or covers them.
     struct Blank {
         int rows = 0;        ///< 0: the first one has to be read

@@ -13,25 +13,6 @@ namespace {
 constexpr std::int64_t kLeastPosts = 1 << 18;
 constexpr std::int64_t kMostPosts = 1 << 23;
 
-void add(Statistics& total, const Statistics& part) {
-    if (part.valid > 0) {
-        total.min_m = total.valid > 0 ? std::min(total.min_m, part.min_m) : part.min_m;
-        total.max_m = total.valid > 0 ? std::max(total.max_m, part.max_m) : part.max_m;
-    }
-    total.valid += part.valid;
-    total.holes += part.holes;
-    total.outliers += part.outliers;
-}
-
-Statistics of_one_height(float height_m, std::int64_t posts) {
-    if (posts == 0) return {};
-    Statistics all = statistics(Array2d<float>(1, 1, height_m));
-    all.valid *= posts;
-    all.holes *= posts;
-    all.outliers *= posts;
-    return all;
-}
-
 /// @param at  where the part's first post is
 void add(Spikes& total, const Spikes& part, const glm::ivec2& at) {
     total.count += part.count;
@@ -40,19 +21,6 @@ void add(Spikes& total, const Spikes& part, const glm::ivec2& at) {
     total.worst_m = part.worst_m;
     total.worst_column = at.x + part.worst_column;
     total.worst_row = at.y + part.worst_row;
-}
-
-/// What looks for a frame inside of a DEM, where its edge may be one. Columns are read only where
-/// the rows may be: of some files they are all of it.
-std::optional<FrameSteps> frame_steps_of(const Source& source) {
-    const int columns = source.grid().columns(), rows = source.grid().rows();
-    FrameEdge edge(source.read({0, 0, 1, 1}, 1, 1).at(0, 0));
-    for (const Window& line : {Window{0, 0, columns, 1}, Window{0, rows - 1, columns, 1},
-                               Window{0, 0, 1, rows}, Window{columns - 1, 0, 1, rows}}) {
-        edge.add(source.read(line, line.columns, line.rows));
-        if (!edge.may_be_frame()) return std::nullopt;
-    }
-    return FrameSteps(edge.height_m());
 }
 
 /// The columns [first, last) of rows that follow each other, each with one more row above and with
@@ -92,8 +60,7 @@ class Strip {
         std::copy(tail_.begin(), tail_.end(), all.begin());
         std::copy(begin.begin(), begin.end(), all.begin() + before * std::ptrdiff_t{all.width()});
         take(all, row - before, before, begin);
-        dem::add(survey_.statistics,
-                 of_one_height(height_m, std::int64_t{rows - shown} * (last_ - first_)));
+        survey_.statistics += statistics(height_m, std::int64_t{rows - shown} * (last_ - first_));
         keep_tail(all);
     }
 
@@ -103,8 +70,8 @@ class Strip {
     /// @param fresh  those after them
     void take(const Array2d<float>& all, int row, int known, const Array2d<float>& fresh) {
         const Window own{first_ - left_, 0, last_ - first_, fresh.height()};
-        dem::add(survey_.statistics, own.column == 0 ? statistics(fresh, own.columns, own.rows)
-                                                     : statistics(part_of(fresh, own)));
+        survey_.statistics += own.column == 0 ? statistics(fresh, own.columns, own.rows)
+                                              : statistics(part_of(fresh, own));
         // A post's neighbours are known once the next row is; the DEM's last one has none.
         const int begin = known > 0 ? known - 1 : 0;
         const bool ends = row + all.height() == source_.grid().rows();
@@ -140,12 +107,47 @@ class Strip {
 
 }  // namespace
 
+std::optional<FrameSteps> frame_steps_of(const Source& source) {
+    constexpr int kAtOnce = 1 << 20;
+    const int columns = source.grid().columns(), rows = source.grid().rows();
+    const auto post = [&](int column, int row) {
+        return source.read({column, row, 1, 1}, 1, 1).at(0, 0);
+    };
+    FrameEdge edge(post(0, 0), 2 * (std::int64_t{columns} + rows));
+    for (const int row : {0, rows - 1})
+        for (const int column : {0, columns - 1})
+            edge.add_corner(post(column, row));
+    for (const int row : {0, rows - 1})
+        for (int column = 0; column < columns && edge.may_be_frame();) {
+            const Window piece{column, row, std::min(kAtOnce, columns - column), 1};
+            if (const Source::Blank blank = source.blank(piece); blank.rows > 0)
+                edge.add(blank.height_m, piece.columns);
+            else
+                edge.add(source.read(piece, piece.columns, 1).row(0));
+            column += piece.columns;
+        }
+    for (const int column : {0, columns - 1})
+        for (int row = 0; row < rows && edge.may_be_frame();) {
+            Window piece{column, row, 1, rows - row};
+            if (const Source::Blank blank = source.blank(piece); blank.rows > 0) {
+                piece.rows = blank.rows;
+                edge.add(blank.height_m, blank.rows);
+            } else {
+                piece.rows = std::min(piece.rows, kAtOnce);
+                const Array2d<float> read = source.read(piece, 1, piece.rows);
+                edge.add({read.data(), read.size()});
+            }
+            row += piece.rows;
+        }
+    return edge.may_be_frame() ? std::optional<FrameSteps>(edge.height_m()) : std::nullopt;
+}
+
 Survey survey(const Source& source, std::int64_t max_posts) {
     const int columns = source.grid().columns(), rows = source.grid().rows();
     Survey result;
     result.spikes.limit_m = find_spikes({}, source.grid().post_spacing_m()).limit_m;
     if (const Source::Blank all = source.blank({0, 0, columns, rows}); all.rows == rows) {
-        result.statistics = of_one_height(all.height_m, std::int64_t{columns} * rows);
+        result.statistics = statistics(all.height_m, std::int64_t{columns} * rows);
         return result;
     }
     std::optional<FrameSteps> frame_steps = frame_steps_of(source);

@@ -22,4 +22,8 @@ struct Survey {
 /// @throws Error (BadInput) where the file is damaged
 Survey survey(const Source& source, std::int64_t max_posts);
 
+/// What looks for a frame inside of a DEM, where its edge may be one. The edge is read in pieces;
+/// columns only where the rows may be a frame's: of some files they are all of it.
+std::optional<FrameSteps> frame_steps_of(const Source& source);
+
 }  // namespace relevo::dem

@@ -74,7 +74,7 @@ Unit unit_of(double metres, std::string_view otherwise_named) {
 
 Unit parse_unit(std::string_view text, std::string_view who) {
     if (const std::optional<Unit> unit = known_unit(text)) return *unit;
-    bad_usage(fmt::format("{}: {}: a unit of height, expected m, ft, us-ft, cm or km", who,
+    bad_usage(fmt::format("{}: {}: a unit of height, expected m, ft, us-ft, cm, mm, dm or km", who,
                           trimmed(text).empty() ? "\"\"" : text));
 }
 

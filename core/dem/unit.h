@@ -8,8 +8,9 @@ namespace relevo::dem {
 
 /// A unit of height.
 struct Unit {
-    std::string name = "m";  ///< as `--unit` writes it: m, ft, us-ft, cm, km; else the file's word
-    double metres = 1;       ///< in one unit
+    std::string name =
+        "m";  ///< as `--unit` writes it: m, ft, us-ft, cm, mm, dm, km; else the file's word
+    double metres = 1;  ///< in one unit
 
     friend bool operator==(const Unit&, const Unit&) = default;
 };
@@ -26,7 +27,7 @@ Unit unit_of(double metres, std::string_view otherwise_named);
 
 /// Reads `--unit`.
 /// @param who  what the error begins with, for example "--unit"
-/// @throws Error (Usage) `who: furlong: a unit of height, expected m, ft, us-ft, cm or km`
+/// @throws Error (Usage) `who: furlong: a unit of height, expected m, ft, us-ft, cm, mm, dm or km`
 Unit parse_unit(std::string_view text, std::string_view who);
 
 }  // namespace relevo::dem

@@ -171,6 +171,10 @@ TEST(BadUsage, EachHasItsMessage) {
         expect_no_picture({"capture", bundled_dem(), "-o", out_png(), option, value}, 2,
                           std::string(option) + ": expected a whole number but got " + value +
                               "; see relevo capture --help");
+    for (const char* band : {"0", "-1"})
+        expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--band", band}, 2,
+                          std::string("--band: expected 1 to 2147483647 but got ") + band +
+                              "; see relevo capture --help");
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--band", "4294967297"}, 2,
                       "--band: expected a whole number of at most 2147483647 but got 4294967297; "
                       "see relevo capture --help");

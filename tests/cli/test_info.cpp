@@ -1,7 +1,9 @@
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
@@ -213,6 +215,161 @@ TEST(InfoVerb, SparseFilesAreReadWhereTheyStoreSomething) {
     EXPECT_NE(info.out.find("heights    321.0 to 321.0 m\n"), std::string::npos) << info.out;
 }
 
+/// `relevo`, and the most memory that it had.
+struct Measured {
+    Result run;
+    int peak_mib = 0;
+    double processor_s = 0;
+};
+
+Measured measured(std::vector<std::string> arguments) {
+    arguments.insert(
+        arguments.begin(),
+        {"-c",
+         "import resource, subprocess, sys\n"
+         "status = subprocess.run(sys.argv[1:]).returncode\n"
+         "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
+         "print(used.ru_maxrss // 1024, used.ru_utime + used.ru_stime, file=sys.stderr)\n"
+         "sys.exit(status if status >= 0 else 128 - status)\n",
+         (build_dir() / "bin/relevo").string()});
+    Measured result{run("/usr/bin/env", [&] {
+        arguments.insert(arguments.begin(), "python3");
+        return arguments;
+    }())};
+    std::string& err = result.run.err;
+    const std::size_t line = err.rfind('\n', err.size() - 2) + 1;
+    result.peak_mib = std::atoi(err.c_str() + line);
+    result.processor_s = std::atof(err.c_str() + err.find(' ', line));
+    err.resize(line);
+    return result;
+}
+
+TEST(DemOptions, MemoryHoldsOfDemsOfAnySize) {
+    // 75 GiB of heights, of which the file stores some 25 MiB.
+    Raster raster;
+    raster.type = "Int16";
+    raster.crs = "EPSG:4326";
+    raster.columns = raster.rows = 200'000;
+    raster.geotransform = {{0, 0.0001, 0, 20, 0, -0.0001}};
+    raster.nodata = -9999;
+    std::vector<std::array<double, 3>> posts;
+    for (int i = 0; i < 400; ++i)
+        posts.push_back({100'000.0 + i * 21, 100'000.0 + i * 17, 300.0 + i});
+    std::vector<std::string> files;
+    for (const char* compression : {"NONE", "DEFLATE"}) {
+        raster.options = {"TILED=YES", "SPARSE_OK=YES", std::string("COMPRESS=") + compression};
+        files.push_back(
+            write_sparse_raster(dir() / (std::string(compression) + ".tif"), raster, posts));
+    }
+    const std::string csv = (dir() / "horizon.csv").string(), png = (dir() / "sparse.png").string();
+    // The program itself has 60 MiB, and 600 with a software renderer at work.
+    struct Case {
+        std::vector<std::string> arguments;
+        int most_mib;
+    };
+    for (const std::string& file : files)
+        for (const Case& c :
+             {Case{{"info", file}, 800}, Case{{"info", file, "--memory", "64"}, 600},
+              Case{{"sun", "horizon", file, "--at", "10,10", "-o", csv, "--overwrite"}, 900},
+              Case{{"sun", "horizon", file, "--at", "10,10", "-o", csv, "--overwrite", "--memory",
+                    "64"},
+                   500},
+              Case{{"capture", file, "-o", png, "--overwrite", "--device", "software", "--size",
+                    "320x240"},
+                   2200},
+              Case{{"capture", file, "-o", png, "--overwrite", "--device", "software", "--size",
+                    "320x240", "--memory", "64"},
+                   1300},
+              Case{{"capture", file, "-o", png, "--overwrite", "--device", "software", "--size",
+                    "320x240", "--memory", "1"},
+                   1300}}) {
+            std::vector<std::string> arguments{"-q"};
+            arguments.insert(arguments.end(), c.arguments.begin(), c.arguments.end());
+            const Measured found = measured(arguments);
+            const std::string what = fmt::format("{}", fmt::join(c.arguments, " "));
+            fmt::print("[ memory ] {} MiB, {:.1f} s: {}\n", found.peak_mib, found.processor_s,
+                       what);
+            EXPECT_EQ(found.run.status, 0) << what << "\n" << found.run.err;
+            EXPECT_LT(found.peak_mib, c.most_mib) << what;
+            EXPECT_LT(found.processor_s, 60) << what;
+        }
+}
+
+TEST(DemOptions, ClaimsAreDrawnOrRefusedSoon) {
+    // Nothing at all in so many posts, and cells as wide as the program takes them.
+    const std::filesystem::path vrt = dir() / "everything.vrt";
+    std::ofstream(vrt)
+        << "<VRTDataset rasterXSize=\"2147483647\" rasterYSize=\"2147483647\"><SRS>EPSG:4326</SRS>"
+           "<GeoTransform>0,0.00000001,0,1,0,-0.00000001</GeoTransform>"
+           "<VRTRasterBand dataType=\"Float32\" band=\"1\"/></VRTDataset>";
+    Raster raster;
+    raster.type = "Int16";
+    raster.crs = "EPSG:4326";
+    raster.columns = 300'000'000;
+    raster.rows = 2;
+    raster.geotransform = {{0, 1e-7, 0, 1, 0, -1e-7}};
+    raster.options = {"TILED=YES", "SPARSE_OK=YES", "BLOCKXSIZE=65536"};
+    const std::string narrow =
+        write_sparse_raster(dir() / "narrow.tif", raster, {{150'000'000, 1, 77}});
+    const std::string png = (dir() / "claim.png").string(), csv = (dir() / "claim.csv").string();
+    struct Case {
+        std::vector<std::string> arguments;
+        int status;
+        std::string message;
+    };
+    for (const Case& c :
+         {Case{{"info", vrt.string()}, 0, ""},
+          Case{{"capture", vrt.string(), "-o", png, "--device", "software"},
+               3,
+               "dem::Pyramid: " + vrt.string() +
+                   ": 2147483647 x 2147483647 posts, expected at most 4194304 a side to be drawn; "
+                   "cut it up with gdal_translate"},
+          Case{
+              {"sun", "horizon", vrt.string(), "--at", "-9.9,10", "-o", csv, "--overwrite"}, 0, ""},
+          Case{{"info", narrow}, 0, ""},
+          Case{{"capture", narrow, "-o", png, "--device", "software"},
+               3,
+               "dem::load: " + narrow +
+                   ": memory for its heights, expected at most 1024 MiB but got 2289: 300000000 x "
+                   "2 posts are too narrow for means; pass --memory 2289, or cut it up with "
+                   "gdal_translate"},
+          Case{{"sun", "horizon", narrow, "--at", "0.99999990,15.00000004", "-o", csv,
+                "--overwrite"},
+               0,
+               ""}}) {
+        std::vector<std::string> arguments{"-q"};
+        arguments.insert(arguments.end(), c.arguments.begin(), c.arguments.end());
+        const Measured found = measured(arguments);
+        const std::string what = fmt::format("{}", fmt::join(c.arguments, " "));
+        fmt::print("[ memory ] {} MiB, {:.1f} s: {}\n", found.peak_mib, found.processor_s, what);
+        EXPECT_EQ(found.run.status, c.status) << what << "\n" << found.run.err;
+        EXPECT_EQ(found.run.err, c.message.empty() ? "" : "relevo: error: " + c.message + "\n");
+        EXPECT_LT(found.peak_mib, 1600) << what;
+        EXPECT_LT(found.processor_s, 60) << what;
+    }
+}
+
+TEST(DemOptions, MemoryIsInMiB) {
+    // Two rows cannot be averaged: they are kept whole or not at all. 131072 x 2 heights of 4 bytes
+    // are 1 MiB, 1.049 MB.
+    Raster raster;
+    raster.crs = "EPSG:4326";
+    raster.rows = 2;
+    raster.geotransform = {{7, 1e-5, 0, 46, 0, -1e-5}};
+    const auto of_columns = [&](int columns) {
+        raster.columns = columns;
+        return relevo({"-q", "info", write_raster(dir() / "mib.tif", raster), "--memory", "1",
+                       "--time", "sunrise", "--date", "2026-06-21", "--tz", "UTC"});
+    };
+    const Result fits = of_columns(131'072);
+    EXPECT_EQ(fits.status, 0) << fits.err;
+    const Result more = of_columns(131'073);
+    EXPECT_EQ(more.status, 3);
+    EXPECT_NE(more.err.find("memory for its heights, expected at most 1 MiB but got 2: "),
+              std::string::npos)
+        << more.err;
+}
+
 TEST(DemOptions, TakeTheirValues) {
     Raster picture;
     picture.driver = "PNG";
@@ -248,7 +405,7 @@ TEST(DemOptions, WrongOnesHaveTheirMessages) {
         {{"--bounds", "1,2,3"}, 2, "--bounds: 1,2,3: expected WEST,SOUTH,EAST,NORTH in degrees"},
         {{"--unit", "furlong"},
          2,
-         "--unit: furlong: a unit of height, expected m, ft, us-ft, cm or km"},
+         "--unit: furlong: a unit of height, expected m, ft, us-ft, cm, mm, dm or km"},
         {{"--crs", "EPSG:999999"},
          3,
          "dem::load: " + bundled_dem() +

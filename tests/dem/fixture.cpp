@@ -112,13 +112,25 @@ std::string write_sparse_raster(const std::filesystem::path& path, const Raster&
     return path.string();
 }
 
-void add_overviews(const std::string& path, std::vector<int> factors) {
-    GDALDatasetH dataset = GDALOpen(path.c_str(), GA_Update);
+namespace {
+
+void build_overviews(const std::string& path, std::vector<int> factors, GDALAccess access) {
+    GDALDatasetH dataset = GDALOpen(path.c_str(), access);
     must(dataset, "cannot be opened");
     must(GDALBuildOverviews(dataset, "AVERAGE", static_cast<int>(factors.size()), factors.data(), 0,
                             nullptr, GDALDummyProgress, nullptr) == CE_None,
          "overviews");
     GDALClose(dataset);
+}
+
+}  // namespace
+
+void add_overviews(const std::string& path, std::vector<int> factors) {
+    build_overviews(path, std::move(factors), GA_Update);
+}
+
+void add_outer_overviews(const std::string& path, std::vector<int> factors) {
+    build_overviews(path, std::move(factors), GA_ReadOnly);
 }
 
 void cut_short(const std::string& path, std::uintmax_t bytes) {

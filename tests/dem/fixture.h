@@ -47,6 +47,9 @@ std::string write_sparse_raster(const std::filesystem::path& path, const Raster&
 /// Adds overviews, averages of so many posts each way, to a raster.
 void add_overviews(const std::string& path, std::vector<int> factors);
 
+/// The same in a file beside it, which is not written to: "a.tif.ovr".
+void add_outer_overviews(const std::string& path, std::vector<int> factors);
+
 /// Keeps the first `bytes` of a file.
 void cut_short(const std::string& path, std::uintmax_t bytes);
 

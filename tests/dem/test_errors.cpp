@@ -1,4 +1,7 @@
+#include <cmath>
 #include <fstream>
+#include <limits>
+#include <optional>
 
 #include <cpl_error.h>
 #include <fmt/format.h>
@@ -200,16 +203,52 @@ TEST(LoadError, UnknownUnit) {
     raster.unit = "furlong";
     EXPECT_EQ(refusal("furlong.tif", raster),
               "band 1 is in \"furlong\", expected a unit of height; if these are heights, pass "
-              "--unit m, ft, us-ft, cm or km");
+              "--unit m, ft, us-ft, cm, mm, dm or km");
     EXPECT_NO_THROW(load((folder() / "furlong.tif").string(), {.unit = "m"}));
     const std::string path = write_raster(folder() / "unit.tif", {});
     EXPECT_EQ(test::error_of([&] { load(path, {.unit = "parsec"}); }),
-              "exit 2: --unit: parsec: a unit of height, expected m, ft, us-ft, cm or km");
+              "exit 2: --unit: parsec: a unit of height, expected m, ft, us-ft, cm, mm, dm or km");
 }
 
 /// A photograph, as far as neighbours go: each colour is its own affair.
 double photograph(int column, int row, int band) {
     return (column * 97 + row * 61 + band * 131 + column * row * 7) % 256;
+}
+
+TEST(LoadError, NumbersThatMakeNoHeights) {
+    const auto refusal = [](std::optional<double> scale, std::optional<double> offset) {
+        Raster raster;
+        raster.scale = scale;
+        raster.offset = offset;
+        const std::string path = write_raster(folder() / "scaled.tif", raster);
+        const std::string message = test::error_of([&] { load(path); });
+        const std::string begin = "exit 3: dem::load: " + path + ": ";
+        return message.starts_with(begin) ? message.substr(begin.size()) : message;
+    };
+    const auto what = [](const char* scale, const char* offset) {
+        return std::string("a scale of ") + scale + " and an offset of " + offset +
+               ", which make no heights; the file is damaged";
+    };
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(refusal(0, {}), what("0", "0"));
+    EXPECT_EQ(refusal(std::nan(""), {}), what("nan", "0"));
+    EXPECT_EQ(refusal(kInfinity, 5), what("inf", "5"));
+    EXPECT_EQ(refusal({}, std::nan("")), what("1", "nan"));
+    EXPECT_EQ(refusal(2, 1e308), what("2", "1e+308"));
+    EXPECT_EQ(refusal(-1, -100), "");
+    // A word of a unit without end.
+    Raster raster;
+    raster.unit = std::string(5000, 'q');
+    EXPECT_LT(test::error_of([&] { load(write_raster(folder() / "word.tif", raster)); }).size(),
+              400u);
+    // Cells that doubles cannot tell apart.
+    raster = {};
+    raster.crs = "EPSG:4326";
+    raster.geotransform = {{7, 1e-17, 0, 46, 0, -1e-17}};
+    const std::string path = write_raster(folder() / "small_cells.tif", raster);
+    EXPECT_EQ(test::error_of([&] { load(path); }),
+              "exit 3: dem::load: " + path +
+                  ": cells so small that posts beside each other are at one place");
 }
 
 TEST(LoadError, Picture) {

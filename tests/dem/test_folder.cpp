@@ -79,6 +79,50 @@ TEST(Folder, WhatIsLeftOutIsSaid) {
                                            "index.html, notes.txt, ..."));
 }
 
+TEST(Folder, WhatBelongsToARasterIsNone) {
+    const std::filesystem::path dir = made("beside");
+    const auto text = [&](const std::string& name, const std::string& content) {
+        std::ofstream(dir / name) << content;
+    };
+    for (const int i : {0, 1, 2}) {
+        const std::string name = "t" + std::to_string(i);
+        Raster raster = tile(i);
+        raster.columns = raster.rows = 300;
+        raster.geotransform = {{500000 + 9000.0 * i, 30, 0, 5200000, 0, -30}};
+        // Overviews beside it, as gdaladdo -ro and as other programs name them.
+        const std::string path = write_raster(dir / (name + ".tif"), raster);
+        test::add_outer_overviews(path, {2, 4});
+        std::filesystem::copy_file(path + ".ovr", dir / (name + ".ovr"));
+        text(name + ".tfw",
+             "30\n0\n0\n-30\n" + std::to_string(500015 + 9000 * i) + ".0000001\n5199985\n");
+        text(name + ".prj", "PROJCS[\"not read\"]");
+        text(name + ".tif.aux.xml",
+             "<PAMDataset><PAMRasterBand band=\"1\"><Metadata><MDI key=\"STATISTICS_MAXIMUM\">"
+             "9</MDI></Metadata></PAMRasterBand></PAMDataset>");
+        text(name + ".aux.xml", "<PAMDataset/>");
+        text(name + ".tif.xml", "<metadata/>");
+        text(name + ".hdr", "NCOLS 300\nNROWS 300\nNBITS 32\n");
+        text(name + ".txt", "flown in June");
+        text(name + ".tif.md5", "d41d8cd98f00b204e9800998ecf8427e");
+        // A description of it for catalogues, which GDAL has a driver for.
+        text(name + ".json",
+             "{\"type\": \"Feature\", \"stac_version\": \"1.0.0\", \"stac_extensions\": "
+             "[\"https://stac-extensions.github.io/projection/v1.0.0/schema.json\"], "
+             "\"properties\": {\"proj:epsg\": 32632, \"proj:transform\": [30, 0, 500000, 0, "
+             "-30, 5200000]}, \"assets\": {\"data\": {\"href\": \"" +
+                 name + ".tif\"}}}");
+    }
+    text("README", "Tiles.");
+    text("README.md", "Tiles.");
+    const Opened opened(dir);
+    EXPECT_THAT(opened.files, ElementsAre("t0.tif", "t1.tif", "t2.tif"));
+    EXPECT_THAT(opened.said, IsEmpty());
+    const Heightfield f = load(dir.string());
+    EXPECT_EQ(f.grid.columns(), 900);
+    EXPECT_EQ(f.about.statistics.holes, 0);
+    EXPECT_THAT(f.about.guesses, IsEmpty());
+}
+
 TEST(Folder, WhatCannotBeOneDemHasItsMessage) {
     const auto refusal = [](const std::filesystem::path& dir) {
         return test::error_of([&] { load(dir.string()); });

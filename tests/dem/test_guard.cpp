@@ -168,6 +168,38 @@ TEST(Guard, PipesAndDevicesAreNotWaitedFor) {
     EXPECT_EQ(refusal((folder() / "zero.tif").string()), std::string("a device") + kRemedy);
 }
 
+TEST(Guard, AnArchiveBesideItsHeaderIsAnArchive) {
+    // A header makes cells of whatever has its name before the dot.
+    Raster raster;
+    raster.driver = "EHdr";
+    raster.columns = raster.rows = 60;
+    const std::string cells = write_raster(folder() / "taken.bil", raster);
+    EXPECT_NO_THROW(load(cells));
+    ASSERT_EQ(std::system(("cd " + folder().string() +
+                           " && python3 -m zipfile -c taken.zip taken.bil taken.hdr taken.prj && "
+                           "cp taken.zip both.zip && head -c 20000 /dev/zero > zeros && "
+                           "python3 -m zipfile -c none.zip zeros && "
+                           "cp none.zip other.bil && cp taken.hdr other.hdr && "
+                           "cp taken.prj other.prj && cp none.zip other.zip && "
+                           "printf '\\037\\213\\010\\000' > gz.bil && "
+                           "head -c 30000 /dev/zero >> gz.bil && cp taken.hdr gz.hdr && "
+                           "cp taken.prj gz.prj")
+                              .c_str()),
+              0);
+    const std::string archive =
+        "an archive or a compressed file, expected a raster, or a .zip, .tar or .gz of one; unpack "
+        "it first";
+    EXPECT_EQ(refusal((folder() / "other.bil").string()), archive);
+    EXPECT_EQ(refusal((folder() / "other.zip").string()), archive);
+    EXPECT_EQ(refusal((folder() / "gz.bil").string()), archive);
+    // Beside the header of what is in it: what is in it.
+    EXPECT_EQ(load((folder() / "taken.zip").string()).height_m, load(cells).height_m);
+    // Heights may begin like one.
+    raster.type = "Byte";
+    raster.value = [](int column, int row, int) { return row > 0 ? 7 : "PK\3\5"[column % 4]; };
+    EXPECT_EQ(load(write_raster(folder() / "pk.bil", raster)).about.statistics.valid, 3600);
+}
+
 TEST(Guard, TheSystemsReasonIsSaid) {
     const std::string loop = (folder() / "loop.tif").string();
     std::filesystem::create_symlink("loop.tif", loop);

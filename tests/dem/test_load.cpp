@@ -2,6 +2,7 @@
 #include <fstream>
 #include <limits>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "base/units.h"
@@ -388,6 +389,50 @@ TEST(Load, HeightsThatTheEarthHasNotMayBeInAnotherUnit) {
     spike.value = [](int column, int row, int) { return column + row == 0 ? 9500.0 : 500; };
     EXPECT_THAT(loaded("one_spike.tif", spike).about.guesses.front(),
                 testing::EndsWith("--unit sets the unit"));
+}
+
+TEST(Load, TheAdviceOnAFrameIsInStoredNumbers) {
+    int count = 0;
+    const auto advised = [&](const Raster& like, double frame, double inside,
+                             LoadOptions options = {}) {
+        Raster raster = like;
+        raster.columns = raster.rows = 20;
+        raster.value = [=](int column, int row, int) {
+            return column < 2 || row < 2 || column > 17 || row > 17 ? frame : inside + column;
+        };
+        const std::string path =
+            write_raster(folder() / fmt::format("frame{}.tif", ++count), raster);
+        const Heightfield f = load(path, options);
+        EXPECT_EQ(f.about.statistics.holes, 0);
+        std::string said;
+        for (const std::string& sentence : f.about.guesses)
+            if (sentence.starts_with("the edge is ")) said = sentence;
+        const std::string begin = "--nodata ", end = " makes it a hole";
+        const std::size_t at = said.find(begin) + begin.size();
+        if (said.empty() || !said.ends_with(end)) return "none: " + said;
+        const std::string text = said.substr(at, said.size() - end.size() - at);
+        // It does what it is said to do.
+        options.nodata = std::stod(text);
+        EXPECT_EQ(load(path, options).about.statistics.holes, 20 * 20 - 16 * 16) << text;
+        return text;
+    };
+    EXPECT_EQ(advised({}, 700, 2000), "700");
+    EXPECT_EQ(advised({.unit = "ft"}, 700, 2000), "700");
+    EXPECT_EQ(advised({}, 700, 2000, {.unit = "ft"}), "700");
+    EXPECT_EQ(advised({}, 328.084, 2000, {.unit = "us-ft"}), "328.084");
+    EXPECT_EQ(advised({}, 8191.3125, 2000, {.unit = "ft"}), "8191.3125");
+    // Height = (stored * scale + offset) feet.
+    EXPECT_EQ(advised({.type = "Int16", .unit = "ft", .scale = 0.5, .offset = 100}, -321, 5000),
+              "-321");
+    EXPECT_EQ(advised({.type = "Int32", .unit = "cm", .offset = 10}, 1'234'567, 200'000),
+              "1234567");
+    // Depths.
+    Raster depths;
+    depths.geotransform = {{9, 0.001, 0, 47, 0, -0.001}};
+    depths.crs = "EPSG:4326+5831";
+    depths.type = "Int16";
+    depths.offset = 5;
+    EXPECT_EQ(advised(depths, 12, 300), "12");
 }
 
 TEST(Load, HgtIsAboveEgm96) {

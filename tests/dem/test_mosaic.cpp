@@ -199,6 +199,42 @@ TEST(Mosaic, GapsAreHolesAndSaid) {
                             "hole"));
 }
 
+TEST(Mosaic, FilesOnDifferentContinentsAreWarnedOf) {
+    std::vector<std::string> warned;
+    const auto warnings = [&](const Paths& paths) {
+        warned.clear();
+        log::set_sink([&](log::Level level, std::string_view text) {
+            if (level == log::Level::Warning) warned.emplace_back(text);
+        });
+        const Source source = Source::open(paths);
+        log::set_sink({});
+        EXPECT_EQ(source.description().warnings, warned);
+        return warned;
+    };
+    // A quarter of a degree each, in the Alps and in the Andes.
+    Raster alps;
+    alps.crs = "EPSG:4326";
+    alps.columns = alps.rows = 90;
+    alps.geotransform = {{8, 1 / 360.0, 0, 46.5, 0, -1 / 360.0}};
+    Raster andes = alps;
+    andes.geotransform = {{-70, 1 / 360.0, 0, -32.5, 0, -1 / 360.0}};
+    const std::string here = write_raster(folder() / "alps.tif", alps);
+    const std::string there = write_raster(folder() / "andes.tif", andes);
+    const std::string said = here + " and " + there +
+                             " are 11727 km apart: the files cover 0.002 % of the DEM that they "
+                             "make, the rest is one hole; are they meant to be one DEM?";
+    EXPECT_THAT(warnings({here, there}), ElementsAre(said));
+    EXPECT_THAT(Source::open(Paths{here, there}).description().assumptions, Contains(said));
+    // Of three, those two.
+    Raster beside = alps;
+    beside.geotransform = {{8.25, 1 / 360.0, 0, 46.5, 0, -1 / 360.0}};
+    const std::string third = write_raster(folder() / "beside.tif", beside);
+    ASSERT_EQ(warnings({third, there, here}).size(), 1u);
+    EXPECT_THAT(warned.front(), testing::HasSubstr(there));
+    EXPECT_THAT(warned.front(), testing::HasSubstr("0.003 %"));
+    EXPECT_THAT(warnings({here, third}), testing::IsEmpty());
+}
+
 TEST(Mosaic, MeansAreThoseOfTheWhole) {
     // The same heights as one file and as four tiles, one with an overview.
     const auto rough = [](int c, int r) { return 400 + (c * 37 + r * 91) % 211 + 0.5 * c; };

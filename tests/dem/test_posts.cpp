@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -110,6 +111,51 @@ TEST(Posts, NoPostOfABoxIsAboveItsBound) {
         }
     // A bound that is no use would be slow: far from the summit and the holes it is near.
     EXPECT_LT(dem.few.bound_m(100, 120, 300, 310), 1140);
+}
+
+TEST(Posts, BoundsAreTheSameWhereABlockIsMoreThanMemoryHolds) {
+    const std::string path = write_raster(folder() / "blocks.tif", rough(1301, 715));
+    const Source source = Source::open(path);
+    const Heightfield field = load(path);
+    // So few that a block has 128 and more posts a side, and is gone through in parts.
+    const Posts few(source, 264);
+    EXPECT_EQ(few.about().statistics, field.about.statistics);
+    for (int row = 0; row < 714; row += 128)
+        for (int column = 0; column < 1300; column += 128) {
+            float highest_m = -std::numeric_limits<float>::infinity();
+            bool hole = false;
+            for (int r = row; r <= std::min(row + 128, 714); ++r)
+                for (int c = column; c <= std::min(column + 128, 1300); ++c) {
+                    hole = hole || std::isnan(field.height_m.at(c, r));
+                    highest_m = std::max(highest_m, field.height_m.at(c, r));
+                }
+            EXPECT_EQ(few.bound_m(column, column, row, row), hole ? 4000.25f : highest_m)
+                << column << " " << row;
+        }
+}
+
+TEST(Posts, WhatAFileDoesNotStoreIsNotRead) {
+    Raster raster;
+    raster.type = "Int16";
+    raster.crs = "EPSG:4326";
+    raster.columns = raster.rows = 200'000;
+    raster.geotransform = {{0, 0.0001, 0, 20, 0, -0.0001}};
+    raster.options = {"TILED=YES", "SPARSE_OK=YES", "BLOCKXSIZE=1024", "BLOCKYSIZE=1024"};
+    for (const bool holes : {true, false}) {
+        raster.nodata = holes ? std::optional(-9999.0) : std::nullopt;
+        const Source source = Source::open(
+            test::write_sparse_raster(folder() / "sparse.tif", raster, {{123'456, 77'777, 321}}),
+            {.no_nodata = !holes});
+        for (const std::int64_t max_posts : {1 << 18, 1 << 22}) {
+            const Posts posts(source, max_posts);
+            const std::int64_t all = 200'000LL * 200'000;
+            EXPECT_EQ(posts.about().statistics, holes ? (Statistics{321, 321, 1, all - 1, 0})
+                                                      : (Statistics{0, 321, all, 0, 0}));
+            EXPECT_EQ(posts.bound_m(123'456, 123'456, 77'777, 77'777), 321);
+            EXPECT_EQ(posts.bound_m(5, 5, 5, 5), holes ? 321 : 0);
+            EXPECT_EQ(posts.bound_m(199'990, 199'998, 199'990, 199'998), holes ? 321 : 0);
+        }
+    }
 }
 
 TEST(Posts, OfSeveralFilesAreThoseOfOne) {

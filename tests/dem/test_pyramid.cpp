@@ -214,6 +214,59 @@ TEST(Pyramid, LevelsThatAreReadAreThoseInMemory) {
     }
 }
 
+/// A DEM so much larger than memory that pieces of its posts tell of its finest levels alone, and
+/// what is known of coarser ones comes from means.
+TEST(Pyramid, LevelsFarFromThePostsAreKnownByMeans) {
+    constexpr int kSide = 5000, kReduction = 32;
+    test::Raster raster{.type = "Int16", .columns = kSide, .rows = kSide};
+    raster.value = [](int column, int row, int) {
+        return std::floor(2000 + 900 * std::sin(column * 0.0021) * std::cos(row * 0.0017) +
+                          90 * std::sin(column * 0.031 + row * 0.02) +
+                          (column * 31 + row * 17) % 23);
+    };
+    const std::string path = test::write_raster(test::scratch_dir("pyramid") / "large.tif", raster);
+    const Source source = Source::open(path);
+    const Heightfield whole = load(path), means = load(source, 160 * 160);
+    ASSERT_EQ(means.reduction, kReduction);
+    for (int row = 0; row < means.height_m.height(); row += 5)
+        for (int column = 0; column < means.height_m.width(); column += 5) {
+            double sum = 0;
+            for (int y = 0; y < kReduction; ++y)
+                for (int x = 0; x < kReduction; ++x)
+                    sum += whole.height_m.at(column * kReduction + x, row * kReduction + y);
+            ASSERT_NEAR(means.height_m.at(column, row), sum / (kReduction * kReduction), 1e-3);
+        }
+    const Pyramid in_memory(whole.height_m), read(means, source);
+    ASSERT_EQ(read.first_in_memory(), 6);
+    for (int level = 0; level < read.levels(); ++level) {
+        const double off_m = in_memory.error_m(level, &Pyramid::Bounds::rms_m, 1);
+        const double known_m = read.error_m(level, &Pyramid::Bounds::rms_m, 1);
+        fmt::print("[ pyramid ] level {}: {:.2f} m off the posts, known as {:.2f} m\n", level,
+                   off_m, known_m);
+        EXPECT_GE(known_m, 0.7 * off_m);
+        EXPECT_LE(known_m, 1.5 * off_m + 1e-6);
+        EXPECT_GE(read.error_m(level, &Pyramid::Bounds::error_m, 1),
+                  0.7 * in_memory.error_m(level, &Pyramid::Bounds::error_m, 1));
+        // Nodes read and nodes in memory, in the middle and at the far rim.
+        const glm::ivec2 size = read.size(level);
+        for (const glm::ivec2 first : {size / 2 - 5, size - 6}) {
+            const auto a = read.block(level, first, 9, 9), b = in_memory.block(level, first, 9, 9);
+            for (int y = 0; y < 9; ++y)
+                for (int x = 0; x < 9; ++x)
+                    ASSERT_NEAR(a.height_m.at(x, y), b.height_m.at(x, y), 1e-3 + 3 * off_m)
+                        << level;
+        }
+    }
+    // No post is outside of what its tile is said to hold.
+    for (int y = 0; y < read.tiles(6).y; ++y)
+        for (int x = 0; x < read.tiles(6).x; ++x) {
+            const auto bounds = read.bounds(6, {x, y});
+            const auto exact = in_memory.bounds(6, {x, y});
+            EXPECT_LE(bounds.lowest_m, exact.lowest_m);
+            EXPECT_GE(bounds.highest_m, exact.highest_m);
+        }
+}
+
 TEST(Pyramid, NodesOfMeansLieOnTheirPosts) {
     // On a plane every mean is exact where its posts have their middle.
     const std::string path =

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <thread>
 
@@ -186,6 +187,66 @@ TEST(Read, ManyThreadsMayReadAtOnce) {
             });
     }
     EXPECT_EQ(wrong, std::vector<int>(6, 0));
+}
+
+TEST(Read, MeansOfWideRastersAreThoseOfTheirPosts) {
+    // Wider than what is summed up at once, in tiles and in strips; parts of no whole posts too.
+    for (const bool tiled : {true, false}) {
+        Raster raster;
+        raster.type = "Int16";
+        raster.columns = 2'400'000;
+        raster.rows = 8;
+        raster.crs = "EPSG:4326";
+        raster.geotransform = {{0, 1e-5, 0, 1, 0, -1e-5}};
+        raster.nodata = -9999;
+        raster.value = [](int column, int row, int) {
+            return column % 7777 < 3 ? -9999.0 : (column * 31LL + row * 17) % 4099;
+        };
+        if (tiled) raster.options = {"TILED=YES", "COMPRESS=DEFLATE", "BLOCKYSIZE=16"};
+        const Source source = Source::open(write_raster(folder() / "wide.tif", raster));
+        const Array2d<float> posts = source.read();
+        for (const int columns : {1'200'000, 1'000'001, 17}) {
+            const Array2d<float> means = source.read({0, 0, raster.columns, 8}, columns, 2);
+            const double each = raster.columns / double(columns);
+            for (int row = 0; row < 2; ++row)
+                for (int column = 0; column < columns; column += 1 + columns / 20'000) {
+                    const double expected =
+                        mean_of(posts, column * each, (column + 1) * each, row * 4, row * 4 + 4);
+                    if (std::isnan(expected))
+                        ASSERT_TRUE(std::isnan(means.at(column, row))) << column;
+                    else
+                        ASSERT_NEAR(means.at(column, row), expected, 0.01) << column;
+                }
+        }
+    }
+}
+
+TEST(Read, MeansOfWhatIsHardlyStoredAreThoseOfItsPosts) {
+    Raster raster;
+    raster.type = "Int16";
+    raster.columns = raster.rows = 20'000;
+    raster.crs = "EPSG:4326";
+    raster.geotransform = {{0, 1e-4, 0, 10, 0, -1e-4}};
+    raster.options = {"TILED=YES", "SPARSE_OK=YES", "COMPRESS=DEFLATE"};
+    std::vector<std::array<double, 3>> stored;
+    for (int i = 0; i < 900; ++i)
+        stored.push_back({8000.0 + i * 3, 12'345.0 + i % 60, 100.0 + i});
+    const Source source = Source::open(
+        test::write_sparse_raster(folder() / "hardly.tif", raster, stored), {.no_nodata = true});
+    const Window window{7900, 12'300, 3000, 150};
+    const Array2d<float> posts = source.read(window, window.columns, window.rows);
+    const Array2d<float> few = source.read(window, 300, 15);
+    const Array2d<float> all = source.read({0, 0, 20'000, 20'000}, 2000, 2000);
+    double sum = 0;
+    for (int row = 0; row < 15; ++row)
+        for (int column = 0; column < 300; ++column) {
+            const double expected =
+                mean_of(posts, column * 10, column * 10 + 10, row * 10, row * 10 + 10);
+            ASSERT_NEAR(few.at(column, row), expected, 1e-3);
+            ASSERT_EQ(all.at(790 + column, 1230 + row), few.at(column, row));
+            sum += expected;
+        }
+    EXPECT_NEAR(sum * 100, 900 * 100 + 899 * 450, 1);
 }
 
 }  // namespace

@@ -46,9 +46,9 @@ TEST(Unit, TheTwoFeetAreToldApart) {
 
 TEST(Unit, ErrorsNameTheUnits) {
     EXPECT_EQ(test::error_of([] { parse_unit("furlong", "--unit"); }),
-              "exit 2: --unit: furlong: a unit of height, expected m, ft, us-ft, cm or km");
+              "exit 2: --unit: furlong: a unit of height, expected m, ft, us-ft, cm, mm, dm or km");
     EXPECT_EQ(test::error_of([] { parse_unit(" ", "--unit"); }),
-              "exit 2: --unit: \"\": a unit of height, expected m, ft, us-ft, cm or km");
+              "exit 2: --unit: \"\": a unit of height, expected m, ft, us-ft, cm, mm, dm or km");
     EXPECT_EQ(parse_unit("FT", "--unit").metres, kFoot_m);
 }
 
