@@ -142,9 +142,9 @@ struct NativeHost::Impl : effect::ModuleServices {
 
     void set_parameter(const char* address, const Value& value) override {
         const shader::ParamValue wanted{value[0], value[1], value[2], value[3]};
-        if (values.value(address) == wanted) return;
+        const shader::ParamValue before = values.value(address);
         values.write_host(address, wanted);
-        changed = true;
+        changed = changed || before != wanted;
     }
 
     std::string text(const char* address) override { return values.text(address); }

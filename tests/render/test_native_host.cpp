@@ -266,7 +266,7 @@ std::string draw_with(const std::string& library) {
 }
 
 TEST(NativeHost, DoesForModulesOfTheInterfaceWhatTheStandInDoes) {
-    for (const char* library : {"c_module", "cpp_module", "grown_c_module"})
+    for (const char* library : {"c_module", "cpp_module", "grown_cpp_module"})
         EXPECT_EQ(draw_with(library), "no error") << library;
 }
 
