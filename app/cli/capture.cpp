@@ -194,6 +194,7 @@ void capture(const Arguments& arguments) {
     inputs.sun = render::make_sun_light(position, air, ground, dem.grid);
     inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
     inputs.exposure_ev = arguments.exposure_ev;
+    inputs.unix_s = static_cast<double>(utc.unix_us()) * 1e-6;
     inputs.exaggeration = arguments.view.exaggeration;
     const auto ground_height_m = [&](const geo::Geodetic& at) {
         if (dem.reduction > 1) return source.height_at(at);

@@ -57,6 +57,9 @@ void ActiveEffects::add_inputs(FilesInUse& files) const {
             for (const std::filesystem::path& file : texture.files)
                 files.add_input(file, what);
     }
+    for (const shader::TextParam* text : values.texts())
+        if (const std::string file = values.text(text->address); text->is_file && !file.empty())
+            files.add_input(file, fmt::format("the file {},", text->address));
     for (const effect::NativeModule& module : loaded.modules)
         files.add_input(module.library(), fmt::format("the module of the plugin {},", module.id()));
 }
@@ -130,7 +133,7 @@ std::unique_ptr<ActiveEffects> EffectArguments::active(bool aloud) const {
     std::vector<shader::Param> params = active->registry.params();
     for (const shader::Param& param : render::core_params())
         params.push_back(param);
-    active->values.declare(params);
+    active->values.declare(params, active->registry.texts());
     active->loaded = effect::select_and_load(active->registry, active->presets, active->switches,
                                              active->values);
     std::vector<effect::Setting> given;

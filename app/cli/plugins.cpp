@@ -18,6 +18,10 @@ std::vector<shader::Param> settable(const effect::Effect& effect) {
     return params;
 }
 
+const char* type_of(const shader::TextParam& text) {
+    return text.is_file ? "file" : "text";
+}
+
 nlohmann::ordered_json json_of(const effect::Effect& effect) {
     const effect::Manifest& manifest = effect.manifest;
     nlohmann::ordered_json params = nlohmann::ordered_json::array();
@@ -29,6 +33,14 @@ nlohmann::ordered_json json_of(const effect::Effect& effect) {
                           {"unit", param.unit},
                           {"label", param.label},
                           {"description", param.description}});
+    for (const shader::TextParam& text : manifest.texts)
+        params.push_back({{"address", text.address},
+                          {"type", type_of(text)},
+                          {"default", text.initial},
+                          {"values", type_of(text)},
+                          {"unit", ""},
+                          {"label", text.label},
+                          {"description", text.description}});
     return {{"id", manifest.id},
             {"name", manifest.name},
             {"description", manifest.description},
@@ -79,6 +91,11 @@ void info(const effect::Effect& effect, bool json) {
                    param.label);
         fmt::print("{}{}\n", param.description.empty() ? "" : ": ", param.description);
         fmt::print("    {}\n", shader::describe_values(param));
+    }
+    for (const shader::TextParam& text : manifest.texts) {
+        fmt::print("\n{} = {}\n    {}", text.address, text.initial, text.label);
+        fmt::print("{}{}\n", text.description.empty() ? "" : ": ", text.description);
+        fmt::print("    a {}\n", type_of(text));
     }
 }
 

@@ -66,10 +66,7 @@ void check_sampler(const Effect& effect, const shader::Sampler& sampler) {
                              texture.line, sampler.type));
         return;
     }
-    const bool written =
-        std::any_of(manifest.passes.begin(), manifest.passes.end(),
-                    [&](const PassSpec& pass) { return contains(pass.writes, sampler.resource); });
-    if (written || !manifest.module.empty()) return;
+    if (!manifest.module.empty()) return;
     const std::optional<std::string> near = nearest(name, names);
     fail(sampler.file, sampler.line,
          fmt::format("{}: {} has no texture {}{}", sampler.name, manifest.file.string(), name,
@@ -95,6 +92,17 @@ void check_textures(const Effect& effect) {
                              "plugin's GLSL",
                              texture.name, sampler_of(texture.kind), effect.id(), texture.name));
     }
+}
+
+void check_texts(const Effect& effect) {
+    const std::vector<shader::Param> params = effect.params();
+    for (const shader::TextParam& text : effect.manifest.texts)
+        for (const shader::Param& param : params)
+            if (param.address == text.address)
+                bad_input(
+                    fmt::format("{}: {}: texts: {} is a parameter of the plugin's GLSL too; "
+                                "rename one of them",
+                                kWho, effect.manifest.file.string(), text.address));
 }
 
 void check_bound(const Effect& effect, const DisplaceSpec& spec) {
@@ -187,6 +195,7 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
     check_displace(effect);
     check_wants(effect);
     check_textures(effect);
+    check_texts(effect);
     return effect;
 }
 

@@ -27,12 +27,6 @@ constexpr std::array<std::string_view, 39> kReserved = {
 // A capability that core provides itself: render/programs.h.
 constexpr std::string_view kNightWord = "night";
 
-const std::vector<std::string>& formats() {
-    static const std::vector<std::string> names = {
-        "r8", "rg8", "rgba8", "r16f", "rg16f", "rgba16f", "r32f", "rg32f", "rgba32f", "depth32f"};
-    return names;
-}
-
 bool is_lower(char c) {
     return c >= 'a' && c <= 'z';
 }
@@ -121,7 +115,7 @@ class ManifestReader {
                                     manifest_.module));
         glsl(object);
         textures(object);
-        passes(object);
+        texts(object);
         displaces(object);
         object.finish();
         return std::move(manifest_);
@@ -182,12 +176,12 @@ class ManifestReader {
         spec.kind = static_cast<TextureSpec::Kind>(object.choice("kind", {"2d", "2d-array", "3d"}));
         if (spec.kind == TextureSpec::Kind::D2Array) {
             for (const std::string& file : object.strings("files"))
-                spec.files.push_back(picture(object, "files", file));
+                spec.files.push_back(data_file(object, "files", file));
             if (spec.files.empty())
                 object.fail(object.line_of("files"), "files",
                             "expected a list of files, one a layer");
         } else {
-            spec.files.push_back(picture(object, "file", object.string("file")));
+            spec.files.push_back(data_file(object, "file", object.string("file")));
         }
         if (spec.kind == TextureSpec::Kind::D3)
             spec.slices = static_cast<int>(object.number("slices", 1, 1, 2048, true));
@@ -198,52 +192,44 @@ class ManifestReader {
         return spec;
     }
 
-    std::filesystem::path picture(const ObjectReader& object, const std::string& key,
-                                  const std::string& name) const {
+    std::filesystem::path data_file(const ObjectReader& object, const std::string& key,
+                                    const std::string& name) const {
         constexpr std::string_view kShared = "data:";
         const bool shared = name.substr(0, kShared.size()) == kShared;
         return own_file(object, object.line_of(key), key, shared ? data_dir_ : manifest_.folder,
                         shared ? name.substr(kShared.size()) : name, shared);
     }
 
-    void passes(ObjectReader& object) {
-        const Json* const list = object.take("passes");
+    void texts(ObjectReader& object) {
+        const Json* const list = object.take("texts");
         if (!list) return;
-        if (list->kind != Json::Kind::Array)
-            object.fail(list->line, "passes",
-                        fmt::format("expected a list of passes but got {}", describe(*list)));
-        for (std::size_t i = 0; i < list->items.size(); ++i)
-            manifest_.passes.push_back(pass(list->items[i], i));
+        if (list->kind != Json::Kind::Object)
+            object.fail(
+                list->line, "texts",
+                fmt::format("expected an object of name and text but got {}", describe(*list)));
+        for (const auto& [name, value] : list->members) {
+            if (!is_word(name))
+                object.fail(value.line, "texts",
+                            fmt::format("expected words of a-z, 0-9 and _ but got \"{}\"", name));
+            manifest_.texts.push_back(text(name, value));
+        }
+        if (manifest_.module.empty() && !manifest_.texts.empty())
+            object.fail(list->line, "texts",
+                        "expected a \"module\" beside them: nothing else reads texts");
     }
 
-    PassSpec pass(const Json& value, std::size_t index) {
-        ObjectReader object(kWho, manifest_.file.string(), fmt::format("passes.{}", index), value);
-        PassSpec spec;
-        spec.name = object.string("name");
-        if (!is_word(spec.name))
-            object.fail(object.line_of("name"), "name",
-                        fmt::format("expected words of a-z, 0-9 and _ but got \"{}\"", spec.name));
-        spec.target = static_cast<PassSpec::Target>(object.choice("target", {"screen", "sun"}));
-        spec.format = formats()[object.choice("format", formats())];
-        spec.scale = object.number("scale", 1, 1.0 / 64, 1, false);
-        spec.reads = object.strings("reads");
-        spec.writes = object.strings("writes");
-        for (const std::string& resource : spec.reads)
-            if (!is_resource(resource))
-                object.fail(
-                    object.line_of("reads"), "reads",
-                    fmt::format("expected resources such as vsm.moments but got \"{}\"", resource));
-        const std::string prefix = manifest_.id + '.';
-        for (const std::string& resource : spec.writes)
-            if (!is_resource(resource) || resource.substr(0, prefix.size()) != prefix)
-                object.fail(object.line_of("writes"), "writes",
-                            fmt::format("expected resources that begin with {} but got \"{}\"",
-                                        prefix, resource));
-        if (spec.writes.empty())
-            object.fail(object.line_of("writes"), "writes",
-                        "expected at least one resource that the pass writes");
+    shader::TextParam text(const std::string& name, const Json& value) {
+        ObjectReader object(kWho, manifest_.file.string(), "texts." + name, value);
+        shader::TextParam text;
+        text.address = manifest_.id + '.' + name;
+        text.is_file = object.choice("kind", {"text", "file"}, 0) == 1;
+        text.label = object.string("label", name);
+        text.description = object.string("description", "");
+        text.initial = object.string("default", "");
+        if (text.is_file && !text.initial.empty())
+            text.initial = data_file(object, "default", text.initial).string();
         object.finish();
-        return spec;
+        return text;
     }
 
     void displaces(ObjectReader& object) {

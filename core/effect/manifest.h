@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "shader/param_store.h"
+
 namespace relevo::effect {
 
 /// A texture that a plugin brings: the sampler `<id>_<name>` reads it.
@@ -44,18 +46,6 @@ struct DisplaceSpec {
     }
 };
 
-/// A pass that a plugin wants drawn. Read and checked; nothing draws them yet.
-struct PassSpec {
-    enum class Target { Screen, Sun };  ///< over the picture, or over the map as the sun sees it
-
-    std::string name;
-    Target target = Target::Screen;
-    std::string format;               ///< of what it writes: "rgba16f"
-    double scale = 1;                 ///< of its size to the picture's, in (0, 1]
-    std::vector<std::string> reads;   ///< resources, "vsm.moments"
-    std::vector<std::string> writes;  ///< resources of its own, "haze.blurred"
-};
-
 /// What plugin.json says. The format is docs/plugin-guide.md's.
 struct Manifest {
     std::string id;  ///< `[a-z][a-z0-9]*`
@@ -72,9 +62,9 @@ struct Manifest {
 
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;
-    std::vector<PassSpec> passes;
     std::optional<DisplaceSpec> displaces;
-    std::string module;  ///< name of a native library, or empty
+    std::string module;                    ///< name of a native library, or empty
+    std::vector<shader::TextParam> texts;  ///< that the module reads
 
     std::filesystem::path folder;
     std::filesystem::path file;  ///< folder / "plugin.json"

@@ -42,14 +42,17 @@ struct Descriptor {
 };
 
 /// The parameters in a file without a name, a line each: `haze.density 0 0.08 0 0 0`, where the
-/// first number is 1 for a host parameter.
+/// first number is the kind of trial_report.h. Texts are empty in a trial.
 int parameter_file(const shader::ParamStore& values) {
     std::string text;
     for (const shader::Param* param : values.params()) {
         const shader::ParamValue value = values.value(param->address);
-        text += fmt::format("{} {} {} {} {} {}\n", param->address, param->is_host ? 1 : 0, value[0],
-                            value[1], value[2], value[3]);
+        text +=
+            fmt::format("{} {} {} {} {} {}\n", param->address, param->is_host ? kHostValue : kValue,
+                        value[0], value[1], value[2], value[3]);
     }
+    for (const shader::TextParam* param : values.texts())
+        text += fmt::format("{} {} 0 0 0 0\n", param->address, kText);
     const int fd = memfd_create("parameters", MFD_CLOEXEC);
     if (fd < 0) return fd;
     for (std::string_view left = text; !left.empty();) {

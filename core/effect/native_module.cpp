@@ -21,8 +21,9 @@ constexpr std::string_view kWho = "effect::load";
 }
 
 const void* log_service(const relevo_host*, const char* name, uint32_t version) {
-    static const relevo_log_1 table{sizeof(relevo_log_1), nullptr,
+    static const relevo_log_1 table{sizeof(relevo_log_1), 0, nullptr,
                                     [](void*, int32_t level, const char* text) {
+                                        if (!text) return;
                                         if (level == RELEVO_LOG_WARNING)
                                             log::warning(text);
                                         else if (level == RELEVO_LOG_INFO)
@@ -30,7 +31,7 @@ const void* log_service(const relevo_host*, const char* name, uint32_t version) 
                                         else
                                             log::debug(text);
                                     }};
-    return std::strcmp(name, "relevo.log") == 0 && version == 1 ? &table : nullptr;
+    return name && std::strcmp(name, "relevo.log") == 0 && version == 1 ? &table : nullptr;
 }
 
 }  // namespace

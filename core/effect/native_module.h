@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "effect/abi/relevo_plugin.h"
+#include <relevo/plugin.h>
+
 #include "effect/manifest.h"
 #include "effect/module_call.h"
 #include "shader/param_store.h"
 
-/// Shared libraries behind core/effect/abi/relevo_plugin.h.
+/// Shared libraries behind relevo/plugin.h.
 namespace relevo::effect {
 
 /// A module that is loaded. Its library stays as long as this does.

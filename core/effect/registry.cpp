@@ -122,4 +122,11 @@ std::vector<shader::Param> Registry::params() const {
     return result;
 }
 
+std::vector<shader::TextParam> Registry::texts() const {
+    std::vector<shader::TextParam> result;
+    for (const Effect& effect : effects_)
+        result.insert(result.end(), effect.manifest.texts.begin(), effect.manifest.texts.end());
+    return result;
+}
+
 }  // namespace relevo::effect

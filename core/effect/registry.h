@@ -36,7 +36,8 @@ class Registry {
     bool is_broken(std::string_view id) const;      ///< there, but could not be loaded
     /// @throws Error (BadInput) `who: id: ...` with the nearest id, or why that plugin is broken
     const Effect& effect(std::string_view id, std::string_view who) const;
-    std::vector<shader::Param> params() const;  ///< of all effects, for ParamStore::declare
+    std::vector<shader::Param> params() const;     ///< of all effects, for ParamStore::declare
+    std::vector<shader::TextParam> texts() const;  ///< likewise
 
   private:
     std::vector<Effect> effects_;

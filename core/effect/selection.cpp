@@ -273,6 +273,14 @@ class Selector {
     std::vector<std::string> notices_, warnings_;
 };
 
+/// What a preset sets: the path of a file counts from the preset's folder.
+std::string text_beside(const Preset& preset, const Setting& setting,
+                        const shader::ParamStore& store) {
+    const shader::TextParam* const text = store.find_text(setting.address);
+    if (!text || !text->is_file || setting.text.empty()) return setting.text;
+    return (std::filesystem::path(preset.file).parent_path() / setting.text).string();
+}
+
 std::string plugin_of(const std::string& address) {
     return address.substr(0, address.find('.'));
 }
@@ -306,13 +314,14 @@ std::vector<std::string> apply_settings(shader::ParamStore& store, const Registr
         for (const Setting& setting : preset.settings) {
             const std::string plugin = plugin_of(setting.address);
             const std::string place = fmt::format("{}:{}", preset.file, setting.line);
-            if (!store.find(setting.address) && !registry.find(plugin)) {
+            const bool known = store.find(setting.address) || store.find_text(setting.address);
+            if (!known && !registry.find(plugin)) {
                 notices.push_back(fmt::format("{}: {} is skipped, there is no plugin {}", place,
                                               setting.address, plugin));
                 continue;
             }
             try {
-                store.set(setting.address, setting.text);
+                store.set(setting.address, text_beside(preset, setting, store));
             } catch (const Error& error) {
                 const std::string_view what = error.what();
                 throw Error(error.code(), fmt::format("effect::apply_settings: {}: {}", place,

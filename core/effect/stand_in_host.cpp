@@ -1,7 +1,10 @@
 #include "effect/stand_in_host.h"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "base/paths.h"
@@ -9,14 +12,33 @@
 namespace relevo::effect {
 namespace {
 
-// A device of middling size, and a DEM of 20 x 20 km.
-constexpr int kMostSide_px = 16384, kMostLayers = 2048;
+// A device of middling size, and a plain of 20 x 20 km on the equator.
+constexpr int kMaxSide_px = 16384, kMaxLayers = 2048;
 constexpr int kWidth_px = 1280, kHeight_px = 1024;
 constexpr double kHalfSide_m = 10000, kSeenHalfSide_m = 4000;
+constexpr double kPlain_m = 200;
+constexpr int kPosts = 667, kLevels = 5;
+constexpr double kSpacing_m = 2 * kHalfSide_m / (kPosts - 1);
+constexpr double kMetresADegree = 111'319.5;
+constexpr double kNoon_s = 1'782'043'200;  // 2026-06-21T12:00Z
 
 /// The sun at noon, low, and below the horizon, east, north, up.
 constexpr std::array<std::array<double, 3>, 3> kSuns{
     {{0.0, -0.6, 0.8}, {0.995, 0.0, 0.0998749}, {0.0, 0.8, -0.6}}};
+
+int texel_bytes(std::int32_t format) {
+    switch (format) {
+        case RELEVO_FORMAT_R16F:
+            return 2;
+        case RELEVO_FORMAT_RG32F:
+        case RELEVO_FORMAT_RGBA16F:
+            return 8;
+        case RELEVO_FORMAT_RGBA32F:
+            return 16;
+        default:
+            return 4;
+    }
+}
 
 int floats_of(std::int32_t format) {
     switch (format) {
@@ -32,192 +54,221 @@ int floats_of(std::int32_t format) {
     }
 }
 
-/// Writes as much of `full` as the other side knows of.
-template <typename Struct>
-void copy_out(const Struct& full, Struct* to) {
-    const std::uint32_t size = std::min<std::uint32_t>(to->size, sizeof full);
-    std::memcpy(to, &full, size);
-    to->size = size;
-}
-
-/// What the other side knows of, the rest at zero.
-template <typename Struct>
-Struct copy_in(const Struct* from) {
-    Struct full{};
-    std::memcpy(&full, from, std::min<std::size_t>(from->size, sizeof full));
-    return full;
+[[noreturn]] void refuse(const char* what) {
+    throw std::invalid_argument(what);
 }
 
 }  // namespace
 
-StandInHost::StandInHost(std::filesystem::path plugin_folder) : folder_(std::move(plugin_folder)) {
-    host_.size = sizeof(relevo_host);
-    host_.owner = this;
-    host_.abi_version = RELEVO_ABI_VERSION;
-    host_.service = [](const relevo_host* host, const char* name,
-                       std::uint32_t version) -> const void* {
-        const StandInHost& self = *static_cast<const OwnHost*>(host)->owner;
-        const std::pair<std::string_view, const void*> tables[] = {
-            {"relevo.log", &self.log_},           {"relevo.params", &self.params_},
-            {"relevo.frame", &self.frame_table_}, {"relevo.texture", &self.texture_},
-            {"relevo.draw", &self.draw_},         {"relevo.terrain", &self.terrain_}};
-        for (const auto& [known, table] : tables)
-            if (version == 1 && known == name && (self.started_ || table == &self.log_))
-                return table;
-        return nullptr;
-    };
-    host_.fail = [](const relevo_host* host, const char* text) {
-        static_cast<const OwnHost*>(host)->owner->reason_ = text ? text : "no reason given";
-    };
-    fill_tables();
-}
+StandInHost::StandInHost(std::filesystem::path plugin_folder) : folder_(std::move(plugin_folder)) {}
 
-void StandInHost::add_parameter(const std::string& address, bool is_host,
-                                const std::array<double, 4>& value) {
+void StandInHost::add_parameter(const std::string& address, bool is_host, const Value& value) {
     parameters_.insert_or_assign(address, Parameter{is_host, value});
 }
 
-void StandInHost::begin_frame(int number) {
-    frame_ = number;
+const StandInHost::Parameter& StandInHost::known(const char* address) const {
+    const auto found = parameters_.find(std::string_view(address));
+    if (found == parameters_.end()) refuse("there is no such parameter");
+    return found->second;
 }
 
-relevo_status StandInHost::refuse(const char* reason) {
-    reason_ = reason;
-    return RELEVO_FAILED;
+const StandInHost::Texture& StandInHost::known(relevo_texture texture) const {
+    const auto found = textures_.find(texture);
+    if (found == textures_.end()) refuse("there is no such texture");
+    return found->second;
 }
 
-void StandInHost::fill_tables() {
-    log_ = {sizeof log_, this, [](void*, std::int32_t, const char*) {}};
-    params_ = {sizeof params_, this,
-               [](void* self, const char* address, double value[4]) {
-                   const auto known = of(self).parameters_.find(std::string_view(address));
-                   if (known == of(self).parameters_.end())
-                       return of(self).refuse("there is no such parameter");
-                   std::copy(known->second.value.begin(), known->second.value.end(), value);
-                   return RELEVO_OK;
-               },
-               [](void* self, const char* address, const double value[4]) {
-                   const auto known = of(self).parameters_.find(std::string_view(address));
-                   if (known == of(self).parameters_.end() || !known->second.is_host)
-                       return of(self).refuse("there is no such host parameter");
-                   std::copy_n(value, 4, known->second.value.begin());
-                   return RELEVO_OK;
-               }};
-    frame_table_ = {sizeof frame_table_, this,
-                    [](void* self, relevo_frame* out) { return of(self).fill_frame(out); }};
-    texture_ = {
-        sizeof texture_,
-        this,
-        [](void* self, const relevo_texture_info* info, relevo_texture* texture) {
-            return of(self).make_texture(info, texture);
-        },
-        [](void* self, relevo_texture name) { of(self).textures_.erase(name); },
-        [](void* self, relevo_texture name) {
-            return of(self).textures_.count(name) > 0 ? RELEVO_OK
-                                                      : of(self).refuse("there is no such texture");
-        },
-        [](void* self, relevo_texture name, std::int32_t layer, float* values,
-           std::uint64_t count) { return of(self).read_texture(name, layer, values, count); }};
-    draw_ = {sizeof draw_, this,
-             [](void* self, const char* file, relevo_program* program) {
-                 const auto path = file_inside(of(self).folder_, file);
-                 std::error_code ignored;
-                 if (!path || !std::filesystem::is_regular_file(*path, ignored))
-                     return of(self).refuse("there is no such file");
-                 *program = ++of(self).last_program_;
-                 return RELEVO_OK;
-             },
-             [](void* self, const relevo_draw* draw) { return of(self).draw(draw); }};
-    terrain_ = {
-        sizeof terrain_, this,
-        [](void* self, relevo_box* box) { return of(self).fill_box(box, kHalfSide_m); },
-        [](void* self, double nearer_than_m, relevo_box* box) {
-            return of(self).fill_box(box, std::min(nearer_than_m, kSeenHalfSide_m));
-        },
-        [](void* self, const relevo_box*, double, relevo_texture target, std::int32_t* level) {
-            const auto known = of(self).textures_.find(target);
-            if (of(self).frame_ < 0 || known == of(self).textures_.end() ||
-                known->second.format != RELEVO_FORMAT_DEPTH32F)
-                return of(self).refuse("expected a frame and a target of depth");
-            if (level) *level = 0;
-            return RELEVO_OK;
-        }};
+void StandInHost::need_frame() const {
+    if (frame_ < 0) refuse("no frame is drawn now; ask inside prepare()");
 }
 
-relevo_status StandInHost::make_texture(const relevo_texture_info* given, relevo_texture* texture) {
-    const relevo_texture_info info = copy_in(given);
-    if (info.format < RELEVO_FORMAT_R32F || info.format > RELEVO_FORMAT_RGBA8 || info.width < 1 ||
-        info.height < 1 || info.width > kMostSide_px || info.height > kMostSide_px ||
-        info.layers < 0 || info.layers > kMostLayers || info.levels < 0 || info.levels > 15)
-        return refuse("there is no such texture on this device");
-    textures_[++last_texture_] = {info.width, info.height, std::max(info.layers, 1),
-                                  std::max(info.levels, 1), info.format};
-    *texture = last_texture_;
-    return RELEVO_OK;
+StandInHost::Value StandInHost::parameter(const char* address) {
+    return known(address).value;
 }
 
-relevo_status StandInHost::read_texture(relevo_texture name, int layer, float* values,
-                                        std::uint64_t count) {
-    const auto known = textures_.find(name);
-    if (known == textures_.end()) return refuse("there is no such texture");
-    const Texture& from = known->second;
-    const std::uint64_t floats = std::uint64_t{1} * static_cast<unsigned>(from.width) *
-                                 static_cast<unsigned>(from.height) *
-                                 static_cast<unsigned>(floats_of(from.format));
-    if (floats == 0 || layer < 0 || layer >= from.layers || count < floats)
-        return refuse("expected a texture of 32-bit floats, one of its layers and room for them");
-    std::fill_n(values, floats, 0.0f);
-    return RELEVO_OK;
+void StandInHost::set_parameter(const char* address, const Value& value) {
+    if (!known(address).is_host) refuse("it is not a host parameter");
+    parameters_.find(std::string_view(address))->second.value = value;
 }
 
-relevo_status StandInHost::draw(const relevo_draw* given) {
-    const relevo_draw draw = copy_in(given);
-    const auto target = textures_.find(draw.target);
-    bool good = draw.program >= 1 && draw.program <= last_program_ && target != textures_.end() &&
-                draw.layer >= 0 && draw.layer < target->second.layers && draw.level >= 0 &&
-                draw.input_count >= 0 && draw.input_count <= RELEVO_MOST_INPUTS &&
-                draw.value_count >= 0 && draw.value_count <= RELEVO_MOST_VALUES;
-    // Read as the device would read them: a pointer to nothing shows.
-    for (int i = 0; good && i < draw.input_count; ++i)
-        good = textures_.count(draw.inputs[i]) > 0;
-    volatile float last = 0;
-    for (int i = 0; good && i < 4 * draw.value_count; ++i)
-        last = draw.values[i];
-    static_cast<void>(last);
-    return good ? RELEVO_OK : refuse("expected a program, textures and values that there are");
+std::string StandInHost::text(const char* address) {
+    const auto found = texts_.find(std::string_view(address));
+    if (found == texts_.end()) refuse("there is no such text");
+    return found->second;
 }
 
-relevo_status StandInHost::fill_frame(relevo_frame* out) {
-    if (frame_ < 0) return refuse("no frame is drawn now; ask inside prepare()");
+relevo_frame StandInHost::frame() {
+    need_frame();
     const std::array<double, 3>& sun = kSuns[static_cast<std::size_t>(frame_) % kSuns.size()];
     relevo_frame full{};
     full.width_px = kWidth_px;
     full.height_px = kHeight_px;
-    const double eye_m[3] = {0, -6000, 3000}, forward[3] = {0, 0.8, -0.6};
+    full.software_device = 1;
+    full.ground = 1 + static_cast<std::uint64_t>(frame_);
+    full.unix_s = kNoon_s;
+    const double eye_m[3] = {0, -6000, 3000};
+    const double axes[3][3] = {{1, 0, 0}, {0, 0.6, 0.8}, {0, 0.8, -0.6}};
     std::copy_n(eye_m, 3, full.eye_m);
-    std::copy_n(forward, 3, full.forward);
+    std::copy_n(axes[0], 3, full.right);
+    std::copy_n(axes[1], 3, full.up);
+    std::copy_n(axes[2], 3, full.forward);
+    full.fov_y_rad = 0.6;
+    full.pixel_rad = 0.0006;
+    for (int i = 0; i < 3; ++i) {
+        full.view[4 * i] = full.right[i];
+        full.view[4 * i + 1] = full.up[i];
+        full.view[4 * i + 2] = full.forward[i];
+    }
+    full.view[15] = 1;
+    const double tan_y = std::tan(full.fov_y_rad / 2);
+    full.projection[0] = kHeight_px / (tan_y * kWidth_px);
+    full.projection[5] = 1 / tan_y;
+    full.projection[11] = 1;
+    full.projection[14] = 0.5;
+    full.exposure = 1;
     std::copy(sun.begin(), sun.end(), full.sun);
     std::copy(sun.begin(), sun.end(), full.sun_apparent);
-    full.pixel_rad = 0.0006;
     full.exaggeration = 1;
-    full.lowest_m = 200;
+    full.lowest_m = kPlain_m;
     full.highest_m = 1800;
-    full.post_spacing_m = 30;
-    full.ground = 1 + static_cast<std::uint64_t>(frame_);
-    full.software_device = 1;
-    copy_out(full, out);
-    return RELEVO_OK;
+    full.post_spacing_m = kSpacing_m;
+    return full;
 }
 
-relevo_status StandInHost::fill_box(relevo_box* out, double half_side_m) {
-    if (frame_ < 0) return refuse("no frame is drawn now; ask inside prepare()");
-    relevo_box box = copy_in(out);
+relevo_texture StandInHost::create_texture(const relevo_texture_info& info) {
+    const auto longest = static_cast<unsigned>(std::max({info.width, info.height, 1}));
+    if (info.format < RELEVO_FORMAT_R32F || info.format > RELEVO_FORMAT_RGBA8 || info.width < 1 ||
+        info.height < 1 || info.width > kMaxSide_px || info.height > kMaxSide_px ||
+        info.layers < 0 || info.layers > kMaxLayers || info.levels < 0 ||
+        info.levels > static_cast<int>(std::bit_width(longest)) ||
+        info.filter < RELEVO_FILTER_NEAREST || info.filter > RELEVO_FILTER_MIPMAP)
+        refuse("there is no such texture on this device");
+    textures_[++last_texture_] = {info.width, info.height, std::max(info.layers, 1),
+                                  std::max(info.levels, 1), info.format};
+    return last_texture_;
+}
+
+void StandInHost::destroy_texture(relevo_texture texture) {
+    known(texture);
+    textures_.erase(texture);
+}
+
+void StandInHost::write_texture(const relevo_texels& texels) {
+    const Texture& to = known(texels.texture);
+    const std::int64_t bytes = std::int64_t{texels.width} * texels.height * texel_bytes(to.format);
+    if (texels.layer < 0 || texels.layer >= to.layers || texels.level < 0 || texels.x < 0 ||
+        texels.y < 0 || texels.width < 1 || texels.height < 1 ||
+        texels.x > std::max(1, to.width >> std::min(texels.level, 30)) - texels.width ||
+        texels.y > std::max(1, to.height >> std::min(texels.level, 30)) - texels.height)
+        refuse("expected a rectangle of the texture");
+    if (texels.bytes != static_cast<std::uint64_t>(bytes))
+        refuse("expected as many bytes as the rectangle has");
+    // Read as the device would read them: a pointer to nothing shows.
+    volatile unsigned char last = 0;
+    for (std::int64_t i = 0; i < bytes; ++i)
+        last = static_cast<const unsigned char*>(texels.texels)[i];
+    static_cast<void>(last);
+}
+
+void StandInHost::make_mipmaps(relevo_texture texture) {
+    known(texture);
+}
+
+void StandInHost::read_texture(relevo_texture texture, int layer, std::span<float> values) {
+    const Texture& from = known(texture);
+    const std::uint64_t floats = std::uint64_t{1} * static_cast<unsigned>(from.width) *
+                                 static_cast<unsigned>(from.height) *
+                                 static_cast<unsigned>(floats_of(from.format));
+    if (floats == 0 || layer < 0 || layer >= from.layers || values.size() < floats)
+        refuse("expected a texture of 32-bit floats, one of its layers and room for them");
+    std::fill_n(values.begin(), floats, 0.0f);
+}
+
+relevo_program StandInHost::create_program(const char* file) {
+    const auto path = file_inside(folder_, file);
+    std::error_code ignored;
+    if (!path || !std::filesystem::is_regular_file(*path, ignored))
+        refuse("there is no such file in the plugin's folder");
+    programs_[++last_program_] = file;
+    return last_program_;
+}
+
+void StandInHost::destroy_program(relevo_program program) {
+    if (programs_.erase(program) == 0) refuse("there is no such program");
+}
+
+void StandInHost::draw(const relevo_draw& draw) {
+    const Texture& target = known(draw.target);
+    if (programs_.count(draw.program) == 0) refuse("there is no such program");
+    if (draw.layer < 0 || draw.layer >= target.layers || draw.level < 0)
+        refuse("expected a layer and a level of the target");
+    for (int i = 0; i < draw.input_count; ++i)
+        known(draw.inputs[i]);
+    volatile float last = 0;
+    for (int i = 0; i < 4 * draw.value_count; ++i)
+        last = draw.values[i];
+    static_cast<void>(last);
+}
+
+void StandInHost::fill_box(relevo_box& box, double half_side_m) const {
+    need_frame();
     for (int i = 0; i < 3; ++i) {
         box.low[i] = -half_side_m;
         box.high[i] = half_side_m;
     }
-    copy_out(box, out);
-    return RELEVO_OK;
+}
+
+void StandInHost::fill_bounds(relevo_box& box) {
+    fill_box(box, kHalfSide_m);
+}
+
+bool StandInHost::fill_visible_bounds(double nearer_than_m, relevo_box& box) {
+    fill_box(box, std::min(nearer_than_m, kSeenHalfSide_m));
+    return true;
+}
+
+int StandInHost::draw_depth(const relevo_box&, double, relevo_texture target) {
+    need_frame();
+    if (known(target).format != RELEVO_FORMAT_DEPTH32F)
+        refuse("expected a target of RELEVO_FORMAT_DEPTH32F without layers");
+    return 0;
+}
+
+relevo_heights StandInHost::heights() {
+    need_frame();
+    relevo_heights heights{};
+    heights.columns = heights.rows = kPosts;
+    heights.levels = kLevels;
+    return heights;
+}
+
+void StandInHost::read_heights(const relevo_nodes& nodes, std::span<float> heights_m) {
+    need_frame();
+    if (nodes.level < 0 || nodes.level >= kLevels) refuse("expected a level that there is");
+    std::fill(heights_m.begin(), heights_m.end(), static_cast<float>(kPlain_m));
+}
+
+StandInHost::Point StandInHost::to_local(const Point& lat_lon_height) {
+    need_frame();
+    return {lat_lon_height[1] * kMetresADegree, lat_lon_height[0] * kMetresADegree,
+            lat_lon_height[2]};
+}
+
+StandInHost::Point StandInHost::from_local(const Point& local_m) {
+    need_frame();
+    return {local_m[1] / kMetresADegree, local_m[0] / kMetresADegree, local_m[2]};
+}
+
+std::array<double, 2> StandInHost::to_post(const std::array<double, 2>& lat_lon) {
+    need_frame();
+    return {(lat_lon[1] * kMetresADegree + kHalfSide_m) / kSpacing_m,
+            (kHalfSide_m - lat_lon[0] * kMetresADegree) / kSpacing_m};
+}
+
+std::array<double, 2> StandInHost::from_post(const std::array<double, 2>& column_row) {
+    need_frame();
+    return {(kHalfSide_m - column_row[1] * kSpacing_m) / kMetresADegree,
+            (column_row[0] * kSpacing_m - kHalfSide_m) / kMetresADegree};
 }
 
 }  // namespace relevo::effect

@@ -6,6 +6,9 @@
 /// that it calls, then a mark, the reason why the module will not do, or nothing, and an end.
 namespace relevo::effect {
 
+/// Kinds of parameters, which try_module reads on its standard input.
+inline constexpr int kValue = 0, kHostValue = 1, kText = 2;
+
 inline constexpr char kStageMark = '\1';
 inline constexpr char kVerdictMark = '\2';
 inline constexpr char kReportEnd = '\3';

@@ -17,11 +17,12 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <relevo/plugin.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "effect/abi/relevo_plugin.h"
+#include "effect/service_tables.h"
 #include "effect/stand_in_host.h"
 #include "effect/trial_report.h"
 
@@ -64,16 +65,18 @@ class Report {
 
 void read_parameters(StandInHost& host) {
     char address[256];
-    int is_host = 0;
+    int kind = 0;
     std::array<double, 4> v{};
-    while (std::scanf("%255s %d %lf %lf %lf %lf", address, &is_host, &v[0], &v[1], &v[2], &v[3]) ==
-           6)
-        host.add_parameter(address, is_host != 0, v);
+    while (std::scanf("%255s %d %lf %lf %lf %lf", address, &kind, &v[0], &v[1], &v[2], &v[3]) == 6)
+        if (kind == kText)
+            host.add_text(address);
+        else
+            host.add_parameter(address, kind == kHostValue, v);
 }
 
 class Trial {
   public:
-    Trial(const Report& report, StandInHost& host) : report_(report), host_(host) {}
+    Trial(const Report& report, StandInHost& host) : report_(report), host_(host), tables_(host) {}
 
     [[noreturn]] void run(const char* path, const char* id) {
         report_.stage("loading it");
@@ -105,15 +108,15 @@ class Trial {
             report_.end("expected version " + std::to_string(RELEVO_ABI_MAJOR) +
                         " of the plugin interface but got " + std::to_string(*version >> 16) + "." +
                         std::to_string(*version & 0xffff) +
-                        "; build it with this program's relevo_plugin.h");
+                        "; build it with this program's relevo/plugin.h");
         const auto registration = reinterpret_cast<decltype(&relevo_plugin_register)>(
             dlsym(library, "relevo_plugin_register"));
         if (!registration)
             report_.end("it has no symbol relevo_plugin_register; see RELEVO_PLUGIN");
         module_.size = sizeof module_;
-        if (!call("its registration", [&] { return registration(host_.host(), &module_); }))
+        if (!call("its registration", [&] { return registration(tables_.host(), &module_); }))
             report_.end("its registration failed: " +
-                        (host_.reason().empty() ? "no reason given" : host_.reason()));
+                        (tables_.reason().empty() ? "no reason given" : tables_.reason()));
         if (!module_.id || std::strcmp(module_.id, id) != 0)
             report_.end(std::string("expected the module of ") + id + " but got that of " +
                         (module_.id ? module_.id : "nobody"));
@@ -123,8 +126,9 @@ class Trial {
     // What fails in good order here may do well with a device.
     void call_it() {
         void* instance = nullptr;
-        host_.start();
-        if (!call("its create()", [&] { return module_.create(host_.host(), &instance); })) return;
+        tables_.offer_all();
+        if (!call("its create()", [&] { return module_.create(tables_.host(), &instance); }))
+            return;
         for (int frame = 0; module_.prepare && frame < kFrames; ++frame) {
             host_.begin_frame(frame);
             call("its prepare()", [&] { return module_.prepare(instance); });
@@ -139,6 +143,7 @@ class Trial {
 
     const Report& report_;
     StandInHost& host_;
+    ServiceTables tables_;
     relevo_module module_{};
 };
 

@@ -18,8 +18,22 @@ constexpr double kFlattening = 1 / 298.257223563;        // WGS 84
 constexpr double kBennett45_rad = radians(59.7 / 3600);  // frame.glsl: eye_sun_light.a
 constexpr double kNear_m = 0.5;  // reversed depth: nothing is lost by a small one
 
-/// From view depth 1 to clip space with the far end at infinity: depth = near / distance.
-glm::dmat4 projection(double tan_x, double tan_y) {
+}  // namespace
+
+glm::dmat4 view_matrix(const scene::Camera& camera) {
+    const glm::dvec3 right = cross(camera.forward, camera.up);
+    glm::dmat4 view(1.0);
+    for (int i = 0; i < 3; ++i) {
+        view[i][0] = right[i];
+        view[i][1] = camera.up[i];
+        view[i][2] = camera.forward[i];
+    }
+    return view;
+}
+
+glm::dmat4 projection_matrix(const scene::Camera& camera, int width_px, int height_px) {
+    const double tan_y = std::tan(camera.fov_y_rad / 2);
+    const double tan_x = tan_y * width_px / height_px;
     glm::dmat4 p(0.0);
     p[0][0] = 1 / tan_x;
     p[1][1] = 1 / tan_y;
@@ -27,8 +41,6 @@ glm::dmat4 projection(double tan_x, double tan_y) {
     p[3][2] = kNear_m;
     return p;
 }
-
-}  // namespace
 
 SunLightFit fit_sun_light(const SunLight& sun) {
     const double centre = 0.5 * (sun.lowest_sine + sun.highest_sine);
@@ -69,13 +81,8 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     const double tan_x = tan_y * width_px / height_px;
 
     FrameBlock block{};
-    glm::dmat4 view(1.0);
-    for (int i = 0; i < 3; ++i) {
-        view[i][0] = right[i];
-        view[i][1] = camera.up[i];
-        view[i][2] = camera.forward[i];
-    }
-    block.view_projection = glm::mat4(projection(tan_x, tan_y) * view);
+    block.view_projection =
+        glm::mat4(projection_matrix(camera, width_px, height_px) * view_matrix(camera));
     const glm::dvec3 dx = right * (2 * tan_x / width_px);
     const glm::dvec3 dy = camera.up * (2 * tan_y / height_px);
     block.pixel_ray = glm::vec4(camera.forward - 0.5 * width_px * dx - 0.5 * height_px * dy, 0);

@@ -68,6 +68,7 @@ struct FrameInputs {
     double exposure_ev = 0;     ///< stops brighter than the natural exposure of this sun
     double exaggeration = 1;    ///< factor on heights
     Displacement displacement;  ///< by the effects; the renderer fills it
+    double unix_s = 0;          ///< the sun's moment, since 1970-01-01T00:00Z, for native modules
 };
 
 /// What does not change from frame to frame.
@@ -82,6 +83,12 @@ struct Ground {
     glm::dvec2 south_west_m{-1, -1};  ///< corner of the DEM's posts in the local frame
     glm::dvec2 north_east_m{1, 1};    ///< likewise
 };
+
+/// From positions relative to the eye to the picture's axes: right, up, forward.
+glm::dmat4 view_matrix(const scene::Camera& camera);
+
+/// From there to clip space with the far end at infinity: depth = near / distance.
+glm::dmat4 projection_matrix(const scene::Camera& camera, int width_px, int height_px);
 
 /// All but what the terrain knows of its pages.
 /// @param footprint_limit  see frame.glsl

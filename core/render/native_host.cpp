@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -17,6 +17,8 @@
 #include "base/log.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "base/units.h"
+#include "effect/service_tables.h"
 #include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
@@ -30,22 +32,6 @@ namespace {
 
 constexpr unsigned kFrameBinding = 0;
 
-/// Writes as much of `full` as the other side knows of.
-template <typename Struct>
-void copy_out(const Struct& full, Struct* to) {
-    const std::uint32_t size = std::min<std::uint32_t>(to->size, sizeof full);
-    std::memcpy(to, &full, size);
-    to->size = size;
-}
-
-/// What the other side knows of, the rest at zero.
-template <typename Struct>
-Struct copy_in(const Struct* from) {
-    Struct full{};
-    std::memcpy(&full, from, std::min<std::size_t>(from->size, sizeof full));
-    return full;
-}
-
 glm::dvec3 vector_of(const double (&v)[3]) {
     return {v[0], v[1], v[2]};
 }
@@ -53,6 +39,11 @@ glm::dvec3 vector_of(const double (&v)[3]) {
 void write_vector(const glm::dvec3& from, double (&to)[3]) {
     for (int i = 0; i < 3; ++i)
         to[i] = from[i];
+}
+
+void write_matrix(const glm::dmat4& from, double (&to)[16]) {
+    for (int i = 0; i < 16; ++i)
+        to[i] = from[i / 4][i % 4];
 }
 
 glm::dmat3 axes_of(const relevo_box& box) {
@@ -82,31 +73,20 @@ struct FrameState {
 
 }  // namespace
 
-struct NativeHost::Impl {
+struct NativeHost::Impl : effect::ModuleServices {
     const effect::NativeModule& module;
     gl::Context& context;
     UseDepth use_depth;
     shader::ParamStore& values;
     int width_px, height_px;
 
-    /// What the module is handed, and back from there.
-    struct OwnHost : relevo_host {
-        Impl* owner = nullptr;
-    };
-    OwnHost host{};
-    relevo_log_1 log_table{};
-    relevo_params_1 params_table{};
-    relevo_frame_1 frame_table{};
-    relevo_texture_1 texture_table{};
-    relevo_draw_1 draw_table{};
-    relevo_terrain_1 terrain_table{};
-
+    effect::ServiceTables tables{*this};
     NativeTextures textures;
-    std::vector<gl::Program> programs;
+    std::map<relevo_program, gl::Program> programs;
+    relevo_program last_program = 0;
     gl::VertexArray no_inputs;
     gl::Buffer frame_block{sizeof(FrameBlock), "sun frame block"};
-    std::optional<FrameState> frame;
-    std::string reason;
+    std::optional<FrameState> state;
     bool changed = true;
     void* instance = nullptr;
 
@@ -119,16 +99,9 @@ struct NativeHost::Impl {
           width_px(width),
           height_px(height),
           textures(m.id(), c.info()) {
-        host.size = sizeof(relevo_host);
-        host.owner = this;
-        host.abi_version = RELEVO_ABI_VERSION;
-        host.service = &Impl::service;
-        host.fail = [](const relevo_host* h, const char* text) {
-            of(h).reason = text ? text : "no reason given";
-        };
-        fill_tables();
+        tables.offer_all();
     }
-    ~Impl() {
+    ~Impl() override {
         if (!instance) return;
         const effect::ModuleCall call(module.process(), "destroy()");
         try {
@@ -138,154 +111,86 @@ struct NativeHost::Impl {
         }
     }
 
-    static Impl& of(const relevo_host* h) { return *static_cast<const OwnHost*>(h)->owner; }
-    static Impl& of(void* self) { return *static_cast<Impl*>(self); }
-
-    static const void* service(const relevo_host* h, const char* name, std::uint32_t version) {
-        Impl& impl = of(h);
-        const std::pair<std::string_view, const void*> tables[] = {
-            {"relevo.log", &impl.log_table},     {"relevo.params", &impl.params_table},
-            {"relevo.frame", &impl.frame_table}, {"relevo.texture", &impl.texture_table},
-            {"relevo.draw", &impl.draw_table},   {"relevo.terrain", &impl.terrain_table},
-        };
-        if (version != 1) return nullptr;
-        for (const auto& [known, table] : tables)
-            if (known == name) return table;
-        return nullptr;
-    }
-
-    /// Runs a service's body; nothing that it throws reaches the module.
-    template <typename Body>
-    static relevo_status serve(void* self, const Body& body) noexcept {
-        Impl& impl = of(self);
-        try {
-            body(impl);
-            return RELEVO_OK;
-        } catch (const std::bad_alloc&) {
-            impl.reason = "there is not enough memory";
-        } catch (const std::exception& error) {
-            impl.reason = error.what();
-        }
-        return RELEVO_FAILED;
-    }
-
-    /// The same for a body that draws or waits for the device, whose time is not the module's.
-    template <typename Body>
-    static relevo_status serve_device(void* self, const Body& body) noexcept {
-        const effect::ModuleCall::Pause pause;
-        return serve(self, body);
-    }
-
-    [[noreturn]] void refuse(const std::string& what) const { failed(what); }
+    [[noreturn]] static void refuse(const std::string& what) { failed(what); }
 
     const FrameState& now() const {
-        if (!frame) refuse("no frame is drawn now; ask inside prepare()");
-        return *frame;
+        if (!state) refuse("no frame is drawn now; ask inside prepare()");
+        return *state;
     }
 
-    void fill_tables() {
-        log_table = {sizeof log_table, this, [](void*, std::int32_t level, const char* text) {
-                         if (level >= RELEVO_LOG_WARNING)
-                             log::warning(text);
-                         else if (level == RELEVO_LOG_INFO)
-                             log::info(text);
-                         else
-                             log::debug(text);
-                     }};
-        params_table = {
-            sizeof params_table, this,
-            [](void* self, const char* address, double value[4]) {
-                return serve(self, [&](Impl& impl) {
-                    const shader::ParamValue known = impl.values.value(address);
-                    std::copy(known.begin(), known.end(), value);
-                });
-            },
-            [](void* self, const char* address, const double value[4]) {
-                return serve(self, [&](Impl& impl) {
-                    const shader::ParamValue wanted{value[0], value[1], value[2], value[3]};
-                    if (impl.values.value(address) == wanted) return;
-                    impl.values.write_host(address, wanted);
-                    impl.changed = true;
-                });
-            }};
-        frame_table = {sizeof frame_table, this, [](void* self, relevo_frame* out) {
-                           return serve(self, [&](Impl& impl) { impl.describe_frame(out); });
-                       }};
-        texture_table = {sizeof texture_table,
-                         this,
-                         [](void* self, const relevo_texture_info* info, relevo_texture* out) {
-                             return serve_device(self, [&](Impl& impl) {
-                                 *out = impl.textures.create(copy_in(info));
-                             });
-                         },
-                         [](void* self, relevo_texture name) {
-                             const effect::ModuleCall::Pause pause;
-                             of(self).textures.destroy(name);
-                         },
-                         [](void* self, relevo_texture name) {
-                             return serve_device(
-                                 self, [&](Impl& impl) { impl.textures.get(name).make_mipmaps(); });
-                         },
-                         [](void* self, relevo_texture name, std::int32_t layer, float* out,
-                            std::uint64_t count) {
-                             return serve_device(self, [&](Impl& impl) {
-                                 impl.textures.read(name, layer, out, count);
-                             });
-                         }};
-        draw_table = {sizeof draw_table, this,
-                      [](void* self, const char* file, relevo_program* out) {
-                          return serve_device(self,
-                                              [&](Impl& impl) { *out = impl.make_program(file); });
-                      },
-                      [](void* self, const relevo_draw* draw) {
-                          return serve_device(self, [&](Impl& impl) { impl.run(copy_in(draw)); });
-                      }};
-        terrain_table = {sizeof terrain_table, this,
-                         [](void* self, relevo_box* box) {
-                             return serve_device(self, [&](Impl& impl) {
-                                 if (!impl.fill_box(box, nullptr, 0))
-                                     impl.refuse("this DEM has no ground");
-                             });
-                         },
-                         [](void* self, double nearer_than_m, relevo_box* box) {
-                             bool any = false;
-                             const relevo_status status = serve_device(self, [&](Impl& impl) {
-                                 any = impl.fill_box(box, &impl.now().picture, nearer_than_m);
-                             });
-                             return any ? status : RELEVO_FAILED;
-                         },
-                         [](void* self, const relevo_box* box, double tolerance_m,
-                            relevo_texture target, std::int32_t* level) {
-                             return serve_device(self, [&](Impl& impl) {
-                                 const int drawn =
-                                     impl.draw_depth(copy_in(box), tolerance_m, target);
-                                 if (level) *level = drawn;
-                             });
-                         }};
+    std::shared_ptr<void> device_at_work() override {
+        return std::make_shared<effect::ModuleCall::Pause>();
     }
 
-    // ---- services
+    void log(int level, const char* text) override {
+        if (level >= RELEVO_LOG_WARNING)
+            log::warning(text);
+        else if (level == RELEVO_LOG_INFO)
+            log::info(text);
+        else
+            log::debug(text);
+    }
 
-    void describe_frame(relevo_frame* out) const {
-        const FrameState& state = now();
+    // ---- parameters
+
+    Value parameter(const char* address) override {
+        const shader::ParamValue known = values.value(address);
+        Value value{};
+        std::copy(known.begin(), known.end(), value.begin());
+        return value;
+    }
+
+    void set_parameter(const char* address, const Value& value) override {
+        const shader::ParamValue wanted{value[0], value[1], value[2], value[3]};
+        const shader::ParamValue before = values.value(address);
+        values.write_host(address, wanted);
+        changed = changed || before != wanted;
+    }
+
+    std::string text(const char* address) override { return values.text(address); }
+
+    // ---- textures
+
+    relevo_texture create_texture(const relevo_texture_info& info) override {
+        return textures.create(info);
+    }
+    void destroy_texture(relevo_texture texture) override { textures.destroy(texture); }
+    void write_texture(const relevo_texels& texels) override { textures.write(texels); }
+    void make_mipmaps(relevo_texture texture) override { textures.get(texture).make_mipmaps(); }
+    void read_texture(relevo_texture texture, int layer, std::span<float> out) override {
+        textures.read(texture, layer, out);
+    }
+
+    // ---- the frame and its programs
+
+    relevo_frame frame() override {
+        const FrameState& drawn = now();
+        const scene::Camera& camera = drawn.inputs.camera;
         relevo_frame full{};
         full.width_px = width_px;
         full.height_px = height_px;
-        write_vector(state.inputs.camera.eye_m, full.eye_m);
-        write_vector(state.inputs.camera.forward, full.forward);
-        full.pixel_rad = length(glm::dvec3(state.block.pixel_ray_dx));
-        write_vector(state.inputs.sun.direction, full.sun);
-        write_vector(normalize(glm::dvec3(state.block.sun_apparent)), full.sun_apparent);
-        full.exaggeration = state.inputs.exaggeration;
-        full.lowest_m = state.ground.lowest_m;
-        full.highest_m = state.ground.highest_m;
-        full.post_spacing_m = state.terrain.normal_spacing_m();
-        full.ground = state.terrain.serial();
         full.software_device = context.info().device.software ? 1 : 0;
-        copy_out(full, out);
+        full.ground = drawn.terrain.serial();
+        full.unix_s = drawn.inputs.unix_s;
+        write_vector(camera.eye_m, full.eye_m);
+        write_vector(cross(camera.forward, camera.up), full.right);
+        write_vector(camera.up, full.up);
+        write_vector(camera.forward, full.forward);
+        full.fov_y_rad = camera.fov_y_rad;
+        full.pixel_rad = length(glm::dvec3(drawn.block.pixel_ray_dx));
+        write_matrix(view_matrix(camera), full.view);
+        write_matrix(projection_matrix(camera, width_px, height_px), full.projection);
+        full.exposure = static_cast<double>(drawn.block.exposure);
+        write_vector(drawn.inputs.sun.direction, full.sun);
+        write_vector(normalize(glm::dvec3(drawn.block.sun_apparent)), full.sun_apparent);
+        full.exaggeration = drawn.inputs.exaggeration;
+        full.lowest_m = drawn.ground.lowest_m;
+        full.highest_m = drawn.ground.highest_m;
+        full.post_spacing_m = drawn.terrain.normal_spacing_m();
+        return full;
     }
 
-    relevo_program make_program(const char* name) {
+    relevo_program create_program(const char* name) override {
         const auto path = file_inside(module.folder(), name);
         if (!path)
             refuse(fmt::format("render: {}: expected a file of the plugin's own folder but got {}",
@@ -299,7 +204,7 @@ struct NativeHost::Impl {
             "}\n";
         const std::string head =
             fmt::format("#version 450 core\nlayout(location = 0) uniform vec4 values[{}];\n",
-                        RELEVO_MOST_VALUES);
+                        RELEVO_MAX_VALUES);
         const std::string own = shader::unix_lines(read_text(*path, "render"));
         gl::Program::Failure failure;
         auto program = gl::Program::build(vertex, head + own, path->filename().string(), failure);
@@ -310,24 +215,23 @@ struct NativeHost::Impl {
             refuse(fmt::format("{}: the driver refuses it\n{}", file,
                                shader::parse_driver_log(failure.log, lines).text()));
         }
-        programs.push_back(std::move(*program));
-        return static_cast<relevo_program>(programs.size());
+        programs.emplace(++last_program, std::move(*program));
+        return last_program;
     }
 
-    void run(const relevo_draw& draw) {
-        if (draw.program < 1 || draw.program > programs.size())
-            refuse(fmt::format("there is no program {}", draw.program));
-        if (draw.input_count < 0 || draw.input_count > RELEVO_MOST_INPUTS || draw.value_count < 0 ||
-            draw.value_count > RELEVO_MOST_VALUES)
-            refuse(fmt::format("expected up to {} inputs and {} values but got {} and {}",
-                               RELEVO_MOST_INPUTS, RELEVO_MOST_VALUES, draw.input_count,
-                               draw.value_count));
+    void destroy_program(relevo_program program) override {
+        if (programs.erase(program) == 0) refuse(fmt::format("there is no program {}", program));
+    }
+
+    void draw(const relevo_draw& draw) override {
+        const auto program = programs.find(draw.program);
+        if (program == programs.end()) refuse(fmt::format("there is no program {}", draw.program));
         const gl::Texture& target = textures.get(draw.target);
         if (draw.layer < 0 || draw.layer >= target.extent().depth || draw.level < 0 ||
             draw.level >= target.levels() || target.format() == gl::Format::Depth32F)
             refuse("expected a layer and a level of a colour texture");
         const gl::Framebuffer framebuffer(target, draw.level, draw.layer, module.id());
-        programs[draw.program - 1].use();
+        program->second.use();
         for (int i = 0; i < draw.input_count; ++i)
             textures.get(draw.inputs[i]).bind(static_cast<unsigned>(i));
         if (draw.value_count > 0) glUniform4fv(0, draw.value_count, draw.values);
@@ -337,20 +241,27 @@ struct NativeHost::Impl {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
-    bool fill_box(relevo_box* out, const TileSelection* selection, double nearer_than_m) const {
-        const FrameState& state = now();
-        relevo_box box = copy_in(out);
+    // ---- the ground
+
+    bool fill_box(relevo_box& box, const TileSelection* selection, double nearer_than_m) const {
+        const FrameState& drawn = now();
         const auto extent =
-            state.terrain.extent(axes_of(box), state.inputs.exaggeration, selection, nearer_than_m);
+            drawn.terrain.extent(axes_of(box), drawn.inputs.exaggeration, selection, nearer_than_m);
         if (!extent) return false;
         write_vector(extent->low, box.low);
         write_vector(extent->high, box.high);
-        copy_out(box, out);
         return true;
     }
 
-    int draw_depth(const relevo_box& box, double tolerance_m, relevo_texture target) {
-        const FrameState& state = now();
+    void fill_bounds(relevo_box& box) override {
+        if (!fill_box(box, nullptr, 0)) refuse("this DEM has no ground");
+    }
+    bool fill_visible_bounds(double nearer_than_m, relevo_box& box) override {
+        return fill_box(box, &now().picture, nearer_than_m);
+    }
+
+    int draw_depth(const relevo_box& box, double tolerance_m, relevo_texture target) override {
+        const FrameState& drawn = now();
         const gl::Texture& depth_texture = textures.get(target);
         if (depth_texture.format() != gl::Format::Depth32F ||
             depth_texture.kind() != gl::TextureKind::D2)
@@ -365,16 +276,16 @@ struct NativeHost::Impl {
 
         LodView view;
         view.tolerance = tolerance_m;
-        view.exaggeration = state.inputs.exaggeration;
+        view.exaggeration = drawn.inputs.exaggeration;
         for (int i = 0; i < 2; ++i) {
             view.planes.emplace_back(axes[i], -low[i]);
             view.planes.emplace_back(-axes[i], high[i]);
         }
-        const TileSelection tiles = state.terrain.select(view, &state.picture);
+        const TileSelection tiles = drawn.terrain.select(view, &drawn.picture);
 
-        FrameInputs inputs = state.inputs;
+        FrameInputs inputs = drawn.inputs;
         inputs.camera.eye_m = origin_m;
-        FrameBlock block = make_frame_block(inputs, state.ground, depth_texture.extent().width,
+        FrameBlock block = make_frame_block(inputs, drawn.ground, depth_texture.extent().width,
                                             depth_texture.extent().height, 1);
         const glm::dvec3 scale = 1.0 / (high - low);
         glm::dmat4 matrix(0);
@@ -397,16 +308,65 @@ struct NativeHost::Impl {
         framebuffer.clear_depth(0);
         glDepthFunc(GL_GREATER);
         glEnable(GL_DEPTH_CLAMP);
-        if (state.terrain.has_holes()) {
+        if (drawn.terrain.has_holes()) {
             glEnable(GL_CLIP_DISTANCE0);
         } else {
             // Light meets the ground's upper side first. Under a hole it may meet the lower one.
             glEnable(GL_CULL_FACE);
-            glFrontFace(state.terrain.turns_left() ? GL_CCW : GL_CW);
+            glFrontFace(drawn.terrain.turns_left() ? GL_CCW : GL_CW);
         }
-        use_depth(state.terrain);
-        state.terrain.draw(tiles, origin_m);
+        use_depth(drawn.terrain);
+        drawn.terrain.draw(tiles, origin_m);
         return tiles.finest_level();
+    }
+
+    relevo_heights heights() override {
+        const dem::Pyramid& pyramid = now().terrain.pyramid();
+        relevo_heights heights{};
+        heights.columns = pyramid.columns();
+        heights.rows = pyramid.rows();
+        heights.levels = pyramid.levels();
+        return heights;
+    }
+
+    void read_heights(const relevo_nodes& nodes, std::span<float> heights_m) override {
+        const dem::Pyramid& pyramid = now().terrain.pyramid();
+        if (nodes.level < 0 || nodes.level >= pyramid.levels())
+            refuse(fmt::format("expected a level of 0 to {} but got {}", pyramid.levels() - 1,
+                               nodes.level));
+        const glm::ivec2 size = pyramid.size(nodes.level);
+        if (nodes.column > size.x || nodes.row > size.y || nodes.column < -size.x ||
+            nodes.row < -size.y || nodes.columns > 3 * size.x || nodes.rows > 3 * size.y)
+            refuse(fmt::format("expected nodes on a level of {} x {} or near it", size.x, size.y));
+        const dem::Pyramid::Block block =
+            pyramid.block(nodes.level, {nodes.column, nodes.row}, nodes.columns, nodes.rows);
+        float* to = heights_m.data();
+        for (int row = 0; row < nodes.rows; ++row)
+            for (int column = 0; column < nodes.columns; ++column)
+                *to++ = block.coverage.at(column, row) > 0
+                            ? block.height_m.at(column, row)
+                            : std::numeric_limits<float>::quiet_NaN();
+    }
+
+    // ---- places
+
+    Point to_local(const Point& at) override {
+        const glm::dvec3 local =
+            now().ground.frame.to_local(geo::geodetic_deg(at[0], at[1], at[2]));
+        return {local.x, local.y, local.z};
+    }
+    Point from_local(const Point& local_m) override {
+        const geo::Geodetic at =
+            now().ground.frame.to_geodetic({local_m[0], local_m[1], local_m[2]});
+        return {degrees(at.lat_rad), degrees(at.lon_rad), at.height_m};
+    }
+    std::array<double, 2> to_post(const std::array<double, 2>& at) override {
+        const glm::dvec2 post = now().terrain.grid().post(geo::geodetic_deg(at[0], at[1], 0));
+        return {post.x, post.y};
+    }
+    std::array<double, 2> from_post(const std::array<double, 2>& post) override {
+        const geo::Geodetic at = now().terrain.grid().place(post[0], post[1]);
+        return {degrees(at.lat_rad), degrees(at.lon_rad)};
     }
 
     /// Calls a function of the module.
@@ -414,7 +374,8 @@ struct NativeHost::Impl {
     /// @throws Error (Failed) if it does, or throws
     template <typename Body>
     void call(const char* function, const char* what, const Body& body) {
-        reason.clear();
+        tables.clear_reason();
+        std::string reason;
         bool good = false;
         try {
             const effect::ModuleCall guard(module.process(), function);
@@ -424,6 +385,7 @@ struct NativeHost::Impl {
         } catch (...) {
             reason = fmt::format("its {} threw an exception", function);
         }
+        if (reason.empty()) reason = tables.reason();
         if (!good)
             failed(fmt::format("render: {}: {}: {}; --disable {} goes on without it",
                                module.library().string(), what,
@@ -436,7 +398,7 @@ NativeHost::NativeHost(const effect::NativeModule& module, gl::Context& context,
     : impl_(std::make_unique<Impl>(module, context, std::move(use_depth), values, width_px,
                                    height_px)) {
     impl_->call("create()", "it cannot start",
-                [&] { return module.functions().create(&impl_->host, &impl_->instance); });
+                [&] { return module.functions().create(impl_->tables.host(), &impl_->instance); });
 }
 
 NativeHost::NativeHost(NativeHost&&) noexcept = default;
@@ -447,10 +409,10 @@ void NativeHost::prepare(Terrain& terrain, const Ground& ground, const FrameInpu
                          const FrameBlock& block, const TileSelection& picture) {
     const auto& functions = impl_->module.functions();
     if (!functions.prepare) return;
-    impl_->frame.emplace(FrameState{terrain, ground, inputs, block, picture});
+    impl_->state.emplace(FrameState{terrain, ground, inputs, block, picture});
     const struct EndOfFrame {
         Impl& impl;
-        ~EndOfFrame() { impl.frame.reset(); }
+        ~EndOfFrame() { impl.state.reset(); }
     } end_of_frame{*impl_};
     impl_->call("prepare()", "it cannot prepare a frame",
                 [&] { return functions.prepare(impl_->instance); });

@@ -14,8 +14,8 @@
 
 namespace relevo::render {
 
-/// What a native module sees of the program: the services of core/effect/abi/relevo_plugin.h over
-/// one renderer, and the module's instance.
+/// What a native module sees of the program: the services of relevo/plugin.h over one
+/// renderer, and the module's instance.
 class NativeHost {
   public:
     /// Makes the program current that draws the terrain in parallel light, with what it reads.

@@ -82,7 +82,35 @@ relevo_texture NativeTextures::create(const relevo_texture_info& info) {
     return last_;
 }
 
-void NativeTextures::read(relevo_texture name, int layer, float* out, std::uint64_t count) const {
+void NativeTextures::destroy(relevo_texture name) {
+    at(name);
+    textures_.erase(name);
+}
+
+void NativeTextures::write(const relevo_texels& texels) {
+    gl::Texture& to = get(texels.texture);
+    if (texels.level < 0 || texels.level >= to.levels() || texels.layer < 0 ||
+        texels.layer >= to.extent().depth)
+        failed(fmt::format("expected a level below {} and a layer below {} but got {} and {}",
+                           to.levels(), to.extent().depth, texels.level, texels.layer));
+    const gl::Extent level = to.level_extent(texels.level);
+    if (texels.x < 0 || texels.y < 0 || texels.width < 1 || texels.height < 1 ||
+        texels.x > level.width - texels.width || texels.y > level.height - texels.height)
+        failed(fmt::format("expected a rectangle within {} x {} texels but got {} x {} at {}, {}",
+                           level.width, level.height, texels.width, texels.height, texels.x,
+                           texels.y));
+    if (to.format() == gl::Format::Depth32F) failed("a texture of depth is drawn, not written");
+    const std::uint64_t bytes = std::uint64_t{1} * static_cast<unsigned>(texels.width) *
+                                static_cast<unsigned>(texels.height) *
+                                static_cast<unsigned>(gl::texel_bytes(to.format()));
+    if (texels.bytes != bytes)
+        failed(fmt::format("expected {} bytes for {} x {} texels but got {}", bytes, texels.width,
+                           texels.height, texels.bytes));
+    to.write(texels.level, {texels.x, texels.y, texels.layer}, {texels.width, texels.height, 1},
+             {static_cast<const std::byte*>(texels.texels), static_cast<std::size_t>(bytes)});
+}
+
+void NativeTextures::read(relevo_texture name, int layer, std::span<float> out) const {
     const Made& from = at(name);
     const gl::Extent extent = from.texture.extent();
     const std::uint64_t a_layer = std::uint64_t{1} * static_cast<unsigned>(extent.width) *
@@ -91,12 +119,12 @@ void NativeTextures::read(relevo_texture name, int layer, float* out, std::uint6
     const gl::Format format = from.texture.format();
     const bool floats = gl::texel_bytes(format) == 4 * from.floats && format != gl::Format::RGBA8;
     if (!floats) failed("only textures of 32-bit floats can be read");
-    if (layer < 0 || layer >= extent.depth || count < a_layer)
+    if (layer < 0 || layer >= extent.depth || out.size() < a_layer)
         failed(fmt::format("expected room for {} floats and a layer below {} but got {} and {}",
-                           a_layer, extent.depth, count, layer));
+                           a_layer, extent.depth, out.size(), layer));
     std::vector<float> all(a_layer * static_cast<unsigned>(extent.depth));
     from.texture.read(0, std::as_writable_bytes(std::span(all)));
-    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(a_layer) * layer, a_layer, out);
+    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(a_layer) * layer, a_layer, out.begin());
 }
 
 const gl::Texture* NativeTextures::find(std::string_view resource) const {

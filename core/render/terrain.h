@@ -57,6 +57,9 @@ class Terrain {
     Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
             const TerrainOptions& options, const dem::Source* finer = nullptr);
 
+    const dem::Pyramid& pyramid() const { return pyramid_; }
+    const dem::Grid& grid() const { return grid_; }  ///< of the pyramid's posts
+
     /// How far effects move the ground from now on. Another bound makes it another ground, with a
     /// new serial().
     void displace(const Displacement& displacement);

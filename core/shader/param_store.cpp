@@ -14,7 +14,10 @@
 
 namespace relevo::shader {
 
-void ParamStore::declare(const std::vector<Param>& params) {
+void ParamStore::declare(const std::vector<Param>& params, const std::vector<TextParam>& texts) {
+    text_params_.clear();
+    for (const TextParam& text : texts)
+        text_params_.insert_or_assign(text.address, text);
     params_.clear();
     for (const Param& param : params) {
         params_.insert_or_assign(param.address, param);
@@ -41,8 +44,14 @@ const Param* ParamStore::find(std::string_view address) const {
 
 const Param& ParamStore::param(std::string_view address) const {
     if (const Param* found = find(address)) return *found;
+    refuse_unknown(address);
+}
+
+void ParamStore::refuse_unknown(std::string_view address) const {
     std::vector<std::string> addresses;
     for (const auto& [known, param] : params_)
+        addresses.push_back(known);
+    for (const auto& [known, text] : text_params_)
         addresses.push_back(known);
     const std::optional<std::string> near = nearest(address, addresses);
     bad_input(fmt::format("shader::ParamStore: {}: no such parameter{}", address,
@@ -62,6 +71,27 @@ ParamValue ParamStore::value(std::string_view address) const {
     return found == values_.end() ? known.initial : found->second.value;
 }
 
+const TextParam* ParamStore::find_text(std::string_view address) const {
+    const auto found = text_params_.find(address);
+    return found == text_params_.end() ? nullptr : &found->second;
+}
+
+std::vector<const TextParam*> ParamStore::texts() const {
+    std::vector<const TextParam*> result;
+    for (const auto& [address, text] : text_params_)
+        result.push_back(&text);
+    return result;
+}
+
+std::string ParamStore::text(std::string_view address) const {
+    const TextParam* const known = find_text(address);
+    if (find(address))
+        bad_input(fmt::format("shader::ParamStore: {}: a value, not a text", address));
+    if (!known) refuse_unknown(address);
+    const auto found = texts_.find(address);
+    return found == texts_.end() ? known->initial : found->second;
+}
+
 const Param& ParamStore::settable(std::string_view address) const {
     const Param& known = param(address);
     if (known.is_host)
@@ -72,6 +102,12 @@ const Param& ParamStore::settable(std::string_view address) const {
 }
 
 void ParamStore::set(std::string_view address, std::string_view text) {
+    if (find_text(address)) {
+        if (text.find('\0') != std::string_view::npos)
+            bad_input(fmt::format("shader::ParamStore: {}: expected a text without NUL", address));
+        texts_.insert_or_assign(std::string(address), std::string(text));
+        return;
+    }
     const Param& known = settable(address);
     values_.insert_or_assign(known.address, Entry{known.type, parse_value(known, text)});
 }
@@ -87,7 +123,10 @@ void ParamStore::set(std::string_view address, const ParamValue& value) {
 }
 
 void ParamStore::reset(std::string_view address) {
-    values_.erase(param(address).address);
+    if (find_text(address))
+        texts_.erase(std::string(address));
+    else
+        values_.erase(param(address).address);
 }
 
 void ParamStore::write_host(std::string_view address, const ParamValue& value) {

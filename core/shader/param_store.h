@@ -10,6 +10,14 @@
 
 namespace relevo::shader {
 
+/// A text that an effect takes, which no shader sees: its native module reads it.
+struct TextParam {
+    std::string address;   ///< "overlay.picture"
+    bool is_file = false;  ///< the path of a file
+    std::string label, description;
+    std::string initial;
+};
+
 /// The values of parameters, kept on the host and keyed by address and type, so that a program
 /// that fails to compile, or a plugin that is off for a while, loses nothing.
 class ParamStore {
@@ -17,7 +25,7 @@ class ParamStore {
     /// Makes `params` the parameters there are. Values of addresses known before are kept, also of
     /// those that `params` no longer has, for when they come back. A value whose parameter now has
     /// another type, or a range without it, goes back to the default, with a warning.
-    void declare(const std::vector<Param>& params);
+    void declare(const std::vector<Param>& params, const std::vector<TextParam>& texts = {});
 
     /// The declared parameter of that address, or null.
     const Param* find(std::string_view address) const;
@@ -28,7 +36,11 @@ class ParamStore {
 
     ParamValue value(std::string_view address) const;  ///< throws as param() does
 
-    /// Sets a value as people do.
+    const TextParam* find_text(std::string_view address) const;  ///< or null
+    std::vector<const TextParam*> texts() const;                 ///< declared ones, by address
+    std::string text(std::string_view address) const;  ///< throws where there is no such text
+
+    /// Sets a value as people do; of a text, the text itself.
     /// @throws Error (BadInput) for an unknown address, a value that the parameter cannot have, or
     ///         a host parameter
     void set(std::string_view address, std::string_view text);
@@ -44,10 +56,13 @@ class ParamStore {
         ParamType type;
         ParamValue value;
     };
+    [[noreturn]] void refuse_unknown(std::string_view address) const;
     const Param& settable(std::string_view address) const;
 
     std::map<std::string, Param, std::less<>> params_;
     std::map<std::string, Entry, std::less<>> values_;  // only what differs from the default
+    std::map<std::string, TextParam, std::less<>> text_params_;
+    std::map<std::string, std::string, std::less<>> texts_;  // likewise
 };
 
 /// Where a parameter lies in the block `Params`.

@@ -12,7 +12,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "relevo_plugin.hpp"
+#include <relevo/plugin.hpp>
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "relevo_plugin.h"
+#include <relevo/plugin.h>
 
 namespace {
 
@@ -19,6 +19,8 @@ extern "C" {
 
 #if defined(RELEVO_CASE_newer)
 const uint32_t relevo_plugin_abi = (RELEVO_ABI_MAJOR + 1) << 16 | 3;
+#elif defined(RELEVO_CASE_older)
+const uint32_t relevo_plugin_abi = 1 << 16;
 #elif !defined(RELEVO_CASE_nameless)
 const uint32_t relevo_plugin_abi = RELEVO_ABI_VERSION;
 #endif

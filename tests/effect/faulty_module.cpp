@@ -8,10 +8,9 @@
 #include <string>
 #include <thread>
 
+#include <relevo/plugin.h>
 #include <signal.h>
 #include <unistd.h>
-
-#include "relevo_plugin.h"
 
 namespace {
 

@@ -39,11 +39,9 @@ TEST(Manifest, IsReadWhole) {
             "layers": {"kind": "2d-array", "files": ["day.png", "data:noise/perlin.png"],
                        "encoding": "linear"},
             "noise": {"kind": "3d", "file": "data:noise/perlin.png", "slices": 32,
-                      "encoding": "linear"}},
-        "passes": [{"name": "blur", "target": "screen", "format": "rgba16f", "scale": 0.5,
-                    "reads": ["vsm.moments"], "writes": ["haze.blurred"]}])",
+                      "encoding": "linear"}})",
                 "uniform sampler2D haze_day;\nuniform sampler2DArray haze_layers;\n"
-                "uniform sampler3D haze_noise;\nuniform sampler2D haze_blurred;\n" +
+                "uniform sampler3D haze_noise;\n" +
                     kHook);
     const Effect effect = load_effect(plugins.plugins() / "haze", plugins.data());
     const Manifest& manifest = effect.manifest;
@@ -70,10 +68,25 @@ TEST(Manifest, IsReadWhole) {
                                                         plugins.data() / "noise" / "perlin.png"));
     EXPECT_EQ(manifest.textures[2].slices, 32);
     EXPECT_TRUE(manifest.textures[2].mipmaps);
+}
 
-    ASSERT_EQ(manifest.passes.size(), 1u);
-    EXPECT_EQ(manifest.passes[0].scale, 0.5);
-    EXPECT_THAT(manifest.passes[0].writes, ElementsAre("haze.blurred"));
+TEST(Manifest, HasTextsForItsModule) {
+    const Plugins plugins;
+    plugins.write("plugins/haze/walk.gpx", "");
+    plugins.add("haze", R"("module": "haze", "texts": {
+        "track": {"kind": "file", "label": "Track", "default": "walk.gpx"},
+        "title": {"description": "Above it"}})");
+    const std::vector<shader::TextParam> texts =
+        load_effect(plugins.plugins() / "haze", plugins.data()).manifest.texts;
+    ASSERT_EQ(texts.size(), 2u);
+    EXPECT_EQ(texts[0].address, "haze.track");
+    EXPECT_TRUE(texts[0].is_file);
+    EXPECT_EQ(texts[0].label, "Track");
+    EXPECT_EQ(texts[0].initial, (plugins.plugins() / "haze/walk.gpx").string());
+    EXPECT_FALSE(texts[1].is_file);
+    EXPECT_EQ(texts[1].label, "title");
+    EXPECT_EQ(texts[1].description, "Above it");
+    EXPECT_EQ(texts[1].initial, "");
 }
 
 TEST(Manifest, SaysHowFarItMovesTheGround) {
@@ -136,13 +149,13 @@ std::string with(const std::string& members) {
 std::string texture(const std::string& members) {
     return with(R"("textures": {"noise": {)" + members + "}}");
 }
-std::string pass(const std::string& members) {
-    return with(R"("passes": [{)" + members + "}]");
+std::string text(const std::string& members) {
+    return with(R"("module": "haze", "texts": {"track": {)" + members + "}}");
 }
 
 constexpr const char* kKeys =
     "format, id, name, description, version, enabled_by_default, provides, requires, wants, after, "
-    "module, glsl, textures, passes, displaces";
+    "module, glsl, textures, texts, displaces";
 const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
 
 INSTANTIATE_TEST_SUITE_P(
@@ -219,24 +232,16 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"Unread", texture(R"("kind": "2d", "file": "a.png", "encoding": "srgb")"),
             "2: textures.noise: nothing reads it; expected uniform sampler2D haze_noise; in the "
             "plugin's GLSL"},
-        Bad{"Passes", with(R"("passes": {})"),
-            "2: passes: expected a list of passes but got an object"},
-        Bad{"PassTarget", pass(R"("name": "blur", "target": "sea")"),
-            "2: passes.0.target: expected one of screen, sun but got \"sea\""},
-        Bad{"PassFormat", pass(R"("name": "blur", "target": "sun", "format": "rgb16f")"),
-            "2: passes.0.format: expected one of r8, rg8, rgba8, r16f, rg16f, rgba16f, r32f, "
-            "rg32f, "
-            "rgba32f, depth32f but got \"rgb16f\"; did you mean rg16f?"},
-        Bad{"PassScale", pass(R"("name": "blur", "target": "sun", "format": "rg16f", "scale": 2)"),
-            "2: passes.0.scale: expected a number in [0.015625, 1] but got 2"},
-        Bad{"PassReads",
-            pass(R"("name": "b", "target": "sun", "format": "r8", "reads": ["moments"])"),
-            "2: passes.0.reads: expected resources such as vsm.moments but got \"moments\""},
-        Bad{"PassWrites",
-            pass(R"("name": "b", "target": "sun", "format": "r8", "writes": ["vsm.moments"])"),
-            "2: passes.0.writes: expected resources that begin with haze. but got \"vsm.moments\""},
-        Bad{"PassWithoutResult", pass(R"("name": "b", "target": "sun", "format": "r8")"),
-            "2: passes.0.writes: expected at least one resource that the pass writes"},
+        Bad{"Texts", with(R"("texts": [])"),
+            "2: texts: expected an object of name and text but got a list"},
+        Bad{"TextName", with(R"("module": "haze", "texts": {"No": {}})"),
+            "2: texts: expected words of a-z, 0-9 and _ but got \"No\""},
+        Bad{"TextsOfNobody", with(R"("texts": {"track": {}})"),
+            "2: texts: expected a \"module\" beside them: nothing else reads texts"},
+        Bad{"TextKind", text(R"("kind": "path")"),
+            "2: texts.track.kind: expected one of text, file but got \"path\""},
+        Bad{"TextFile", text(R"("kind": "file", "default": "../a.gpx")"),
+            "2: texts.track.default: expected a file of the plugin's own folder but got ../a.gpx"},
         Bad{"Displaces", with(R"("displaces": 5)"), "2: displaces: expected an object but got 5"},
         Bad{"DisplacesKey", with(R"("displaces": {"by_m": 5})"),
             "2: displaces.by_m: no such key; there are down_m, up_m, aside_m, to_m"},

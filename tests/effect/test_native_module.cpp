@@ -54,8 +54,11 @@ TEST(NativeModule, TheGuidesExampleIsOne) {
 TEST(NativeModule, EveryFaultIsAMessageThatNamesTheFile) {
     const std::pair<const char*, const char*> cases[] = {
         {"newer",
-         "expected version 1 of the plugin interface but got 2.3; build it with this program's "
-         "relevo_plugin.h"},
+         "expected version 2 of the plugin interface but got 3.3; build it with this program's "
+         "relevo/plugin.h"},
+        {"older",
+         "expected version 2 of the plugin interface but got 1.0; build it with this program's "
+         "relevo/plugin.h"},
         {"nameless", "it has no symbol relevo_plugin_abi; see RELEVO_PLUGIN"},
         {"unregistered", "it has no symbol relevo_plugin_register; see RELEVO_PLUGIN"},
         {"throws", "its registration threw an exception: no good today"},

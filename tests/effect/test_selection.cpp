@@ -348,6 +348,28 @@ TEST_F(Settings, OfAPluginThatIsGoneAreSkippedInAPreset) {
     EXPECT_EQ(store_.value("haze.density")[0], 0.5);
 }
 
+TEST_F(Settings, TextsAreSetAsTheyAreAndFilesCountFromTheirPreset) {
+    plugins_.add("way", R"("module": "way", "texts": {"track": {"kind": "file"}, "title": {}})");
+    registry_ = plugins_.load();
+    store_.declare(registry_.params(), registry_.texts());
+    selection_ = select(registry_, {}, {});
+    Preset winter = preset({}, {{"way.track", "walk.gpx", 3}, {"way.title", "walk.gpx", 4}});
+    winter.file = "presets/winter.json";
+    EXPECT_THAT(apply({winter}, {}), IsEmpty());
+    EXPECT_EQ(store_.text("way.track"), "presets/walk.gpx");
+    EXPECT_EQ(store_.text("way.title"), "walk.gpx");
+    EXPECT_THAT(apply({winter}, {{"way.track", "own.gpx"}}), IsEmpty());
+    EXPECT_EQ(store_.text("way.track"), "own.gpx");
+    store_.reset("way.track");
+    EXPECT_EQ(store_.text("way.track"), "");
+    EXPECT_EQ(error_of([&] {
+                  apply({}, {{"way.trak", "a"}});
+              }),
+              "exit 3: shader::ParamStore: way.trak: no such parameter; did you mean way.track?");
+    EXPECT_EQ(error_of([&] { store_.text("haze.density"); }),
+              "exit 3: shader::ParamStore: haze.density: a value, not a text");
+}
+
 TEST_F(Settings, ErrorsNameParameterAndPlace) {
     EXPECT_EQ(error_of([&] {
                   apply({preset({}, {{"haze.densty", "1", 3}})}, {});

@@ -1,5 +1,5 @@
 // A native module that does in prepare() what the test that loads it says.
-#include "relevo_plugin.h"
+#include <relevo/plugin.h>
 
 extern "C" {
 

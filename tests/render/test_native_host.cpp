@@ -9,11 +9,11 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <relevo/plugin.h>
 #include <sys/stat.h>
 
 #include "base/units.h"
 #include "dem/load.h"
-#include "effect/abi/relevo_plugin.h"
 #include "effect/native_module.h"
 #include "gl/context.h"
 #include "render/ground.h"
@@ -220,6 +220,143 @@ TEST_F(NativeHostTest, ADepthPassNeedsABoxAndATolerance) {
     EXPECT_EQ(error, "no error");
     EXPECT_THAT(statuses,
                 testing::ElementsAre(RELEVO_OK, RELEVO_FAILED, RELEVO_FAILED, RELEVO_FAILED));
+}
+
+/// A frame with a module of tests/abi, which asks every service on a device what it asks the
+/// stand-in.
+std::string draw_with(const std::string& library) {
+    const std::filesystem::path folder = test::scratch_dir("native_probe_" + library) / "probe";
+    std::filesystem::copy(test::source_dir() / "tests/abi/plugin", folder);
+    std::filesystem::copy(test::build_dir() / "tests/abi" / (library + ".so"), folder / "probe.so");
+    effect::Manifest manifest;
+    manifest.id = manifest.module = "probe";
+    manifest.folder = folder;
+    const shader::Snippet snippet =
+        shader::parse_snippet("probe", "probe.glsl",
+                              "uniform float probe_size = 3.0; //@ range(0, 9)\n"
+                              "uniform vec4 probe_level = vec4(0.0); //@ host\n");
+    return test::error_of([&] {
+        shader::ParamStore values;
+        std::vector<shader::Param> params = core_params();
+        params.insert(params.end(), snippet.source.params.begin(), snippet.source.params.end());
+        shader::TextParam track;
+        track.address = "probe.track";
+        values.declare(params, {track});
+        const effect::NativeModule module = effect::NativeModule::load(manifest, values);
+        const dem::Heightfield dem =
+            dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
+        const Ground ground = make_ground(dem);
+        gl::Context context({.device = "software", .debug = true});
+        EffectInputs effects;
+        effects.stitch.snippets = {&snippet};
+        effects.stitch.values = &values;
+        effects.modules = {&module};
+        Renderer renderer(context, effects, {.width_px = 64, .height_px = 48});
+        Terrain terrain(dem, ground.frame, {});
+        FrameInputs inputs;
+        const geo::Geodetic place = dem.grid.center();
+        const sun::Instant noon = sun::parse_time("2026-06-21T15:00Z").utc;
+        inputs.sun = make_sun_light(sun::position(noon, place), sun::Refraction::standard(place),
+                                    ground, dem.grid);
+        inputs.unix_s = static_cast<double>(noon.unix_us()) * 1e-6;
+        inputs.camera = scene::orbit_camera({180, 40, 1}, points_to_show(dem, ground, 1),
+                                            radians(40), 64.0 / 48);
+        renderer.render_frame(terrain, ground, inputs);
+    });
+}
+
+TEST(NativeHost, DoesForModulesOfTheInterfaceWhatTheStandInDoes) {
+    for (const char* library : {"c_module", "cpp_module", "grown_cpp_module"})
+        EXPECT_EQ(draw_with(library), "no error") << library;
+}
+
+TEST_F(NativeHostTest, TellsOfTheFrameHeightsAndPlaces) {
+    std::vector<std::string> wrong;
+    const dem::Heightfield dem =
+        dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
+    const std::string error = draw([&](const relevo_host* host) {
+        const auto expect = [&](bool good, const char* what) {
+            if (!good) wrong.push_back(what);
+        };
+        const auto& heights = service<relevo_heights_1>(host, "relevo.heights");
+        relevo_heights about{};
+        about.size = sizeof about;
+        heights.describe(heights.self, &about);
+        expect(about.columns == dem.grid.columns() && about.rows == dem.grid.rows(), "size");
+        relevo_nodes nodes{};
+        nodes.size = sizeof nodes;
+        nodes.column = 17;
+        nodes.row = 40;
+        nodes.columns = 5;
+        nodes.rows = 3;
+        std::vector<float> read(15);
+        expect(heights.read(heights.self, &nodes, read.data(), read.size()) == RELEVO_OK, "read");
+        for (int i = 0; i < 15; ++i)
+            expect(read[static_cast<std::size_t>(i)] == dem.height_m.at(17 + i % 5, 40 + i / 5),
+                   "a post");
+
+        const auto& geo = service<relevo_geo_1>(host, "relevo.geo");
+        const geo::Geodetic place = dem.grid.place(100, 200);
+        const double lat_lon_height[3] = {degrees(place.lat_rad), degrees(place.lon_rad), 500};
+        double local[3], post[2];
+        geo.to_local(geo.self, lat_lon_height, local);
+        const glm::dvec3 known =
+            make_ground(dem).frame.to_local({place.lat_rad, place.lon_rad, 500});
+        expect(length(glm::dvec3(local[0], local[1], local[2]) - known) < 1e-6, "local");
+        geo.to_post(geo.self, lat_lon_height, post);
+        expect(std::abs(post[0] - 100) < 1e-6 && std::abs(post[1] - 200) < 1e-6, "post");
+
+        // What the matrices make of a point is the picture's.
+        const auto& frames = service<relevo_frame_1>(host, "relevo.frame");
+        relevo_frame frame{};
+        frame.size = sizeof frame;
+        frames.get(frames.self, &frame);
+        const auto times = [](const double(&m)[16], const glm::dvec4& v) {
+            glm::dvec4 result(0);
+            for (int column = 0; column < 4; ++column)
+                for (int row = 0; row < 4; ++row)
+                    result[row] += m[4 * column + row] * v[column];
+            return result;
+        };
+        const glm::dvec3 forward(frame.forward[0], frame.forward[1], frame.forward[2]);
+        const glm::dvec3 up(frame.up[0], frame.up[1], frame.up[2]);
+        const double tan_y = std::tan(frame.fov_y_rad / 2);
+        const glm::dvec4 upper_edge = times(
+            frame.projection, times(frame.view, glm::dvec4(1000.0 * (forward + tan_y * up), 1)));
+        expect(std::abs(upper_edge.y / upper_edge.w - 1) < 1e-9, "the upper edge");
+        expect(std::abs(upper_edge.x) < 1e-9 && std::abs(upper_edge.w - 1000) < 1e-6, "its middle");
+        expect(frame.exposure > 0.1 && frame.exposure < 10, "exposure");
+        return RELEVO_OK;
+    });
+    EXPECT_EQ(error, "no error");
+    EXPECT_THAT(wrong, testing::IsEmpty());
+}
+
+TEST_F(NativeHostTest, WrittenTexelsAreRead) {
+    std::vector<float> read(16);
+    const std::string error = draw([&](const relevo_host* host) {
+        const auto& textures = service<relevo_texture_1>(host, "relevo.texture");
+        const relevo_texture_info info = texture_info(RELEVO_FORMAT_R32F, 4);
+        relevo_texture texture = 0;
+        textures.create(textures.self, &info, &texture);
+        const std::vector<float> zeros(16), four{1, 2, 3, 4};
+        relevo_texels texels{};
+        texels.size = sizeof texels;
+        texels.texture = texture;
+        texels.width = texels.height = 4;
+        texels.texels = zeros.data();
+        texels.bytes = 64;
+        textures.write(textures.self, &texels);
+        texels.x = 2;
+        texels.y = 1;
+        texels.width = texels.height = 2;
+        texels.texels = four.data();
+        texels.bytes = 16;
+        textures.write(textures.self, &texels);
+        return textures.read(textures.self, texture, 0, read.data(), read.size());
+    });
+    EXPECT_EQ(error, "no error");
+    EXPECT_THAT(read, testing::ElementsAre(0, 0, 0, 0, 0, 0, 1, 2, 0, 0, 3, 4, 0, 0, 0, 0));
 }
 
 }  // namespace

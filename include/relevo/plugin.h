@@ -1,4 +1,4 @@
-/* The interface between Relevo and native plugins, in C.
+/* The interface between Relevo and native plugins, in C (C99 and later, C++).
  *
  * A native plugin is a shared library that plugin.json names as its `module`. It exports two
  * symbols: the word `relevo_plugin_abi`, which is read before anything of it is called, and the
@@ -6,23 +6,28 @@
  * those; the module calls the host through services, which it asks for by name and version.
  *
  * Rules, for both sides:
- *   - The major version has to be equal. Within a major version, structs and enumerations only grow
- *     at their end, and services are only added.
- *   - Every struct begins with `size`, which whoever makes the struct sets to what it knows of it.
- *     The other side reads and writes no member beyond.
+ *   - The major version has to be equal. Within a major version nothing that is here changes:
+ *     structs grow at their end, by members for words that have no room in a reserved one, and
+ *     services are added.
+ *   - Every struct begins with `size`, which whoever makes the struct sets to its sizeof; a
+ * service's table has the host's. The other side reads and writes no member beyond. A function of a
+ * table that lies beyond its size is one that the host does not have.
+ *   - No struct has padding. Members named `reserved` are 0.
+ *   - No argument is null where it is not said that it may be; one that is makes the call fail.
  *   - No exception leaves a function, and what one side has allocated the other does not free.
  *   - Every function is called on the thread that draws. Texts are UTF-8, end with 0 and live only
  *     as long as the call, save where said otherwise.
  *   - Lengths are metres, positions are in the DEM's local frame: x east, y north, z up at its
- *     centre. The Earth is round in it.
+ *     centre. The Earth is round in it. Matrices are column-major.
  *
- * relevo_plugin.hpp makes all this pleasant in C++. docs/plugin-guide.md has an example.
+ * relevo/plugin.hpp makes all this pleasant in C++. docs/plugin-guide.md has an example.
  */
-#pragma once
+#ifndef RELEVO_PLUGIN_H
+#define RELEVO_PLUGIN_H
 
 #include <stdint.h>
 
-#define RELEVO_ABI_MAJOR 1u
+#define RELEVO_ABI_MAJOR 2u
 #define RELEVO_ABI_MINOR 0u
 #define RELEVO_ABI_VERSION (RELEVO_ABI_MAJOR << 16 | RELEVO_ABI_MINOR)
 
@@ -36,11 +41,12 @@
 extern "C" {
 #endif
 
-/* Whether a function did what it was asked to. On anything but RELEVO_OK the reason has been given
- * to `relevo_host::fail`, by whichever side failed. */
+/* Whether a function did what it was asked to. On RELEVO_FAILED the reason has been given to
+ * `relevo_host::fail`, by whichever side failed. */
 typedef int32_t relevo_status;
 #define RELEVO_OK 0
 #define RELEVO_FAILED 1
+#define RELEVO_NOTHING 2 /* there is none of what was asked for, which is no fault */
 
 /* What the host offers a module. Lives as long as the module's instance. */
 typedef struct relevo_host relevo_host;
@@ -56,9 +62,10 @@ struct relevo_host {
 
 /* What a module offers the host. Texts and functions live as long as the library is loaded. */
 typedef struct relevo_module {
-    uint32_t size;  /* the host's; filled members are those below both sizes */
+    uint32_t size; /* the host's; filled members are those below both sizes */
+    uint32_t reserved;
     const char* id; /* of the plugin, as in plugin.json */
-    /* Makes an instance once a device is there; null `instance` is allowed. */
+    /* Makes an instance once a device is there; null `*instance` is allowed. */
     relevo_status (*create)(const relevo_host* host, void** instance);
     void (*destroy)(void* instance);
     /* Called for every frame, before its picture is drawn. May be null. */
@@ -67,7 +74,7 @@ typedef struct relevo_module {
 
 /* What a module exports. Every function is called in a process of its own first, where a crash
  * harms nobody: the services there have no device behind them, textures hold zeros, and the DEM is
- * a box. relevo_plugin_register() is offered no service but "relevo.log". */
+ * a plain. relevo_plugin_register() is offered no service but "relevo.log". */
 extern RELEVO_PLUGIN_EXPORT const uint32_t relevo_plugin_abi;
 RELEVO_PLUGIN_EXPORT relevo_status relevo_plugin_register(const relevo_host* host,
                                                           relevo_module* module);
@@ -80,38 +87,54 @@ RELEVO_PLUGIN_EXPORT relevo_status relevo_plugin_register(const relevo_host* hos
 #define RELEVO_LOG_WARNING 2
 typedef struct relevo_log_1 {
     uint32_t size;
+    uint32_t reserved;
     void* self; /* first argument of every function here; so for each service */
     void (*write)(void* self, int32_t level, const char* text);
 } relevo_log_1;
 
-/* "relevo.params", 1: values of the parameters that the plugin's GLSL declares. Values are as
- * people write them (angles in degrees), components that a type lacks are 0. */
+/* "relevo.params", 1: values of the parameters that the plugin's GLSL declares, and of the texts
+ * and files that its plugin.json does. Values are as people write them (angles in degrees),
+ * components that a type lacks are 0. */
 typedef struct relevo_params_1 {
     uint32_t size;
+    uint32_t reserved;
     void* self;
     /* @param address  "haze.density" */
     relevo_status (*get)(void* self, const char* address, double value[4]);
     /* Writes one that is marked `host`, for this frame and those after it. */
     relevo_status (*set)(void* self, const char* address, const double value[4]);
+    /* A text, or the path of a file; "" where none is given.
+     * @param text      filled with as much as fits, and always ended; null to ask for the length
+     * @param capacity  of `text`, with the ending 0 [bytes]
+     * @param length    filled with that of the whole text, without the 0 [bytes]; may be null */
+    relevo_status (*get_text)(void* self, const char* address, char* text, uint64_t capacity,
+                              uint64_t* length);
 } relevo_params_1;
 
 /* "relevo.frame", 1: what is drawn now. */
 typedef struct relevo_frame {
     uint32_t size;
     int32_t width_px, height_px; /* of the picture */
+    int32_t software_device;     /* 1: drawn on the processor */
+    uint64_t ground;             /* another number: other ground, or another shape of it */
+    double unix_s; /* the moment, seconds since 1970-01-01T00:00Z without leap seconds */
     double eye_m[3];
-    double forward[3];          /* unit */
-    double pixel_rad;           /* angle of a pixel in the middle of the picture */
+    double right[3], up[3], forward[3]; /* the picture's axes, unit, orthogonal */
+    double fov_y_rad;                   /* angle of view from bottom to top */
+    double pixel_rad;                   /* angle of a pixel in the middle of the picture */
+    /* From positions less `eye_m` to the picture's axes, and from there to clip space, in which
+     * depth runs from 1 at the near plane to 0 at infinity. */
+    double view[16], projection[16];
+    double exposure;            /* factor from radiance to what is tone-mapped */
     double sun[3];              /* towards the sun at the DEM's centre, without refraction, unit */
     double sun_apparent[3];     /* with refraction */
     double exaggeration;        /* factor on heights */
     double lowest_m, highest_m; /* heights of the DEM, not exaggerated */
     double post_spacing_m;      /* of the DEM at its centre */
-    uint64_t ground;            /* another number: other ground, or another shape of it */
-    int32_t software_device;    /* 1: drawn on the processor */
 } relevo_frame;
 typedef struct relevo_frame_1 {
     uint32_t size;
+    uint32_t reserved;
     void* self;
     /* Only inside prepare(). */
     relevo_status (*get)(void* self, relevo_frame* frame);
@@ -132,21 +155,35 @@ typedef uint32_t relevo_texture; /* 0: none */
 #define RELEVO_FILTER_MIPMAP 2
 typedef struct relevo_texture_info {
     uint32_t size;
-    /* The sampler `<id>_<name>` of the plugin's GLSL reads it, and others do with
-     * `//@ from(<id>.<name>)`. Null: it is the module's own. */
-    const char* name;
     int32_t format, filter; /* one of those above */
     int32_t width, height;  /* [px] */
     int32_t layers;         /* 0: a sampler2D, else a sampler2DArray */
     int32_t levels;         /* of the mip chain; 0: all of it */
+    uint32_t reserved;
+    /* The sampler `<id>_<name>` of the plugin's GLSL reads it, and others do with
+     * `//@ from(<id>.<name>)`. Null: it is the module's own. */
+    const char* name;
 } relevo_texture_info;
+/* A rectangle of a texture's level, as it is handed over. */
+typedef struct relevo_texels {
+    uint32_t size;
+    relevo_texture texture;
+    int32_t layer, level;
+    int32_t x, y;          /* of its first texel; y grows with t */
+    int32_t width, height; /* [px] */
+    const void* texels;    /* as the format has them, halves as halves; rows without gaps */
+    uint64_t bytes;        /* of `texels` */
+} relevo_texels;
 typedef struct relevo_texture_1 {
     uint32_t size;
+    uint32_t reserved;
     void* self;
     /* A new texture of a name takes the place of the old one, which is to be destroyed by its
-     * maker. Coordinates beyond it repeat its rim. */
+     * maker. Coordinates beyond it repeat its rim. What it holds is not known before it is drawn
+     * or written. */
     relevo_status (*create)(void* self, const relevo_texture_info* info, relevo_texture* texture);
-    void (*destroy)(void* self, relevo_texture texture);
+    relevo_status (*destroy)(void* self, relevo_texture texture);
+    relevo_status (*write)(void* self, const relevo_texels* texels);
     relevo_status (*make_mipmaps)(void* self, relevo_texture texture);
     /* Level 0 of a layer as floats, as many a texel as the format has, the row at t = 0 first.
      * @param count  of floats that `values` has room for; waits for the device */
@@ -161,28 +198,32 @@ typedef struct relevo_draw {
     relevo_program program;
     relevo_texture target;
     int32_t layer, level;
-    const relevo_texture* inputs; /* bound to units 0, 1, ... */
     int32_t input_count;
-    const float* values; /* vec4s of the program's `values`, four floats each */
     int32_t value_count;
+    uint32_t reserved;
+    const relevo_texture* inputs; /* bound to units 0, 1, ...; null where there are none */
+    const float* values; /* vec4s of the program's `values`, four floats each; null likewise */
 } relevo_draw;
-#define RELEVO_MOST_VALUES 16
-#define RELEVO_MOST_INPUTS 8
+#define RELEVO_MAX_VALUES 16
+#define RELEVO_MAX_INPUTS 8
 typedef struct relevo_draw_1 {
     uint32_t size;
+    uint32_t reserved;
     void* self;
     /* @param file  of the plugin's folder: the fragment side in GLSL 4.50 without `#version`. What
      *              it reads is declared with its unit, `layout(binding = 0) uniform sampler2D t;`.
      *              The host declares `uniform vec4 values[16]` in front of it. */
     relevo_status (*program)(void* self, const char* file, relevo_program* program);
+    relevo_status (*destroy_program)(void* self, relevo_program program);
     /* Runs the program for every texel of a layer's level; gl_FragCoord.xy is the texel's middle.
      */
     relevo_status (*draw)(void* self, const relevo_draw* draw);
 } relevo_draw_1;
 
-/* "relevo.terrain", 1: the ground as parallel light sees it. */
+/* "relevo.terrain", 1: the ground as parallel light sees it. All only inside prepare(). */
 typedef struct relevo_box {
     uint32_t size;
+    uint32_t reserved;
     /* Unit vectors, orthogonal: to the right, up, and towards the light. */
     double right[3], up[3], towards[3];
     /* Least and greatest of a point's products with those three [m]. */
@@ -190,12 +231,12 @@ typedef struct relevo_box {
 } relevo_box;
 typedef struct relevo_terrain_1 {
     uint32_t size;
+    uint32_t reserved;
     void* self;
     /* The box along the given axes around all ground of the DEM. */
     relevo_status (*bounds)(void* self, relevo_box* box);
     /* The same around the ground that the picture shows nearer to the eye than a distance: a box
-     * around whole tiles, so that it holds a little more. RELEVO_FAILED without a reason where
-     * there is none. */
+     * around whole tiles, so that it holds a little more. RELEVO_NOTHING where there is none. */
     relevo_status (*visible_bounds)(void* self, double nearer_than_m, relevo_box* box);
     /* Draws the ground inside the first two sides of a box, and all of it that lies towards the
      * light or away from it, into a texture of RELEVO_FORMAT_DEPTH32F: 1 is box.high[2], 0 is
@@ -208,6 +249,48 @@ typedef struct relevo_terrain_1 {
                                 relevo_texture target, int32_t* level);
 } relevo_terrain_1;
 
+/* "relevo.heights", 1: the DEM's heights on the processor. All only inside prepare().
+ * Node (i, k) of level n lies on post (i << n, k << n), or on the last post where that is beyond;
+ * its height is a weighted mean of the posts around. Level 0 is the posts. */
+typedef struct relevo_heights {
+    uint32_t size;
+    int32_t columns, rows; /* of posts */
+    int32_t levels;
+} relevo_heights;
+typedef struct relevo_nodes {
+    uint32_t size;
+    int32_t level;
+    int32_t column, row; /* of the first node; nodes beyond the rim repeat it */
+    int32_t columns, rows;
+} relevo_nodes;
+typedef struct relevo_heights_1 {
+    uint32_t size;
+    uint32_t reserved;
+    void* self;
+    relevo_status (*describe)(void* self, relevo_heights* heights);
+    /* Heights of a rectangle of nodes [m], row by row as the DEM's rows run; NaN in holes. May read
+     * a file.
+     * @param count  of floats that `heights_m` has room for */
+    relevo_status (*read)(void* self, const relevo_nodes* nodes, float* heights_m, uint64_t count);
+} relevo_heights_1;
+
+/* "relevo.geo", 1: where things lie. All only inside prepare(). Latitudes and longitudes are WGS 84
+ * degrees, heights are above the zero of the DEM's and not exaggerated. */
+typedef struct relevo_geo_1 {
+    uint32_t size;
+    uint32_t reserved;
+    void* self;
+    /* @param lat_lon_height  degrees, degrees, metres */
+    relevo_status (*to_local)(void* self, const double lat_lon_height[3], double local_m[3]);
+    relevo_status (*from_local)(void* self, const double local_m[3], double lat_lon_height[3]);
+    /* Column and row of the DEM, which need not be whole nor on it. RELEVO_NOTHING where the DEM's
+     * map has no such place. */
+    relevo_status (*to_post)(void* self, const double lat_lon[2], double column_row[2]);
+    relevo_status (*from_post)(void* self, const double column_row[2], double lat_lon[2]);
+} relevo_geo_1;
+
 #ifdef __cplusplus
 }
+#endif
+
 #endif
