@@ -84,7 +84,17 @@ Heightfield load(std::span<const std::string> paths, const LoadOptions& options)
     return load(Source::open(paths, options), options.max_posts);
 }
 
+void refuse_endless_sides(const Source& source) {
+    const Grid& grid = source.grid();
+    if (std::max(grid.columns(), grid.rows()) > kMostPostsASide)
+        bad_input(
+            fmt::format("dem::load: {}: {} x {} posts, expected at most {} a side; cut it up "
+                        "with gdal_translate",
+                        source.description().path, grid.columns(), grid.rows(), kMostPostsASide));
+}
+
 Heightfield load(const Source& source, std::int64_t max_posts) {
+    refuse_endless_sides(source);
     const Grid& full = source.grid();
     Description about = source.description();
     int reduction = 1;

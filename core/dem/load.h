@@ -10,8 +10,16 @@
 
 namespace relevo::dem {
 
+/// Posts along a side beyond which a DEM is neither drawn nor looked over for a horizon: textures
+/// have 16384 pages of 256, and no raster of the Earth has so many.
+inline constexpr int kMostPostsASide = 1 << 22;
+
+/// @throws Error (BadInput) where there are more
+void refuse_endless_sides(const Source& source);
+
 /// Opens and reads one raster: Source::open(), Source::read(), statistics().
-/// @throws Error (BadInput) as they do, and where not one post has a height
+/// @throws Error (BadInput) as they do, for sides of more than kMostPostsASide, and where not one
+///         post has a height
 Heightfield load(const std::string& path, const LoadOptions& options = {});
 
 /// The same for the inputs of a command line: one file or more, joined.

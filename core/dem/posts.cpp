@@ -118,6 +118,7 @@ void Posts::Impl::take(const Heightfield& in_memory) {
 }
 
 void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
+    refuse_endless_sides(on_demand);
     source = &on_demand;
     about = on_demand.description();
     const auto blocks = [&] {

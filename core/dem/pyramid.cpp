@@ -10,10 +10,8 @@
 #include <limits>
 #include <utility>
 
-#include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "base/error.h"
 #include "base/parallel_for.h"
 
 namespace relevo::dem {
@@ -76,11 +74,6 @@ Pyramid::Pyramid(const Array2d<float>& posts_m)
 Pyramid::Pyramid(const Heightfield& means, const Source& source)
     : source_(&source), sizes_{{source.grid().columns(), source.grid().rows()}} {
     assert(means.reduction >= 2);
-    if (std::max(columns(), rows()) > kMostPosts)
-        bad_input(
-            fmt::format("dem::Pyramid: {}: {} x {} posts, expected at most {} a side to be "
-                        "drawn; cut it up with gdal_translate",
-                        means.about.path, columns(), rows(), kMostPosts));
     first_ = std::bit_width(static_cast<unsigned>(means.reduction));
     levels_.resize(static_cast<std::size_t>(first_));
     for (int level = 0; level < first_; ++level)

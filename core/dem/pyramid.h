@@ -30,15 +30,11 @@ class Pyramid {
     /// @param posts_m  level 0, NaN for holes; it must outlive this
     explicit Pyramid(const Array2d<float>& posts_m);
 
-    /// Posts along a side beyond which nothing is drawn: textures have 16384 pages of 256.
-    static constexpr int kMostPosts = 1 << 22;
-
     /// Of a DEM of which only means are in memory.
     /// @param means   as load() makes them of the source: a power of two posts to each
     /// @param source  where finer levels are read from; both must outlive this. Of the pieces that
     ///                are sampled, each takes a quarter of the means' memory at most, or 32 MiB.
-    /// @throws Error (BadInput) where the file is damaged, also from block(), and where it has more
-    ///     than kMostPosts a side
+    /// @throws Error (BadInput) where the file is damaged, also from block()
     Pyramid(const Heightfield& means, const Source& source);
 
     int levels() const { return static_cast<int>(sizes_.size()); }

@@ -11,7 +11,6 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-
 #include <relevo/plugin.hpp>
 
 namespace {

@@ -152,6 +152,18 @@ TEST(Guard, VirtualRastersOfThemselvesEnd) {
               "a virtual raster that is made of itself, by way of '" + one + "'");
 }
 
+TEST(Guard, VirtualRastersOfEndlesslyManySourcesAreNotGoneThrough) {
+    std::string sources;
+    for (int i = 0; i <= 200'000; ++i)
+        sources += "<SimpleSource><SourceFilename>a</SourceFilename></SimpleSource>";
+    EXPECT_EQ(refusal(vrt("many.vrt", sources)),
+              "a virtual raster of more than 200000 sources; cut it up");
+    const std::string large = vrt("large.vrt", source_of("a"));
+    std::filesystem::resize_file(large, std::uintmax_t{257} << 20);
+    EXPECT_EQ(refusal(large),
+              "a virtual raster of 257 MiB ('" + large + "'), expected at most 256");
+}
+
 TEST(Guard, PipesAndDevicesAreNotWaitedFor) {
     const std::string pipe = (folder() / "pipe.tif").string();
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
