@@ -1,3 +1,3 @@
-//! provides  nothing: the depth of the terrain in parallel light is all that is wanted
+//! provides  nothing: the depth of the terrain in an orthographic view is all that is wanted
 
 void main() {}

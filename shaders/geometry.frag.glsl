@@ -1,5 +1,5 @@
 //! provides  the geometry pass: what is where, for terrain.frag.glsl to shade each visible pixel once
-//! writes    place: column and row of the post, height [m], view depth [m]; with HEIGHT_STEPS, the number
+//! writes    gbuffer: column and row of the post, height [m], view depth [m]; with HEIGHT_STEPS, the number
 //!           of an output, also how the height changes from pixel to pixel [m/px]
 //!
 //! Shading is deferred because small triangles cost a software renderer a whole block of 4 x 4
@@ -12,7 +12,7 @@ in float height_m;
 in float height_from_eye_m;
 in vec3 vertex_normal;
 
-layout(location = 0) out uvec4 place_out;
+layout(location = 0) out uvec4 gbuffer_out;
 #ifdef HEIGHT_STEPS
 layout(location = HEIGHT_STEPS) out vec2 height_steps_out;
 
@@ -44,6 +44,6 @@ void main() {
     const uint no_number = 0x7fc00000u;
     height = abs(height_m) > 1e-5 * kNowhere_m ? no_number : height;
 #endif
-    place_out = uvec4(normal_source, height, floatBitsToUint(1.0 / gl_FragCoord.w));
+    gbuffer_out = uvec4(normal_source, height, floatBitsToUint(1.0 / gl_FragCoord.w));
     store_varyings();
 }

@@ -1,5 +1,5 @@
 //! provides  the light that a visible point of the terrain sends to the eye
-//! reads     place (geometry.frag.glsl), normal pages
+//! reads     gbuffer (geometry.frag.glsl), normal pages
 //! writes    with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB; in
 //!           alpha of either 0 where effects made what is no number, or infinite
 
@@ -42,7 +42,7 @@ vec2 slope_at(in vec2 post, in int level) {
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    uvec4 what = texelFetch(place, pixel, 0);
+    uvec4 what = texelFetch(gbuffer, pixel, 0);
     float depth = uintBitsToFloat(what.w);
     vec3 ray = frame.pixel_ray.xyz + gl_FragCoord.x * frame.pixel_ray_dx.xyz +
                gl_FragCoord.y * frame.pixel_ray_dy.xyz;

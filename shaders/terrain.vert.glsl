@@ -7,7 +7,7 @@
 //@ include lib/finite.glsl
 //@ include lib/ground.glsl
 
-layout(location = 0) in vec2 grid;  // 0..64, and a little beyond for the rim that hangs down
+layout(location = 0) in vec2 grid;  // 0..64, and a little beyond for the skirt
 layout(location = 1) in vec4 net_0;  // w: quads of the tile that lie on the DEM, x
 layout(location = 2) in vec4 net_u;  // w: and y
 layout(location = 3) in vec4 net_uu;  // w: layer in the height pages
@@ -23,7 +23,7 @@ layout(location = 12) in vec4 up_v;
 
 uniform sampler2DArray height_pages;  // r: height [m]; g: 1 on posts, 0 on holes; ba: the same of the coarser level
 
-const float kRim_px = 2.0;  // how far the rim hangs down in the picture
+const float kSkirt_px = 2.0;  // how far the skirt hangs down in the picture
 
 out vec2 post;
 out float height_m;
@@ -47,15 +47,15 @@ void main() {
     vec2 at = vertex / limit;
     vec4 levels = texelFetch(height_pages, texel, 0);
 #ifdef TERRAIN_DEPTH
-    const float morph = 0.0;  // parallel light sees a tile at one level
+    const float morph = 0.0;  // an orthographic view sees a tile at one level
 #else
     float distance_m = length(placed(at, levels.r));
     float morph = clamp((distance_m - net_vv.w) * net_uvv.w, 0.0, 1.0);
 #endif
     vec2 height = mix(levels.rg, levels.ba, morph);
-    bool rim = grid != clamp(grid, 0.0, 64.0);
+    bool skirt = grid != clamp(grid, 0.0, 64.0);
 #ifndef TERRAIN_DEPTH
-    height.r -= rim ? kRim_px * length(frame.pixel_ray_dx.xyz) * distance_m : 0.0;
+    height.r -= skirt ? kSkirt_px * length(frame.pixel_ray_dx.xyz) * distance_m : 0.0;
 #endif
 
     VertexFrame v;
@@ -81,7 +81,7 @@ void main() {
 #ifdef TERRAIN_DEPTH
     // Down to where no ground is lower: light does not come in under the DEM's sides.
     float sunk_m = v.drawn_height_m - frame.height_range.w * frame.height_range.z;
-    v.position_m -= (rim ? sunk_m : 0.0) * v.up;
+    v.position_m -= (skirt ? sunk_m : 0.0) * v.up;
 #endif
 
 #ifdef TERRAIN_NORMAL_VERTEX
@@ -91,7 +91,7 @@ void main() {
     vec3 beside = placed(at + vec2(1.0 / limit.x, 0.0), mix(next.r, next.b, morph));
     next = texelFetch(height_pages, texel + ivec3(0, 1, 0), 0);
     vec3 below = placed(at + vec2(0.0, 1.0 / limit.y), mix(next.r, next.b, morph));
-    vec3 here = placed(at, mix(levels.r, levels.b, morph));  // the rim has its edge's normal
+    vec3 here = placed(at, mix(levels.r, levels.b, morph));  // the skirt has its edge's normal
     vec3 crossed = cross(beside - here, below - here);
     vertex_normal = normalize(dot(crossed, v.up) < 0.0 ? -crossed : crossed);
 #endif

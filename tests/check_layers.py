@@ -9,7 +9,7 @@ import re
 import sys
 
 RANK = {"base": 0, "geo": 1, "image": 1, "gl": 1, "shader": 1, "dem": 2, "sun": 2, "light": 3, "effect": 3,
-        "scene": 4, "render": 5}
+        "scene": 4, "chart": 5, "render": 6}
 
 # Library headers, and the only layers of core/ that may include them. What is not listed is free.
 OWNERS = {
@@ -19,6 +19,7 @@ OWNERS = {
     "date": (re.compile(r"date/"), {"sun"}),
     "GL": (re.compile(r"(epoxy/|EGL/|GL/)"), {"gl", "render"}),
     "OpenImageIO": (re.compile(r"OpenImageIO/"), {"image"}),
+    "Cairo": (re.compile(r"cairo"), {"chart"}),
     "libpng": (re.compile(r"png\.h"), {"image"}),
 }
 

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "chart/carpet_chart.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
 #include "geo/format.h"
 #include "light/carpet.h"
-#include "light/carpet_chart.h"
 #include "sun/event_time.h"
 
 namespace relevo::cli {
@@ -160,7 +160,7 @@ void run(const Arguments& arguments) {
 
     output.deliver({.drawing =
                         [&] {
-                            light::CarpetChart chart;
+                            chart::CarpetChart chart;
                             chart.carpet = &carpet;
                             chart.place = horizon.place();
                             chart.place_name = arguments.place.name;

@@ -7,10 +7,10 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "chart/sun_path_diagram.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
 #include "geo/format.h"
-#include "light/sun_path_diagram.h"
 #include "sun/position.h"
 #include "sun/seasons.h"
 
@@ -361,7 +361,7 @@ void run(const Arguments& arguments) {
     result.definition = arguments.light.rule(result.place, eye_height_m).description();
 
     const auto draw = [&] {
-        light::SunPathDiagram diagram;
+        chart::SunPathDiagram diagram;
         diagram.place = result.place;
         diagram.place_name = arguments.place.name;
         diagram.zone = result.asked.zone;

@@ -6,10 +6,10 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "chart/panorama.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
 #include "geo/format.h"
-#include "light/panorama.h"
 
 namespace relevo::cli {
 namespace {
@@ -113,10 +113,10 @@ void print_text(const light::TerrainHorizon& horizon,
 }
 
 /// @param asked  the day or the year whose sun the panorama shows
-light::Drawing draw(const Arguments& arguments, const std::optional<DaysArguments::Days>& asked,
+chart::Drawing draw(const Arguments& arguments, const std::optional<DaysArguments::Days>& asked,
                     const light::TerrainHorizon& horizon,
                     const std::vector<light::HorizonPoint>& profile) {
-    light::HorizonPanorama panorama;
+    chart::HorizonPanorama panorama;
     panorama.horizon = &horizon;
     panorama.profile = &profile;
     panorama.place_name = arguments.place.name;

@@ -281,13 +281,13 @@ void OutputArguments::deliver(const Forms& forms, OutputFile* file) const {
     if (file) {
         const std::string form = ending();
         if (form == "png") {
-            const light::Drawing drawing = forms.drawing();
-            image::write(*file, light::to_image(drawing, scale),
+            const chart::Drawing drawing = forms.drawing();
+            image::write(*file, chart::to_image(drawing, scale),
                          {{"Software", "Relevo " RELEVO_VERSION},
                           {"Title", drawing.title()},
                           {"Description", drawing.description()}});
         } else {
-            file->write(form == "svg"   ? light::to_svg(forms.drawing())
+            file->write(form == "svg"   ? chart::to_svg(forms.drawing())
                         : form == "csv" ? forms.csv()
                                         : json_text(forms.json()));
             file->finish();

@@ -9,11 +9,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "chart/drawing.h"
 #include "cli/shared.h"
 #include "dem/posts.h"
 #include "light/direct_light.h"
 #include "light/doubt.h"
-#include "light/drawing.h"
 #include "light/horizon.h"
 #include "sun/events.h"
 
@@ -107,7 +107,7 @@ constexpr int kDoubtDirections = 1440;  ///< of a profile that doubts are looked
 
 /// What a verb has to say, in each of its forms; each is made only where it is asked for.
 struct Forms {
-    std::function<light::Drawing()> drawing;
+    std::function<chart::Drawing()> drawing;
     std::function<std::string()> csv;
     std::function<nlohmann::ordered_json()> json;
     std::function<void()> print;  ///< on standard output, for people

@@ -7,12 +7,10 @@ namespace relevo {
 
 /// What went wrong, as the exit status of the program says it (docs/cli.md).
 enum class ErrorCode {
-    Failed = 1,            ///< the operation could not be carried out
-    Usage = 2,             ///< the command line is wrong
-    BadInput = 3,          ///< a file or a value given by the user cannot be used
-    NoDevice = 4,          ///< no GL device that can draw
-    SomeFramesFailed = 5,  ///< a batch went on, but not every frame was made
-    CompareFailed = 6,     ///< two pictures differ by more than allowed
+    Failed = 1,    ///< the operation could not be carried out
+    Usage = 2,     ///< the command line is wrong
+    BadInput = 3,  ///< a file or a value given by the user cannot be used
+    NoDevice = 4,  ///< no GL device that can draw
 };
 
 /// An operation cannot continue. Caught once, in main.

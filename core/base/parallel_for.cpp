@@ -2,16 +2,100 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <mutex>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include <sched.h>
 
 namespace relevo {
+namespace {
+
+/// A range whose pieces are handed out until none is left.
+struct Job {
+    const std::function<void(int, int)>& body;
+    std::int64_t end, piece;
+    std::atomic<std::int64_t> next;
+    // Under the pool's lock:
+    int wanted = 0;  ///< helpers that may still join
+    int inside = 0;  ///< helpers at work
+    std::exception_ptr error;
+
+    /// Works on pieces until none is left. @returns what the first failing piece threw here
+    std::exception_ptr work() {
+        std::exception_ptr thrown;
+        for (;;) {
+            const std::int64_t first = next.fetch_add(piece);
+            if (first >= end) return thrown;
+            try {
+                body(static_cast<int>(first),
+                     static_cast<int>(std::min<std::int64_t>(end, first + piece)));
+            } catch (...) {
+                if (!thrown) thrown = std::current_exception();
+            }
+        }
+    }
+};
+
+/// Threads that wait for jobs. Who gives a job works on it too, and so waits for no one but those
+/// who are in the middle of a piece: jobs may be given from inside of others, and from several
+/// threads at once.
+class Pool {
+  public:
+    static Pool& instance() {
+        // Never destroyed: its threads sleep until the process ends, however that comes.
+        static Pool* const pool = new Pool(thread_count() - 1);
+        return *pool;
+    }
+
+    void run(Job& job) {
+        {
+            const std::lock_guard lock(mutex_);
+            jobs_.push_back(&job);
+        }
+        work_.notify_all();
+        const std::exception_ptr thrown = job.work();
+        std::unique_lock lock(mutex_);
+        jobs_.erase(std::remove(jobs_.begin(), jobs_.end(), &job), jobs_.end());
+        done_.wait(lock, [&] { return job.inside == 0; });
+        if (thrown) job.error = thrown;
+    }
+
+  private:
+    explicit Pool(int threads) {
+        try {
+            for (int i = 0; i < threads; ++i)
+                std::thread([this] { help(); }).detach();
+        } catch (const std::system_error&) {
+            // The system gives no more threads (ulimit -u): those that there are do all of it.
+        }
+    }
+
+    [[noreturn]] void help() {
+        std::unique_lock lock(mutex_);
+        for (;;) {
+            work_.wait(lock, [this] { return !jobs_.empty(); });
+            Job& job = *jobs_.front();
+            if (--job.wanted <= 0) jobs_.pop_front();
+            ++job.inside;
+            lock.unlock();
+            const std::exception_ptr thrown = job.work();
+            lock.lock();
+            if (thrown && !job.error) job.error = thrown;
+            if (--job.inside == 0) done_.notify_all();
+        }
+    }
+
+    std::mutex mutex_;
+    std::condition_variable work_, done_;
+    std::deque<Job*> jobs_;  // that want helpers
+};
+
+}  // namespace
 
 int thread_count() {
     static const int count = [] {
@@ -34,34 +118,13 @@ void parallel_for(int begin, int end, int grain, const std::function<void(int, i
         return;
     }
     // Several pieces a thread, so that an uneven load still keeps all of them busy.
-    const std::int64_t piece = std::max(least, length / (threads * 4));
-    std::atomic<std::int64_t> next = begin;
-    std::mutex mutex;
-    std::exception_ptr error;
-    const auto work = [&] {
-        for (;;) {
-            const std::int64_t first = next.fetch_add(piece);
-            if (first >= end) return;
-            try {
-                body(static_cast<int>(first),
-                     static_cast<int>(std::min<std::int64_t>(end, first + piece)));
-            } catch (...) {
-                const std::lock_guard lock(mutex);
-                if (!error) error = std::current_exception();
-            }
-        }
-    };
-    {
-        std::vector<std::jthread> workers;
-        try {
-            for (std::int64_t i = 1; i < threads; ++i)
-                workers.emplace_back(work);
-        } catch (const std::system_error&) {
-            // The system gives no more threads (ulimit -u): those that there are do all of it.
-        }
-        work();
-    }
-    if (error) std::rethrow_exception(error);
+    Job job{.body = body,
+            .end = end,
+            .piece = std::max(least, length / (threads * 4)),
+            .next = begin,
+            .wanted = static_cast<int>(threads) - 1};
+    Pool::instance().run(job);
+    if (job.error) std::rethrow_exception(job.error);
 }
 
 }  // namespace relevo

@@ -23,9 +23,9 @@ constexpr std::size_t kBlockBytes = 4096;
 std::string read_text(const std::filesystem::path& path, std::string_view who) {
     const InputFile file(path, who);
     // One more than there should be: the read after the last finds the end.
-    std::string text(std::min<std::uint64_t>(file.size(), kMostTextBytes) + 1, '\0');
+    std::string text(std::min<std::uint64_t>(file.size(), kMaxTextBytes) + 1, '\0');
     std::size_t length = 0;
-    while (length <= kMostTextBytes) {
+    while (length <= kMaxTextBytes) {
         if (length == text.size()) text.resize(text.size() + kBlockBytes);
         const ssize_t count = read(file.descriptor(), text.data() + length, text.size() - length);
         if (count < 0 && errno == EINTR) continue;
@@ -35,9 +35,9 @@ std::string read_text(const std::filesystem::path& path, std::string_view who) {
         if (count == 0) break;
         length += static_cast<std::size_t>(count);
     }
-    if (length > kMostTextBytes)
+    if (length > kMaxTextBytes)
         bad_input(fmt::format("{}: {}: expected a text of at most {} MiB but got a longer one", who,
-                              path.string(), kMostTextBytes >> 20));
+                              path.string(), kMaxTextBytes >> 20));
     text.resize(length);
     return text;
 }
@@ -58,6 +58,17 @@ std::string_view trimmed(std::string_view text) {
     const std::size_t first = text.find_first_not_of(kBlank);
     if (first == std::string_view::npos) return {};
     return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
+bool equal_ignoring_case(std::string_view a, std::string_view b) {
+    return lower(a) == lower(b);
 }
 
 namespace {

@@ -10,11 +10,11 @@
 namespace relevo {
 
 /// Longer files are no texts that people write [bytes].
-inline constexpr std::size_t kMostTextBytes = std::size_t{16} << 20;
+inline constexpr std::size_t kMaxTextBytes = std::size_t{16} << 20;
 
 /// The whole of a text file, which must be a regular one.
 /// @throws Error (BadInput) `who: path: cannot be read, reason`, and for one of more than
-///         kMostTextBytes
+///         kMaxTextBytes
 std::string read_text(const std::filesystem::path& path, std::string_view who);
 
 /// Pieces between the separators, empty ones kept: "a,,b" gives "a", "", "b"; "" gives none.
@@ -22,6 +22,12 @@ std::vector<std::string> split(std::string_view text, char separator);
 
 /// Without blanks, tabs and line ends at both sides.
 std::string_view trimmed(std::string_view text);
+
+/// In small letters; those beyond ASCII stay.
+std::string lower(std::string_view text);
+
+/// Whether two words differ by nothing but capital letters of ASCII.
+bool equal_ignoring_case(std::string_view a, std::string_view b);
 
 /// Text for people to read on one line, a file's name above all: line breaks, other control
 /// characters, noncharacters and bytes that are not UTF-8 as \n, \t, \x1b. A name cannot end a line

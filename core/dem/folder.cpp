@@ -14,6 +14,7 @@
 #include <gdal.h>
 
 #include "base/log.h"
+#include "base/text.h"
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
@@ -25,10 +26,7 @@ namespace fs = std::filesystem;
 
 /// The ending of a name, with its dot, in small letters.
 std::string ending_of(const fs::path& file) {
-    std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return ending;
+    return lower(file.extension().string());
 }
 
 template <std::size_t N>
@@ -73,10 +71,7 @@ void drop_parts_of_others(std::vector<RasterFile>& rasters) {
 
 /// A file for people about a whole folder.
 bool is_read_me(const fs::path& file) {
-    std::string name = file.stem().string();
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return name == "readme";
+    return lower(file.stem().string()) == "readme";
 }
 
 /// The files that a virtual raster names, as far as they are there.
@@ -190,15 +185,15 @@ std::vector<std::string> rasters_of(const std::string& path) {
     for (const fs::path& other : others)
         if (!is_beside(other, names) && !is_read_me(other))
             left_out.push_back(other.filename().string());
-    constexpr std::size_t kMostNamed = 3;
+    constexpr std::size_t kMaxNamed = 3;
     if (!left_out.empty())
         log::info(fmt::format("{}: {} of its files {} and left out: {}{}", path, left_out.size(),
                               left_out.size() == 1 ? "is no raster" : "are no rasters",
                               fmt::join(left_out.begin(),
                                         left_out.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                               left_out.size(), kMostNamed)),
+                                                               left_out.size(), kMaxNamed)),
                                         ", "),
-                              left_out.size() > kMostNamed ? ", ..." : ""));
+                              left_out.size() > kMaxNamed ? ", ..." : ""));
     return paths;
 }
 

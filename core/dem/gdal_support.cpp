@@ -28,9 +28,9 @@ void prepare_gdal() {
         GDALAllRegister();
         disarm_gdal();
         // By itself it is a twentieth of the machine's memory, whatever --memory is.
-        constexpr GIntBig kMostCache = GIntBig{256} << 20;
+        constexpr GIntBig kMaxCache = GIntBig{256} << 20;
         if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr))
-            GDALSetCacheMax64(std::min(GDALGetCacheMax64(), kMostCache));
+            GDALSetCacheMax64(std::min(GDALGetCacheMax64(), kMaxCache));
     });
 }
 

@@ -256,9 +256,9 @@ class VrtWalk {
         if (inside_.size() >= kDeepest)
             refuse(given_, fmt::format("virtual rasters in each other, expected at most {} deep",
                                        kDeepest));
-        if (static_cast<std::uint64_t>(status.st_size) > kMostBytes)
+        if (static_cast<std::uint64_t>(status.st_size) > kMaxBytes)
             refuse(given_, fmt::format("a virtual raster of {} MiB ('{}'), expected at most {}",
-                                       status.st_size >> 20, path, kMostBytes >> 20));
+                                       status.st_size >> 20, path, kMaxBytes >> 20));
         inside_.push_back(path);
         if (CPLXMLNode* const tree = CPLParseXMLFile(path.c_str())) {
             const CPLXMLTreeCloser closer(tree);
@@ -273,8 +273,8 @@ class VrtWalk {
     /// Of more sources than these, only those called .vrt are looked into.
     static constexpr int kManySources = 256;
     /// The largest mosaics there are have some 30 000, and 1 kB for each.
-    static constexpr int kMostSources = 200'000;
-    static constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20;
+    static constexpr int kMaxSources = 200'000;
+    static constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20;
 
     static bool is_vrt(const std::string& path) {
         VSILFILE* const file = VSIFOpenL(path.c_str(), "rb");
@@ -333,9 +333,9 @@ class VrtWalk {
         const std::string_view kind = endless(fs::status(found, unknown));
         if (!found.empty() && !kind.empty())
             refuse(given_, fmt::format("a virtual raster of '{}', {}, expected files", text, kind));
-        if (sources_ >= kMostSources)
-            refuse(given_, fmt::format("a virtual raster of more than {} sources; cut it up",
-                                       kMostSources));
+        if (sources_ >= kMaxSources)
+            refuse(given_,
+                   fmt::format("a virtual raster of more than {} sources; cut it up", kMaxSources));
         if (++sources_ <= kManySources || name.ends_with(".vrt")) {
             file(name);
         } else if (!found.empty()) {

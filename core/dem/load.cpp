@@ -52,7 +52,7 @@ std::string stored_text(const Description& about, double stored) {
 
 }  // namespace
 
-void report_heights(const Source& source, Description& about, const std::optional<Frame>& frame) {
+void report_heights(const Source& source, Description& about, const std::optional<Collar>& collar) {
     const Statistics& s = about.statistics;
     if (s.valid == 0)
         bad_input(fmt::format(
@@ -68,12 +68,12 @@ void report_heights(const Source& source, Description& about, const std::optiona
             fmt::format("{} heights are below -11500 m or above 9000 m, which the Earth has not, "
                         "and are drawn as they are; --nodata V makes V a hole, --unit {}",
                         s.outliers, unit_advice(about)));
-    if (frame)
+    if (collar)
         guess(
             fmt::format("the edge is {:g} m all around and the ground beside it {:.0f} m off, "
                         "perhaps what is left around a turned raster; --nodata {} makes it a "
                         "hole",
-                        frame->height_m, frame->step_m, stored_text(about, source.stored(0, 0))));
+                        collar->height_m, collar->step_m, stored_text(about, source.stored(0, 0))));
 }
 
 Heightfield load(const std::string& path, const LoadOptions& options) {
@@ -86,11 +86,11 @@ Heightfield load(std::span<const std::string> paths, const LoadOptions& options)
 
 void refuse_endless_sides(const Source& source) {
     const Grid& grid = source.grid();
-    if (std::max(grid.columns(), grid.rows()) > kMostPostsASide)
+    if (std::max(grid.columns(), grid.rows()) > kMaxPostsASide)
         bad_input(
             fmt::format("dem::load: {}: {} x {} posts, expected at most {} a side; cut it up "
                         "with gdal_translate",
-                        source.description().path, grid.columns(), grid.rows(), kMostPostsASide));
+                        source.description().path, grid.columns(), grid.rows(), kMaxPostsASide));
 }
 
 Heightfield load(const Source& source, std::int64_t max_posts) {
@@ -133,7 +133,8 @@ Heightfield load(const Source& source, std::int64_t max_posts) {
                         4.0 * static_cast<double>(max_posts) / kMiB));
     }
     about.statistics = statistics(height_m);
-    report_heights(source, about, about.statistics.valid > 0 ? find_frame(height_m) : std::nullopt);
+    report_heights(source, about,
+                   about.statistics.valid > 0 ? find_collar(height_m) : std::nullopt);
     Grid grid = reduction == 1 ? full : full.part(all, columns, rows);
     return {std::move(height_m), std::move(grid), std::move(about), reduction};
 }

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "dem/frame.h"
+#include "dem/collar.h"
 #include "dem/heightfield.h"
 #include "dem/source.h"
 
@@ -12,13 +12,13 @@ namespace relevo::dem {
 
 /// Posts along a side beyond which a DEM is neither drawn nor looked over for a horizon: textures
 /// have 16384 pages of 256, and no raster of the Earth has so many.
-inline constexpr int kMostPostsASide = 1 << 22;
+inline constexpr int kMaxPostsASide = 1 << 22;
 
 /// @throws Error (BadInput) where there are more
 void refuse_endless_sides(const Source& source);
 
 /// Opens and reads one raster: Source::open(), Source::read(), statistics().
-/// @throws Error (BadInput) as they do, for sides of more than kMostPostsASide, and where not one
+/// @throws Error (BadInput) as they do, for sides of more than kMaxPostsASide, and where not one
 ///         post has a height
 Heightfield load(const std::string& path, const LoadOptions& options = {});
 
@@ -33,6 +33,6 @@ Heightfield load(const Source& source, std::int64_t max_posts);
 /// @param source  they are from
 /// @param about   with its statistics
 /// @throws Error (BadInput) where not one post has a height
-void report_heights(const Source& source, Description& about, const std::optional<Frame>& frame);
+void report_heights(const Source& source, Description& about, const std::optional<Collar>& collar);
 
 }  // namespace relevo::dem

@@ -16,7 +16,7 @@ namespace {
 /// Of a post: files whose posts are this near to those of the others are on one grid.
 constexpr double kSamePlace = 0.02;
 /// More columns or rows than a raster of the whole Earth at 1 m has is a mistake.
-constexpr double kMostPosts = 5e7;
+constexpr double kMaxPosts = 5e7;
 
 bool north_up(const Affine& a) {
     return a.x_row == 0 && a.y_column == 0 && a.x_column > 0 && a.y_row < 0;
@@ -61,7 +61,7 @@ std::optional<Window> place_on_grid(const Piece& piece, const Grid& grid) {
         const glm::dvec2 off = post(corner.x, corner.y) - first - glm::dvec2(corner);
         if (!(std::abs(off.x) < kSamePlace && std::abs(off.y) < kSamePlace)) return std::nullopt;
     }
-    if (!(std::abs(first.x) < kMostPosts && std::abs(first.y) < kMostPosts)) return std::nullopt;
+    if (!(std::abs(first.x) < kMaxPosts && std::abs(first.y) < kMaxPosts)) return std::nullopt;
     return Window{static_cast<int>(first.x), static_cast<int>(first.y), columns, rows};
 }
 
@@ -78,7 +78,7 @@ Window place_resampled(const Piece& piece, const Grid& grid, const Piece& refere
                                                  glm::dvec2(0, h - t * h)};
         const glm::dvec2 edge = sides[static_cast<std::size_t>(i / kSteps % 4)] - 0.5;
         const glm::dvec2 at = grid.post(piece.grid.place(edge.x, edge.y));
-        if (!(std::abs(at.x) < kMostPosts && std::abs(at.y) < kMostPosts))
+        if (!(std::abs(at.x) < kMaxPosts && std::abs(at.y) < kMaxPosts))
             refuse(piece.path,
                    fmt::format("cannot be resampled to the grid of {}: parts of it are not within "
                                "{}; bring them to one CRS with gdalwarp",
@@ -220,7 +220,7 @@ Grid join(std::vector<Piece>& pieces, Description& about) {
         covered += double(w.columns) * w.rows;
     }
     const glm::dvec2 size = high - low;
-    if (size.x > kMostPosts || size.y > kMostPosts)
+    if (size.x > kMaxPosts || size.y > kMaxPosts)
         refuse(pieces.front().path,
                fmt::format("too far from the other files for one DEM, which would have {:.0f} x "
                            "{:.0f} posts",

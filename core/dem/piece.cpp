@@ -23,22 +23,23 @@ constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
 /// @param height_m  may be where the stored numbers are
 template <typename T>
-void to_metres(const Meaning& meaning, const T* stored, std::size_t n, float* height_m) {
+void to_metres(const BandScale& band_scale, const T* stored, std::size_t n, float* height_m) {
     constexpr T kInfinity = std::numeric_limits<T>::infinity();
     // The largest finite float is written to many lengths ("-3.4e38", "3.40282e+38"), so a nodata
     // value near it is seldom equal, to the last bit, to the cells that it means.
     constexpr double kHuge = 3.39e38;
-    const bool huge = meaning.nodata && std::abs(*meaning.nodata) > kHuge;
-    const double beyond = huge ? std::min(kHuge, meaning.beyond) : meaning.beyond;
+    const bool huge = band_scale.nodata && std::abs(*band_scale.nodata) > kHuge;
+    const double beyond = huge ? std::min(kHuge, band_scale.beyond) : band_scale.beyond;
     const T limit = static_cast<T>(std::min(beyond, double(std::numeric_limits<T>::max())));
     const bool all = beyond == std::numeric_limits<double>::infinity();
-    const T hole = meaning.nodata && !huge ? static_cast<T>(*meaning.nodata) : kInfinity;
-    const bool plain = meaning.scale == 1 && meaning.offset_m == 0;
+    const T hole = band_scale.nodata && !huge ? static_cast<T>(*band_scale.nodata) : kInfinity;
+    const bool plain = band_scale.scale == 1 && band_scale.offset_m == 0;
     for (std::size_t i = 0; i < n; ++i) {
         const T value = stored[i];
         const bool is_height = all ? std::abs(value) < kInfinity : std::abs(value) < limit;
-        const float height = plain ? static_cast<float>(value)
-                                   : static_cast<float>(value * meaning.scale + meaning.offset_m);
+        const float height =
+            plain ? static_cast<float>(value)
+                  : static_cast<float>(value * band_scale.scale + band_scale.offset_m);
         height_m[i] = !is_height || value == hole ? kHole : height;
     }
 }
@@ -100,8 +101,8 @@ std::vector<double> sample_of(GDALRasterBandH band, int pieces) {
 void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled_pieces,
                    Piece& piece) {
     Description& about = piece.about;
-    Meaning& meaning = piece.meaning;
-    meaning.beyond = no_height_beyond(meaning.scale);
+    BandScale& band_scale = piece.band_scale;
+    band_scale.beyond = no_height_beyond(band_scale.scale);
     if (piece.encoding != Encoding::None) {
         about.nodata = black_m(piece.encoding);
         piece.knows_holes = false;  // means of colours are no heights
@@ -118,7 +119,7 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
             about.assumptions.push_back(
                 fmt::format("{} marks no hole, as given", about.nodata_text()));
         about.nodata.reset();
-        meaning.beyond = std::numeric_limits<double>::infinity();
+        band_scale.beyond = std::numeric_limits<double>::infinity();
     } else if (options.nodata) {
         about.nodata = options.nodata;
         about.assumptions.push_back(fmt::format("{} marks a hole, as given", *options.nodata));
@@ -127,7 +128,7 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
     } else if (declared) {
         holes_by(piece.encoding != Encoding::None ? "encoding" : "nodata");
     } else if (!piece.has_mask && piece.alpha_band == 0) {
-        const Undeclared found = find_undeclared(sample_of(band, sampled_pieces), meaning.scale);
+        const Undeclared found = find_undeclared(sample_of(band, sampled_pieces), band_scale.scale);
         if (found.beyond)
             guess(about,
                   "numbers too large for any height mark holes, though the file does not "
@@ -141,7 +142,7 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
         if (!piece.knows_holes) holes_by("found");
     }
     if (piece.alpha_band > 0) piece.knows_holes = false;
-    meaning.nodata = about.nodata;
+    band_scale.nodata = about.nodata;
 }
 
 constexpr double kMiB = 1 << 20;
@@ -180,9 +181,9 @@ std::uint64_t bytes_behind(const std::string& path, GDALDatasetH dataset) {
 /// Finds out what a huge raster's file does not store, and refuses one whose file cannot store what
 /// it promises: to read it would take for ever and give nothing.
 void settle_sparse(GDALDatasetH dataset, GDALRasterBandH band, Piece& piece) {
-    constexpr double kManyPosts = 1 << 28;    // read in seconds
-    constexpr double kBelievable = 1 << 30;   // read in some ten
-    constexpr double kMostInAByte = 1 << 20;  // a thousand times what deflate can do
+    constexpr double kManyPosts = 1 << 28;   // read in seconds
+    constexpr double kBelievable = 1 << 30;  // read in some ten
+    constexpr double kMaxInAByte = 1 << 20;  // a thousand times what deflate can do
     const double posts = double(piece.grid.columns()) * piece.grid.rows();
     if (posts < kManyPosts || is_remote(piece.path)) return;
     const std::uint64_t bytes = bytes_behind(piece.path, dataset);
@@ -198,7 +199,7 @@ void settle_sparse(GDALDatasetH dataset, GDALRasterBandH band, Piece& piece) {
         piece.sparse = map;
     }
     const double stored = posts * (piece.sparse ? piece.sparse->stored_share() : 1);
-    if (posts > kBelievable && stored > kMostInAByte * static_cast<double>(bytes))
+    if (posts > kBelievable && stored > kMaxInAByte * static_cast<double>(bytes))
         refuse(piece.about.path,
                fmt::format("promises {} x {} posts, expected far fewer in {} bytes of files",
                            piece.grid.columns(), piece.grid.rows(), bytes));
@@ -225,7 +226,7 @@ Dataset view_of(Dataset below, GDALDatasetH made) {
 Dataset resampled(const Piece& piece, Dataset dataset, const GdalMessages& messages) {
     const std::string band = fmt::format("{}", piece.about.band);
     const std::string nodata =
-        piece.meaning.nodata ? fmt::format("{}", *piece.meaning.nodata) : std::string("none");
+        piece.band_scale.nodata ? fmt::format("{}", *piece.band_scale.nodata) : std::string("none");
     CPLStringList one_band, onto;
     for (const std::string& word : {std::string("-of"), std::string("VRT"), std::string("-b"), band,
                                     std::string("-a_nodata"), nodata})
@@ -348,8 +349,8 @@ Piece open_piece(const std::string& given, const LoadOptions& options, std::size
                 .place = {0, 0, columns, rows},
                 .encoding = options.encoding,
                 .about = std::move(about)};
-    piece.meaning.scale = piece.about.scale * metres;
-    piece.meaning.offset_m = piece.about.offset * metres;
+    piece.band_scale.scale = piece.about.scale * metres;
+    piece.band_scale.offset_m = piece.about.offset * metres;
     piece.wide = !fits_float(type);
     const int mask = GDALGetMaskFlags(band);
     piece.has_mask = (mask & (GMF_PER_DATASET | GMF_ALPHA)) != 0 && (mask & GMF_NODATA) == 0;
@@ -389,7 +390,7 @@ double Piece::stored(void* dataset, int column, int row) const {
     if (encoding != Encoding::None || resampling) {
         float height_m = kHole;
         read(dataset, levels.front(), {column, row, 1, 1}, &height_m);
-        return (static_cast<double>(height_m) - meaning.offset_m) / meaning.scale;
+        return (static_cast<double>(height_m) - band_scale.offset_m) / band_scale.scale;
     }
     const GdalMessages messages;
     double number = 0;
@@ -425,14 +426,14 @@ void Piece::read(void* dataset, const Level& level, const Window& w, float* heig
         }
         for (std::size_t i = 0; i < n; ++i)
             height_m[i] = decoded_m(encoding, colours[0][i], colours[1][i], colours[2][i]);
-        to_metres(meaning, height_m, n, height_m);
+        to_metres(band_scale, height_m, n, height_m);
     } else if (wide) {
         std::vector<double> stored(n);
         fetch(band, stored.data(), GDT_Float64);
-        to_metres(meaning, stored.data(), n, height_m);
+        to_metres(band_scale, stored.data(), n, height_m);
     } else {
         fetch(band, height_m, GDT_Float32);
-        to_metres(meaning, height_m, n, height_m);
+        to_metres(band_scale, height_m, n, height_m);
     }
     if (alpha_band > 0 && !resampling) {
         std::vector<float> alpha(n);

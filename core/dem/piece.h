@@ -14,7 +14,7 @@
 namespace relevo::dem {
 
 /// How stored numbers become metres.
-struct Meaning {
+struct BandScale {
     std::optional<double> nodata;
     double beyond = 0;    // numbers further from zero are no heights; infinite: all are
     double scale = 1;     // metres in one step of the stored number
@@ -41,7 +41,7 @@ struct Piece {
     Window place;      ///< its posts among those of the DEM, after resampling
     std::optional<Resampling> resampling;
 
-    Meaning meaning;
+    BandScale band_scale;
     Encoding encoding = Encoding::None;
     bool has_mask = false;     ///< a mask or an alpha band says where the holes are
     int alpha_band = 0;        ///< GDAL makes no mask of it, which it does of 8 and 16 bits alone

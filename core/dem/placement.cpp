@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "geo/ellipsoid.h"
 
 namespace relevo::dem {
 namespace {
@@ -88,7 +89,7 @@ std::optional<WebTile> web_tile(const std::string& path) {
 }
 
 Affine affine_of(const WebTile& tile, int columns, int rows) {
-    constexpr double kHalf_m = kPi * 6378137;  // half the world's side, EPSG:3857
+    constexpr double kHalf_m = kPi * geo::kEquatorialRadius_m;  // half the world's side, EPSG:3857
     const double side_m = std::ldexp(2 * kHalf_m, -tile.zoom);
     const glm::dvec2 north_west(-kHalf_m + tile.x * side_m, kHalf_m - tile.y * side_m);
     return between(north_west, north_west + glm::dvec2(side_m, -side_m), columns, rows);

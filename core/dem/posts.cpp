@@ -18,9 +18,9 @@ namespace relevo::dem {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kLeastBlock = 32;              // cells a side
-constexpr std::int64_t kMostSlab = 1 << 22;  // posts that are read at once to go through a file
-constexpr int kSlab_rows = 512;              // those of the tallest usual blocks of files
+constexpr int kLeastBlock = 32;             // cells a side
+constexpr std::int64_t kMaxSlab = 1 << 22;  // posts that are read at once to go through a file
+constexpr int kSlab_rows = 512;             // those of the tallest usual blocks of files
 
 /// Blocks in a line of posts. Cells of a block share their last post with the next one.
 int blocks_of(int posts, int block) {
@@ -128,7 +128,7 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
         block *= 2;
     block_highest_m = Array2d<float>(blocks_of(grid().columns(), block),
                                      blocks_of(grid().rows(), block), -kInfinity);
-    go_through(std::min(max_posts / 2, kMostSlab));
+    go_through(std::min(max_posts / 2, kMaxSlab));
     settle_holes();
     tiles = std::make_unique<TileCache>(on_demand, max_posts - blocks());
 }
@@ -145,7 +145,7 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
     };
     const int slab_rows = fitting(std::min<std::int64_t>(kSlab_rows, slab_posts / side));
     const int slab_columns = fitting(slab_posts / slab_rows);
-    std::optional<FrameSteps> frame_steps = frame_steps_of(*source);
+    std::optional<CollarSteps> collar_steps = collar_steps_of(*source);
     Progress progress(about.path + ": reading all posts", double(columns) * rows);
     for (int row = 0; row < rows - 1;) {
         // Slabs share their last row and column with the next ones. What no file stores is one.
@@ -172,7 +172,7 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
             } else {
                 const Array2d<float> height_m = source->read(slab, slab.columns, slab.rows);
                 find_highest({height_m.data(), height_m.width(), slab.column, slab.row}, slab);
-                if (frame_steps) frame_steps->add(height_m);
+                if (collar_steps) collar_steps->add(height_m);
                 about.statistics += statistics(height_m, own_columns, own_rows);
             }
             progress.add(double(own_columns) * own_rows);
@@ -180,7 +180,7 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
         }
         row += count;
     }
-    report_heights(*source, about, frame_steps ? frame_steps->frame() : std::nullopt);
+    report_heights(*source, about, collar_steps ? collar_steps->collar() : std::nullopt);
 }
 
 Posts::View Posts::Impl::view(const Window& window, std::vector<float>& buffer) const {

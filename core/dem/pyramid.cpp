@@ -471,16 +471,11 @@ void Pyramid::measure_errors(int level) {
                         coarse.row(std::min(row.from + 1, coarse.height() - 1)).data();
                     float row_squares = 0;
                     for (int x = tx * nodes; x < end; ++x) {
-                        // On the coarser level's triangles, which are divided from the upper right
-                        // to the lower left corner of their quad, as the terrain grid is.
+                        // On the coarser level's triangles.
                         const Place& column = columns[static_cast<std::size_t>(x)];
                         const int c = column.from, d = std::min(c + 1, coarse.width() - 1);
-                        const float u = column.share, v = row.share;
-                        const float surface =
-                            u + v <= 1
-                                ? upper[c] + u * (upper[d] - upper[c]) + v * (lower[c] - upper[c])
-                                : lower[d] + (1 - u) * (lower[c] - lower[d]) +
-                                      (1 - v) * (upper[d] - lower[d]);
+                        const float surface = on_triangles(upper[c], upper[d], lower[c], lower[d],
+                                                           column.share, row.share);
                         const float off = std::abs(from[x] - surface);
                         if (!(off >= 0)) continue;  // in or beside a hole
                         error = std::max(error, off);

@@ -12,6 +12,16 @@
 
 namespace relevo::dem {
 
+/// A value between the four corners of a quad that is divided from its upper right to its lower
+/// left corner, as the drawn grid's are.
+/// @param u, v  0 to 1 from the left and from above
+inline float on_triangles(float upper_left, float upper_right, float lower_left, float lower_right,
+                          float u, float v) {
+    return u + v <= 1 ? upper_left + u * (upper_right - upper_left) + v * (lower_left - upper_left)
+                      : lower_right + (1 - u) * (lower_left - lower_right) +
+                            (1 - v) * (upper_right - lower_right);
+}
+
 /// The heights of a DEM at spacings that double from level to level.
 ///
 /// Level 0 are the posts. The nodes of level k lie on every 2^k-th post, counted from the first,

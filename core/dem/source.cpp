@@ -22,7 +22,7 @@ namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 /// Handles kept open between reads. A process may have 1024 files open; tiles come in thousands.
-constexpr std::size_t kMostIdle = 128;
+constexpr std::size_t kMaxIdle = 128;
 /// Of more than these, some seconds of reading, progress is told.
 constexpr double kManyPosts = 1 << 28;
 
@@ -182,7 +182,7 @@ void Source::Impl::borrow(const Piece& piece, const Body& body) const {
     if (!mine) mine = piece.open();
     body(mine.get());
     const std::lock_guard lock(mutex);
-    if (idle.size() >= kMostIdle) idle.erase(idle.begin());
+    if (idle.size() >= kMaxIdle) idle.erase(idle.begin());
     idle.push_back({&piece, std::move(mine)});
 }
 
@@ -268,14 +268,14 @@ void Source::Impl::add_means(const Piece& piece, const Window& window, int colum
     // What is not stored is skipped strip by strip. Tiles that rows of parts have in common are
     // decoded once: strips are as wide as GDAL's cache has room for their tiles, and are gone down
     // one after the other.
-    constexpr std::size_t kMostCells = std::size_t{1} << 18, kFewestCells = std::size_t{1} << 13,
+    constexpr std::size_t kMaxCells = std::size_t{1} << 18, kFewestCells = std::size_t{1} << 13,
                           kCached = std::size_t{1} << 24;
     const bool tiled = static_cast<std::size_t>(piece.block_columns) <= kFewestCells / 2;
     const std::size_t most_cells =
         may_skip ? kFewestCells
         : tiled  ? std::clamp(kCached / static_cast<std::size_t>(piece.block_rows), kFewestCells,
-                              kMostCells)
-                 : kMostCells;
+                              kMaxCells)
+                 : kMaxCells;
     const std::vector<Strip> strips = strips_of(across, most_cells);
 
     const auto add_rows = [&](int first, int last) {
@@ -434,7 +434,7 @@ Source Source::open(std::span<const std::string> given, const LoadOptions& optio
         bad_usage(
             fmt::format("--bounds: it says where one file is, but there are {}", paths.size()));
     auto impl = std::make_unique<Impl>();
-    std::vector<Dataset> opened(std::min(paths.size(), kMostIdle));
+    std::vector<Dataset> opened(std::min(paths.size(), kMaxIdle));
     for (std::size_t i = 0; i < paths.size(); ++i) {
         Dataset dataset;
         try {
@@ -445,7 +445,7 @@ Source Source::open(std::span<const std::string> given, const LoadOptions& optio
                         fmt::format("{}; it is one of {} in {}, name those that are meant",
                                     error.what(), paths.size(), folders[i]));
         }
-        if (i < kMostIdle) opened[i] = std::move(dataset);
+        if (i < kMaxIdle) opened[i] = std::move(dataset);
     }
     impl->grid = join(impl->pieces, impl->about);
     settle_earth(*impl->grid, impl->about, impl->leaves_earth);

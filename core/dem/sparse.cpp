@@ -11,7 +11,7 @@
 namespace relevo::dem {
 namespace {
 
-constexpr int kMostCells = 256;  // each way
+constexpr int kMaxCells = 256;  // each way
 constexpr std::int64_t kManyPosts = std::int64_t{1} << 28;
 /// Posts in a byte: what is stored more densely than this is not compressed heights.
 constexpr double kDense = 16;
@@ -32,7 +32,7 @@ bool knows(GDALDatasetH dataset) {
 SparseMap::SparseMap(int columns, int rows)
     : columns_(columns),
       rows_(rows),
-      stored_(std::min(columns, kMostCells), std::min(rows, kMostCells), std::uint8_t{1}) {}
+      stored_(std::min(columns, kMaxCells), std::min(rows, kMaxCells), std::uint8_t{1}) {}
 
 int SparseMap::first_post(int cell, int cells, int posts) const {
     return static_cast<int>(std::int64_t{posts} * cell / cells);

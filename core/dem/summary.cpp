@@ -115,7 +115,7 @@ Summary summarize(const Source& source, std::int64_t max_posts) {
     Description about = source.description();
     const Survey found = survey(source, max_posts);
     about.statistics = found.statistics;
-    report_heights(source, about, found.frame);
+    report_heights(source, about, found.collar);
     Summary s = summary_of(about, source.grid(), found.spikes);
     if (found.spikes.count > 0) {
         const int column = found.spikes.worst_column, row = found.spikes.worst_row;

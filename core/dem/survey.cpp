@@ -11,7 +11,7 @@ namespace relevo::dem {
 namespace {
 
 constexpr std::int64_t kLeastPosts = 1 << 18;
-constexpr std::int64_t kMostPosts = 1 << 23;
+constexpr std::int64_t kMaxPosts = 1 << 23;
 
 /// @param at  where the part's first post is
 void add(Spikes& total, const Spikes& part, const glm::ivec2& at) {
@@ -29,14 +29,14 @@ void add(Spikes& total, const Spikes& part, const glm::ivec2& at) {
 class Strip {
   public:
     Strip(const Source& source, int first, int last, Survey& survey,
-          std::optional<FrameSteps>& frame_steps)
+          std::optional<CollarSteps>& collar_steps)
         : source_(source),
           left_(std::max(0, first - 1)),
           first_(first),
           last_(last),
           right_(std::min(source.grid().columns(), last + 1)),
           survey_(survey),
-          frame_steps_(frame_steps),
+          collar_steps_(collar_steps),
           spacing_m_(source.grid().post_spacing_m()) {}
 
     /// The next rows.
@@ -80,8 +80,8 @@ class Strip {
             const Window core{own.column, begin, own.columns, end - begin};
             dem::add(survey_.spikes, find_spikes(all, spacing_m_, core), {left_, row});
         }
-        if (frame_steps_)
-            frame_steps_->add(
+        if (collar_steps_)
+            collar_steps_->add(
                 part_of(all, {own.column, begin, all.width() - own.column, all.height() - begin}));
     }
 
@@ -100,25 +100,25 @@ class Strip {
     const Source& source_;
     int left_, first_, last_, right_;
     Survey& survey_;
-    std::optional<FrameSteps>& frame_steps_;
+    std::optional<CollarSteps>& collar_steps_;
     glm::dvec2 spacing_m_;
     Array2d<float> tail_;  // the last two rows
 };
 
 }  // namespace
 
-std::optional<FrameSteps> frame_steps_of(const Source& source) {
+std::optional<CollarSteps> collar_steps_of(const Source& source) {
     constexpr int kAtOnce = 1 << 20;
     const int columns = source.grid().columns(), rows = source.grid().rows();
     const auto post = [&](int column, int row) {
         return source.read({column, row, 1, 1}, 1, 1).at(0, 0);
     };
-    FrameEdge edge(post(0, 0), 2 * (std::int64_t{columns} + rows));
+    CollarEdge edge(post(0, 0), 2 * (std::int64_t{columns} + rows));
     for (const int row : {0, rows - 1})
         for (const int column : {0, columns - 1})
             edge.add_corner(post(column, row));
     for (const int row : {0, rows - 1})
-        for (int column = 0; column < columns && edge.may_be_frame();) {
+        for (int column = 0; column < columns && edge.may_be_collar();) {
             const Window piece{column, row, std::min(kAtOnce, columns - column), 1};
             if (const Source::Blank blank = source.blank(piece); blank.rows > 0)
                 edge.add(blank.height_m, piece.columns);
@@ -127,7 +127,7 @@ std::optional<FrameSteps> frame_steps_of(const Source& source) {
             column += piece.columns;
         }
     for (const int column : {0, columns - 1})
-        for (int row = 0; row < rows && edge.may_be_frame();) {
+        for (int row = 0; row < rows && edge.may_be_collar();) {
             Window piece{column, row, 1, rows - row};
             if (const Source::Blank blank = source.blank(piece); blank.rows > 0) {
                 piece.rows = blank.rows;
@@ -139,7 +139,7 @@ std::optional<FrameSteps> frame_steps_of(const Source& source) {
             }
             row += piece.rows;
         }
-    return edge.may_be_frame() ? std::optional<FrameSteps>(edge.height_m()) : std::nullopt;
+    return edge.may_be_collar() ? std::optional<CollarSteps>(edge.height_m()) : std::nullopt;
 }
 
 Survey survey(const Source& source, std::int64_t max_posts) {
@@ -150,9 +150,9 @@ Survey survey(const Source& source, std::int64_t max_posts) {
         result.statistics = statistics(all.height_m, std::int64_t{columns} * rows);
         return result;
     }
-    std::optional<FrameSteps> frame_steps = frame_steps_of(source);
+    std::optional<CollarSteps> collar_steps = collar_steps_of(source);
     // Whole rows of blocks, and of these as many columns as there is room for.
-    const std::int64_t room = std::clamp(max_posts / 4, kLeastPosts, kMostPosts);
+    const std::int64_t room = std::clamp(max_posts / 4, kLeastPosts, kMaxPosts);
     const int block_rows =
         static_cast<int>(std::min<std::int64_t>({source.block_rows(), rows, room / 64}));
     const int strip_columns = static_cast<int>(std::min<std::int64_t>(columns, room / block_rows));
@@ -162,7 +162,7 @@ Survey survey(const Source& source, std::int64_t max_posts) {
     for (int first = 0; first < columns;) {
         const int last =
             static_cast<int>(std::min<std::int64_t>(columns, std::int64_t{first} + strip_columns));
-        Strip strip(source, first, last, result, frame_steps);
+        Strip strip(source, first, last, result, collar_steps);
         for (int row = 0; row < rows;) {
             const Source::Blank blank =
                 source.blank({std::max(0, first - 1), row,
@@ -179,7 +179,7 @@ Survey survey(const Source& source, std::int64_t max_posts) {
         }
         first = last;
     }
-    if (frame_steps) result.frame = frame_steps->frame();
+    if (collar_steps) result.collar = collar_steps->collar();
     return result;
 }
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "dem/frame.h"
+#include "dem/collar.h"
 #include "dem/heightfield.h"
 #include "dem/source.h"
 #include "dem/spikes.h"
@@ -14,7 +14,7 @@ namespace relevo::dem {
 struct Survey {
     Statistics statistics;
     Spikes spikes;
-    std::optional<Frame> frame;
+    std::optional<Collar> collar;
 };
 
 /// Goes through all posts once, in pieces; tells of its progress where that takes long.
@@ -22,8 +22,8 @@ struct Survey {
 /// @throws Error (BadInput) where the file is damaged
 Survey survey(const Source& source, std::int64_t max_posts);
 
-/// What looks for a frame inside of a DEM, where its edge may be one. The edge is read in pieces;
-/// columns only where the rows may be a frame's: of some files they are all of it.
-std::optional<FrameSteps> frame_steps_of(const Source& source);
+/// What looks for a collar inside of a DEM, where its edge may be one. The edge is read in pieces;
+/// columns only where the rows may be a collar's: of some files they are all of it.
+std::optional<CollarSteps> collar_steps_of(const Source& source);
 
 }  // namespace relevo::dem

@@ -7,14 +7,14 @@ namespace {
 
 constexpr std::int64_t kLeastTiles =
     16;  // of a shard, so that neighbours do not drive each other out
-constexpr std::int64_t kMostShards = 64;
+constexpr std::int64_t kMaxShards = 64;
 
 }  // namespace
 
 TileCache::TileCache(const Source& source, std::int64_t max_posts)
     : source_(source), columns_((source.grid().columns() + kSide - 1) / kSide) {
     const std::int64_t tiles = std::max<std::int64_t>(1, max_posts / (kSide * kSide));
-    const std::int64_t shards = std::clamp<std::int64_t>(tiles / kLeastTiles, 1, kMostShards);
+    const std::int64_t shards = std::clamp<std::int64_t>(tiles / kLeastTiles, 1, kMaxShards);
     each_ = static_cast<std::size_t>(tiles / shards);
     for (std::int64_t i = 0; i < shards; ++i)
         shards_.push_back(std::make_unique<Shard>());

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kDimension = 10;
 constexpr std::uint32_t kVariable = 11;
 constexpr std::uint32_t kAttribute = 12;
-constexpr std::uint64_t kMostItems = 1'000'000;  // of a list or a name: more is no header
+constexpr std::uint64_t kMaxItems = 1'000'000;  // of a list or a name: more is no header
 
 /// A classic header, read from its beginning; after a failure every read gives 0.
 class Header {
@@ -45,11 +45,11 @@ class Header {
     std::uint64_t list(std::uint32_t expected) {
         const std::uint64_t found = tag();
         const std::uint64_t length = count();
-        if (length > kMostItems || (length > 0 && found != expected)) fail();
+        if (length > kMaxItems || (length > 0 && found != expected)) fail();
         return good() ? length : 0;
     }
     void skip(std::uint64_t bytes) {  // padded to four
-        if (bytes > kMostItems) fail();
+        if (bytes > kMaxItems) fail();
         if (good()) file_.seekg(static_cast<std::streamoff>((bytes + 3) / 4 * 4), std::ios::cur);
     }
     void skip_name() { skip(count()); }

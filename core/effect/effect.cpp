@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kWho = "effect::load";
 /// Of one file. Drivers take minutes for longer ones.
-constexpr std::size_t kMostGlslBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxGlslBytes = std::size_t{1} << 20;
 
 [[noreturn]] void fail(const std::string& file, int line, const std::string& message) {
     bad_input(fmt::format("{}: {}:{}: {}", kWho, file, line, message));
@@ -24,9 +24,9 @@ bool contains(const std::vector<std::string>& words, std::string_view word) {
 
 std::string glsl_text(const std::filesystem::path& file) {
     std::string text = read_text(file, kWho);
-    if (text.size() > kMostGlslBytes)
+    if (text.size() > kMaxGlslBytes)
         bad_input(fmt::format("{}: {}: expected at most {} KiB but got {}", kWho, file.string(),
-                              kMostGlslBytes >> 10, (text.size() + 1023) >> 10));
+                              kMaxGlslBytes >> 10, (text.size() + 1023) >> 10));
     return text;
 }
 

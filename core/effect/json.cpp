@@ -176,9 +176,9 @@ std::string describe(const Json& value) {
 }
 
 Json parse_json(std::string_view who, std::string_view file, std::string_view text) {
-    if (text.size() > kMostJsonBytes)
+    if (text.size() > kMaxJsonBytes)
         bad_input(fmt::format("{}: {}: expected at most {} KiB but got {}", who, file,
-                              kMostJsonBytes >> 10, (text.size() + 1023) >> 10));
+                              kMaxJsonBytes >> 10, (text.size() + 1023) >> 10));
     int line = 1;
     Builder builder(who, file, line);
     nlohmann::json::sax_parse(CountingIterator(text.data(), &line),

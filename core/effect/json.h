@@ -27,12 +27,12 @@ struct Json {
 std::string describe(const Json& value);
 
 /// Longer files are not written by people [bytes].
-inline constexpr std::size_t kMostJsonBytes = std::size_t{1} << 20;
+inline constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 20;
 
 /// @param who   as messages begin: "effect::load"
 /// @param file  as messages name it
 /// @throws Error (BadInput) `who: file:line: ...` for a mistake in the syntax, bytes that
-///         are no UTF-8, a key given twice, and a text of more than kMostJsonBytes
+///         are no UTF-8, a key given twice, and a text of more than kMaxJsonBytes
 Json parse_json(std::string_view who, std::string_view file, std::string_view text);
 
 /// Takes the members of an object one by one; what is left over is an error.

@@ -14,15 +14,15 @@ namespace {
 
 constexpr std::string_view kWho = "effect::load";
 constexpr int kFormat = 1;
-constexpr double kMostDisplaced_m = 1e5;
+constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and what its shaders' globals begin with.
-constexpr std::array<std::string_view, 39> kReserved = {
-    "all",   "antialias", "background", "camera",   "colour", "core",     "data",   "depth",
-    "east",  "edges",     "frame",      "geometry", "gl",     "ground",   "height", "hook",
-    "light", "load",      "net",        "none",     "normal", "overlay",  "page",   "place",
-    "post",  "scene",     "select",     "slope",    "srgb",   "steps",    "store",  "stored",
-    "sun",   "surface",   "tangent",    "terrain",  "up",     "varyings", "vertex"};
+constexpr std::array<std::string_view, 40> kReserved = {
+    "all",    "antialias", "background", "camera",  "colour",   "core",   "data",     "depth",
+    "east",   "edges",     "frame",      "gbuffer", "geometry", "gl",     "ground",   "height",
+    "hook",   "light",     "load",       "net",     "none",     "normal", "overlay",  "page",
+    "place",  "post",      "scene",      "select",  "slope",    "srgb",   "steps",    "store",
+    "stored", "sun",       "surface",    "tangent", "terrain",  "up",     "varyings", "vertex"};
 
 // A capability that core provides itself: render/programs.h.
 constexpr std::string_view kNightWord = "night";
@@ -241,7 +241,7 @@ class ManifestReader {
         spec.down = length(bound, "down_m", 0);
         spec.up = length(bound, "up_m", 0);
         spec.aside = length(bound, "aside_m", 0);
-        if (bound.take("to_m")) spec.to = length(bound, "to_m", -kMostDisplaced_m);
+        if (bound.take("to_m")) spec.to = length(bound, "to_m", -kMaxDisplaced_m);
         bound.finish();
     }
 
@@ -251,7 +251,7 @@ class ManifestReader {
         if (!value) return {};
         const std::string prefix = manifest_.id + '.';
         if (value->kind == Json::Kind::Number && value->number >= min &&
-            value->number <= kMostDisplaced_m)
+            value->number <= kMaxDisplaced_m)
             return {value->number, {}};
         if (value->kind == Json::Kind::String && value->text.substr(0, prefix.size()) == prefix &&
             is_resource(value->text))
@@ -259,7 +259,7 @@ class ManifestReader {
         object.fail(value->line, key,
                     fmt::format("expected metres from {:g} to {:g}, or a parameter such as "
                                 "\"{}height_m\", but got {}",
-                                min, kMostDisplaced_m, prefix, describe(*value)));
+                                min, kMaxDisplaced_m, prefix, describe(*value)));
     }
 
     Manifest manifest_;

@@ -133,7 +133,7 @@ struct Heard {
 Heard listen(int fd, Clock::time_point deadline) {
     Heard heard;
     std::array<char, 512> buffer;
-    while (heard.text.size() < kMostReportBytes &&
+    while (heard.text.size() < kMaxReportBytes &&
            heard.text.find(kReportEnd) == std::string::npos) {
         const auto left =
             std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
@@ -194,7 +194,7 @@ std::string try_module(const std::filesystem::path& library, const std::string& 
                                             : heard.text.substr(verdict + 1, end - verdict - 1);
     }
     const std::string stage = last_stage(heard.text);
-    if (heard.text.size() >= kMostReportBytes)
+    if (heard.text.size() >= kMaxReportBytes)
         return fmt::format("{} wrote into the trial's report", stage);
     const std::optional<int> status =
         heard.in_time ? child.wait_until(deadline) : std::optional<int>();

@@ -12,7 +12,7 @@ inline constexpr int kValue = 0, kHostValue = 1, kText = 2;
 inline constexpr char kStageMark = '\1';
 inline constexpr char kVerdictMark = '\2';
 inline constexpr char kReportEnd = '\3';
-inline constexpr std::size_t kMostReasonBytes = 1024;
-inline constexpr std::size_t kMostReportBytes = 4096;
+inline constexpr std::size_t kMaxReasonBytes = 1024;
+inline constexpr std::size_t kMaxReportBytes = 4096;
 
 }  // namespace relevo::effect

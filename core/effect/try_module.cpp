@@ -44,7 +44,7 @@ class Report {
     void stage(const char* name) const { write(std::string(1, kStageMark) + name + '\n'); }
     [[noreturn]] void end(std::string_view reason) const {
         std::string text(1, kVerdictMark);
-        for (const char c : reason.substr(0, kMostReasonBytes))
+        for (const char c : reason.substr(0, kMaxReasonBytes))
             text += c == kStageMark || c == kVerdictMark || c == kReportEnd ? '?' : c;
         write(text + kReportEnd);
         // Destructors of a bad library are not to be trusted either.

@@ -68,19 +68,6 @@ std::string shortened(std::string_view text) {
     return fmt::format("{}...", text.substr(0, kLongest - 3));
 }
 
-bool equal_ignoring_case(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-        return std::tolower(x) == std::tolower(y);
-    });
-}
-
-std::string lower(std::string_view text) {
-    std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return result;
-}
-
 /// Collects what PROJ logs, so that it becomes part of our message instead of going to stderr.
 void keep_last_message(void* to, int, const char* message) {
     // PROJ begins with the function that complains: "proj_create: crs not found".

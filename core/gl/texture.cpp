@@ -14,7 +14,7 @@ namespace relevo::gl {
 namespace {
 
 /// Of one call that reads texels: GL counts them in 31 bits, and drivers in fewer.
-constexpr std::size_t kMostReadBytes = std::size_t{1} << 28;
+constexpr std::size_t kMaxReadBytes = std::size_t{1} << 28;
 
 struct FormatInfo {
     GLenum internal, format, type;
@@ -192,7 +192,7 @@ void Texture::read_as(int level, unsigned format, unsigned type, std::size_t byt
     std::byte* to = texels.data();
     assert(texels.size() >= row_bytes * static_cast<std::size_t>(extent.height) *
                                 static_cast<std::size_t>(extent.depth));
-    for (const TexelBand& band : bands_of(extent, row_bytes, kMostReadBytes)) {
+    for (const TexelBand& band : bands_of(extent, row_bytes, kMaxReadBytes)) {
         const std::size_t bytes = row_bytes * static_cast<std::size_t>(band.rows);
         glGetTextureSubImage(name(), level, 0, band.row, band.layer, extent.width, band.rows, 1,
                              format, type, static_cast<GLsizei>(bytes), to);

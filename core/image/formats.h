@@ -13,18 +13,18 @@
 namespace relevo::image {
 
 /// A picture with longer sides, or that takes more memory, is not read.
-inline constexpr std::uint64_t kMostSide_px = 32768;
-inline constexpr std::uint64_t kMostPictureBytes = std::uint64_t{1} << 30;
+inline constexpr std::uint64_t kMaxSide_px = 32768;
+inline constexpr std::uint64_t kMaxPictureBytes = std::uint64_t{1} << 30;
 
 /// Why a picture of that size is not read; empty where it is.
 /// @param pixel_bytes  of all channels
 inline std::string size_fault(std::uint64_t width_px, std::uint64_t height_px,
                               std::uint64_t pixel_bytes) {
-    if (width_px > 0 && height_px > 0 && width_px <= kMostSide_px && height_px <= kMostSide_px &&
-        width_px * height_px * pixel_bytes <= kMostPictureBytes)
+    if (width_px > 0 && height_px > 0 && width_px <= kMaxSide_px && height_px <= kMaxSide_px &&
+        width_px * height_px * pixel_bytes <= kMaxPictureBytes)
         return {};
-    return "expected 1 to " + std::to_string(kMostSide_px) + " pixels a side and at most " +
-           std::to_string(kMostPictureBytes >> 20) + " MiB of them but got " +
+    return "expected 1 to " + std::to_string(kMaxSide_px) + " pixels a side and at most " +
+           std::to_string(kMaxPictureBytes >> 20) + " MiB of them but got " +
            std::to_string(width_px) + " x " + std::to_string(height_px);
 }
 

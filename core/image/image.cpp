@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -41,9 +40,7 @@ constexpr std::array kFormats{
     Format{".exr", "openexr", true, kAnySize}};
 
 const Format* format_of(const std::filesystem::path& path) {
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string ending = lower(path.extension().string());
     const auto* const found = std::find_if(kFormats.begin(), kFormats.end(),
                                            [&](const Format& f) { return ending == f.ending; });
     return found == kFormats.end() ? nullptr : found;

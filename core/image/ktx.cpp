@@ -27,7 +27,7 @@ static_assert(std::endian::native == std::endian::little, "KTX 2 is little-endia
 constexpr std::array<unsigned char, 12> kIdentifier{0xAB, 'K',  'T',  'X',  ' ',  '2',
                                                     '0',  0xBB, '\r', '\n', 0x1A, '\n'};
 constexpr int kGreatestSide = 32768;
-constexpr int kMostLayers = 2048;
+constexpr int kMaxLayers = 2048;
 
 /// The file's first bytes, as the specification's section 3 lays them out.
 struct Header {
@@ -185,8 +185,8 @@ void Reader::check_shape(const Header& h) const {
         h.depth > kGreatestSide)
         bad(fmt::format("size {} x {} x {}, expected 1 to {} a side", h.width, h.height, h.depth,
                         kGreatestSide));
-    if (h.layers > kMostLayers)
-        bad(fmt::format("{} layers, expected at most {}", h.layers, kMostLayers));
+    if (h.layers > kMaxLayers)
+        bad(fmt::format("{} layers, expected at most {}", h.layers, kMaxLayers));
     if (h.layers > 0 && h.depth > 0) bad("an array of volumes, expected one or the other");
     if (h.faces != 1) bad(fmt::format("{} faces, expected 1", h.faces));
     const int most = full_chain_levels(static_cast<int>(h.width), static_cast<int>(h.height),
@@ -279,7 +279,7 @@ TextureData::TextureData(TextureFormat format, int width, int height, int depth,
       levels_(levels) {
     assert(width >= 1 && height >= 1 && depth >= 1 && layers >= 1 && levels >= 1);
     assert(width <= kGreatestSide && height <= kGreatestSide && depth <= kGreatestSide);
-    assert(layers <= kMostLayers && (layers == 1 || depth == 1));
+    assert(layers <= kMaxLayers && (layers == 1 || depth == 1));
     assert(levels <= full_chain_levels(width, height, depth));
     std::size_t size = 0;
     for (int l = 0; l < levels; ++l) {

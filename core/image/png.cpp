@@ -75,11 +75,11 @@ void read_bytes(png_structp png, png_bytep to, std::size_t count) {
 /// them: deflate makes at most 1032 bytes of one (zlib's Technical Details).
 void check_whole(const std::string& subject, png_structp png, png_infop info,
                  std::uint64_t file_bytes) {
-    constexpr std::uint64_t kMostInflated = 1032;
+    constexpr std::uint64_t kMaxInflated = 1032;
     const png_uint_32 width = png_get_image_width(png, info);
     const png_uint_32 height = png_get_image_height(png, info);
     const std::uint64_t bytes = std::uint64_t{png_get_rowbytes(png, info)} * height;
-    if (bytes > kMostInflated * file_bytes)
+    if (bytes > kMaxInflated * file_bytes)
         failed(
             fmt::format("image: {}: a file of {} bytes cannot hold {} x {} pixels; it is "
                         "damaged",

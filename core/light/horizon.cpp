@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "geo/ellipsoid.h"
 #include "light/fan.h"
 
 namespace relevo::light {
@@ -20,8 +21,6 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSphere_m = 6'371'000;
-constexpr double kWgs84_a_m = 6'378'137;
-constexpr double kWgs84_f = 1 / 298.257223563;
 
 // A viewpoint that is meant to be on a post is there: coordinates of seven decimals, and the way to
 // the grid's CRS and back, are good to a centimetre.
@@ -91,9 +90,9 @@ double height_m(const G& ground, double tangent, double s) {
 
 /// Radius of the ellipsoid's curvature in a direction: Euler's formula.
 double radius_m(double lat_rad, double azimuth_rad) {
-    const double e2 = kWgs84_f * (2 - kWgs84_f);
+    const double e2 = geo::kFlattening * (2 - geo::kFlattening);
     const double w2 = 1 - e2 * std::sin(lat_rad) * std::sin(lat_rad);
-    const double n = kWgs84_a_m / std::sqrt(w2);
+    const double n = geo::kEquatorialRadius_m / std::sqrt(w2);
     const double m = n * (1 - e2) / w2;
     const double c = std::cos(azimuth_rad), s = std::sin(azimuth_rad);
     return 1 / (c * c / m + s * s / n);
@@ -215,7 +214,7 @@ double longest_m(const dem::Posts& posts, const geo::Geodetic& place, double eye
                 edge_m = std::max(edge_m, geo::geodesic(place, p).distance_m);
         }
     }
-    const double radius = kWgs84_a_m / (1 - refraction);
+    const double radius = geo::kEquatorialRadius_m / (1 - refraction);
     const double low_m = posts.lowest_m();
     const double sight_m = std::sqrt(2 * radius * std::max(0.0, eye_m - low_m)) +
                            std::sqrt(2 * radius * (posts.highest_m() - low_m));

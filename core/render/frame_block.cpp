@@ -8,13 +8,14 @@
 #include <glm/matrix.hpp>
 
 #include "base/units.h"
+#include "geo/ellipsoid.h"
 #include "sun/daylight.h"
 
 namespace relevo::render {
 namespace {
 
-constexpr double kEquatorialRadius_m = 6378137.0;        // WGS 84
-constexpr double kFlattening = 1 / 298.257223563;        // WGS 84
+using geo::kEquatorialRadius_m;
+using geo::kFlattening;
 constexpr double kBennett45_rad = radians(59.7 / 3600);  // frame.glsl: eye_sun_light.a
 constexpr double kNear_m = 0.5;  // reversed depth: nothing is lost by a small one
 

@@ -9,14 +9,15 @@
 #include <glm/geometric.hpp>
 
 #include "base/units.h"
+#include "geo/ellipsoid.h"
 #include "render/pages.h"
 
 namespace relevo::render {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kEquatorialRadius_m = 6378137.0;  // WGS 84
-constexpr double kFlattening = 1 / 298.257223563;  // WGS 84
+using geo::kEquatorialRadius_m;
+using geo::kFlattening;
 
 /// Where morphing starts, as a share of a level's range (Strugar's paper, section 4.2).
 constexpr double kMorphStart = 0.66;
@@ -222,7 +223,7 @@ LodRanges TileTree::ranges(const LodView& view) {
     return ranges;
 }
 
-std::vector<TileDraw> TileTree::select_in_parallel(const LodView& view) {
+std::vector<TileDraw> TileTree::select_orthographic(const LodView& view) {
     std::vector<TileDraw> draws;
     const auto take = [&](auto&& self, const TileKey& key) -> void {
         const dem::Pyramid::Bounds bounds = pyramid_->bounds(key.level, key.at);
@@ -238,7 +239,7 @@ std::vector<TileDraw> TileTree::select_in_parallel(const LodView& view) {
 }
 
 std::vector<TileDraw> TileTree::select(const LodView& view) {
-    if (!view.eye_m) return select_in_parallel(view);
+    if (!view.eye_m) return select_orthographic(view);
     const LodRanges ranges = this->ranges(view);
     std::vector<TileDraw> draws;
     // True where the tile is dealt with, false where it is left to its parent's level.

@@ -51,7 +51,8 @@ struct Box {
 struct LodView {
     /// Half-spaces whose intersection holds all that can be seen.
     std::vector<glm::dvec4> planes;
-    /// From where; none for parallel light, which sees each tile as coarse as it alone may be.
+    /// From where; none for an orthographic view, which sees each tile as coarse as it alone may
+    /// be.
     std::optional<glm::dvec3> eye_m;
     /// Largest angle [rad] by which a point of the picture may be displaced, or with no eye the
     /// largest distance [m]. 0: every post is drawn.
@@ -99,8 +100,8 @@ class TileTree {
     /// meet.
     LodRanges ranges(const LodView& view);
 
-    /// The tiles to draw, nearest first. Every visible post is covered exactly once. In parallel
-    /// light levels do not meet: rims have to hang down to the lowest ground.
+    /// The tiles to draw, nearest first. Every visible post is covered exactly once. In an
+    /// orthographic view levels do not meet: skirts have to hang down to the lowest ground.
     std::vector<TileDraw> select(const LodView& view);
 
     /// Tiles that can be seen at no more than `nearest` levels from the top; for pages that are
@@ -140,7 +141,7 @@ class TileTree {
     Node& node(const TileKey& key);
     double net_error_m(int level) const;
     void measure_relief();
-    std::vector<TileDraw> select_in_parallel(const LodView& view);
+    std::vector<TileDraw> select_orthographic(const LodView& view);
     bool hidden(const Box& box, const LodView& view) const;
     bool below_horizon(const Box& box, const LodView& view) const;
 

@@ -313,7 +313,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         } else {
             // Light meets the ground's upper side first. Under a hole it may meet the lower one.
             glEnable(GL_CULL_FACE);
-            glFrontFace(drawn.terrain.turns_left() ? GL_CCW : GL_CW);
+            glFrontFace(drawn.terrain.winds_counterclockwise() ? GL_CCW : GL_CW);
         }
         use_depth(drawn.terrain);
         drawn.terrain.draw(tiles, origin_m);

@@ -18,7 +18,7 @@ namespace relevo::render {
 /// renderer, and the module's instance.
 class NativeHost {
   public:
-    /// Makes the program current that draws the terrain in parallel light, with what it reads.
+    /// Makes the program current that draws the terrain orthographically, with what it reads.
     using UseDepth = std::function<void(const Terrain& terrain)>;
 
     /// Makes the instance. The module, the context and the values must outlive this.

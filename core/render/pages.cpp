@@ -11,19 +11,6 @@
 namespace relevo::render {
 namespace {
 
-/// A value of a level's triangles, which are divided from the upper right to the lower left corner
-/// of their quad, as the terrain grid is.
-float on_triangles(const Array2d<float>& values, int x, int y, float tx, float ty) {
-    const float upper_right = values.at(x + 1, y), lower_left = values.at(x, y + 1);
-    if (tx + ty <= 1) {
-        const float upper_left = values.at(x, y);
-        return upper_left + tx * (upper_right - upper_left) + ty * (lower_left - upper_left);
-    }
-    const float lower_right = values.at(x + 1, y + 1);
-    return lower_right + (1 - tx) * (lower_left - lower_right) +
-           (1 - ty) * (upper_right - lower_right);
-}
-
 /// Rise a post between neighbours, from both sides where both are there, else from the one that is.
 float slope_of(float before, float here, float after, int posts_before, int posts_after) {
     const bool has_before = !std::isnan(before), has_after = !std::isnan(after);
@@ -70,8 +57,9 @@ std::vector<float> height_page(const dem::Pyramid& pyramid, int level, glm::ivec
         for (int x = 0; x < kHeightPage_px; ++x) {
             const auto column = pyramid.column_in_coarser(level, on_level(first.x + x, last.x));
             const auto parent = [&](const Array2d<float>& values) {
-                return on_triangles(values, column.from - left, row.from - above, column.share,
-                                    row.share);
+                const int c = column.from - left, r = row.from - above;
+                return dem::on_triangles(values.at(c, r), values.at(c + 1, r), values.at(c, r + 1),
+                                         values.at(c + 1, r + 1), column.share, row.share);
             };
             page.insert(page.end(), {fine.height_m.at(x, y), fine.coverage.at(x, y),
                                      parent(coarse.height_m), parent(coarse.coverage)});

@@ -39,8 +39,8 @@ bool wants_night(const shader::StitchInput& input) {
         });
 }
 
-// Outputs beside the place: GL guarantees eight.
-constexpr int kMostStored = 7;
+// Outputs beside the G-buffer: GL guarantees eight.
+constexpr int kMaxStored = 7;
 
 /// Whether an effect reads how the height changes from pixel to pixel.
 bool reads_height_steps(const shader::StitchInput& input) {
@@ -58,11 +58,11 @@ bool reads_height_steps(const shader::StitchInput& input) {
 
 /// Where the geometry program puts them: behind the stored varyings.
 shader::Define height_steps_define(const shader::Stitched& geometry) {
-    if (geometry.varying_targets >= kMostStored)
+    if (geometry.varying_targets >= kMaxStored)
         bad_input(
             fmt::format("render: height_dx_m and height_dy_m: expected varyings of up to {} floats "
                         "beside them but got {} textures of four; switch an effect off",
-                        4 * (kMostStored - 1), geometry.varying_targets));
+                        4 * (kMaxStored - 1), geometry.varying_targets));
     return {kHeightStepsDefine, std::to_string(1 + geometry.varying_targets)};
 }
 

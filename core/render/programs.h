@@ -19,7 +19,7 @@ struct ProgramText {
 
 struct ProgramOptions {
     bool vertex_normals = false;  ///< per vertex instead of per fragment
-    bool depth = false;           ///< also "depth": the terrain as parallel light sees it
+    bool depth = false;           ///< also "depth": the terrain as an orthographic view sees it
     /// Shading ends in the colours of the picture, without a stored radiance and the program
     /// "post".
     bool shown = false;

@@ -31,7 +31,7 @@ constexpr double kFootprintWithoutAnisotropy = 2.5;
 constexpr double kAnisotropy = 8;
 
 /// Pixels that are drawn at once under a watch: as many as a usual picture has.
-constexpr double kMostWatched_px = 1 << 21;
+constexpr double kMaxWatched_px = 1 << 21;
 
 /// Draws reach no pixel outside while this lives.
 struct Scissor {
@@ -80,7 +80,7 @@ struct Renderer::Impl {
     TileSelection tiles;  // of the last frame
     bool reads_surface = false;
 
-    gl::Texture place, depth, radiance, overlay, tone_mapped, edge_marks, picture;
+    gl::Texture gbuffer, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     std::vector<gl::Texture> varyings;
     gl::Texture height_steps;
     // Light is the radiance, or at once the picture's colours.
@@ -116,15 +116,15 @@ struct Renderer::Impl {
             texture.set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
             return texture;
         };
-        place = target(gl::Format::RGBA32UI, "place");
-        place.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+        gbuffer = target(gl::Format::RGBA32UI, "gbuffer");
+        gbuffer.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
         depth = target(gl::Format::Depth32F, "depth");
         if (options.radiance) radiance = target(gl::Format::RGBA16F, "radiance");
         tone_mapped = target(gl::Format::RGBA8, "tone mapped");
         edge_marks = gl::Texture(gl::TextureKind::D2, gl::Format::Stencil8, size, 1, "edge marks");
         depth.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
         picture = target(gl::Format::RGBA8, "picture");
-        std::vector<const gl::Texture*> outputs{&place};
+        std::vector<const gl::Texture*> outputs{&gbuffer};
         const int varying_targets = text("geometry").stitched.varying_targets;
         varyings.reserve(static_cast<std::size_t>(varying_targets));
         for (int i = 0; i < varying_targets; ++i) {
@@ -223,7 +223,7 @@ struct Renderer::Impl {
     /// that those that never end are found as soon as in a small one.
     void draw_ground(Terrain& ground, const FrameInputs& inputs) {
         const auto draw_tiles = [&] { ground.draw(tiles, inputs.camera.eye_m); };
-        if (watch && pixels() > kMostWatched_px) {
+        if (watch && pixels() > kMaxWatched_px) {
             const Scissor corner(0, 0, 1, 1);
             watched("geometry", tiles.triangles(), draw_tiles);
         }
@@ -232,12 +232,12 @@ struct Renderer::Impl {
 
     /// Draws a program over the picture, in the first frame piece by piece for the same reason.
     void draw_picture(const char* name) {
-        if (!watch || pixels() <= kMostWatched_px)
+        if (!watch || pixels() <= kMaxWatched_px)
             return watched(name, pixels(), [&] { draw_fullscreen(); });
-        const int rows = std::max(1, static_cast<int>(kMostWatched_px / options.width_px));
+        const int rows = std::max(1, static_cast<int>(kMaxWatched_px / options.width_px));
         for (int y = 0; y < options.height_px; y += rows) {
             const Scissor band(0, y, options.width_px, rows);
-            watched(name, kMostWatched_px, [&] { draw_fullscreen(); });
+            watched(name, kMaxWatched_px, [&] { draw_fullscreen(); });
         }
     }
 
@@ -257,7 +257,7 @@ struct Renderer::Impl {
     }
 
     const gl::Texture* core_texture(const std::string& name, const Terrain& ground) const {
-        if (name == "place") return &place;
+        if (name == "gbuffer") return &gbuffer;
         if (name == kHeightStepsTexture) return &height_steps;
         if (name == "radiance") return &radiance;
         if (name == "overlay") return &overlay;

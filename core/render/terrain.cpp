@@ -20,19 +20,19 @@
 namespace relevo::render {
 namespace {
 
-/// Vertices along a side: those of the tile and a rim that hangs down from it.
+/// Vertices along a side: those of the tile and its skirt.
 constexpr int kGridSide = kTileQuads + 3;
 constexpr int kGridVertices = kGridSide * kGridSide;
 constexpr int kQuadrantQuads = (kGridSide - 1) / 2;
 constexpr int kQuadrantIndices = kQuadrantQuads * kQuadrantQuads * 6;
 constexpr int kInstanceVectors = 12;  // inputs net_0 ... up_v of terrain.vert.glsl
 
-/// Rounding leaves up to a step of the rasteriser between the sides of two tiles. The rim of each
+/// Rounding leaves up to a step of the rasteriser between the sides of two tiles. The skirt of each
 /// reaches this far [quads] under its neighbour.
-constexpr float kRim = 1.0f / 128.0f;
+constexpr float kSkirt_quads = 1.0f / 128.0f;
 
-constexpr int kMostHeightPages = 1024;  // 73 MB
-constexpr int kMostNormalPages = 384;   // 102 MB
+constexpr int kMaxHeightPages = 1024;  // 73 MB
+constexpr int kMaxNormalPages = 384;   // 102 MB
 
 /// By how much the tolerance grows from one try to the next where a view needs too much.
 constexpr double kCoarser = 1.2;
@@ -48,8 +48,8 @@ std::uint64_t next_serial() {
 std::vector<float> grid_vertices() {
     std::vector<float> vertices;
     const auto coordinate = [](int i) {
-        if (i == 0) return -kRim;
-        if (i == kGridSide - 1) return kTileQuads + kRim;
+        if (i == 0) return -kSkirt_quads;
+        if (i == kGridSide - 1) return kTileQuads + kSkirt_quads;
         return static_cast<float>(i - 1);
     };
     for (int y = 0; y < kGridSide; ++y)
@@ -122,13 +122,13 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
 
     const int most = options.max_array_layers;
     height_pages_ = PageCache(gl::Format::RGBA32F, kHeightPage_px,
-                              std::min({tiles_of_all_levels(pyramid_), kMostHeightPages, most}),
+                              std::min({tiles_of_all_levels(pyramid_), kMaxHeightPages, most}),
                               gl::Filter::Nearest, "height pages");
     int normal_count = 0;
     for (int level = 0; level < normal_levels_; ++level)
         normal_count +=
             pages_across(pyramid_.columns(), level) * pages_across(pyramid_.rows(), level);
-    normal_layers_ = std::min({normal_count, kMostNormalPages, most});
+    normal_layers_ = std::min({normal_count, kMaxNormalPages, most});
     clear_normals();
     const int across = power_of_two_from(
         std::max(pages_across(pyramid_.columns(), 0), pages_across(pyramid_.rows(), 0)));
@@ -154,7 +154,7 @@ int TileSelection::finest_level() const {
     return finest;
 }
 
-bool Terrain::turns_left() {
+bool Terrain::winds_counterclockwise() {
     const PatchNet& net = tree_.net(tree_.root());
     return dot(cross(net.position_m[3], net.position_m[1]), net.vertical[0]) > 0;
 }

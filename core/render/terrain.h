@@ -99,7 +99,7 @@ class Terrain {
     bool has_holes() const { return pyramid_.has_holes(); }
     /// Whether the triangles go round counter-clockwise as seen from above: not so on grids whose
     /// rows run the other way.
-    bool turns_left();
+    bool winds_counterclockwise();
     int normal_levels() const { return normal_levels_; }           ///< of normal pages
     double normal_spacing_m() const { return normal_spacing_m_; }  ///< of the finest of them
 

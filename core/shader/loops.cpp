@@ -9,7 +9,7 @@
 namespace relevo::shader {
 namespace {
 
-constexpr double kMostTurns = 10000;
+constexpr double kMaxTurns = 10000;
 
 class Reader {
   public:
@@ -44,11 +44,11 @@ class Reader {
     }
 
     bool is_constant(std::size_t i) const {
-        if (const std::optional<double> number = parse_number(str(i))) return *number <= kMostTurns;
+        if (const std::optional<double> number = parse_number(str(i))) return *number <= kMaxTurns;
         const std::string_view name = str(i);
         for (const Param& param : source_.params)
             if (param.name == name)
-                return param.is_static && param.range && param.range->max <= kMostTurns;
+                return param.is_static && param.range && param.range->max <= kMaxTurns;
         return std::any_of(source_.items.begin(), source_.items.end(), [&](const Item& item) {
             const bool known =
                 std::find(item.names.begin(), item.names.end(), name) != item.names.end();

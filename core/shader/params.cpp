@@ -14,7 +14,7 @@
 namespace relevo::shader {
 namespace {
 
-constexpr double kMostFloat = static_cast<double>(std::numeric_limits<float>::max());
+constexpr double kMaxFloat = static_cast<double>(std::numeric_limits<float>::max());
 
 bool is_colour(const Param& param) {
     return param.role == ParamRole::Colour || param.role == ParamRole::ColourSrgb;
@@ -127,9 +127,9 @@ std::string describe_values(const Param& param) {
 
 std::string expected_values(const Param& param, const ParamValue& given) {
     const bool too_large = std::any_of(given.begin(), given.end(),
-                                       [](double v) { return !(std::abs(v) <= kMostFloat); });
+                                       [](double v) { return !(std::abs(v) <= kMaxFloat); });
     std::string text = describe_values(param);
-    if (too_large && !param.range) text += fmt::format(", none beyond {:.6g} in size", kMostFloat);
+    if (too_large && !param.range) text += fmt::format(", none beyond {:.6g} in size", kMaxFloat);
     return text;
 }
 
@@ -137,7 +137,7 @@ bool is_valid(const Param& param, const ParamValue& value) {
     const int count = component_count(param.type);
     for (int i = 0; i < count; ++i) {
         const double v = value[static_cast<std::size_t>(i)];
-        if (!(std::abs(v) <= kMostFloat)) return false;
+        if (!(std::abs(v) <= kMaxFloat)) return false;
         if (param.range && !(v >= param.range->min && v <= param.range->max)) return false;
     }
     switch (param.type) {

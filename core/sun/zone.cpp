@@ -1,7 +1,6 @@
 #include "sun/zone.h"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 
 #include <date/tz.h>
@@ -19,12 +18,6 @@ namespace {
 constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr const char* kDatabase = "/usr/share/zoneinfo";
 
-bool same_word(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-        return std::tolower(x) == std::tolower(y);
-    });
-}
-
 /// The zone that was probably meant: right but for the case of letters, or the city alone, or the
 /// nearest in spelling.
 std::optional<std::string> suggestion(std::string_view name) {
@@ -38,7 +31,7 @@ std::optional<std::string> suggestion(std::string_view name) {
     std::replace(wanted.begin(), wanted.end(), ' ', '_');
     for (const auto& words : {names, cities})
         for (std::size_t i = 0; i < words.size(); ++i)
-            if (same_word(wanted, words[i])) return names[i];
+            if (equal_ignoring_case(wanted, words[i])) return names[i];
     if (const auto found = nearest(wanted, names)) return found;
     if (const auto found = nearest(wanted, cities))
         return names[static_cast<std::size_t>(std::find(cities.begin(), cities.end(), *found) -
@@ -96,7 +89,7 @@ Zone Zone::named(std::string_view text) {
     if (trimmed_text.empty())
         reader.fail("no time zone, expected a name such as Europe/Zurich or an offset");
     const char first_letter = trimmed_text.front();
-    if (first_letter == '+' || first_letter == '-' || same_word(trimmed_text, "Z")) {
+    if (first_letter == '+' || first_letter == '-' || equal_ignoring_case(trimmed_text, "Z")) {
         const auto offset = take_offset(reader);
         if (!reader.rest().empty()) reader.fail("bad offset, expected +hh:mm such as +02:00");
         return Zone(*offset);

@@ -22,7 +22,7 @@ using namespace relevo::plugin;
 constexpr double kLeastSine = 0.02;
 
 /// Maps: one of all ground that is seen, and up to two of the ground that is nearer.
-constexpr int kMostLayers = 3;
+constexpr int kMaxLayers = 3;
 /// A texel of a map is fine enough where it covers so many pixels, or so many posts.
 constexpr double kEnough_px = 2, kEnoughPosts = 0.75;
 /// Maps have fewer columns where texels would be finer than that many posts and so many pixels of
@@ -130,7 +130,7 @@ class Vsm : public Instance {
             choose_columns(seen, frame);
         const std::vector<Rectangle> needed = needed_rectangles(rectangle_of(seen), frame);
         if (static_cast<int>(needed.size()) > texture_layers_) {
-            make_textures(kMostLayers);
+            make_textures(kMaxLayers);
             layers_.clear();
         }
         layers_.resize(needed.size());
@@ -282,9 +282,9 @@ class Vsm : public Instance {
         set("vsm.along", axes_.up / all.size().y, (dot(axes_.up, eye) - all.low.y) / all.size().y);
         set("vsm.rise", axes_.rise, dot(axes_.rise, eye) - middle_m_);
         std::array<double, 4> rounding{};
-        constexpr std::array<const char*, kMostLayers> kNames = {nullptr, "vsm.nearer",
-                                                                 "vsm.nearest"};
-        for (std::size_t i = 0; i < kMostLayers; ++i) {
+        constexpr std::array<const char*, kMaxLayers> kNames = {nullptr, "vsm.nearer",
+                                                                "vsm.nearest"};
+        for (std::size_t i = 0; i < kMaxLayers; ++i) {
             const bool there = i < layers_.size();
             const Rectangle& own = layers_[there ? i : 0];
             rounding[i] = own.size().y / size_;

@@ -30,7 +30,7 @@ uniform vec4 vsm_texel_m = vec4(0.0);  //@ host description("Across and up, of t
 uniform sampler2DArray vsm_moments;
 
 const float vsm_rounding_m = 1.0;  // deviation that floats, and levels of the ground, make
-const float vsm_mesh_px = 2.0;  // by which triangles lie below the ground at most, and their rim hangs down
+const float vsm_mesh_px = 2.0;  // by which triangles lie below the ground at most, and their skirt hangs down
 const int vsm_taps = 16;
 
 /// Upper bound on the share of the ground in a texel that is no higher than a height.

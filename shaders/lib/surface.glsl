@@ -1,5 +1,5 @@
 //! provides  surface_point: where the DEM itself has the point that a pixel shows
-//! reads     place, surface pages: heights at full resolution, in the layers of the normal pages
+//! reads     gbuffer, surface pages: heights at full resolution, in the layers of the normal pages
 
 //@ include lib/pages.glsl
 
@@ -12,7 +12,7 @@ vec3 surface_point(in Surface s) {
 #ifdef TERRAIN_NORMAL_VERTEX
     return s.position_m;
 #else
-    vec2 post = uintBitsToFloat(texelFetch(place, ivec2(gl_FragCoord.xy), 0).xy);
+    vec2 post = uintBitsToFloat(texelFetch(gbuffer, ivec2(gl_FragCoord.xy), 0).xy);
     uvec2 page = texelFetch(page_table, ivec2(post) >> kNormalNodesLog2, 0).rg;
     int shift = kNormalNodesLog2 + int(page.g);
     vec2 first = vec2((ivec2(post) >> shift) << shift);

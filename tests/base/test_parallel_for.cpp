@@ -1,5 +1,8 @@
 #include <atomic>
 #include <limits>
+#include <mutex>
+#include <set>
+#include <thread>
 #include <vector>
 
 #include <sys/resource.h>
@@ -61,6 +64,34 @@ TEST(ParallelFor, ReachesTheGreatestNumber) {
         seen += std::int64_t{last} - first;
     });
     EXPECT_EQ(seen, std::int64_t{kMax} + 1);
+}
+
+TEST(ParallelFor, MayBeCalledFromInsideAndFromSeveralThreads) {
+    std::atomic<int> count = 0;
+    const auto nested = [&] {
+        parallel_for(0, 64, 1, [&](int first, int last) {
+            for (int i = first; i < last; ++i)
+                parallel_for(0, 32, 1, [&](int a, int b) { count += b - a; });
+        });
+    };
+    {
+        std::vector<std::jthread> callers;
+        for (int i = 0; i < 4; ++i)
+            callers.emplace_back(nested);
+        nested();
+    }
+    EXPECT_EQ(count, 5 * 64 * 32);
+}
+
+TEST(ParallelFor, KeepsItsThreads) {
+    std::mutex mutex;
+    std::set<std::thread::id> ids;
+    for (int call = 0; call < 200; ++call)
+        parallel_for(0, 64, 1, [&](int, int) {
+            const std::lock_guard lock(mutex);
+            ids.insert(std::this_thread::get_id());
+        });
+    EXPECT_LE(ids.size(), static_cast<std::size_t>(thread_count()));
 }
 
 }  // namespace

@@ -48,8 +48,8 @@ TEST(Text, AGiantFileIsRefusedUnread) {
     const std::filesystem::path path = test::scratch_dir("text_giant") / "giant";
     std::ofstream(path) << "a";
     EXPECT_EQ(read_text(path, "text"), "a");
-    std::filesystem::resize_file(path, kMostTextBytes);
-    EXPECT_EQ(read_text(path, "text").size(), kMostTextBytes);
+    std::filesystem::resize_file(path, kMaxTextBytes);
+    EXPECT_EQ(read_text(path, "text").size(), kMaxTextBytes);
     std::filesystem::resize_file(path, std::uintmax_t{1} << 40);
     EXPECT_EQ(test::error_of([&] { read_text(path, "text"); }),
               "exit 3: text: " + path.string() +

@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "dem/frame.h"
+#include "dem/collar.h"
 #include "dem/spikes.h"
 #include "support/support.h"
 
@@ -52,17 +52,17 @@ TEST(FindFrame, IsOneHeightAroundGroundThatIsNotItsOwn) {
     for (int r = 3; r < 27; ++r)
         for (int c = 3; c < 27; ++c)
             height_m.at(c, r) = static_cast<float>(40 + c);
-    ASSERT_TRUE(find_frame(height_m));
-    EXPECT_EQ(find_frame(height_m)->height_m, 0);
-    EXPECT_NEAR(find_frame(height_m)->step_m, 55, 2);
+    ASSERT_TRUE(find_collar(height_m));
+    EXPECT_EQ(find_collar(height_m)->height_m, 0);
+    EXPECT_NEAR(find_collar(height_m)->step_m, 55, 2);
     // An island rises from its sea by less than 20 m a post.
     for (int r = 3; r < 27; ++r)
         for (int c = 3; c < 27; ++c)
             height_m.at(c, r) =
                 15.0F * static_cast<float>(std::min({c - 2, r - 2, 27 - c, 27 - r}));
-    EXPECT_FALSE(find_frame(height_m));
-    EXPECT_FALSE(find_frame(Array2d<float>(5, 5, 0)));
-    EXPECT_FALSE(find_frame(slope()));
+    EXPECT_FALSE(find_collar(height_m));
+    EXPECT_FALSE(find_collar(Array2d<float>(5, 5, 0)));
+    EXPECT_FALSE(find_collar(slope()));
 }
 
 }  // namespace

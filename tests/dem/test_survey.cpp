@@ -48,11 +48,11 @@ void expect_as_in_memory(const std::string& path, std::int64_t max_posts) {
     EXPECT_EQ(found.spikes.worst_m, spikes.worst_m);
     EXPECT_EQ(found.spikes.worst_column, spikes.worst_column);
     EXPECT_EQ(found.spikes.worst_row, spikes.worst_row);
-    const auto frame = find_frame(field.height_m);
-    ASSERT_EQ(found.frame.has_value(), frame.has_value());
-    if (frame) {
-        EXPECT_EQ(found.frame->height_m, frame->height_m);
-        EXPECT_EQ(found.frame->step_m, frame->step_m);
+    const auto collar = find_collar(field.height_m);
+    ASSERT_EQ(found.collar.has_value(), collar.has_value());
+    if (collar) {
+        EXPECT_EQ(found.collar->height_m, collar->height_m);
+        EXPECT_EQ(found.collar->step_m, collar->step_m);
     }
 }
 

@@ -98,7 +98,7 @@ TEST(Json, ManyKeysTakeNoLongerThanTheyShould) {
 }
 
 TEST(Json, LongFilesAreRefused) {
-    EXPECT_EQ(error_of([] { parse_json("who", "a.json", std::string(kMostJsonBytes + 1, ' ')); }),
+    EXPECT_EQ(error_of([] { parse_json("who", "a.json", std::string(kMaxJsonBytes + 1, ' ')); }),
               "exit 3: who: a.json: expected at most 1024 KiB but got 1025");
 }
 

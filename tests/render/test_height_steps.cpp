@@ -129,7 +129,7 @@ Compared compare(Drawn& drawn, int count, double floor_m) {
         const int y = static_cast<int>(random() % static_cast<unsigned>(image.height));
         if (test::is_sky(image, x, y)) continue;
         const Mesh::Hit hit = mesh.hit(drawn, x + 0.5, y + 0.5);
-        // On the edge of two triangles either may be drawn, and beyond the DEM hangs its rim.
+        // On the edge of two triangles either may be drawn, and beyond the DEM hangs its skirt.
         if (hit.distance_m > 1e200 || hit.edge_share < 1e-3) continue;
         const glm::dvec2 found = Drawn::values(image, x, y);
         const double truth = length(hit.step_m);

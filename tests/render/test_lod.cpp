@@ -246,8 +246,8 @@ TEST(Lod, NothingPopsOnASlowPath) {
     EXPECT_LT(worst_m, 1.7 * mean_m);
 }
 
-TEST(Lod, TheRimHangsDownByTwoPixels) {
-    // A tile seen from beside, level with its flat ground: all that is drawn of it is its rim.
+TEST(Lod, TheSkirtHangsDownByTwoPixels) {
+    // A tile seen from beside, level with its flat ground: all that is drawn of it is its skirt.
     const dem::Heightfield flat = test::field_of(33, 33, {500000, 10, 0, 100, 0, -10}, "EPSG:32631",
                                                  [](int, int) { return 0; });
     test::Drawn drawn(flat, {test::kBrightSky}, 320, 256);

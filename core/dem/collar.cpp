@@ -1,4 +1,4 @@
-#include "dem/frame.h"
+#include "dem/collar.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,29 +7,29 @@
 
 namespace relevo::dem {
 
-void FrameEdge::add(std::span<const float> posts_m) {
+void CollarEdge::add(std::span<const float> posts_m) {
     others_ += std::ssize(posts_m) - std::count(posts_m.begin(), posts_m.end(), height_m_);
 }
 
-void FrameEdge::add(float height_m, std::int64_t posts) {
+void CollarEdge::add(float height_m, std::int64_t posts) {
     if (height_m != height_m_) others_ += posts;
 }
 
-bool FrameEdge::may_be_frame() const {
+bool CollarEdge::may_be_collar() const {
     return corners_ && static_cast<double>(posts_ - others_) >= 0.95 * static_cast<double>(posts_);
 }
 
-void FrameSteps::add(const Array2d<float>& part_m) {
-    constexpr std::size_t kMostSteps = 1 << 24;
+void CollarSteps::add(const Array2d<float>& part_m) {
+    constexpr std::size_t kMaxSteps = 1 << 24;
     const auto step = [&](float a, float b) {
         if ((a == height_m_) == (b == height_m_) || std::isnan(a) || std::isnan(b)) return;
         if (++left_out_ < every_) return;
         left_out_ = 0;
         steps_m_.push_back(std::abs(a - b));
-        if (steps_m_.size() < kMostSteps) return;
-        for (std::size_t i = 0; i < kMostSteps / 2; ++i)
+        if (steps_m_.size() < kMaxSteps) return;
+        for (std::size_t i = 0; i < kMaxSteps / 2; ++i)
             steps_m_[i] = steps_m_[2 * i];
-        steps_m_.resize(kMostSteps / 2);
+        steps_m_.resize(kMaxSteps / 2);
         every_ *= 2;
     };
     for (int row = 0; row + 1 < part_m.height(); ++row)
@@ -39,18 +39,18 @@ void FrameSteps::add(const Array2d<float>& part_m) {
         }
 }
 
-std::optional<Frame> FrameSteps::frame() {
+std::optional<Collar> CollarSteps::collar() {
     constexpr double kStep_m = 20;
     if (steps_m_.empty()) return std::nullopt;
     const auto middle = steps_m_.begin() + static_cast<std::ptrdiff_t>(steps_m_.size() / 2);
     std::nth_element(steps_m_.begin(), middle, steps_m_.end());
-    const Frame frame{height_m_, static_cast<double>(*middle)};
-    return frame.step_m > kStep_m ? std::optional(frame) : std::nullopt;
+    const Collar collar{height_m_, static_cast<double>(*middle)};
+    return collar.step_m > kStep_m ? std::optional(collar) : std::nullopt;
 }
 
-std::optional<Frame> find_frame(const Array2d<float>& height_m) {
+std::optional<Collar> find_collar(const Array2d<float>& height_m) {
     const int columns = height_m.width(), rows = height_m.height();
-    FrameEdge edge(height_m.at(0, 0), 2 * (std::int64_t{columns} + rows));
+    CollarEdge edge(height_m.at(0, 0), 2 * (std::int64_t{columns} + rows));
     for (const int row : {0, rows - 1}) {
         edge.add_corner(height_m.at(0, row));
         edge.add_corner(height_m.at(columns - 1, row));
@@ -60,10 +60,10 @@ std::optional<Frame> find_frame(const Array2d<float>& height_m) {
         edge.add(height_m.row(row).first(1));
         edge.add(height_m.row(row).last(1));
     }
-    if (!edge.may_be_frame()) return std::nullopt;
-    FrameSteps steps(edge.height_m());
+    if (!edge.may_be_collar()) return std::nullopt;
+    CollarSteps steps(edge.height_m());
     steps.add(height_m);
-    return steps.frame();
+    return steps.collar();
 }
 
 }  // namespace relevo::dem

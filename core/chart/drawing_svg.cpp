@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "light/drawing.h"
+#include "chart/drawing.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 namespace {
 
 std::string escaped(const std::string& text) {
@@ -172,4 +172,4 @@ std::string to_svg(const Drawing& drawing) {
         writer.clips.empty() ? "" : "<defs>\n" + writer.clips + "</defs>\n", writer.out);
 }
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

@@ -1,4 +1,4 @@
-#include "light/panorama.h"
+#include "chart/panorama.h"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 
 #include "base/parallel_for.h"
 #include "base/units.h"
-#include "light/diagram_parts.h"
-#include "light/label_placer.h"
+#include "chart/diagram_parts.h"
+#include "chart/label_placer.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 namespace {
 
 constexpr double kMargin = 28;
@@ -90,7 +90,7 @@ class Panorama {
 
     void choose_range() {
         double lowest = 0, highest = 0;
-        for (const HorizonPoint& p : *of_.profile) {
+        for (const light::HorizonPoint& p : *of_.profile) {
             lowest = std::min(lowest, p.elevation_rad);
             highest = std::max(highest, p.elevation_rad);
         }
@@ -185,7 +185,7 @@ class Panorama {
     /// Ridges before ridges: what stands within growing distances, the farthest first.
     void add_ridges() {
         double farthest_m = 0;
-        for (const HorizonPoint& p : *of_.profile)
+        for (const light::HorizonPoint& p : *of_.profile)
             if (p.distance_m > farthest_m) farthest_m = p.distance_m;
         farthest_m = std::max(farthest_m, 1000.0);
         // Nearer than some posts there is no ridge yet.
@@ -234,10 +234,10 @@ class Panorama {
     }
 
     void add_holes() {
-        const std::vector<HorizonPoint>& p = *of_.profile;
+        const std::vector<light::HorizonPoint>& p = *of_.profile;
         const glm::dvec2 half(plot().width / static_cast<double>(p.size()) / 2, 0);
         std::vector<glm::dvec2> line;
-        for (const HorizonPoint& point : p) {
+        for (const light::HorizonPoint& point : p) {
             const glm::dvec2 at(x(point.azimuth_rad), y(point.elevation_rad));
             const bool goes_on = !line.empty() && line.back().x < at.x;  // not round the back
             if (!point.hole || !goes_on) line.emplace_back(std::nan(""));
@@ -311,8 +311,8 @@ class Panorama {
                 drawing_->circle(point(p), 3.6, {.fill = kPaper, .stroke = kDay, .width = 1.8});
                 labels.keep_clear(point(p), 5);
             }
-            for (const LitInterval& lit : of_.day->lit)
-                for (const LightEdge& edge : {lit.begin, lit.end}) {
+            for (const light::LitInterval& lit : of_.day->lit)
+                for (const light::LightEdge& edge : {lit.begin, lit.end}) {
                     if (edge.midnight) continue;
                     const glm::dvec2 at(x(edge.azimuth_rad), y(edge.elevation_rad));
                     drawing_->circle(at, 4.6, {.fill = kDay, .stroke = kPaper, .width = 1.2});
@@ -353,7 +353,7 @@ class Panorama {
     }
 
     void add_summits(LabelPlacer& labels) {
-        const std::vector<HorizonPoint>& p = *of_.profile;
+        const std::vector<light::HorizonPoint>& p = *of_.profile;
         const auto n = p.size();
         const double step_rad = 2 * kPi / static_cast<double>(n);
         const auto around = static_cast<std::size_t>(std::lround(radians(6) / step_rad));
@@ -380,14 +380,14 @@ class Panorama {
         // In the sky, not on ground that stands higher beside.
         const Rect all = plot();
         const double column = all.width / static_cast<double>(n);
-        for (const HorizonPoint& h : p) {
+        for (const light::HorizonPoint& h : p) {
             const double top = y(h.elevation_rad);
             labels.keep_clear(Rect{x(h.azimuth_rad), top, column, all.y + all.height - top});
         }
         constexpr std::size_t kMost = 14;
         if (summits.size() > kMost) summits.resize(kMost);
         for (const Summit& summit : summits) {
-            const HorizonPoint& h = p[summit.at];
+            const light::HorizonPoint& h = p[summit.at];
             labels.add({x(h.azimuth_rad), y(h.elevation_rad)},
                        fmt::format("{:.0f} m, {}", h.height_m, distance_text(h.distance_m)),
                        {.size = 10.5, .color = kInk}, 8, LabelPlacer::Side::Above, true);
@@ -440,4 +440,4 @@ Drawing HorizonPanorama::draw() const {
     return Panorama(*this).draw();
 }
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

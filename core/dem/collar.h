@@ -10,29 +10,29 @@
 namespace relevo::dem {
 
 /// One height all around the edge of a DEM that does not go with the ground inside.
-struct Frame {
+struct Collar {
     float height_m = 0;
-    double step_m = 0;  ///< median, from the frame to the ground beside it
+    double step_m = 0;  ///< median, from the collar to the ground beside it
 };
 
 /// Finds what is left around a raster that was turned or cut without a nodata value: the edge is of
 /// one height at 19 of 20 posts and in all corners, and where that height ends, half of the steps
 /// to the next post are higher than 20 m. An island in its sea has a beach.
-std::optional<Frame> find_frame(const Array2d<float>& height_m);
+std::optional<Collar> find_collar(const Array2d<float>& height_m);
 
 /// The same in parts, for a DEM that memory does not hold. First its edge: the first and the last
 /// row, the first and the last column.
-class FrameEdge {
+class CollarEdge {
   public:
     /// @param height_m  of a corner
     /// @param posts     of all four lines, corners twice
-    FrameEdge(float height_m, std::int64_t posts) : height_m_(height_m), posts_(posts) {}
+    CollarEdge(float height_m, std::int64_t posts) : height_m_(height_m), posts_(posts) {}
     void add_corner(float height_m) { corners_ = corners_ && height_m == height_m_; }
     void add(std::span<const float> posts_m);
     /// So many posts of one height.
     void add(float height_m, std::int64_t posts);
     /// Whether it is one, as far as it is known; once false it remains so.
-    bool may_be_frame() const;
+    bool may_be_collar() const;
     float height_m() const { return height_m_; }
 
   private:
@@ -42,13 +42,13 @@ class FrameEdge {
     std::int64_t others_ = 0;  // not like the corner
 };
 
-/// Then, where that may be a frame, what is inside.
-class FrameSteps {
+/// Then, where that may be a collar, what is inside.
+class CollarSteps {
   public:
-    explicit FrameSteps(float height_m) : height_m_(height_m) {}
+    explicit CollarSteps(float height_m) : height_m_(height_m) {}
     /// Parts that share their last column and row with the next ones.
     void add(const Array2d<float>& part_m);
-    std::optional<Frame> frame();
+    std::optional<Collar> collar();
 
   private:
     float height_m_;

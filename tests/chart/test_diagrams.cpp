@@ -5,13 +5,13 @@
 #include <glm/geometric.hpp>
 
 #include "base/units.h"
-#include "light/carpet_chart.h"
+#include "chart/carpet_chart.h"
+#include "chart/panorama.h"
+#include "chart/sun_path_diagram.h"
 #include "light/fields.h"
-#include "light/panorama.h"
-#include "light/sun_path_diagram.h"
 #include "sun/position.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 namespace {
 
 using sun::Date;
@@ -142,10 +142,10 @@ struct Scene {
 
     Place of;
     dem::Heightfield field;
-    TerrainHorizon horizon;
-    DirectLight direct;
+    light::TerrainHorizon horizon;
+    light::DirectLight direct;
     Zone zone;
-    std::vector<HorizonPoint> profile;
+    std::vector<light::HorizonPoint> profile;
 };
 
 TEST(Diagrams, WordsNeverStandOnEachOtherOrOverTheEdge) {
@@ -156,7 +156,7 @@ TEST(Diagrams, WordsNeverStandOnEachOtherOrOverTheEdge) {
             expect_readable(scene.diagram(with_day).draw());
             expect_readable(scene.panorama(with_day).draw());
         }
-        const Carpet c = carpet(scene.direct, 2026, scene.zone, 1800);
+        const light::Carpet c = carpet(scene.direct, 2026, scene.zone, 1800);
         expect_readable(
             CarpetChart{&c, scene.horizon.place(), "", scene.horizon.description()}.draw());
     }
@@ -236,7 +236,7 @@ TEST(Panorama, HoursStandWhereTheSunDoesUnlessTerrainHidesIt) {
 
 TEST(CarpetChart, AreasAreTheHours) {
     const Scene scene(places()[2]);
-    const Carpet c = carpet(scene.direct, 2026, scene.zone, 180);
+    const light::Carpet c = carpet(scene.direct, 2026, scene.zone, 180);
     const Drawing drawing =
         CarpetChart{&c, scene.horizon.place(), "Valley", scene.horizon.description()}.draw();
     EXPECT_EQ(drawing.title(), "Valley: direct sun through 2026");
@@ -250,12 +250,12 @@ TEST(CarpetChart, AreasAreTheHours) {
     EXPECT_NEAR(lit / 2.8 / 20 / (c.lit_s / 3600), 1, 0.002);
 }
 
-TEST(TerrainHorizon, WithinADistanceIsTheHorizonOfTheGroundThatNear) {
+TEST(light::TerrainHorizon, WithinADistanceIsTheHorizonOfTheGroundThatNear) {
     const dem::Heightfield field = valley_at(47);
-    const TerrainHorizon horizon(field, field.grid.place(80, 80));
+    const light::TerrainHorizon horizon(field, field.grid.place(80, 80));
     for (int i = 0; i < 36; ++i) {
         const double azimuth_rad = radians(10.0 * i);
-        const HorizonPoint whole = horizon.at(azimuth_rad);
+        const light::HorizonPoint whole = horizon.at(azimuth_rad);
         EXPECT_EQ(horizon.elevation_within_rad(azimuth_rad, 1e6), whole.elevation_rad);
         EXPECT_NEAR(horizon.elevation_within_rad(azimuth_rad, whole.distance_m + 0.01),
                     whole.elevation_rad, 1e-12);
@@ -266,4 +266,4 @@ TEST(TerrainHorizon, WithinADistanceIsTheHorizonOfTheGroundThatNear) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::chart

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "chart/drawing.h"
 #include "light/direct_light.h"
-#include "light/drawing.h"
 #include "sun/events.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 
 /// The sky of a place as a disc, zenith in the middle and north at the top, with the sun's paths of
 /// a year and the hours on them.
@@ -20,11 +20,11 @@ struct SunPathDiagram {
     sun::Refraction refraction = sun::Refraction::none();
     /// The day to be drawn strongly, with its hours by the clock; none: the year alone.
     std::optional<sun::Day> day;
-    const Skyline* terrain = nullptr;  ///< stands in the sky where there is one
+    const light::Skyline* terrain = nullptr;  ///< stands in the sky where there is one
     std::string terrain_definition;
     /// DirectLight::holes() of it; marked where there are any.
     std::vector<bool> holes;
-    std::optional<LightDay> light;  ///< of `day`, where there is terrain
+    std::optional<light::LightDay> light;  ///< of `day`, where there is terrain
     std::string light_definition;
 
     /// 900 units wide. The sky is projected stereographically, so that the sun's daily circles
@@ -32,4 +32,4 @@ struct SunPathDiagram {
     Drawing draw() const;
 };
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

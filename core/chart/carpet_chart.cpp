@@ -1,27 +1,27 @@
-#include "light/carpet_chart.h"
+#include "chart/carpet_chart.h"
 
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "light/diagram_parts.h"
+#include "chart/diagram_parts.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 namespace {
 
 constexpr double kMargin = 28;
 constexpr double kLeft = 116, kTop = 112;
 constexpr double kDayWidth = 2.8, kHourHeight = 20;
 
-Color color_of(Light light) {
+Color color_of(light::Light light) {
     switch (light) {
-        case Light::Night:
+        case light::Light::Night:
             return {0x1e2943};
-        case Light::Twilight:
+        case light::Light::Twilight:
             return {0x6d7fb5};
-        case Light::Shaded:
+        case light::Light::Shaded:
             return {0xb5aca0};
-        case Light::Lit:
+        case light::Light::Lit:
             return {0xffd24a};
     }
     return {};
@@ -60,15 +60,16 @@ Drawing CarpetChart::draw() const {
     add_title(drawing, kMargin, title, lines);
 
     // Cells of one kind that follow each other are one area.
-    drawing.rect({kLeft, kTop, width, height}, {.fill = color_of(Light::Night), .crisp = true});
+    drawing.rect({kLeft, kTop, width, height},
+                 {.fill = color_of(light::Light::Night), .crisp = true});
     for (int row = 0; row < carpet->light.height(); ++row) {
         const sun::Date date = carpet->days[static_cast<std::size_t>(row)].date;
         const double x = kLeft + sun::days_between({year, 1, 1}, date) * kDayWidth;
         for (int from = 0, to = 0; from < carpet->light.width(); from = to) {
-            const Light light = carpet->light.at(from, row);
+            const light::Light light = carpet->light.at(from, row);
             while (to < carpet->light.width() && carpet->light.at(to, row) == light)
                 ++to;
-            if (light == Light::Night) continue;
+            if (light == light::Light::Night) continue;
             const double top = y_of(to * double{1} * carpet->step_s);
             drawing.rect({x, top, kDayWidth, y_of(from * double{1} * carpet->step_s) - top},
                          {.fill = color_of(light), .crisp = true});
@@ -78,7 +79,7 @@ Drawing CarpetChart::draw() const {
     // True noon.
     std::vector<glm::dvec2> noon;
     double before_s = -1;
-    for (const LightDay& day : carpet->days) {
+    for (const light::LightDay& day : carpet->days) {
         const auto transit = day.flat.first(sun::EventKind::Transit);
         if (!transit) continue;
         const sun::CivilTime wall = carpet->zone.local(*transit).wall;
@@ -132,15 +133,15 @@ Drawing CarpetChart::draw() const {
                  {.size = 12, .color = kSoft, .anchor = Anchor::Middle, .turn_deg = -90});
 
     double x = kLeft;
-    x = add_key(drawing, x, keys_y, {.fill = color_of(Light::Lit)}, "direct sun");
-    x = add_key(drawing, x, keys_y, {.fill = color_of(Light::Shaded)},
+    x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Lit)}, "direct sun");
+    x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Shaded)},
                 "sun behind terrain, up over a level horizon");
-    x = add_key(drawing, x, keys_y, {.fill = color_of(Light::Twilight)}, "civil twilight");
-    x = add_key(drawing, x, keys_y, {.fill = color_of(Light::Night)}, "night");
+    x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Twilight)}, "civil twilight");
+    x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Night)}, "night");
     add_key(drawing, x, keys_y, {.stroke = Color{0xb06000}, .width = 1.1, .dash = {4, 3}},
             "true noon");
     add_foot(drawing, kMargin, foot);
     return drawing;
 }
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "light/drawing.h"
+#include "chart/drawing.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 namespace {
 
 struct Destroy {
@@ -136,4 +136,4 @@ image::Image8 to_image(const Drawing& drawing, double scale) {
     return image;
 }
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

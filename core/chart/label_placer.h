@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "light/drawing.h"
+#include "chart/drawing.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 
 /// Puts words beside points where no other words are. Inside of the layer only.
 class LabelPlacer {
@@ -35,4 +35,4 @@ class LabelPlacer {
     std::vector<Rect> taken_;
 };
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

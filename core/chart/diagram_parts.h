@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "chart/drawing.h"
 #include "light/direct_light.h"
-#include "light/drawing.h"
 #include "sun/observer.h"
 #include "sun/position_table.h"
 #include "sun/refraction.h"
@@ -12,7 +12,7 @@
 
 // What the diagrams share. Inside of the layer only.
 
-namespace relevo::light {
+namespace relevo::chart {
 
 // One palette for all of them: ink on paper, cold winter to warm summer, the day itself in orange.
 inline constexpr Color kInk{0x20262c};
@@ -84,7 +84,7 @@ std::string duration_text(double seconds);
 std::string place_text(const geo::Geodetic& place);
 
 /// "Direct sun 08:33 to 16:55 (8 h 21 min); over a level horizon 10 h 03 min".
-std::string light_text(const LightDay& day, const SunPaths& paths);
+std::string light_text(const light::LightDay& day, const SunPaths& paths);
 
 /// Title and lines under it, at the top left; the lines of small print at the foot.
 void add_title(Drawing& drawing, double margin, const std::string& title,
@@ -95,4 +95,4 @@ double foot_height(double width, double margin, const std::vector<std::string>& 
 /// A line of a legend with words after it; returns where the next one may begin.
 double add_key(Drawing& drawing, double x, double y, const Pen& pen, const std::string& words);
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

@@ -4,23 +4,23 @@
 #include <string>
 #include <vector>
 
+#include "chart/drawing.h"
 #include "light/direct_light.h"
-#include "light/drawing.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 
 /// The landscape round a viewpoint as it stands against the sky, ridge before ridge, with the paths
 /// of the sun behind it.
 struct HorizonPanorama {
-    const TerrainHorizon* horizon = nullptr;
-    const std::vector<HorizonPoint>* profile = nullptr;  ///< of that horizon, all round
-    std::string place_name;                              ///< for the title, where there is one
+    const light::TerrainHorizon* horizon = nullptr;
+    const std::vector<light::HorizonPoint>* profile = nullptr;  ///< of that horizon, all round
+    std::string place_name;  ///< for the title, where there is one
     /// The sun's paths of a year by the clock of a zone; 0: the landscape alone.
     int year = 0;
     sun::Zone zone;
     sun::Refraction refraction = sun::Refraction::none();
     /// The day to be drawn strongly, with its direct light.
-    std::optional<LightDay> day;
+    std::optional<light::LightDay> day;
     std::string light_definition;
 
     /// 1500 units wide. Azimuths run evenly along it, the sun's side of the sky in the middle;
@@ -28,4 +28,4 @@ struct HorizonPanorama {
     Drawing draw() const;
 };
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

@@ -1,4 +1,4 @@
-#include "light/sun_path_diagram.h"
+#include "chart/sun_path_diagram.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 
 #include "base/units.h"
-#include "light/diagram_parts.h"
+#include "chart/diagram_parts.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 namespace {
 
 constexpr double kMargin = 28;
@@ -157,7 +157,8 @@ Drawing SunPathDiagram::draw() const {
             area.push_back(disc.outside(2 * kPi * i / kSteps, 2));
         drawing.path(area, {.fill = kTerrain}, true);
         drawing.path(ring, {.stroke = kRidge, .width = 1.2});
-        for (const Sector& hole : marks_holes ? sectors_of(holes) : std::vector<Sector>()) {
+        for (const light::Sector& hole :
+             marks_holes ? sectors_of(holes) : std::vector<light::Sector>()) {
             // A hole of one direction has a width, too.
             const double step_rad = 2 * kPi / static_cast<double>(holes.size());
             const double from_rad = hole.from_azimuth_rad - step_rad;
@@ -222,8 +223,8 @@ Drawing SunPathDiagram::draw() const {
     }
 
     if (light)
-        for (const LitInterval& lit : light->lit)
-            for (const LightEdge& edge : {lit.begin, lit.end})
+        for (const light::LitInterval& lit : light->lit)
+            for (const light::LightEdge& edge : {lit.begin, lit.end})
                 if (!edge.midnight)
                     drawing.circle(disc.point(edge.azimuth_rad, edge.elevation_rad), 5,
                                    {.fill = kDay, .stroke = kPaper, .width = 1.2});
@@ -247,4 +248,4 @@ Drawing SunPathDiagram::draw() const {
     return drawing;
 }
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

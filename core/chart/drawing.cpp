@@ -1,11 +1,11 @@
-#include "light/drawing.h"
+#include "chart/drawing.h"
 
 #include <array>
 #include <cmath>
 
 #include "base/text.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 namespace {
 
 // Adobe's metrics of Helvetica and Helvetica-Bold, ASCII 32 to 126, in thousandths of the size.
@@ -104,4 +104,4 @@ std::vector<std::string> wrapped(const std::string& words, double size, double w
     return lines;
 }
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

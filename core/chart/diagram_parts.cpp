@@ -1,4 +1,4 @@
-#include "light/diagram_parts.h"
+#include "chart/diagram_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include "geo/format.h"
 #include "sun/position.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 namespace {
 
 using sun::Date;
@@ -115,9 +115,9 @@ std::string place_text(const geo::Geodetic& place) {
     return fmt::format("{}, {:.0f} m", geo::degrees_text(place), place.height_m);
 }
 
-std::string light_text(const LightDay& day, const SunPaths& paths) {
+std::string light_text(const light::LightDay& day, const SunPaths& paths) {
     std::string text;
-    for (const LitInterval& lit : day.lit)
+    for (const light::LitInterval& lit : day.lit)
         text += fmt::format("{}{} to {}", text.empty() ? "Direct sun " : ", ",
                             lit.begin.midnight ? "midnight" : paths.clock(lit.begin.utc),
                             lit.end.midnight ? "midnight" : paths.clock(lit.end.utc));
@@ -167,4 +167,4 @@ double add_key(Drawing& drawing, double x, double y, const Pen& pen, const std::
     return x + kSample + kGap + text_width(words, kSize) + 18;
 }
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

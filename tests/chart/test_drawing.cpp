@@ -4,10 +4,10 @@
 #include <cairo.h>
 #include <glm/geometric.hpp>
 
-#include "light/drawing.h"
+#include "chart/drawing.h"
 #include "support/support.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 namespace {
 
 std::array<int, 3> pixel(const image::Image8& image, int x, int y) {
@@ -178,4 +178,4 @@ TEST(Drawing, WordsBeginEndOrAreCentredAtTheirPlace) {
 }
 
 }  // namespace
-}  // namespace relevo::light
+}  // namespace relevo::chart

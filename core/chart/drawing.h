@@ -10,7 +10,7 @@
 
 #include "image/image.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 
 /// sRGB as people write it, 0xRRGGBB, with an opacity.
 struct Color {
@@ -117,4 +117,4 @@ std::string to_svg(const Drawing& drawing);
 /// As pixels on white, `scale` of them a unit. @throws Error (Failed) where memory does not do
 image::Image8 to_image(const Drawing& drawing, double scale = 1);
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

@@ -1,11 +1,11 @@
-#include "light/label_placer.h"
+#include "chart/label_placer.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "light/diagram_parts.h"
+#include "chart/diagram_parts.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 
 void LabelPlacer::keep_clear(const glm::dvec2& center, double radius) {
     taken_.push_back({center.x - radius, center.y - radius, 2 * radius, 2 * radius});
@@ -55,4 +55,4 @@ bool LabelPlacer::add(const glm::dvec2& at, const std::string& words, Lettering 
     return false;
 }
 
-}  // namespace relevo::light
+}  // namespace relevo::chart

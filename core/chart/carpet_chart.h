@@ -2,15 +2,15 @@
 
 #include <string>
 
+#include "chart/drawing.h"
 #include "light/carpet.h"
-#include "light/drawing.h"
 
-namespace relevo::light {
+namespace relevo::chart {
 
 /// A carpet as a picture: the days of the year from left to right, the time of day upwards, what
 /// light there is by colour; under it the hours of each month.
 struct CarpetChart {
-    const Carpet* carpet = nullptr;
+    const light::Carpet* carpet = nullptr;
     geo::Geodetic place;
     std::string place_name;          ///< for the title, where there is one
     std::string horizon_definition;  ///< TerrainHorizon::description()
@@ -19,4 +19,4 @@ struct CarpetChart {
     Drawing draw() const;
 };
 
-}  // namespace relevo::light
+}  // namespace relevo::chart
