@@ -78,14 +78,14 @@ void add_info(CLI::App& app) {
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");
     verb.callback([arguments] {
         std::optional<sun::ParsedTime> given_time;
-        if (arguments->time.given() && !arguments->time.needs_dem())
-            given_time = arguments->time.parse();
+        if (arguments->time.given() && !session::needs_dem(arguments->time.moment()))
+            given_time = session::parse(arguments->time.moment());
         const std::int64_t max_posts = arguments->dem.options.max_posts;
         const dem::Source source = dem::Source::open(arguments->dem.paths, arguments->dem.options);
         std::optional<dem::Heightfield> field;
         if (arguments->time.given() && !given_time) {
             field = dem::load(source, max_posts);
-            given_time = arguments->time.parse_over(source, *field);
+            given_time = session::parse_over(arguments->time.moment(), source, *field);
         }
         // Means would hide the lowest and the highest post.
         const dem::Summary summary = field && field->reduction == 1
@@ -108,7 +108,7 @@ void add_info(CLI::App& app) {
             return;
         }
         fmt::print("{}", dem::to_text(summary));
-        fmt::print("{:<10} {} at {}\n", "sun", sun_text(sun, air), sun::to_iso(utc));
+        fmt::print("{:<10} {} at {}\n", "sun", session::sun_text(sun, air), sun::to_iso(utc));
         if (log::level() == log::Level::Debug) {
             const NetError net = net_error(source.grid(), summary.max_m);
             fmt::print(

@@ -24,8 +24,9 @@ constexpr std::int64_t kBytesAPost = sizeof(float);
 }  // namespace
 
 void DemArguments::add_to(CLI::App& verb) {
-    verb.add_option("DEM", paths, "Elevation rasters: anything GDAL opens; several are one DEM")
-        ->required();
+    dem_option = verb.add_option("DEM", paths,
+                                 "Elevation rasters: anything GDAL opens; several are one DEM");
+    dem_option->required();
     verb.add_option("--crs", options.crs,
                     "Coordinate reference system instead of the file's (EPSG:n, WKT)")
         ->group("DEM");
@@ -82,6 +83,22 @@ void DemArguments::add_further_inputs(FilesInUse& files) const {
         files.add_input(path, "a file that the DEM is read from,");
 }
 
+void DemArguments::apply_to(scene::Scene& scene) const {
+    if (!paths.empty()) scene.dems = paths;
+    const dem::LoadOptions otherwise;
+    dem::LoadOptions& to = scene.dem;
+    if (!options.crs.empty()) to.crs = options.crs;
+    if (options.band > 0) to.band = options.band;
+    if (!options.unit.empty()) to.unit = options.unit;
+    if (options.nodata || options.no_nodata) {
+        to.nodata = options.nodata;
+        to.no_nodata = options.no_nodata;
+    }
+    if (options.encoding != otherwise.encoding) to.encoding = options.encoding;
+    if (options.bounds) to.bounds = options.bounds;
+    if (options.max_posts != otherwise.max_posts) to.max_posts = options.max_posts;
+}
+
 void TimeArguments::add_to(CLI::App& verb) {
     verb.add_option("--time", time,
                     "Moment: 2026-06-21T18:30+02:00, or without offset together with --tz; or an "
@@ -101,64 +118,13 @@ bool TimeArguments::given() const {
     return !time.empty();
 }
 
-bool TimeArguments::needs_dem() const {
-    if (!sun::is_event_time(time)) return false;
-    const sun::EventTime event = sun::parse_event_time(time);
-    return !event.event || !event.place;
-}
-
-sun::ParsedTime TimeArguments::parse_over(const dem::Source& source,
-                                          const dem::Heightfield& loaded) const {
-    std::optional<dem::Posts> posts;
-    return parse({.middle = [&] { return source.grid().center(); },
-                  .posts = [&]() -> const dem::Posts& {
-                      if (loaded.reduction == 1)
-                          posts.emplace(loaded);
-                      else  // as many again as the means, while this is computed
-                          posts.emplace(source, static_cast<std::int64_t>(loaded.height_m.size()));
-                      return *posts;
-                  }});
-}
-
-sun::ParsedTime TimeArguments::parse(const light::TerrainAccess& dem,
-                                     const std::optional<geo::PlaceText>& here) const {
-    std::optional<sun::Zone> in_zone;
-    if (!zone.empty()) in_zone = sun::Zone::named(zone);
-    std::optional<sun::Date> on_date;
-    if (!date.empty()) {
-        if (!sun::is_event_time(time))
-            bad_usage(
-                "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
-                "day is written 2026-06-21T18:30");
-        on_date = sun::parse_date(date);
-    }
-    sun::ParsedTime parsed = light::parse_time(time, on_date, in_zone, dem, here);
-    if (!parsed.note.empty()) log::info(parsed.note);
-    return parsed;
-}
-
 void RefractionArguments::add_to(CLI::App& verb) {
-    verb.add_option(
-            "--refraction", model,
-            "How the air lifts the sun: standard (integrated ICAO atmosphere), saemundsson (as JPL "
-            "Horizons), none")
-        ->check(CLI::IsMember({"standard", "saemundsson", "none"}));
+    option = verb.add_option("--refraction", model,
+                             "How the air lifts the sun: standard (integrated ICAO atmosphere), "
+                             "saemundsson (as JPL "
+                             "Horizons), none")
+                 ->check(CLI::IsMember({"standard", "saemundsson", "none"}));
     verb.add_flag("--no-refraction", off, "Same as --refraction none");
-}
-
-sun::Refraction RefractionArguments::at(const geo::Geodetic& place) const {
-    if (off || model == "none") return sun::Refraction::none();
-    if (model == "saemundsson") return sun::Refraction::saemundsson();
-    return sun::Refraction::standard(place);
-}
-
-std::string sun_text(const sun::Position& position, const sun::Refraction& air) {
-    const double elevation_deg = degrees(position.elevation_rad);
-    return fmt::format(
-        "azimuth {:.2f}, elevation {:.2f} ({})", degrees(position.azimuth_rad), elevation_deg,
-        elevation_deg < -2 ? "below the horizon"
-                           : fmt::format("{:.2f} with refraction",
-                                         degrees(air.apparent_rad(position.elevation_rad))));
 }
 
 void ViewArguments::add_to(CLI::App& verb) {
@@ -188,16 +154,22 @@ void ViewArguments::add_to(CLI::App& verb) {
         ->group("View");
 }
 
-scene::View ViewArguments::view_of() const {
-    scene::View result;
+void ViewArguments::apply_to(scene::Scene& scene) const {
+    scene::View& result = scene.view;
     if (!view.empty() && !eye.empty())
         bad_usage("--view and --eye exclude each other; give one of them");
-    if (eye.empty() && (!look_at.empty() || heading_deg || pitch_deg))
+    if (eye.empty() && !scene.view.eye && (!look_at.empty() || heading_deg || pitch_deg))
         bad_usage("--look-at, --heading and --pitch need --eye");
     if (!look_at.empty() && (heading_deg || pitch_deg))
         bad_usage("--look-at and --heading or --pitch exclude each other; give one of them");
     if (fov_deg && focal_length_mm)
         bad_usage("--fov and --focal-length exclude each other; give one of them");
+    if (!view.empty() || !eye.empty()) {
+        const scene::View before = result;
+        result = {};
+        result.fov_y_rad = before.fov_y_rad;
+        result.focal_length_mm = before.focal_length_mm;
+    }
     if (!view.empty()) result.orbit = scene::parse_orbit(view);
     const auto standpoint = [](const std::string& text, const char* option, double height_agl_m) {
         const geo::PlaceText parsed = geo::parse_place(text, option);
@@ -210,11 +182,14 @@ scene::View ViewArguments::view_of() const {
     };
     if (!eye.empty()) result.eye = standpoint(eye, "--eye", scene::kEyeHeight_m);
     if (!look_at.empty()) result.look_at = standpoint(look_at, "--look-at", 0);
-    result.heading_deg = heading_deg.value_or(0);
-    result.pitch_deg = pitch_deg.value_or(0);
-    if (fov_deg) result.fov_y_rad = radians(*fov_deg);
-    result.focal_length_mm = focal_length_mm.value_or(0);
-    return result;
+    if (heading_deg || pitch_deg) result.look_at.reset();
+    if (heading_deg) result.heading_deg = *heading_deg;
+    if (pitch_deg) result.pitch_deg = *pitch_deg;
+    if (fov_deg || focal_length_mm) {
+        result.fov_y_rad = radians(fov_deg.value_or(0));
+        result.focal_length_mm = focal_length_mm.value_or(0);
+    }
+    if (exaggeration) scene.exaggeration = *exaggeration;
 }
 
 CLI::Validator in_range(double min, double max) {
@@ -253,7 +228,8 @@ glm::ivec2 parse_size(const std::string& text) {
     if (pieces.size() == 2) {
         const auto width = parse_number(pieces[0]), height = parse_number(pieces[1]);
         if (width && height && *width == std::floor(*width) && *height == std::floor(*height) &&
-            *width >= 1 && *height >= 1 && *width <= 16384 && *height <= 16384)
+            *width >= 1 && *height >= 1 && *width <= scene::kMaxSide_px &&
+            *height <= scene::kMaxSide_px)
             return {static_cast<int>(*width), static_cast<int>(*height)};
     }
     bad_usage(fmt::format("--size: expected WIDTHxHEIGHT, each 1 to 16384, but got \"{}\"", text));

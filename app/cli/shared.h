@@ -13,8 +13,8 @@
 
 #include "base/files_in_use.h"
 #include "dem/load.h"
-#include "light/event_time.h"
-#include "scene/view.h"
+#include "scene/scene.h"
+#include "session/words.h"
 #include "sun/position.h"
 #include "sun/refraction.h"
 #include "sun/zone.h"
@@ -27,8 +27,11 @@ namespace relevo::cli {
 struct DemArguments {
     std::vector<std::string> paths;
     dem::LoadOptions options;  ///< valid once the line has been parsed
+    CLI::Option* dem_option = nullptr;
 
     void add_to(CLI::App& verb);
+    /// Puts what was given in the place of what a scene says.
+    void apply_to(scene::Scene& scene) const;
     /// Adds the files that are named. @throws Error as FilesInUse::add_input
     void add_inputs(FilesInUse& files) const;
     /// Adds those that belong to them, where an output replaces a file: finding them takes time.
@@ -42,22 +45,7 @@ struct TimeArguments {
     void add_to(CLI::App& verb);
     /// @throws Error (Usage) for --date or --tz without --time, which would say nothing
     bool given() const;
-    /// First and last light hang on the terrain, and events without a place happen in its middle;
-    /// all other times are known without it.
-    bool needs_dem() const;
-    /// Tells the user where a wall time was skipped or came twice.
-    /// @throws Error (Usage, BadInput)
-    sun::ParsedTime parse() const { return parse(light::TerrainAccess{}); }
-    /// Events without a place happen in the middle of the DEM; first and last light are those of
-    /// its posts.
-    /// @param loaded  of the source, all its posts or means of them
-    sun::ParsedTime parse_over(const dem::Source& source, const dem::Heightfield& loaded) const;
-    /// Events without a place happen there.
-    sun::ParsedTime parse_at(const geo::PlaceText& here) const { return parse({}, here); }
-
-  private:
-    sun::ParsedTime parse(const light::TerrainAccess& dem,
-                          const std::optional<geo::PlaceText>& here = {}) const;
+    scene::Moment moment() const { return {time, date, zone}; }
 };
 
 /// --refraction and --no-refraction.
@@ -66,22 +54,23 @@ struct RefractionArguments {
     bool off = false;
 
     void add_to(CLI::App& verb);
-    sun::Refraction at(const geo::Geodetic& place) const;
+    bool given() const { return off || (option && option->count() > 0); }
+    /// "standard", "saemundsson" or "none"
+    std::string name() const { return off ? "none" : model; }
+    sun::Refraction at(const geo::Geodetic& place) const {
+        return session::refraction_at(name(), place);
+    }
+    CLI::Option* option = nullptr;
 };
-
-/// "azimuth 114.27, elevation 65.12 (65.13 with refraction)", in degrees; what is well below the
-/// horizon has no refraction that anyone could see.
-std::string sun_text(const sun::Position& position, const sun::Refraction& air);
 
 /// Where the camera stands.
 struct ViewArguments {
     std::string view, eye, look_at;
-    std::optional<double> heading_deg, pitch_deg, fov_deg, focal_length_mm;
-    double exaggeration = 1;
+    std::optional<double> heading_deg, pitch_deg, fov_deg, focal_length_mm, exaggeration;
 
     void add_to(CLI::App& verb);
-    /// Reads what can be read before any work is done. @throws Error (Usage)
-    scene::View view_of() const;
+    /// Puts what was given in the place of what a scene says. @throws Error (Usage)
+    void apply_to(scene::Scene& scene) const;
 };
 
 /// A number with both ends included; else "expected 0.1 to 170 but got 500".

@@ -31,7 +31,7 @@ void add_sun_position(CLI::App& sun_verb) {
         const geo::PlaceText at = geo::parse_place(arguments->at, "--at");
         if (at.above_ground)
             bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
-        const sun::ParsedTime when = arguments->time.parse_at(at);
+        const sun::ParsedTime when = session::parse(arguments->time.moment(), {}, at);
         const sun::Position position = sun::position(when.utc, at.place);
         const sun::Refraction air = arguments->refraction.at(at.place);
         const double apparent_deg = degrees(air.apparent_rad(position.elevation_rad));

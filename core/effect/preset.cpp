@@ -20,8 +20,7 @@ std::filesystem::path presets_dir() {
 }
 
 std::filesystem::path find_preset(const std::string& name) {
-    const std::filesystem::path path(name);
-    if (name.find('/') != std::string::npos || path.extension() == ".json") return path;
+    if (is_preset_file(name)) return name;
     const std::vector<std::string> names = preset_names();
     if (std::find(names.begin(), names.end(), name) == names.end()) {
         const std::optional<std::string> near = nearest(name, names);
@@ -67,6 +66,32 @@ Setting parse_setting(std::string_view text) {
     return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1)), 0};
 }
 
+std::vector<Setting> read_settings(ObjectReader& object, const std::string& key,
+                                   const std::string& folder) {
+    std::vector<Setting> settings;
+    const Json* const set = object.take(key);
+    if (!set) return settings;
+    if (set->kind != Json::Kind::Object)
+        object.fail(
+            set->line, key,
+            fmt::format("expected an object of address and value but got {}", describe(*set)));
+    for (const auto& [address, value] : set->members) {
+        const std::optional<std::string> text = value_text(value);
+        if (!text)
+            object.fail(value.line, key,
+                        fmt::format("{}: expected a number, true or false, a text or a list of "
+                                    "numbers but got {}",
+                                    address, describe(value)));
+        settings.push_back({address, *text, value.line, folder});
+    }
+    return settings;
+}
+
+bool is_preset_file(const std::string& name_or_path) {
+    return name_or_path.find('/') != std::string::npos ||
+           std::filesystem::path(name_or_path).extension() == ".json";
+}
+
 Preset load_preset(const std::string& name_or_path) {
     const std::filesystem::path path = find_preset(name_or_path);
     Preset preset;
@@ -78,21 +103,7 @@ Preset load_preset(const std::string& name_or_path) {
     if (object.take("only")) preset.switches.only = object.strings("only");
     preset.switches.enable = object.strings("enable");
     preset.switches.disable = object.strings("disable");
-    if (const Json* const set = object.take("set")) {
-        if (set->kind != Json::Kind::Object)
-            object.fail(
-                set->line, "set",
-                fmt::format("expected an object of address and value but got {}", describe(*set)));
-        for (const auto& [address, value] : set->members) {
-            const std::optional<std::string> text = value_text(value);
-            if (!text)
-                object.fail(value.line, "set",
-                            fmt::format("{}: expected a number, true or false, a text or a list of "
-                                        "numbers but got {}",
-                                        address, describe(value)));
-            preset.settings.push_back({address, *text, value.line});
-        }
-    }
+    preset.settings = read_settings(object, "set", path.parent_path().string());
     object.finish();
     return preset;
 }

@@ -8,6 +8,8 @@
 
 namespace relevo::effect {
 
+class ObjectReader;
+
 /// Which effects are to be on, by their ids.
 struct Switches {
     std::optional<std::vector<std::string>> only;  ///< these and nothing else
@@ -17,9 +19,10 @@ struct Switches {
 
 /// A value for a parameter.
 struct Setting {
-    std::string address;  ///< "haze.density"
-    std::string text;     ///< as shader::parse_value reads it
-    int line = 0;         ///< in a preset's file; 0 on the command line
+    std::string address;   ///< "haze.density"
+    std::string text;      ///< as shader::parse_value reads it
+    int line = 0;          ///< in a preset's or scene's file; 0 on the command line
+    std::string folder{};  ///< from which the path of a file counts; empty: the working folder
 };
 
 /// A file of switches and values.
@@ -34,6 +37,16 @@ struct Preset {
 /// Reads `haze.density=0.2`.
 /// @throws Error (Usage) if it is not of that form
 Setting parse_setting(std::string_view text);
+
+/// The settings of an object's member `key`: {"haze.density": 0.2, "sea.colour": [0, 0.1, 0.2]};
+/// none if it is missing.
+/// @param folder  of the file
+/// @throws Error (BadInput) for a value that no parameter can have
+std::vector<Setting> read_settings(ObjectReader& object, const std::string& key,
+                                   const std::string& folder);
+
+/// Whether load_preset() takes it for a path.
+bool is_preset_file(const std::string& name_or_path);
 
 /// Reads a preset: `share_dir()/presets/NAME.json`, or a path if there is a slash or `.json` in it.
 /// @throws Error (BadInput) `effect::load_preset: file:line: ...`

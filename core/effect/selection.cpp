@@ -273,12 +273,11 @@ class Selector {
     std::vector<std::string> notices_, warnings_;
 };
 
-/// What a preset sets: the path of a file counts from the preset's folder.
-std::string text_beside(const Preset& preset, const Setting& setting,
-                        const shader::ParamStore& store) {
+/// What is set: the path of a file counts from the folder of the file that sets it.
+std::string text_of(const Setting& setting, const shader::ParamStore& store) {
     const shader::TextParam* const text = store.find_text(setting.address);
     if (!text || !text->is_file || setting.text.empty()) return setting.text;
-    return (std::filesystem::path(preset.file).parent_path() / setting.text).string();
+    return (std::filesystem::path(setting.folder) / setting.text).string();
 }
 
 std::string plugin_of(const std::string& address) {
@@ -321,7 +320,7 @@ std::vector<std::string> apply_settings(shader::ParamStore& store, const Registr
                 continue;
             }
             try {
-                store.set(setting.address, text_beside(preset, setting, store));
+                store.set(setting.address, text_of(setting, store));
             } catch (const Error& error) {
                 const std::string_view what = error.what();
                 throw Error(error.code(), fmt::format("effect::apply_settings: {}: {}", place,
@@ -330,7 +329,7 @@ std::vector<std::string> apply_settings(shader::ParamStore& store, const Registr
         }
     }
     for (const Setting& setting : command_line) {
-        store.set(setting.address, setting.text);
+        store.set(setting.address, text_of(setting, store));
         const std::string plugin = plugin_of(setting.address);
         if (registry.find(plugin) && !selection.has(plugin))
             notices.push_back(fmt::format("{} is set, but {} is off; --enable {} switches it on",

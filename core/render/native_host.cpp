@@ -418,6 +418,11 @@ void NativeHost::prepare(Terrain& terrain, const Ground& ground, const FrameInpu
                 [&] { return functions.prepare(impl_->instance); });
 }
 
+void NativeHost::resize(int width_px, int height_px) {
+    impl_->width_px = width_px;
+    impl_->height_px = height_px;
+}
+
 const gl::Texture* NativeHost::find(std::string_view resource) const {
     return impl_->textures.find(resource);
 }

@@ -35,6 +35,9 @@ class NativeHost {
     void prepare(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                  const FrameBlock& block, const TileSelection& picture);
 
+    /// Pictures have these sides from the next frame on.
+    void resize(int width_px, int height_px);
+
     /// A texture that the module has made under that name, "vsm.moments"; or null.
     const gl::Texture* find(std::string_view resource) const;
 

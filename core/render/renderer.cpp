@@ -73,6 +73,7 @@ struct Renderer::Impl {
     EffectTextures effect_textures;
     gl::Buffer frame_block;
     std::vector<effect::DisplaceSpec> displaces;
+    bool has_overlay;
     shader::ParamStore values;  // as given; native modules write host parameters
     double exposure = 1;        // of the last frame
     gl::Buffer params_block;
@@ -102,7 +103,8 @@ struct Renderer::Impl {
           antialias(link("antialias")),
           effect_textures(effects.textures, anisotropy),
           frame_block(sizeof(FrameBlock), "frame block"),
-          displaces(effects.displaces) {
+          displaces(effects.displaces),
+          has_overlay(render::has_overlay(effects.stitch)) {
         if (effects.stitch.values) {
             values = *effects.stitch.values;
             const std::vector<std::byte> params =
@@ -110,6 +112,17 @@ struct Renderer::Impl {
             if (!params.empty()) params_block = gl::Buffer(params, "parameters");
         }
 
+        make_targets();
+        reads_surface = reads("surface_pages");
+        if (!effects.modules.empty()) depth_only = link("depth");
+        for (const effect::NativeModule* module : effects.modules)
+            natives.emplace_back(
+                *module, context, [this](const Terrain& ground) { bind(depth_only, ground); },
+                values, options.width_px, options.height_px);
+    }
+
+    /// What is drawn into, in the picture's size.
+    void make_targets() {
         const gl::Extent size{options.width_px, options.height_px, 1};
         const auto target = [&](gl::Format format, const char* label) {
             gl::Texture texture(gl::TextureKind::D2, format, size, 1, label);
@@ -124,6 +137,7 @@ struct Renderer::Impl {
         edge_marks = gl::Texture(gl::TextureKind::D2, gl::Format::Stencil8, size, 1, "edge marks");
         depth.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
         picture = target(gl::Format::RGBA8, "picture");
+        varyings.clear();
         std::vector<const gl::Texture*> outputs{&gbuffer};
         const int varying_targets = text("geometry").stitched.varying_targets;
         varyings.reserve(static_cast<std::size_t>(varying_targets));
@@ -143,19 +157,12 @@ struct Renderer::Impl {
         light_target = gl::Framebuffer({options.radiance ? &radiance : &end}, &depth, "light");
         if (options.radiance) {
             post_target = gl::Framebuffer({&end}, nullptr, "post");
-            if (has_overlay(effects.stitch)) {
+            if (has_overlay) {
                 overlay = target(gl::Format::RGBA8, "overlay");
                 overlaid_target = gl::Framebuffer({&radiance, &overlay}, &depth, "overlaid");
             }
         }
         picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
-
-        reads_surface = reads("surface_pages");
-        if (!effects.modules.empty()) depth_only = link("depth");
-        for (const effect::NativeModule* module : effects.modules)
-            natives.emplace_back(
-                *module, context, [this](const Terrain& ground) { bind(depth_only, ground); },
-                values, options.width_px, options.height_px);
     }
 
     /// Whether the terrain program reads a texture.
@@ -372,14 +379,22 @@ struct Renderer::Impl {
     }
 };
 
-Renderer::Renderer(gl::Context& context, const EffectInputs& effects,
-                   const RendererOptions& options) {
+namespace {
+
+void check_size(const gl::Context& context, int width_px, int height_px) {
     const int most = context.info().max_picture_size;
-    if (options.width_px > most || options.height_px > most)
+    if (width_px > most || height_px > most)
         bad_input(
             fmt::format("render: picture: expected a width and a height of up to {} px, "
                         "which {} draws at once, but got {} x {}; take a smaller --size",
-                        most, context.info().renderer, options.width_px, options.height_px));
+                        most, context.info().renderer, width_px, height_px));
+}
+
+}  // namespace
+
+Renderer::Renderer(gl::Context& context, const EffectInputs& effects,
+                   const RendererOptions& options) {
+    check_size(context, options.width_px, options.height_px);
     impl_ = std::make_unique<Impl>(context, effects, options);
 }
 
@@ -400,6 +415,31 @@ void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameI
                                               impl_->options.height_px, footprint);
     impl_->exposure = block.exposure;
     impl_->draw(terrain, ground, inputs, block, times);
+}
+
+void Renderer::set_values(const shader::ParamStore& values) {
+    for (const shader::Param* param : impl_->values.params()) {
+        const shader::Param* const given = values.find(param->address);
+        if (!given || given->type != param->type || param->is_static || param->is_host) continue;
+        impl_->values.set(param->address, values.value(param->address));
+    }
+    if (impl_->params_block.size() > 0)
+        impl_->params_block.write(
+            shader::pack(impl_->texts.front().stitched.params, impl_->values));
+}
+
+void Renderer::resize(int width_px, int height_px) {
+    if (width_px == impl_->options.width_px && height_px == impl_->options.height_px) return;
+    check_size(impl_->context, width_px, height_px);
+    impl_->options.width_px = width_px;
+    impl_->options.height_px = height_px;
+    impl_->make_targets();
+    for (NativeHost& native : impl_->natives)
+        native.resize(width_px, height_px);
+}
+
+const gl::Texture& Renderer::picture() const {
+    return impl_->picture;
 }
 
 Displacement Renderer::displacement() const {

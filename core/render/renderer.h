@@ -45,7 +45,7 @@ std::vector<shader::Param> core_params();
 /// "geometry", "terrain", "background", "post", "antialias".
 using PassTimes = std::vector<std::pair<std::string, double>>;
 
-/// Draws frames of one size with one selection of effects.
+/// Draws frames with one selection of effects.
 ///
 /// A frame is a row of passes: geometry (what is where, once for every pixel), terrain (its light),
 /// background, post (tone mapping, sRGB; only with the radiance) and antialias.
@@ -65,6 +65,15 @@ class Renderer {
     /// each
     void render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                       PassTimes* times = nullptr);
+
+    /// Takes the values of parameters, static ones and those of native modules left out, from the
+    /// next frame on.
+    void set_values(const shader::ParamStore& values);
+    /// Frames have these sides from the next one on.
+    /// @throws Error (BadInput) for a picture that the device cannot draw at once
+    void resize(int width_px, int height_px);
+    /// The last frame on the device, RGBA8, rows from below.
+    const gl::Texture& picture() const;
 
     /// How far its effects move the ground.
     Displacement displacement() const;

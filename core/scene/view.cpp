@@ -37,9 +37,6 @@ glm::dvec3 position_of(const Standpoint& standpoint, std::string_view option,
 
 }  // namespace
 
-/// Beyond them the ground is less than a pixel, or less than a millimetre of it is seen.
-constexpr double kLeastZoom = 0.001, kGreatestZoom = 1000000;
-
 Orbit parse_orbit(std::string_view text) {
     Orbit orbit;
     for (const std::string& piece : split(text, ',')) {
@@ -58,9 +55,9 @@ Orbit parse_orbit(std::string_view text) {
     if (orbit.elevation_deg < -90 || orbit.elevation_deg > 90)
         bad_usage(fmt::format("--view: {}: expected an elevation of -90 to 90 degrees but got {}",
                               text, orbit.elevation_deg));
-    if (!(orbit.zoom >= kLeastZoom && orbit.zoom <= kGreatestZoom))
+    if (!(orbit.zoom >= kMinZoom && orbit.zoom <= kMaxZoom))
         bad_usage(fmt::format("--view: {}: expected a zoom of {} to {} but got {}", text,
-                              kLeastZoom, kGreatestZoom, orbit.zoom));
+                              kMinZoom, kMaxZoom, orbit.zoom));
     return orbit;
 }
 

@@ -28,6 +28,9 @@ struct View {
     double focal_length_mm = 0;  ///< 35 mm equivalent; 0: none given
 };
 
+/// Beyond them the ground is less than a pixel, or less than a millimetre of it is seen.
+inline constexpr double kMinZoom = 0.001, kMaxZoom = 1000000;
+
 /// Reads `az=210,el=30,zoom=1`; what is left out stays as it is in Orbit.
 /// @throws Error (Usage) `--view: text: what, expected E but got G`
 Orbit parse_orbit(std::string_view text);

@@ -136,6 +136,44 @@ TEST_F(Capture, TheGroundIsBelowTheHorizonForAnEyeInTheValley) {
     EXPECT_LT(blue_minus_green(picture.height - 5), -5);
 }
 
+TEST_F(Capture, OfASavedSceneIsTheSamePicture) {
+    const std::string file = (dir_ / "view.json").string();
+    const auto drawn = take("a.png", {"--time",       "2026-06-21T18:30",
+                                      "--tz",         "America/New_York",
+                                      "--eye",        "36.30,-84.20,300agl",
+                                      "--heading",    "70",
+                                      "--fov",        "35",
+                                      "--exaggerate", "1.5",
+                                      "--disable",    "haze",
+                                      "--set",        "layering.texture_m=8",
+                                      "--exposure",   "0.5",
+                                      "--save-scene", file});
+    const auto again = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"-q", "capture", "--scene", file, "-o",
+                                   (dir_ / "b.png").string(), "--overwrite"});
+        const Result run = relevo(more);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return read_text(dir_ / "b.png", "test");
+    };
+    const std::string picture = read_text(drawn, "test");
+    EXPECT_EQ(again({}), picture);
+    // What is given beside it comes last.
+    EXPECT_NE(again({"--heading", "250"}), picture);
+    EXPECT_NE(again({"--enable", "haze"}), picture);
+    EXPECT_EQ(again({"--heading", "70", "--disable", "haze"}), picture);
+    again({"--size", "64x48"});
+    EXPECT_EQ(image::read(dir_ / "b.png").width, 64);
+    // Neither the scene nor its DEM is replaced.
+    expect_failure({"capture", "--scene", file, "-o", (dir_ / "c.png").string(), "--save-scene",
+                    file, "--overwrite"},
+                   3,
+                   fmt::format("--save-scene: {0}: is the scene {0}, which would be lost; give "
+                               "the result another name",
+                               file));
+    expect_failure({"capture", "-o", (dir_ / "c.png").string()}, 2,
+                   "DEM is required; see relevo capture --help");
+}
+
 TEST_F(Capture, TimingsNameEveryStage) {
     const std::string file = (dir_ / "timings.json").string();
     take("a.png", {"--timings", file, "--repeat", "3"});

@@ -353,8 +353,8 @@ TEST_F(Settings, TextsAreSetAsTheyAreAndFilesCountFromTheirPreset) {
     registry_ = plugins_.load();
     store_.declare(registry_.params(), registry_.texts());
     selection_ = select(registry_, {}, {});
-    Preset winter = preset({}, {{"way.track", "walk.gpx", 3}, {"way.title", "walk.gpx", 4}});
-    winter.file = "presets/winter.json";
+    const Preset winter = preset(
+        {}, {{"way.track", "walk.gpx", 3, "presets"}, {"way.title", "walk.gpx", 4, "presets"}});
     EXPECT_THAT(apply({winter}, {}), IsEmpty());
     EXPECT_EQ(store_.text("way.track"), "presets/walk.gpx");
     EXPECT_EQ(store_.text("way.title"), "walk.gpx");

@@ -1,4 +1,4 @@
-#include "cli/not_numbers.h"
+#include "session/not_numbers.h"
 
 #include <cstdint>
 
@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace relevo::cli {
+namespace relevo::session {
 namespace {
 
 /// The same picture with an effect off, and with it all that requires it.
@@ -34,8 +34,8 @@ void refuse_not_numbers(const FaultyPicture& picture) {
     // more of them along than the maker itself.
     Trial best{"", picture.pixels, 0};
     for (const effect::Effect* effect : picture.effects.loaded.selection.effects) {
-        const auto rest =
-            picture.arguments.without({effect->id()}, picture.effects).active(/*aloud=*/false);
+        const auto rest = ActiveEffects::of(without(picture.asked, {effect->id()}, picture.effects),
+                                            /*aloud=*/false);
         const Trial trial{effect->id(), not_numbers_of(picture, *rest),
                           rest->loaded.selection.effects.size()};
         if (trial.pixels < best.pixels ||
@@ -60,4 +60,4 @@ void refuse_not_numbers(const FaultyPicture& picture) {
         best.id, what, best.pixels == 0 ? "none" : std::to_string(best.pixels), best.id));
 }
 
-}  // namespace relevo::cli
+}  // namespace relevo::session

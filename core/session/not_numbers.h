@@ -1,12 +1,12 @@
 #pragma once
 
-#include "cli/effects.h"
+#include "session/active_effects.h"
 
-namespace relevo::cli {
+namespace relevo::session {
 
 /// A picture whose light is no number in some pixels, and all that it was drawn from.
 struct FaultyPicture {
-    const EffectArguments& arguments;
+    const scene::Effects& asked;
     const ActiveEffects& effects;
     gl::Context& context;
     render::RendererOptions options;
@@ -20,4 +20,4 @@ struct FaultyPicture {
 /// @throws Error (Failed) that names them, always
 [[noreturn]] void refuse_not_numbers(const FaultyPicture& picture);
 
-}  // namespace relevo::cli
+}  // namespace relevo::session

@@ -1,0 +1,125 @@
+#include "session/active_effects.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+
+namespace relevo::session {
+
+namespace {
+
+void say(const effect::Selection& selection) {
+    for (const std::string& warning : selection.warnings)
+        log::warning(warning);
+    for (const std::string& notice : selection.notices)
+        log::info(notice);
+}
+
+}  // namespace
+
+void ActiveEffects::fit(const gl::DeviceInfo& device, bool aloud) {
+    const std::size_t unusable = loaded.unusable.size();
+    loaded = effect::select_and_load(
+        registry, presets, switches, values,
+        effect::TextureLimits{device.max_texture_size, device.max_volume_size,
+                              device.max_array_layers},
+        std::move(loaded));
+    if (aloud && loaded.unusable.size() > unusable) say(loaded.selection);
+}
+
+render::EffectInputs ActiveEffects::inputs() const {
+    render::EffectInputs inputs;
+    inputs.stitch.snippets = loaded.selection.snippets();
+    inputs.stitch.capabilities = loaded.selection.capabilities;
+    inputs.stitch.values = &values;
+    for (const effect::Effect* effect : loaded.selection.effects)
+        if (effect->manifest.displaces) inputs.displaces.push_back(*effect->manifest.displaces);
+    for (const effect::LoadedTexture& texture : loaded.textures)
+        inputs.textures.push_back(&texture);
+    for (const effect::NativeModule& module : loaded.modules)
+        inputs.modules.push_back(&module);
+    return inputs;
+}
+
+void ActiveEffects::add_inputs(FilesInUse& files) const {
+    for (const effect::Preset& preset : presets)
+        files.add_input(preset.file, "the preset");
+    for (const effect::Effect& effect : registry.effects()) {
+        const effect::Manifest& manifest = effect.manifest;
+        const std::string what = fmt::format("a file of the plugin {},", effect.id());
+        files.add_input(manifest.file, what);
+        for (const std::filesystem::path& glsl : manifest.glsl)
+            files.add_input(glsl, what);
+        for (const effect::TextureSpec& texture : manifest.textures)
+            for (const std::filesystem::path& file : texture.files)
+                files.add_input(file, what);
+    }
+    for (const shader::TextParam* text : values.texts())
+        if (const std::string file = values.text(text->address); text->is_file && !file.empty())
+            files.add_input(file, fmt::format("the file {},", text->address));
+    for (const effect::NativeModule& module : loaded.modules)
+        files.add_input(module.library(), fmt::format("the module of the plugin {},", module.id()));
+}
+
+namespace {
+
+/// Takes `ids` out of one list of effects and adds them to another.
+void move_to(const std::vector<std::string>& ids, std::vector<std::string>& from,
+             std::vector<std::string>& to) {
+    for (const std::string& id : ids) {
+        from.erase(std::remove(from.begin(), from.end(), id), from.end());
+        if (std::find(to.begin(), to.end(), id) == to.end()) to.push_back(id);
+    }
+}
+
+}  // namespace
+
+scene::Effects with(scene::Effects effects, const std::vector<std::string>& ids) {
+    move_to(ids, effects.switches.disable, effects.switches.enable);
+    return effects;
+}
+
+scene::Effects without(scene::Effects effects, const std::vector<std::string>& ids,
+                       const ActiveEffects& shown) {
+    // What is shown says which effects are on, whatever was asked for.
+    effect::Switches& switches = effects.switches;
+    switches.enable.clear();
+    switches.disable.clear();
+    switches.only.emplace();
+    for (const effect::Effect* effect : shown.loaded.selection.effects)
+        switches.only->push_back(effect->id());
+    move_to(ids, *switches.only, switches.disable);
+    return effects;
+}
+
+std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, bool aloud) {
+    auto active = std::make_unique<ActiveEffects>();
+    active->registry =
+        effect::Registry::load_installed({effects.plugin_path.begin(), effects.plugin_path.end()});
+    for (const std::string& preset : effects.presets)
+        active->presets.push_back(effect::load_preset(preset));
+    active->switches = effects.switches;
+    std::vector<shader::Param> params = active->registry.params();
+    for (const shader::Param& param : render::core_params())
+        params.push_back(param);
+    active->values.declare(params, active->registry.texts());
+    active->loaded = effect::select_and_load(active->registry, active->presets, active->switches,
+                                             active->values);
+    const std::vector<std::string> notices =
+        effect::apply_settings(active->values, active->registry, active->loaded.selection,
+                               active->presets, effects.settings);
+    if (!aloud) return active;
+    const std::vector<std::string>& disable = effects.switches.disable;
+    for (const effect::BrokenEffect& broken : active->registry.broken())
+        if (std::find(disable.begin(), disable.end(), broken.id) == disable.end())
+            log::warning(fmt::format("{}; --disable {} leaves it out", broken.error, broken.id));
+    say(active->loaded.selection);
+    for (const std::string& notice : notices)
+        log::info(notice);
+    return active;
+}
+
+}  // namespace relevo::session

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/files_in_use.h"
+#include "effect/loaded_selection.h"
+#include "gl/context.h"
+#include "render/renderer.h"
+#include "scene/scene.h"
+
+namespace relevo::session {
+
+/// The plugins there are, those that are on, and the values of their parameters.
+struct ActiveEffects {
+    effect::Registry registry;
+    std::vector<effect::Preset> presets;
+    effect::Switches switches;
+    effect::LoadedSelection loaded;  // points into registry
+    shader::ParamStore values;
+
+    /// Loads the plugins and switches them.
+    /// @param aloud  says with log what is not as asked
+    /// @throws Error (BadInput) as effect::select_and_load and effect::apply_settings
+    static std::unique_ptr<ActiveEffects> of(const scene::Effects& effects, bool aloud = true);
+
+    /// Switches off, with a warning, what brings larger textures than a device takes.
+    /// @throws Error (BadInput) for what was asked for by name
+    void fit(const gl::DeviceInfo& device, bool aloud = true);
+    /// For a renderer; valid as long as this is.
+    render::EffectInputs inputs() const;
+    /// Adds presets, and the files of all plugins. @throws Error as FilesInUse::add_input
+    void add_inputs(FilesInUse& files) const;
+};
+
+/// The same with these effects on, whatever was asked of them.
+scene::Effects with(scene::Effects effects, const std::vector<std::string>& ids);
+
+/// The effects of `shown` but these and what requires them. What they have pulled in stays: the
+/// difference is theirs alone.
+scene::Effects without(scene::Effects effects, const std::vector<std::string>& ids,
+                       const ActiveEffects& shown);
+
+}  // namespace relevo::session

@@ -1,0 +1,297 @@
+#include "session/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <future>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "dem/files_of.h"
+#include "dem/load.h"
+#include "geo/format.h"
+#include "render/ground.h"
+#include "scene/moment.h"
+#include "session/active_effects.h"
+#include "session/not_numbers.h"
+#include "session/words.h"
+#include "sun/celestial.h"
+#include "sun/position.h"
+
+namespace relevo::session {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point began) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+/// The DEM, and how long it took.
+struct Loaded {
+    dem::Source source;
+    dem::Heightfield field;
+    double took_ms = 0;
+};
+
+Loaded load(const scene::Scene& scene) {
+    const auto began = Clock::now();
+    dem::Source source = dem::Source::open(scene.dems, scene.dem);
+    dem::Heightfield field = dem::load(source, scene.dem.max_posts);
+    return {std::move(source), std::move(field), milliseconds_since(began)};
+}
+
+void add_dem_inputs(const scene::Scene& scene, FilesInUse& files) {
+    for (const std::string& path : scene.dems)
+        files.add_input(path, "the DEM");
+    // Finding what belongs to them takes time.
+    if (!files.replaces_any()) return;
+    for (const std::filesystem::path& path : dem::files_of(scene.dems))
+        files.add_input(path, "a file that the DEM is read from,");
+}
+
+constexpr int kDivider_px = 2;
+
+/// Puts the left half of one picture beside the right half of the other, with a line between.
+template <typename Picture, typename Value>
+Picture side_by_side(const Picture& left, const Picture& right, Value line) {
+    Picture both = right;
+    const int first = std::max((left.width - kDivider_px) / 2, 0) * left.channels;
+    const int last = std::min(left.width * left.channels, first + kDivider_px * left.channels);
+    for (int y = 0; y < left.height; ++y) {
+        std::copy_n(left.row(y), first, both.row(y));
+        std::fill(both.row(y) + first, both.row(y) + last, line);
+    }
+    return both;
+}
+
+}  // namespace
+
+struct Session::Impl {
+    scene::Scene scene;
+    Options options;
+    StageTimes stages;
+
+    // In the order in which each needs those above.
+    std::unique_ptr<ActiveEffects> effects, others;
+    std::optional<gl::Context> context;
+    std::optional<Loaded> loaded;
+    std::optional<render::Renderer> renderer, without;
+    std::optional<render::Ground> ground;
+    std::optional<render::Terrain> terrain;
+
+    sun::Instant utc;
+    sun::Position position;
+    sun::Refraction air = sun::Refraction::none();
+    std::vector<glm::dvec3> points;
+    render::FrameInputs inputs;
+
+    Impl(scene::Scene given, Options o, FilesInUse& files)
+        : scene(std::move(given)), options(std::move(o)) {
+        add_dem_inputs(scene, files);
+        std::optional<sun::ParsedTime> time;
+        const bool timed = !scene.moment.time.empty();
+        if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
+        // Where the system gives no further thread it is read when it is waited for.
+        auto loading =
+            std::async(std::launch::async | std::launch::deferred, [this] { return load(scene); });
+        open_device(files);
+        compile();
+        loaded.emplace(loading.get());
+        stages.emplace_back("load", loaded->took_ms);
+        if (timed && !time) time = parse_over(scene.moment, loaded->source, loaded->field);
+        upload();
+        set_moment(time ? time->utc : scene::default_moment(ground->frame.origin()));
+        look(scene.view);
+    }
+
+    void open_device(FilesInUse& files) {
+        const auto began = Clock::now();
+        const bool compared = !options.compared.empty();
+        effects =
+            ActiveEffects::of(compared ? with(scene.effects, options.compared) : scene.effects);
+        if (compared)
+            others = ActiveEffects::of(session::without(scene.effects, options.compared, *effects),
+                                       /*aloud=*/false);
+        effects->add_inputs(files);
+        context.emplace(gl::ContextOptions{.device = options.device});
+        effects->fit(context->info());
+        if (others) others->fit(context->info(), /*aloud=*/false);
+        stages.emplace_back("device", milliseconds_since(began));
+    }
+
+    render::RendererOptions renderer_options() const {
+        return {
+            .width_px = scene.width_px, .height_px = scene.height_px, .radiance = options.radiance};
+    }
+
+    void compile() {
+        const auto began = Clock::now();
+        render::RendererOptions with_texts = renderer_options();
+        with_texts.stitched = options.stitched;
+        renderer.emplace(*context, effects->inputs(), with_texts);
+        if (others) without.emplace(*context, others->inputs(), renderer_options());
+        stages.emplace_back("compile", milliseconds_since(began));
+    }
+
+    void upload() {
+        const auto began = Clock::now();
+        ground = render::make_ground(loaded->field);
+        terrain.emplace(
+            loaded->field, ground->frame,
+            render::TerrainOptions{.pixel_error = scene.pixel_error,
+                                   .max_array_layers = context->info().max_array_layers},
+            &loaded->source);
+        stages.emplace_back("upload", milliseconds_since(began));
+        inputs.exaggeration = scene.exaggeration;
+        inputs.exposure_ev = scene.exposure_ev;
+        points = render::points_to_show(loaded->field, *ground, scene.exaggeration);
+    }
+
+    void set_moment(sun::Instant instant) {
+        utc = instant;
+        const geo::Geodetic place = ground->frame.origin();
+        position = sun::position(utc, place);
+        air =
+            refraction_at(scene.refraction, {place.lat_rad, place.lon_rad, ground->air_height_m()});
+        inputs.sun = render::make_sun_light(position, air, *ground, loaded->field.grid);
+        inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
+        inputs.unix_s = static_cast<double>(utc.unix_us()) * 1e-6;
+    }
+
+    double ground_height_m(const geo::Geodetic& at) const {
+        if (loaded->field.reduction > 1) return loaded->source.height_at(at);
+        const glm::dvec2 post = loaded->field.grid.post(at);
+        return loaded->field.height_at(post.x, post.y);
+    }
+
+    void look(const scene::View& view) {
+        inputs.camera = scene::make_camera(
+            view, [this](const geo::Geodetic& at) { return ground_height_m(at); }, ground->frame,
+            points, static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration,
+            render::points_moved_to(points, *ground, scene.exaggeration, renderer->displacement()));
+        scene.view = view;
+    }
+
+    /// Where the sun that is told of is seen from, as `relevo sun position` has it.
+    geo::Geodetic eye() const {
+        geo::Geodetic eye = ground->frame.to_geodetic(inputs.camera.eye_m);
+        eye.height_m /= scene.exaggeration;
+        return eye;
+    }
+
+    /// @throws Error where the last frame has light that is no number
+    void check_numbers(int count, const ActiveEffects& shown) {
+        if (count > 0)
+            refuse_not_numbers({scene.effects, shown, *context, renderer_options(), *terrain,
+                                *ground, inputs, count});
+    }
+
+    template <typename Read, typename Value>
+    auto read(const Read& read_of, Value line) {
+        int not_numbers = 0, others_not_numbers = 0;
+        auto picture = read_of(*renderer, &not_numbers);
+        if (without) picture = side_by_side(picture, read_of(*without, &others_not_numbers), line);
+        check_numbers(not_numbers, *effects);
+        if (without) check_numbers(others_not_numbers, *others);
+        return picture;
+    }
+};
+
+Session::Session(scene::Scene scene, Options options, FilesInUse& files)
+    : impl_(std::make_unique<Impl>(std::move(scene), std::move(options), files)) {}
+
+Session::~Session() = default;
+
+const scene::Scene& Session::scene() const {
+    return impl_->scene;
+}
+
+void Session::look(const scene::View& view) {
+    impl_->look(view);
+}
+
+void Session::set_moment(sun::Instant utc) {
+    impl_->set_moment(utc);
+}
+
+sun::Instant Session::moment() const {
+    return impl_->utc;
+}
+
+void Session::set(const std::string& address, const std::string& value) {
+    for (const auto& [active, renderer] : {std::pair(impl_->effects.get(), &impl_->renderer),
+                                           std::pair(impl_->others.get(), &impl_->without)}) {
+        if (!active) continue;
+        const shader::Param* const param = active->values.find(address);
+        if (param && param->is_static)
+            bad_input(fmt::format("session: {}: it is static: another value is another program",
+                                  address));
+        active->values.set(address, value);
+        (*renderer)->set_values(active->values);
+    }
+}
+
+void Session::resize(int width_px, int height_px) {
+    impl_->scene.width_px = width_px;
+    impl_->scene.height_px = height_px;
+    impl_->renderer->resize(width_px, height_px);
+    if (impl_->without) impl_->without->resize(width_px, height_px);
+    impl_->look(impl_->scene.view);
+}
+
+void Session::draw(render::PassTimes* times) {
+    impl_->renderer->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs, times);
+    if (impl_->without)
+        impl_->without->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs);
+}
+
+void Session::draw_alone() {
+    impl_->renderer->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs);
+    impl_->context->finish();
+}
+
+image::Image8 Session::picture() const {
+    return impl_->read(
+        [](const render::Renderer& renderer, int* count) { return renderer.read_picture(count); },
+        std::uint8_t{255});
+}
+
+image::ImageF Session::radiance() const {
+    return impl_->read(
+        [](const render::Renderer& renderer, int* count) { return renderer.read_radiance(count); },
+        0.0f);
+}
+
+const gl::Texture& Session::texture() const {
+    return impl_->renderer->picture();
+}
+
+std::string Session::place_text() const {
+    return impl_->scene.view.eye ? geo::degrees_text(impl_->eye()) + " (the eye)"
+                                 : geo::degrees_text(impl_->ground->frame.origin());
+}
+
+std::string Session::sun_text() const {
+    if (!impl_->scene.view.eye) return session::sun_text(impl_->position, impl_->air);
+    const geo::Geodetic eye = impl_->eye();
+    return session::sun_text(sun::position(impl_->utc, eye),
+                             refraction_at(impl_->scene.refraction, eye));
+}
+
+const StageTimes& Session::stages() const {
+    return impl_->stages;
+}
+
+int Session::triangles() const {
+    return impl_->renderer->triangles();
+}
+
+const gl::DeviceInfo& Session::device() const {
+    return impl_->context->info();
+}
+
+}  // namespace relevo::session

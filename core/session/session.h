@@ -1,0 +1,84 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/files_in_use.h"
+#include "gl/context.h"
+#include "image/image.h"
+#include "render/renderer.h"
+#include "scene/scene.h"
+#include "sun/zone.h"
+
+/// What every front end shares: a scene becomes frames, pictures and words about them.
+namespace relevo::session {
+
+struct Options {
+    std::string device = "auto";  ///< as gl::Context takes it
+    bool radiance = false;        ///< keep linear light, for Session::radiance()
+    /// Effects of a comparison: pictures have them on the left and not on the right.
+    std::vector<std::string> compared{};
+    /// Called with the programs' texts before a driver sees them.
+    std::function<void(const std::vector<render::ProgramText>&)> stitched{};
+};
+
+/// Milliseconds of stages by their names: "device", "compile", "load", "upload". Loading goes on
+/// beside the first two, so that their sum is more than the whole.
+using StageTimes = std::vector<std::pair<std::string, double>>;
+
+/// A scene on a device: its DEM, its effects and what draws them. Frames follow what is changed
+/// here, without anything being loaded or compiled again.
+class Session {
+  public:
+    /// Opens everything. The DEM is read on a thread of its own meanwhile.
+    /// @param files  gets what the scene is read from, so that no output replaces it
+    /// @throws Error as those who open: (BadInput, NoDevice, Failed)
+    Session(scene::Scene scene, Options options, FilesInUse& files);
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    const scene::Scene& scene() const;
+    /// Moves the camera. @throws Error (BadInput) as scene::make_camera
+    void look(const scene::View& view);
+    /// Moves the sun.
+    void set_moment(sun::Instant utc);
+    /// Sets a parameter that is not static. @throws Error (BadInput) as shader::ParamStore::set
+    void set(const std::string& address, const std::string& value);
+    /// Sides of the picture [px].
+    void resize(int width_px, int height_px);
+
+    sun::Instant moment() const;
+
+    /// Draws a frame of the scene as it is now.
+    /// @param times  filled with what each pass took if not null
+    void draw(render::PassTimes* times = nullptr);
+    /// Draws none of a comparison's other half, and waits for the device.
+    void draw_alone();
+
+    /// The last frame; of a comparison, both halves.
+    /// @throws Error (Failed) where light or colour is no number, naming the effect
+    image::Image8 picture() const;
+    /// The same as linear radiance; Options::radiance.
+    image::ImageF radiance() const;
+    /// The picture on the device, RGBA with rows from below, until the next frame.
+    const gl::Texture& texture() const;
+
+    /// "46.50 N 8.00 E", with " (the eye)" where it is that and not the DEM's middle.
+    std::string place_text() const;
+    /// "azimuth 114.27, elevation 65.12 (65.13 with refraction)", as seen from there.
+    std::string sun_text() const;
+
+    const StageTimes& stages() const;
+    int triangles() const;  ///< of the last frame
+    const gl::DeviceInfo& device() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relevo::session

@@ -1,0 +1,144 @@
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "base/text.h"
+#include "base/units.h"
+#include "scene/scene.h"
+#include "support/support.h"
+
+namespace relevo::scene {
+namespace {
+
+class SceneFile : public testing::Test {
+  protected:
+    std::filesystem::path write(const std::string& text) const {
+        std::ofstream(dir_ / "scene.json") << text;
+        return dir_ / "scene.json";
+    }
+    std::string error(const std::string& text) const {
+        const std::string message = test::error_of([&] { read_scene(write(text)); });
+        const std::string begin = fmt::format("exit 3: scene: {}:", (dir_ / "scene.json").string());
+        return message.starts_with(begin) ? message.substr(begin.size()) : "!" + message;
+    }
+    /// A scene with these members behind what each needs.
+    static std::string with(const std::string& members) {
+        return "{\"format\": 1, \"dem\": {\"files\": [\"a.tif\"]},\n" + members + "}";
+    }
+
+    std::filesystem::path dir_ = test::scratch_dir("scene");
+};
+
+TEST_F(SceneFile, HasDefaultsForAllButTheDem) {
+    const Scene scene = read_scene(write("{\"format\": 1, \"dem\": {\"files\": [\"a.tif\"]}}"));
+    const Scene plain;
+    EXPECT_THAT(scene.dems, testing::ElementsAre((dir_ / "a.tif").string()));
+    EXPECT_EQ(scene.width_px, plain.width_px);
+    EXPECT_EQ(scene.height_px, plain.height_px);
+    EXPECT_EQ(scene.refraction, "standard");
+    EXPECT_EQ(scene.view.orbit.azimuth_deg, plain.view.orbit.azimuth_deg);
+    EXPECT_EQ(scene.pixel_error, plain.pixel_error);
+    EXPECT_EQ(scene.dem.max_posts, plain.dem.max_posts);
+    EXPECT_FALSE(scene.view.eye);
+    EXPECT_FALSE(scene.effects.switches.only);
+}
+
+TEST_F(SceneFile, ComesBackAsItWasWritten) {
+    std::ofstream(dir_ / "a.tif") << "";
+    std::ofstream(dir_ / "winter.json") << "";
+    Scene scene;
+    scene.dems = {(dir_ / "a.tif").string(), "/vsizip/b.zip/b.tif"};
+    scene.dem.crs = "EPSG:32632";
+    scene.dem.band = 2;
+    scene.dem.unit = "ft";
+    scene.dem.nodata = -9999;
+    scene.dem.encoding = dem::Encoding::Terrarium;
+    scene.dem.bounds = dem::Bounds{8, 46, 9, 47};
+    scene.dem.max_posts = 1 << 20;
+    scene.moment = {"sunset-30min", "2026-06-21", "Europe/Zurich"};
+    scene.refraction = "saemundsson";
+    scene.view.eye = Standpoint{geo::geodetic_deg(46.97, 8.03, 2), true};
+    scene.view.look_at = Standpoint{geo::geodetic_deg(46.5, 8.1, 4000), false};
+    scene.view.fov_y_rad = radians(35.0);
+    scene.exaggeration = 1.5;
+    scene.effects.switches.only = std::vector<std::string>{"sky", "haze"};
+    scene.effects.switches.disable = {"wet"};
+    scene.effects.presets = {"paper", (dir_ / "winter.json").string()};
+    scene.effects.settings = {{"haze.density", "0.5"}, {"sea.colour", "0,0.1,0.2"}};
+    scene.width_px = 640;
+    scene.height_px = 512;
+    scene.exposure_ev = -1.5;
+    scene.pixel_error = 2;
+    const std::string text = scene_text(scene, dir_);
+    EXPECT_EQ(text.find(dir_.string()), std::string::npos) << text;
+    const Scene back = read_scene(write(text));
+    EXPECT_EQ(scene_text(back, dir_), text);
+    EXPECT_THAT(back.dems, testing::ElementsAre((dir_ / "a.tif").string(), "/vsizip/b.zip/b.tif"));
+    EXPECT_EQ(back.dem.nodata, -9999);
+    EXPECT_EQ(back.dem.bounds, scene.dem.bounds);
+    EXPECT_EQ(back.dem.max_posts, 1 << 20);
+    EXPECT_EQ(back.moment.date, "2026-06-21");
+    EXPECT_EQ(back.view.eye->place.lat_rad, radians(46.97));  // to the last bit
+    EXPECT_TRUE(back.view.eye->above_ground);
+    EXPECT_EQ(back.view.look_at->place.height_m, 4000);
+    EXPECT_FALSE(back.view.look_at->above_ground);
+    EXPECT_EQ(back.view.fov_y_rad, radians(35.0));
+    EXPECT_THAT(*back.effects.switches.only, testing::ElementsAre("sky", "haze"));
+    EXPECT_THAT(back.effects.presets,
+                testing::ElementsAre("paper", (dir_ / "winter.json").string()));
+    ASSERT_EQ(back.effects.settings.size(), 2u);
+    EXPECT_EQ(back.effects.settings[1].text, "0,0.1,0.2");
+    EXPECT_EQ(back.effects.settings[1].folder, dir_.string());
+}
+
+TEST_F(SceneFile, MistakesNameTheirPlace) {
+    EXPECT_EQ(error("{\n"),
+              "2: syntax error while parsing object key - unexpected end of input; "
+              "expected string literal");
+    EXPECT_EQ(error("[]"), "1: expected an object but got a list");
+    EXPECT_EQ(error("{}"), "1: expected a member \"format\"");
+    EXPECT_EQ(error("{\"format\": 2}"),
+              "1: format: expected 1, the format that this program reads, but got 2");
+    EXPECT_EQ(error("{\"format\": 1}"), "1: expected a member \"dem\"");
+    EXPECT_EQ(error("{\"format\": 1, \"dem\": {}}"), "1: dem.files: expected a list of DEMs");
+    EXPECT_EQ(error(with("\"camra\": {}")), "2: camra: no such key; did you mean \"camera\"?");
+    EXPECT_EQ(error(with("\"camera\": {\"fov\": 500}")),
+              "2: camera.fov: expected a number in [0.1, 170] but got 500");
+    EXPECT_EQ(error(with("\"camera\": {\"fov\": 40, \"focal_length\": 50}")),
+              "2: camera.focal_length: expected it or fov but got both");
+    EXPECT_EQ(error(with("\"camera\": {\"orbit\": {}, \"eye\": [46, 8]}")),
+              "2: camera.eye: expected an orbit or an eye but got both");
+    EXPECT_EQ(error(with("\"camera\": {\"eye\": [96, 8]}")),
+              "2: camera.eye: expected a latitude of -90 to 90 and a longitude of -360 to 360 but "
+              "got 96 and 8");
+    EXPECT_EQ(error(with("\"camera\": {\"eye\": [46]}")),
+              "2: camera.eye: expected latitude, longitude and perhaps a height but got a list");
+    EXPECT_EQ(error(with("\"camera\": {\"orbit\": {\"zoom\": 0}}")),
+              "2: camera.orbit.zoom: expected a number in [0.001, 1000000] but got 0");
+    EXPECT_EQ(error(with("\"picture\": {\"size\": [0, 10]}")),
+              "2: picture.size: expected 1 to 16384 but got 0");
+    EXPECT_EQ(error(with("\"time\": {}")), "2: time: expected a member \"at\"");
+    EXPECT_EQ(error(with("\"refraction\": \"some\"")),
+              "2: refraction: expected one of standard, saemundsson, none but got \"some\"");
+    EXPECT_EQ(error(with("\"effects\": {\"set\": {\"haze.density\": null}}")),
+              "2: effects.set: haze.density: expected a number, true or false, a text or a list of "
+              "numbers but got nothing");
+    EXPECT_EQ(error("{\"format\": 1, \"dem\": {\"files\": [\"a\"], \"nodata\": true}}"),
+              "1: dem.nodata: expected a number or \"none\" but got true");
+    EXPECT_EQ(error("{\"format\": 1, \"dem\": {\"files\": [\"a\"], \"bounds\": [1, 2, 3]}}"),
+              "1: dem.bounds: expected west, south, east, north in degrees but got a list");
+}
+
+TEST_F(SceneFile, TheDocumentsExampleIsOne) {
+    const std::string page = read_text(test::source_dir() / "docs/scene.md", "test");
+    const std::string fence = "```json scene.json\n";
+    const std::size_t begin = page.find(fence) + fence.size();
+    const Scene scene = read_scene(write(page.substr(begin, page.find("```", begin) - begin)));
+    EXPECT_EQ(scene.moment.zone, "Europe/Zurich");
+    EXPECT_EQ(scene.effects.settings.at(0).address, "layering.texture_m");
+}
+
+}  // namespace
+}  // namespace relevo::scene
