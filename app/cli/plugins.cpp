@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/effects.h"
 #include "cli/shared.h"
+#include "effect/registry.h"
 
 namespace relevo::cli {
 namespace {

@@ -158,7 +158,7 @@ Drawing SunPathDiagram::draw() const {
         drawing.path(area, {.fill = kTerrain}, true);
         drawing.path(ring, {.stroke = kRidge, .width = 1.2});
         for (const light::Sector& hole :
-             marks_holes ? sectors_of(holes) : std::vector<light::Sector>()) {
+             marks_holes ? light::sectors_of(holes) : std::vector<light::Sector>()) {
             // A hole of one direction has a width, too.
             const double step_rad = 2 * kPi / static_cast<double>(holes.size());
             const double from_rad = hole.from_azimuth_rad - step_rad;

@@ -47,7 +47,8 @@ std::mutex& mutex() {
 }
 
 Disarmed& disarmed() {
-    static Disarmed all;
+    // Never destroyed: it holds what GDAL has until the process ends.
+    static Disarmed& all = *new Disarmed;
     return all;
 }
 

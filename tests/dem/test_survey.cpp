@@ -172,11 +172,18 @@ TEST(Survey, BlocksLargerThanMemoryAreRefused) {
             "MiB; pass --memory 115, or make tiles of them with gdal_translate -co TILED=YES");
     const Source source = Source::open(path, {.max_posts = 120 << 18});
     EXPECT_EQ(survey(source, 120 << 18).statistics.max_m, 7);
-    // Means would need four rows or more.
     EXPECT_EQ(test::error_of([&] { load(source, 120 << 18); }),
               "exit 3: dem::load: " + path +
-                  ": memory for its heights, expected at most 120 MiB but got 229: 30000000 x 2 "
-                  "posts are too narrow for means; pass --memory 229, or cut it up with "
+                  ": 30000000 x 2 posts, expected at most 4194304 a side; cut it up with "
+                  "gdal_translate");
+    // Means would need four rows or more.
+    raster.columns = 4'000'000;
+    const std::string narrow =
+        test::write_sparse_raster(folder() / "narrow.tif", raster, {{5, 1, 7}});
+    EXPECT_EQ(test::error_of([&] { load(Source::open(narrow), 20 << 18); }),
+              "exit 3: dem::load: " + narrow +
+                  ": memory for its heights, expected at most 20 MiB but got 31: 4000000 x 2 "
+                  "posts are too narrow for means; pass --memory 31, or cut it up with "
                   "gdal_translate");
 }
 
