@@ -36,7 +36,6 @@ struct Arguments {
         scene::Scene result;
         if (!scene.empty()) result = scene::read_scene(scene);
         dem.apply_to(result);
-        if (result.dems.empty()) throw CLI::RequiredError("DEM");
         if (time.given()) result.moment = time.moment();
         if (refraction.given()) result.refraction = refraction.name();
         view.apply_to(result);
@@ -176,14 +175,18 @@ void add_capture(CLI::App& app) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb = *app.add_subcommand("capture", "Takes one picture");
     arguments->dem.add_to(verb);
-    arguments->dem.dem_option->required(false);
     verb.add_option("-o,--output", arguments->output,
                     "Picture to write: png, jpg, webp, tif, or exr in linear light")
         ->required();
     verb.add_option("--size", arguments->size, "Width and height in pixels, 1280x1024");
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
-    verb.add_option("--scene", arguments->scene,
-                    "Scene to draw, a file of --save-scene; other options replace what it says");
+    verb.add_option_function<std::string>(
+        "--scene",
+        [arguments = arguments.get()](const std::string& file) {
+            arguments->scene = file;
+            arguments->dem.dem_option->required(false);
+        },
+        "Scene to draw, a file of --save-scene; other options replace what it says");
     verb.add_option("--save-scene", arguments->save_scene, "Write what is drawn as a scene, JSON");
     arguments->time.add_to(verb);
     arguments->refraction.add_to(verb);

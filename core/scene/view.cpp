@@ -56,8 +56,8 @@ Orbit parse_orbit(std::string_view text) {
         bad_usage(fmt::format("--view: {}: expected an elevation of -90 to 90 degrees but got {}",
                               text, orbit.elevation_deg));
     if (!(orbit.zoom >= kMinZoom && orbit.zoom <= kMaxZoom))
-        bad_usage(fmt::format("--view: {}: expected a zoom of {} to {} but got {}", text,
-                              kMinZoom, kMaxZoom, orbit.zoom));
+        bad_usage(fmt::format("--view: {}: expected a zoom of {} to {} but got {}", text, kMinZoom,
+                              kMaxZoom, orbit.zoom));
     return orbit;
 }
 

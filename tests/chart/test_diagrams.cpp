@@ -250,7 +250,7 @@ TEST(CarpetChart, AreasAreTheHours) {
     EXPECT_NEAR(lit / 2.8 / 20 / (c.lit_s / 3600), 1, 0.002);
 }
 
-TEST(light::TerrainHorizon, WithinADistanceIsTheHorizonOfTheGroundThatNear) {
+TEST(TerrainHorizon, WithinADistanceIsTheHorizonOfTheGroundThatNear) {
     const dem::Heightfield field = valley_at(47);
     const light::TerrainHorizon horizon(field, field.grid.place(80, 80));
     for (int i = 0; i < 36; ++i) {

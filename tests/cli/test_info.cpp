@@ -191,11 +191,9 @@ TEST(InfoVerb, FilesThatClaimMuchCostLittle) {
         {"-q", "capture", nothing, "-o", (dir() / "nothing.png").string(), "--device", "software"},
         3, 60);
     EXPECT_EQ(drawn.status, 3);
-    EXPECT_EQ(drawn.err,
-              "relevo: error: dem::load: " + nothing +
-                  ": memory for its heights, expected at most 1024 MiB but got 24576: 2147483647 x "
-                  "3 posts are too narrow for means; pass --memory 24576, or cut it up with "
-                  "gdal_translate\n");
+    EXPECT_EQ(drawn.err, "relevo: error: dem::load: " + nothing +
+                             ": 2147483647 x 3 posts, expected at most 4194304 a side; cut it up "
+                             "with gdal_translate\n");
 }
 
 TEST(InfoVerb, SparseFilesAreReadWhereTheyStoreSomething) {

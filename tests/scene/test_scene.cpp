@@ -124,7 +124,7 @@ TEST_F(SceneFile, MistakesNameTheirPlace) {
               "2: refraction: expected one of standard, saemundsson, none but got \"some\"");
     EXPECT_EQ(error(with("\"effects\": {\"set\": {\"haze.density\": null}}")),
               "2: effects.set: haze.density: expected a number, true or false, a text or a list of "
-              "numbers but got nothing");
+              "numbers but got null");
     EXPECT_EQ(error("{\"format\": 1, \"dem\": {\"files\": [\"a\"], \"nodata\": true}}"),
               "1: dem.nodata: expected a number or \"none\" but got true");
     EXPECT_EQ(error("{\"format\": 1, \"dem\": {\"files\": [\"a\"], \"bounds\": [1, 2, 3]}}"),

@@ -1,0 +1,104 @@
+// A session that goes on is one that began there.
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "base/units.h"
+#include "session/session.h"
+#include "sun/time.h"
+#include "support/support.h"
+
+namespace relevo::session {
+namespace {
+
+scene::Scene bundled_scene() {
+    scene::Scene scene;
+    scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
+    scene.moment.time = "2026-06-21T22:30Z";
+    scene.width_px = 200;
+    scene.height_px = 160;
+    scene.effects.switches.only = std::vector<std::string>{"haze", "layering"};
+    return scene;
+}
+
+bool has_effects() {
+    return std::filesystem::exists(test::source_dir() / "plugins/haze") &&
+           std::filesystem::exists(test::source_dir() / "plugins/layering");
+}
+
+image::Image8 picture_of(const scene::Scene& scene) {
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    session.draw();
+    return session.picture();
+}
+
+TEST(Session, CameraMomentParametersAndSizeChangeWithoutANewProgram) {
+    if (!has_effects()) GTEST_SKIP() << "haze or layering is not there";
+    FilesInUse files;
+    int stitched = 0;
+    Options options{.device = "software"};
+    options.stitched = [&](const std::vector<render::ProgramText>&) { ++stitched; };
+    Session session(bundled_scene(), options, files);
+    session.draw();
+    const image::Image8 before = session.picture();
+    EXPECT_EQ(before.values, picture_of(bundled_scene()).values);
+
+    scene::Scene later = bundled_scene();
+    later.view.orbit = {100, 20, 1.5};
+    later.moment.time = "2026-12-21T15:00Z";
+    later.effects.settings = {{"haze.density", "0.1"}};
+    later.width_px = 320;
+    session.look(later.view);
+    session.set_moment(sun::Instant::from_utc({.date = {2026, 12, 21}, .hour = 15}));
+    session.set("haze.density", "0.1");
+    session.resize(later.width_px, later.height_px);
+    session.draw();
+    const image::Image8 after = session.picture();
+    EXPECT_EQ(after.width, 320);
+    EXPECT_EQ(after.values, picture_of(later).values);
+    EXPECT_EQ(session.texture().extent().width, 320);
+    EXPECT_EQ(stitched, 1);
+
+    // And back.
+    const scene::Scene first = bundled_scene();
+    session.look(first.view);
+    session.set_moment(sun::Instant::from_utc({.date = {2026, 6, 21}, .hour = 22, .minute = 30}));
+    session.set("haze.density", "0.022");
+    session.resize(first.width_px, first.height_px);
+    session.draw();
+    EXPECT_EQ(session.picture().values, before.values);
+}
+
+TEST(Session, RefusesWhatNeedsAnotherProgram) {
+    if (!has_effects()) GTEST_SKIP() << "haze or layering is not there";
+    FilesInUse files;
+    Session session(bundled_scene(), {.device = "software"}, files);
+    EXPECT_EQ(test::error_of([&] { session.set("layering.slope", "false"); }),
+              "exit 3: session: layering.slope: it is static: another value is another program");
+    EXPECT_EQ(test::error_of([&] { session.set("haze.density", "-1"); }),
+              "exit 3: shader::parse_value: haze.density: expected a number in [0, 100] 1/km but "
+              "got \"-1\"");
+    EXPECT_EQ(test::error_of([&] { session.set("haze.densty", "1"); }),
+              "exit 3: shader::ParamStore: haze.densty: no such parameter; did you mean "
+              "haze.density?");
+    // The last good values stay.
+    session.draw();
+    EXPECT_EQ(session.picture().values, picture_of(bundled_scene()).values);
+}
+
+TEST(Session, TellsOfTheSunAsItsEyeSeesIt) {
+    if (!has_effects()) GTEST_SKIP() << "haze or layering is not there";
+    FilesInUse files;
+    scene::Scene scene = bundled_scene();
+    Session session(scene, {.device = "software"}, files);
+    EXPECT_EQ(session.place_text(), "36.30292 N 84.24583 W");
+    EXPECT_EQ(session.sun_text(), "azimuth 280.33, elevation 27.03 (27.05 with refraction)");
+    scene.view.eye = scene::Standpoint{geo::geodetic_deg(36.05, -84.05, 3000), false};
+    session.look(scene.view);
+    EXPECT_EQ(session.place_text(), "36.05000 N 84.05000 W (the eye)");
+}
+
+}  // namespace
+}  // namespace relevo::session
