@@ -306,6 +306,12 @@ void Context::check_errors() {
     failed(message);
 }
 
+void Context::make_current() {
+    if (eglGetCurrentContext() == impl_->context) return;
+    if (!eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context))
+        failed(fmt::format("gl: the context cannot be made current, {}", egl_error()));
+}
+
 void Context::finish() {
     glFinish();
 }

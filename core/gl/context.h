@@ -62,6 +62,10 @@ class Context {
 
     const DeviceInfo& info() const;
 
+    /// Makes it the one that this thread draws with, where others have been made since.
+    /// @throws Error (Failed) where the device refuses
+    void make_current();
+
     /// Throws what went wrong since the last call: what a debug context has collected, else the
     /// name of the first error.
     /// @throws Error (Failed) `gl: message`

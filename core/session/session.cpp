@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/units.h"
 #include "dem/files_of.h"
 #include "dem/load.h"
@@ -204,7 +205,14 @@ struct Session::Impl {
 Session::Session(scene::Scene scene, Options options, FilesInUse& files)
     : impl_(std::make_unique<Impl>(std::move(scene), std::move(options), files)) {}
 
-Session::~Session() = default;
+Session::~Session() {
+    // What the session has on the device goes with its own context.
+    try {
+        impl_->context->make_current();
+    } catch (const Error& error) {
+        log::warning(error.what());
+    }
+}
 
 const scene::Scene& Session::scene() const {
     return impl_->scene;
@@ -223,6 +231,7 @@ sun::Instant Session::moment() const {
 }
 
 void Session::set(const std::string& address, const std::string& value) {
+    impl_->context->make_current();
     for (const auto& [active, renderer] : {std::pair(impl_->effects.get(), &impl_->renderer),
                                            std::pair(impl_->others.get(), &impl_->without)}) {
         if (!active) continue;
@@ -236,6 +245,7 @@ void Session::set(const std::string& address, const std::string& value) {
 }
 
 void Session::resize(int width_px, int height_px) {
+    impl_->context->make_current();
     impl_->scene.width_px = width_px;
     impl_->scene.height_px = height_px;
     impl_->renderer->resize(width_px, height_px);
@@ -244,23 +254,27 @@ void Session::resize(int width_px, int height_px) {
 }
 
 void Session::draw(render::PassTimes* times) {
+    impl_->context->make_current();
     impl_->renderer->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs, times);
     if (impl_->without)
         impl_->without->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs);
 }
 
 void Session::draw_alone() {
+    impl_->context->make_current();
     impl_->renderer->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs);
     impl_->context->finish();
 }
 
 image::Image8 Session::picture() const {
+    impl_->context->make_current();
     return impl_->read(
         [](const render::Renderer& renderer, int* count) { return renderer.read_picture(count); },
         std::uint8_t{255});
 }
 
 image::ImageF Session::radiance() const {
+    impl_->context->make_current();
     return impl_->read(
         [](const render::Renderer& renderer, int* count) { return renderer.read_radiance(count); },
         0.0f);

@@ -30,7 +30,8 @@ struct Options {
 using StageTimes = std::vector<std::pair<std::string, double>>;
 
 /// A scene on a device: its DEM, its effects and what draws them. Frames follow what is changed
-/// here, without anything being loaded or compiled again.
+/// here, without anything being loaded or compiled again. Several may live at once, each used on
+/// the thread that made it.
 class Session {
   public:
     /// Opens everything. The DEM is read on a thread of its own meanwhile.
