@@ -59,5 +59,16 @@ TEST(DegreesText, HemispheresAreLetters) {
     EXPECT_EQ(degrees_text(geodetic_deg(-34.01, -118.15)), "34.01000 S 118.15000 W");
 }
 
+TEST(DegreesText, ZeroIsNorthAndEast) {
+    EXPECT_EQ(degrees_text(geodetic_deg(0, 0)), "0.00000 N 0.00000 E");
+}
+
+TEST(MgrsText, HasTheDigitsOfTheMap) {
+    // Those of UTM, cut off and not rounded.
+    const Geodetic place = geodetic_deg(46.9510, 7.4390);
+    EXPECT_EQ(utm_text(place), "32N 381217 E 5200902 N");
+    EXPECT_EQ(mgrs_text(place, 5), "32TLT8121600901");
+}
+
 }  // namespace
 }  // namespace relevo::geo

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "light/direct_light.h"
 #include "light/event_time.h"
 #include "light/fields.h"
@@ -48,6 +50,22 @@ TEST(EventTime, FirstAndLastLightAreThoseOfTheTerrain) {
                 0, 0.01);
     EXPECT_EQ(parse_time("2026-01-06T08:00", std::nullopt, zone).utc,
               sun::parse_time("2026-01-06T13:00Z").utc);
+}
+
+TEST(EventTime, LastLightIsThatOfTheLastSpell) {
+    // A tower to the south takes the winter's noon.
+    const dem::Heightfield field = test::field_of(
+        201, 201, {500000, 10, 0, 5200000, 0, -10}, "EPSG:32632", [](int column, int row) {
+            return std::abs(column - 100) <= 3 && row >= 108 && row <= 111 ? 60.0 : 0.0;
+        });
+    const dem::Posts posts(field);
+    const sun::Zone zone = sun::Zone::named("Europe/Zurich");
+    const sun::Date date{2026, 1, 6};
+    const TerrainHorizon middle(field, field.grid.center());
+    const LightDay day = DirectLight(middle).day(date, zone);
+    ASSERT_EQ(day.lit.size(), 2u);
+    EXPECT_EQ(parse_time("first-light", date, zone, access(posts)).utc, day.lit.front().begin.utc);
+    EXPECT_EQ(parse_time("last-light", date, zone, access(posts)).utc, day.lit.back().end.utc);
 }
 
 TEST(EventTime, FirstLightErrorsSayWhatIsWrong) {

@@ -183,6 +183,13 @@ TEST(Displacement, VertexHooksSeeWhereTheGroundIsDrawn) {
     }
 }
 
+TEST(Ground, FarBelowSeaLevelIsDrawn) {
+    // Level with the sea an eye's horizon is near, and the ground 430 m below is seen far beyond.
+    Drawn drawn(floor_at(-430), {test::kBrightSky}, 160, 128, 2);
+    drawn.stand(0.5, 0.95, 5, 0, -3);
+    EXPECT_EQ(sky_pixels_below_horizon(drawn, 1.5), 0);
+}
+
 TEST(Ground, BelowSeaLevelIsDrawn) {
     // Neither the horizon's ellipsoid nor exaggeration may take it for hidden.
     for (const double exaggeration : {1.0, 10.0}) {

@@ -192,5 +192,19 @@ TEST(FrameBlock, HasTheRowsOfTheRotationToTheStars) {
                   static_cast<float>(inputs.stars.velocity[i]));
 }
 
+TEST(FrameBlock, RefractionFallsWithTheHeightOfTheEye) {
+    const Ground ground{.frame = geo::LocalFrame(geo::geodetic_deg(46, 11, 0)), .lowest_m = 0};
+    const auto lift = [&](double eye_height_m) {
+        FrameInputs inputs = inputs_at({0, -10, eye_height_m});
+        inputs.sun.ground_height_m = 0;
+        inputs.sun.direction = normalize(glm::dvec3(0, 1, 0.05));
+        inputs.sun.refraction_rad = [](double) { return 0.004; };
+        const FrameBlock block = make_frame_block(inputs, ground, 640, 512, 4);
+        return static_cast<double>(block.eye_sun.w) - std::asin(inputs.sun.direction.z);
+    };
+    EXPECT_NEAR(lift(0), 0.004, 3e-6);
+    EXPECT_NEAR(lift(10000), 0.004 * std::exp(-1.0), 3e-6);
+}
+
 }  // namespace
 }  // namespace relevo::render

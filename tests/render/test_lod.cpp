@@ -265,5 +265,25 @@ TEST(Lod, TheSkirtHangsDownByTwoPixels) {
     }
 }
 
+TEST(TileTree, BoxesHoldTheRoundEarth) {
+    // Ten degrees: the ground bulges between the corners.
+    const dem::Heightfield wide =
+        test::field_of(201, 201, {5, 0.05, 0, 50, 0, -0.05}, "EPSG:4326",
+                       [](int column, int row) { return 100.0 * ((column + row) % 3); });
+    const dem::Pyramid pyramid(wide.height_m);
+    const geo::LocalFrame frame(wide.grid.center());
+    TileTree tree(pyramid, wide.grid, frame);
+    const Box box = tree.box(tree.root(), 1);
+    double outside_m = 0;
+    for (int row = 0; row < 201; row += 5)
+        for (int column = 0; column < 201; column += 5) {
+            geo::Geodetic place = wide.grid.place(column, row);
+            place.height_m = 200;
+            outside_m = std::max(outside_m, box.distance(frame.to_local(place)));
+        }
+    fmt::print("[ lod ] posts of 10 degrees stand {:.2f} m out of their box\n", outside_m);
+    EXPECT_LT(outside_m, 0.5);
+}
+
 }  // namespace
 }  // namespace relevo::render

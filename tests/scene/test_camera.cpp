@@ -73,5 +73,10 @@ TEST(FocalLength, Of36MillimetresOnTheLongSideSees53Degrees) {
     EXPECT_NEAR(degrees(2 * std::atan(1.5 * std::tan(fov_y / 2))), 53.1301, 1e-4);
 }
 
+TEST(FocalLength, LiesAlongTheLongSideOfPortraitsToo) {
+    EXPECT_NEAR(fov_y_of_focal_length(50, 36.0 / 24), 2 * std::atan(12.0 / 50), 1e-12);
+    EXPECT_NEAR(fov_y_of_focal_length(50, 24.0 / 36), 2 * std::atan(18.0 / 50), 1e-12);
+}
+
 }  // namespace
 }  // namespace relevo::scene

@@ -64,5 +64,15 @@ TEST(Exposure, GrowsAsLightFadesButNotToDay) {
     }
 }
 
+TEST(Daylight, ThinAirHasAllOfItsOzone) {
+    // Of the green light's optical depth in the zenith only what Rayleigh and dust make falls with
+    // the height, by e over 8430 m; ozone lies above: 0.085 / cm of 3 mm.
+    const double zenith = kPi / 2, mass = air_mass(zenith);
+    const double low = -std::log(direct_transmittance(zenith, 0)[1]) / mass;
+    const double high = -std::log(direct_transmittance(zenith, 8430)[1]) / mass;
+    const double share = std::exp(-1.0);
+    EXPECT_NEAR((high - low * share) / (1 - share), 0.085 * 0.3, 1e-9);
+}
+
 }  // namespace
 }  // namespace relevo::sun
