@@ -8,6 +8,7 @@
 #include "gl/context.h"
 #include "render/ground.h"
 #include "render/renderer.h"
+#include "shader/snippet.h"
 #include "sun/zone.h"
 #include "support/gpu_snippet.h"
 #include "support/support.h"
@@ -74,6 +75,44 @@ TEST(Picture, IsTheSameWithAndWithoutKeepingItsRadiance) {
         pictures.push_back(renderer.read_picture());
     }
     EXPECT_LE(image::compare(pictures[0], pictures[1]).worst, 1);
+}
+
+TEST(Picture, DithersByOneStepOfEightBits) {
+    // A sky of one colour is drawn in the two numbers next to it.
+    const dem::Heightfield dem =
+        dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
+    const Ground ground = make_ground(dem);
+    gl::Context context({.device = "software", .debug = true});
+    const shader::Snippet even = shader::parse_snippet(
+        "even", "even.glsl",
+        "vec3 even_on_background_radiance(in vec3 direction, in bool with_disc) {\n"
+        "    return vec3(0.1, 0.2, 0.3) / frame.exposure;\n"
+        "}\n");
+    shader::ParamStore values;
+    values.declare(core_params());
+    EffectInputs effects;
+    effects.stitch.snippets = {&even};
+    effects.stitch.values = &values;
+    FrameInputs inputs;
+    const geo::Geodetic place = ground.frame.origin();
+    inputs.sun = make_sun_light(sun::position(sun::parse_time("2026-06-21T15:30Z").utc, place),
+                                sun::Refraction::standard(place), ground, dem.grid);
+    inputs.camera = scene::heading_camera(
+        {0, 0, 5000}, ground.frame.axes(place.lat_rad, place.lon_rad), 0, 60, radians(40));
+    Renderer renderer(context, effects, {.width_px = 64, .height_px = 64, .radiance = false});
+    Terrain terrain(dem, ground.frame, {.max_array_layers = context.info().max_array_layers});
+    renderer.render_frame(terrain, ground, inputs);
+    const image::Image8 picture = renderer.read_picture();
+    for (int channel = 0; channel < 3; ++channel) {
+        int low = 255, high = 0;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const int value = picture.row(y)[3 * x + channel];
+                low = std::min(low, value);
+                high = std::max(high, value);
+            }
+        EXPECT_EQ(high - low, 1) << channel;
+    }
 }
 
 TEST(Picture, OfALargeFirstFrameIsWhole) {
