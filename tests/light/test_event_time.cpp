@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "base/units.h"
 #include "light/direct_light.h"
 #include "light/event_time.h"
 #include "light/fields.h"
@@ -66,6 +67,29 @@ TEST(EventTime, LastLightIsThatOfTheLastSpell) {
     ASSERT_EQ(day.lit.size(), 2u);
     EXPECT_EQ(parse_time("first-light", date, zone, access(posts)).utc, day.lit.front().begin.utc);
     EXPECT_EQ(parse_time("last-light", date, zone, access(posts)).utc, day.lit.back().end.utc);
+}
+
+TEST(EventTime, AHighSunGoesBehindAWallByItsWidthInAzimuth) {
+    // Azimuths are close together at 60 degrees: the disc, half a degree wide, spans a whole one.
+    // The wall stands 40 m to the south and begins at the meridian.
+    const dem::Heightfield field = test::field_of(
+        1001, 1001, {500000, 0.1, 0, 5917000, 0, -0.1}, "EPSG:32632",
+        [](int column, int row) { return column <= 500 && row >= 900 && row <= 905 ? 80.0 : 0.0; });
+    const TerrainHorizon middle(field, field.grid.place(500, 500));
+    const sun::Zone zone = sun::Zone::named("Europe/Zurich");
+    const auto end_of = [&](sun::Limb limb) {
+        LightOptions options;
+        options.limb = limb;
+        const LightDay day = DirectLight(middle, options).day({2026, 6, 21}, zone);
+        return day.lit.front().end;
+    };
+    const LightEdge upper = end_of(sun::Limb::Upper), center = end_of(sun::Limb::Center),
+                    lower = end_of(sun::Limb::Lower);
+    EXPECT_NEAR(degrees(center.azimuth_rad), 180, 0.3);
+    EXPECT_NEAR(degrees(center.elevation_rad), 60, 1);
+    // 0.2625 degrees, the sun's semidiameter in June, over the cosine of its height.
+    EXPECT_NEAR(degrees(upper.azimuth_rad - center.azimuth_rad), 0.525, 0.08);
+    EXPECT_NEAR(degrees(center.azimuth_rad - lower.azimuth_rad), 0.525, 0.08);
 }
 
 TEST(EventTime, FirstLightErrorsSayWhatIsWrong) {
