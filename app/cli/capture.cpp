@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/effects.h"
 #include "cli/shared.h"
+#include "dem/files_of.h"
 #include "session/session.h"
 
 namespace relevo::cli {
@@ -124,8 +125,7 @@ void capture(const Arguments& arguments) {
     image::check_format(output, scene.width_px, scene.height_px);
     FilesInUse files;
     if (!arguments.scene.empty()) files.add_input(arguments.scene, "the scene");
-    for (const std::string& dem : scene.dems)
-        files.add_input(dem, "the DEM");
+    dem::add_named(scene.dems, files);  // before any output is opened
     const auto open = [&](const std::string& path, const char* who) {
         return path.empty() ? nullptr : &files.open_output(path, arguments.overwrite, who);
     };
@@ -162,8 +162,8 @@ void capture(const Arguments& arguments) {
     else
         deliver(picture_file, metadata, timings, [&] { return session.picture(); });
     if (scene_file) {
-        scene_file->write(
-            scene::scene_text(scene, std::filesystem::path(arguments.save_scene).parent_path()));
+        scene_file->write(scene::scene_text(
+            session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));
         scene_file->finish();
     }
     timings.write(session, arguments.repeat);

@@ -11,7 +11,6 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "dem/files_of.h"
 #include "geo/geodetic.h"
 #include "sun/event_time.h"
 
@@ -70,17 +69,6 @@ void DemArguments::add_to(CLI::App& verb) {
         ->check(whole_number())
         ->check(in_range(1, 1 << 20))
         ->group("DEM");
-}
-
-void DemArguments::add_inputs(FilesInUse& files) const {
-    for (const std::string& path : paths)
-        files.add_input(path, "the DEM");
-}
-
-void DemArguments::add_further_inputs(FilesInUse& files) const {
-    if (!files.replaces_any()) return;
-    for (const std::filesystem::path& path : dem::files_of(paths))
-        files.add_input(path, "a file that the DEM is read from,");
 }
 
 void DemArguments::apply_to(scene::Scene& scene) const {

@@ -32,10 +32,6 @@ struct DemArguments {
     void add_to(CLI::App& verb);
     /// Puts what was given in the place of what a scene says.
     void apply_to(scene::Scene& scene) const;
-    /// Adds the files that are named. @throws Error as FilesInUse::add_input
-    void add_inputs(FilesInUse& files) const;
-    /// Adds those that belong to them, where an output replaces a file: finding them takes time.
-    void add_further_inputs(FilesInUse& files) const;
 };
 
 /// --time, --date and --tz.

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/output_file.h"
 #include "base/units.h"
+#include "dem/files_of.h"
 #include "geo/geodetic.h"
 #include "image/image.h"
 
@@ -94,7 +95,6 @@ DaysArguments::Days DaysArguments::parse() const {
 
 void LightArguments::add_to(CLI::App& verb) {
     refraction.add_to(verb);
-    refraction_option_ = verb.get_option("--refraction");
     verb.add_option("--limb", limb, "Part of the sun that counts: upper, center, lower")
         ->check(CLI::IsMember({"upper", "center", "lower"}));
 }
@@ -118,8 +118,7 @@ sun::Limb limb_of(const std::optional<std::string>& text, sun::Limb otherwise) {
 
 sun::RiseRule LightArguments::rule(const geo::Geodetic& place,
                                    const std::optional<double>& eye_height_m) const {
-    const bool refraction_given = refraction_option_->count() > 0 || refraction.off;
-    if (!limb && !refraction_given && !eye_height_m && !dip_deg) return {};
+    if (!limb && !refraction.given() && !eye_height_m && !dip_deg) return {};
     if (dip_deg && eye_height_m)
         bad_usage("--dip and --eye-height exclude each other; give one of them");
     const sun::Limb part = limb_of(limb, sun::Limb::Upper);
@@ -271,9 +270,9 @@ OutputFile* OutputArguments::open(FilesInUse& files, const DemArguments& dem) co
             fmt::format("-o: {}: no format that this command writes, expected a name that "
                         "ends in {}",
                         path, fmt::join(endings, ", ")));
-    dem.add_inputs(files);
+    dem::add_named(dem.paths, files);
     OutputFile& file = files.open_output(path, overwrite, "-o");
-    dem.add_further_inputs(files);
+    dem::add_all(dem.paths, files);
     return &file;
 }
 

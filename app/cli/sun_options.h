@@ -66,9 +66,6 @@ struct LightArguments {
     sun::RiseRule rule(const geo::Geodetic& place, const std::optional<double>& eye_height_m) const;
     light::LightOptions light(const geo::Geodetic& place,
                               const std::optional<double>& eye_height_m) const;
-
-  private:
-    CLI::Option* refraction_option_ = nullptr;
 };
 
 /// The DEM, and the horizon of a place on it.

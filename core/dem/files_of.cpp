@@ -74,4 +74,16 @@ std::vector<std::filesystem::path> files_of(std::span<const std::string> paths) 
     return collector.take();
 }
 
+void add_named(std::span<const std::string> paths, FilesInUse& files) {
+    for (const std::string& path : paths)
+        files.add_input(path, "the DEM");
+}
+
+void add_all(std::span<const std::string> paths, FilesInUse& files) {
+    add_named(paths, files);
+    if (!files.replaces_any()) return;
+    for (const std::filesystem::path& path : files_of(paths))
+        files.add_input(path, "a file that the DEM is read from,");
+}
+
 }  // namespace relevo::dem

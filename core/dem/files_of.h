@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/files_in_use.h"
+
 namespace relevo::dem {
 
 /// Every file on this machine that the rasters are read from: themselves, what lies beside them
@@ -13,5 +15,12 @@ namespace relevo::dem {
 /// Opens each raster, and reads no heights.
 /// @param paths  as Source::open() takes them
 std::vector<std::filesystem::path> files_of(std::span<const std::string> paths);
+
+/// Adds the rasters that are named to what a run reads. @throws Error as FilesInUse::add_input
+void add_named(std::span<const std::string> paths, FilesInUse& files);
+
+/// Adds files_of() too, where an output replaces a file: finding them takes time.
+/// @throws Error as FilesInUse::add_input
+void add_all(std::span<const std::string> paths, FilesInUse& files);
 
 }  // namespace relevo::dem

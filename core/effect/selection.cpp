@@ -338,4 +338,15 @@ std::vector<std::string> apply_settings(shader::ParamStore& store, const Registr
     return notices;
 }
 
+std::vector<Setting> with_absolute_files(std::vector<Setting> settings,
+                                         const shader::ParamStore& store) {
+    for (Setting& setting : settings) {
+        const shader::TextParam* const text = store.find_text(setting.address);
+        if (!text || !text->is_file || setting.text.empty()) continue;
+        setting.text = std::filesystem::absolute(text_of(setting, store)).string();
+        setting.folder.clear();
+    }
+    return settings;
+}
+
 }  // namespace relevo::effect

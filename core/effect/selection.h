@@ -52,4 +52,8 @@ std::vector<std::string> apply_settings(shader::ParamStore& store, const Registr
                                         const std::vector<Preset>& presets,
                                         const std::vector<Setting>& command_line);
 
+/// The same with absolute paths for parameters that are files, which then hold in any folder.
+std::vector<Setting> with_absolute_files(std::vector<Setting> settings,
+                                         const shader::ParamStore& store);
+
 }  // namespace relevo::effect

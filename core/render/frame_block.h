@@ -10,34 +10,12 @@
 
 #include "geo/local_frame.h"
 #include "render/displacement.h"
+#include "render/frame_block.gen.h"
+#include "render/loading.h"
 #include "scene/camera.h"
 #include "sun/celestial.h"
 
 namespace relevo::render {
-
-/// The uniform block `frame` of shaders/lib/frame.glsl, member for member (std140).
-struct FrameBlock {
-    glm::mat4 view_projection;
-    glm::vec4 pixel_ray, pixel_ray_dx, pixel_ray_dy;
-    glm::vec4 viewport;
-    glm::vec4 eye_m;
-    glm::vec4 up_at_eye;
-    glm::mat4 up_matrix;
-    glm::vec4 polar_axis;
-    glm::vec4 sun_direction, sun_apparent;
-    std::array<glm::vec4, 4> sun_light;
-    glm::vec4 sun_light_domain;
-    glm::vec4 sky_irradiance;
-    glm::vec4 height_range;
-    glm::vec4 ground_extent;
-    float exposure;
-    float footprint_limit;
-    float normal_texels_per_m;
-    float normal_levels;
-    glm::vec4 eye_up, eye_sun, eye_sun_light;
-    std::array<glm::vec4, 3> celestial;
-};
-static_assert(sizeof(FrameBlock) == 32 * 16);
 
 /// The sun over a DEM, as the shaders need it.
 struct SunLight {
@@ -68,7 +46,8 @@ struct FrameInputs {
     double exposure_ev = 0;     ///< stops brighter than the natural exposure of this sun
     double exaggeration = 1;    ///< factor on heights
     Displacement displacement;  ///< by the effects; the renderer fills it
-    double unix_s = 0;          ///< the sun's moment, since 1970-01-01T00:00Z, for native modules
+    Loading loading = Loading::Wait;
+    double unix_s = 0;  ///< the sun's moment, since 1970-01-01T00:00Z, for native modules
 };
 
 /// What does not change from frame to frame.

@@ -239,7 +239,14 @@ std::vector<TileDraw> TileTree::select_orthographic(const LodView& view) {
 }
 
 std::vector<TileDraw> TileTree::select(const LodView& view) {
-    if (!view.eye_m) return select_orthographic(view);
+    return view.eye_m ? select_from_eye(view, nullptr) : select_orthographic(view);
+}
+
+std::vector<TileDraw> TileTree::select(const LodView& view, const Resident& resident) {
+    return select_from_eye(view, &resident);
+}
+
+std::vector<TileDraw> TileTree::select_from_eye(const LodView& view, const Resident* resident) {
     const LodRanges ranges = this->ranges(view);
     std::vector<TileDraw> draws;
     // True where the tile is dealt with, false where it is left to its parent's level.
@@ -251,6 +258,10 @@ std::vector<TileDraw> TileTree::select(const LodView& view) {
             return hidden(b, view);
         }
         if (hidden(b, view)) return true;
+        if (resident) {
+            resident->needed.push_back(key);
+            if (!resident->is_there(key)) return false;
+        }
         if (key.level == 0 ||
             distance_m >= ranges.levels[static_cast<std::size_t>(key.level - 1)].range_m) {
             draws.push_back({key, 0xf, distance_m});

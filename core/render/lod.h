@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -104,6 +105,16 @@ class TileTree {
     /// orthographic view levels do not meet: skirts have to hang down to the lowest ground.
     std::vector<TileDraw> select(const LodView& view);
 
+    /// Which tiles can be drawn.
+    struct Resident {
+        std::function<bool(const TileKey&)> is_there;
+        /// Filled with those that a view asks for, there or not, and those that stand above them.
+        std::vector<TileKey>& needed;
+    };
+    /// The same from an eye, with a coarser tile in the place of those that are not there. The root
+    /// has to be.
+    std::vector<TileDraw> select(const LodView& view, const Resident& resident);
+
     /// Tiles that can be seen at no more than `nearest` levels from the top; for pages that are
     /// chosen by distance alone.
     /// @param wanted  whether a tile at this distance is to be divided further
@@ -142,6 +153,7 @@ class TileTree {
     double net_error_m(int level) const;
     void measure_relief();
     std::vector<TileDraw> select_orthographic(const LodView& view);
+    std::vector<TileDraw> select_from_eye(const LodView& view, const Resident* resident);
     bool hidden(const Box& box, const LodView& view) const;
     bool below_horizon(const Box& box, const LodView& view) const;
 

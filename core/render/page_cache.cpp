@@ -3,67 +3,153 @@
 #include <algorithm>
 #include <cassert>
 #include <numeric>
+#include <optional>
 
-#include "base/parallel_for.h"
+#include "render/page_maker.h"
 
 namespace relevo::render {
 namespace {
 
-constexpr int kBatch = 64;  // pages that are made before they are handed to the device
+constexpr std::size_t kBatch = 64;  // pages that are made before they are handed to the device
 
 }  // namespace
 
-PageCache::PageCache(gl::Format format, int side_px, int layers, gl::Filter filter,
-                     const char* label)
-    : texture_(gl::TextureKind::D2Array, format, {side_px, side_px, layers}, 1, label),
-      layers_(static_cast<std::size_t>(layers)) {
-    texture_.set_sampling(filter, gl::Wrap::Clamp);
-}
+struct PageCache::Impl {
+    struct Slot {
+        std::uint64_t key = ~std::uint64_t{0};
+        std::uint64_t used = 0;
+    };
 
-int PageCache::layer(const TileKey& key) const {
-    const auto found = layer_of_.find(key.packed());
-    return found == layer_of_.end() ? -1 : found->second;
-}
+    std::vector<PageLayer> layers;
+    std::vector<gl::Texture> textures;  // of the layers
+    std::vector<Slot> slots;
+    std::unordered_map<std::uint64_t, int> slot_of;
+    std::uint64_t now = 0;
+    std::optional<PageMaker> maker;  // ends before what it makes from
 
-bool PageCache::require(std::span<const TileKey> keys, const Make& make) {
-    assert(keys.size() <= layers_.size());
-    ++now_;
-    std::vector<TileKey> missing;
-    for (const TileKey& key : keys) {
-        const int at = layer(key);
-        if (at < 0)
-            missing.push_back(key);
-        else
-            layers_[static_cast<std::size_t>(at)].used = now_;
-    }
-    if (missing.empty()) return false;
-
-    std::vector<int> oldest(layers_.size());
-    std::iota(oldest.begin(), oldest.end(), 0);
-    std::stable_sort(oldest.begin(), oldest.end(), [&](int a, int b) {
-        return layers_[static_cast<std::size_t>(a)].used <
-               layers_[static_cast<std::size_t>(b)].used;
-    });
-    const int side = texture_.extent().width;
-    std::vector<std::vector<std::byte>> pages;
-    for (std::size_t begin = 0; begin < missing.size(); begin += kBatch) {
-        const std::size_t count = std::min<std::size_t>(kBatch, missing.size() - begin);
-        pages.assign(count, {});
-        parallel_for(0, static_cast<int>(count), 1, [&](int first, int last) {
-            for (int i = first; i < last; ++i)
-                pages[static_cast<std::size_t>(i)] =
-                    make(missing[begin + static_cast<std::size_t>(i)]);
-        });
-        for (std::size_t i = 0; i < count; ++i) {
-            const int at = oldest[begin + i];
-            Layer& layer = layers_[static_cast<std::size_t>(at)];
-            layer_of_.erase(layer.key);
-            layer = {missing[begin + i].packed(), now_};
-            layer_of_[layer.key] = at;
-            texture_.write(0, {0, 0, at}, {side, side, 1}, pages[i]);
+    Impl(std::vector<PageLayer> given, int count)
+        : layers(std::move(given)), slots(static_cast<std::size_t>(count)) {
+        for (const PageLayer& layer : layers) {
+            textures.emplace_back(gl::TextureKind::D2Array, layer.format,
+                                  gl::Extent{layer.side_px, layer.side_px, count}, 1,
+                                  layer.name.c_str());
+            textures.back().set_sampling(layer.filter, gl::Wrap::Clamp);
         }
     }
-    return true;
+
+    MadePage make(const TileKey& key) const {
+        MadePage page{key, {}};
+        for (const PageLayer& layer : layers)
+            page.layers.push_back(layer.make(key));
+        return page;
+    }
+
+    int slot(const TileKey& key) const {
+        const auto found = slot_of.find(key.packed());
+        return found == slot_of.end() ? -1 : found->second;
+    }
+
+    /// Those that are there count as used. @returns the others
+    std::vector<TileKey> missing(std::span<const TileKey> keys) {
+        assert(keys.size() <= slots.size());
+        ++now;
+        std::vector<TileKey> missing;
+        for (const TileKey& key : keys) {
+            const int at = slot(key);
+            if (at < 0)
+                missing.push_back(key);
+            else
+                slots[static_cast<std::size_t>(at)].used = now;
+        }
+        return missing;
+    }
+
+    /// Slots, those first that have not been used for longest.
+    std::vector<int> oldest() const {
+        std::vector<int> order(slots.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+            return slots[static_cast<std::size_t>(a)].used <
+                   slots[static_cast<std::size_t>(b)].used;
+        });
+        return order;
+    }
+
+    void put(const MadePage& page, int at) {
+        Slot& slot = slots[static_cast<std::size_t>(at)];
+        slot_of.erase(slot.key);
+        slot = {page.key.packed(), now};
+        slot_of[slot.key] = at;
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const int side = layers[i].side_px;
+            textures[i].write(0, {0, 0, at}, {side, side, 1}, page.layers[i]);
+        }
+    }
+
+    bool require(std::span<const TileKey> keys) {
+        const std::vector<TileKey> wanted = missing(keys);
+        if (wanted.empty()) return false;
+        const std::vector<int> order = oldest();
+        for (std::size_t begin = 0; begin < wanted.size(); begin += kBatch) {
+            const std::span batch =
+                std::span(wanted).subspan(begin, std::min(kBatch, wanted.size() - begin));
+            const std::vector<MadePage> pages =
+                make_pages(batch, [this](const TileKey& key) { return make(key); });
+            for (std::size_t i = 0; i < pages.size(); ++i)
+                put(pages[i], order[begin + i]);
+        }
+        return true;
+    }
+
+    bool request(std::span<const TileKey> keys) {
+        std::vector<TileKey> wanted = missing(keys);
+        if (!maker) {
+            if (wanted.empty()) return false;
+            maker.emplace([this](const TileKey& key) { return make(key); });
+        }
+        const std::vector<int> order = oldest();
+        std::size_t next = 0;
+        for (const MadePage& page : maker->take()) {
+            const auto found = std::find(wanted.begin(), wanted.end(), page.key);
+            if (found == wanted.end()) continue;  // no longer wanted, or already there
+            put(page, order[next++]);
+            wanted.erase(found);
+        }
+        maker->want(std::move(wanted));
+        return next > 0;
+    }
+};
+
+PageCache::PageCache() = default;
+
+PageCache::PageCache(std::vector<PageLayer> layers, int slots)
+    : impl_(std::make_unique<Impl>(std::move(layers), slots)) {}
+
+PageCache::PageCache(PageCache&&) noexcept = default;
+PageCache& PageCache::operator=(PageCache&&) noexcept = default;
+PageCache::~PageCache() = default;
+
+bool PageCache::require(std::span<const TileKey> keys) {
+    return impl_->require(keys);
+}
+
+bool PageCache::request(std::span<const TileKey> keys) {
+    return impl_->request(keys);
+}
+
+int PageCache::slot(const TileKey& key) const {
+    return impl_->slot(key);
+}
+
+int PageCache::slots() const {
+    return static_cast<int>(impl_->slots.size());
+}
+
+const gl::Texture* PageCache::find(std::string_view name) const {
+    if (!impl_) return nullptr;
+    for (std::size_t i = 0; i < impl_->layers.size(); ++i)
+        if (impl_->layers[i].name == name) return &impl_->textures[i];
+    return nullptr;
 }
 
 }  // namespace relevo::render

@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -11,37 +14,51 @@
 
 namespace relevo::render {
 
-/// A texture array whose layers hold the pages that were used last.
+/// What lies on the ground by place, cut into pages: heights, normals, and whatever else has texels
+/// for a tile. Adding one here is all that a new kind of page takes on this side.
+struct PageLayer {
+    std::string name;  ///< of its sampler, a sampler2DArray
+    gl::Format format;
+    int side_px = 0;
+    gl::Filter filter = gl::Filter::Nearest;
+    /// Texels of a page, row after row. Called on several threads at once, also after the call that
+    /// asked for the page; must hold until the cache is gone.
+    std::function<std::vector<std::byte>(const TileKey&)> make;
+};
+
+/// Pages of layers that are cut alike. A page has one slot in all of them, which is its layer in
+/// each of their array textures; slots hold the pages that were used last.
 class PageCache {
   public:
-    /// Makes the texels of a page; called on several threads at once.
-    using Make = std::function<std::vector<std::byte>(const TileKey&)>;
+    PageCache();
+    /// @param slots  the most pages that are kept
+    PageCache(std::vector<PageLayer> layers, int slots);
+    PageCache(PageCache&&) noexcept;
+    PageCache& operator=(PageCache&&) noexcept;
+    /// Waits for the pages that are being made.
+    ~PageCache();
 
-    PageCache() = default;
-    /// @param layers  the most pages that are kept
-    PageCache(gl::Format format, int side_px, int layers, gl::Filter filter, const char* label);
+    /// Sees to it that all `keys` have a slot, at the cost of those not used for longest.
+    /// @param keys  at most slots() of them, none twice
+    /// @returns whether any page came
+    /// @throws what PageLayer::make throws
+    bool require(std::span<const TileKey> keys);
 
-    /// Sees to it that all `keys` have a layer, at the cost of those not used for longest.
-    /// @param keys  at most layers() of them, none twice
-    /// @returns whether any page was made
-    bool require(std::span<const TileKey> keys, const Make& make);
+    /// The same beside the caller: takes the pages that have been made since the last call and has
+    /// those that are missing made, in this order, on threads of its own.
+    /// @throws what PageLayer::make threw
+    bool request(std::span<const TileKey> keys);
 
-    /// The layer of a page that the last require() named or that is still there; -1 for none.
-    int layer(const TileKey& key) const;
+    /// The slot of a page that is there; -1 for none.
+    int slot(const TileKey& key) const;
+    int slots() const;
 
-    int layers() const { return texture_.extent().depth; }
-    const gl::Texture& texture() const { return texture_; }
+    /// The texture of a layer; null for none of that name.
+    const gl::Texture* find(std::string_view name) const;
 
   private:
-    struct Layer {
-        std::uint64_t key = ~std::uint64_t{0};
-        std::uint64_t used = 0;
-    };
-
-    gl::Texture texture_;
-    std::vector<Layer> layers_;
-    std::unordered_map<std::uint64_t, int> layer_of_;
-    std::uint64_t now_ = 0;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace relevo::render

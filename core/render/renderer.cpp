@@ -270,10 +270,7 @@ struct Renderer::Impl {
         if (name == "overlay") return &overlay;
         if (name == "colour") return &tone_mapped;
         if (name == "depth") return &depth;
-        if (name == "height_pages") return &ground.height_pages();
-        if (name == "normal_pages") return &ground.normal_pages();
-        if (name == "surface_pages") return &ground.surface_pages();
-        if (name == "page_table") return &ground.page_table();
+        if (const gl::Texture* const pages = ground.texture(name)) return pages;
         for (std::size_t i = 0; i < varyings.size(); ++i)
             if (name == fmt::format("varyings_{}", i)) return &varyings[i];
         return nullptr;
@@ -304,7 +301,7 @@ struct Renderer::Impl {
 
         if (reads_surface) ground.keep_surface();
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
-                                          inputs.exaggeration);
+                                          inputs.exaggeration, inputs.loading);
         passed("select");
 
         if (!natives.empty()) {

@@ -95,6 +95,11 @@ int power_of_two_from(int n) {
     return power;
 }
 
+/// The tolerance to try after one that asks for too much.
+double coarser(double tolerance) {
+    return tolerance > 0 ? tolerance * kCoarser : 1e-5;
+}
+
 template <typename T>
 std::vector<std::byte> bytes_of(const std::vector<T>& values) {
     std::vector<std::byte> bytes(values.size() * sizeof(T));
@@ -121,15 +126,17 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
     normal_levels_ = std::max(1, pyramid_.levels() - kNormalPageLevels);
 
     const int most = options.max_array_layers;
-    height_pages_ = PageCache(gl::Format::RGBA32F, kHeightPage_px,
-                              std::min({tiles_of_all_levels(pyramid_), kMaxHeightPages, most}),
-                              gl::Filter::Nearest, "height pages");
+    heights_ = PageCache({{"height_pages", gl::Format::RGBA32F, kHeightPage_px, gl::Filter::Nearest,
+                           [this](const TileKey& key) {
+                               return bytes_of(height_page(pyramid_, key.level, key.at));
+                           }}},
+                         std::min({tiles_of_all_levels(pyramid_), kMaxHeightPages, most}));
     int normal_count = 0;
     for (int level = 0; level < normal_levels_; ++level)
         normal_count +=
             pages_across(pyramid_.columns(), level) * pages_across(pyramid_.rows(), level);
     normal_layers_ = std::min({normal_count, kMaxNormalPages, most});
-    clear_normals();
+    clear_surface();
     const int across = power_of_two_from(
         std::max(pages_across(pyramid_.columns(), 0), pages_across(pyramid_.rows(), 0)));
     page_table_ =
@@ -159,18 +166,41 @@ bool Terrain::winds_counterclockwise() {
     return dot(cross(net.position_m[3], net.position_m[1]), net.vertical[0]) > 0;
 }
 
-void Terrain::clear_normals() {
-    normal_pages_ = PageCache(gl::Format::RG16Snorm, kNormalPage_px, normal_layers_,
-                              gl::Filter::Linear, "normal pages");
+std::vector<std::byte> Terrain::make_normals(const TileKey& key) const {
+    const glm::ivec2 first = key.at * (kNormalNodes << key.level);
+    const PatchNet net = fit_patch_net(
+        [&](double column, double row) { return grid_.place(column, row); }, frame_,
+        glm::dvec2(first), glm::dvec2(span_on_dem(pyramid_, first, kNormalNodes << key.level)));
+    return bytes_of(normal_page(pyramid_, key.level, key.at, net, polar_axis_));
+}
+
+void Terrain::clear_surface() {
+    std::vector<PageLayer> layers{{"normal_pages", gl::Format::RG16Snorm, kNormalPage_px,
+                                   gl::Filter::Linear,
+                                   [this](const TileKey& key) { return make_normals(key); }}};
     if (keeps_surface_)
-        surface_pages_ = PageCache(gl::Format::R32F, kNormalPage_px, normal_layers_,
-                                   gl::Filter::Nearest, "surface pages");
+        layers.push_back({"surface_pages", gl::Format::R32F, kNormalPage_px, gl::Filter::Nearest,
+                          [this](const TileKey& key) {
+                              return bytes_of(surface_page(pyramid_, key.level, key.at));
+                          }});
+    surface_ = PageCache(std::move(layers), normal_layers_);
 }
 
 void Terrain::keep_surface() {
     if (keeps_surface_) return;
     keeps_surface_ = true;
-    clear_normals();
+    clear_surface();
+}
+
+const gl::Texture* Terrain::texture(std::string_view name) const {
+    if (name == "page_table") return &page_table_;
+    if (const gl::Texture* const heights = heights_.find(name)) return heights;
+    return surface_.find(name);
+}
+
+bool Terrain::in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const {
+    return wanted.tolerance <= 0 ||
+           draws.size() * kGridVertices <= static_cast<std::size_t>(options_.vertex_budget);
 }
 
 TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) {
@@ -178,8 +208,8 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
     std::vector<TileDraw> draws;
     std::vector<TileKey> keys;
     // A quarter of the pages is for those that are drawn beside.
-    const int layers = height_pages_.layers();
-    const int room = keep || layers == tiles_of_all_levels(pyramid_) ? layers : layers - layers / 4;
+    const int slots = heights_.slots();
+    const int room = keep || slots == tiles_of_all_levels(pyramid_) ? slots : slots - slots / 4;
     while (true) {
         draws = tree_.select(view);
         keys.clear();
@@ -193,21 +223,43 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
         for (const TileDraw& draw : draws)
             name(draw.key);
         const bool fits = static_cast<int>(keys.size()) <= room;
-        const bool in_budget =
-            wanted.tolerance <= 0 ||
-            draws.size() * kGridVertices <= static_cast<std::size_t>(options_.vertex_budget);
-        if (fits && (in_budget || !view.eye_m)) break;
-        view.tolerance = view.tolerance > 0 ? view.tolerance * kCoarser : 1e-5;
+        if (fits && (!view.eye_m || in_budget(wanted, draws))) break;
+        view.tolerance = coarser(view.tolerance);
     }
-    height_pages_.require(keys, [&](const TileKey& key) {
-        return bytes_of(height_page(pyramid_, key.level, key.at));
-    });
+    heights_.require(keys);
+    return ready(view, draws);
+}
 
+TileSelection Terrain::select_beside(const LodView& wanted) {
+    LodView view = wanted;
+    const TileKey root = tree_.root();
+    heights_.require(std::span(&root, 1));
+    const auto is_there = [&](const TileKey& key) { return heights_.slot(key) >= 0; };
+    std::vector<TileDraw> draws;
+    std::vector<TileKey> keys;
+    const int slots = heights_.slots();
+    const int room = slots == tiles_of_all_levels(pyramid_) ? slots : slots - slots / 4;
+    while (true) {
+        keys.clear();
+        draws = tree_.select(view, TileTree::Resident{is_there, keys});
+        if (static_cast<int>(keys.size()) <= room && in_budget(wanted, draws)) break;
+        view.tolerance = coarser(view.tolerance);
+    }
+    complete_ = std::all_of(keys.begin(), keys.end(), is_there);
+    TileSelection selection = ready(view, draws);
+    // Coarse ones first: they stand in for all that they cover.
+    std::stable_sort(keys.begin(), keys.end(),
+                     [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
+    heights_.request(keys);
+    return selection;
+}
+
+TileSelection Terrain::ready(const LodView& view, const std::vector<TileDraw>& draws) {
     const LodRanges ranges = view.eye_m ? tree_.ranges(view) : LodRanges{};
     TileSelection selection;
     selection.tolerance_ = view.tolerance;
     for (const TileDraw& draw : draws) {
-        TileSelection::Tile tile{draw, static_cast<float>(height_pages_.layer(draw.key))};
+        TileSelection::Tile tile{draw, static_cast<float>(heights_.slot(draw.key))};
         if (view.eye_m) {
             const LodRanges::Level& level = ranges.levels[static_cast<std::size_t>(draw.key.level)];
             if (std::isfinite(level.range_m)) {
@@ -223,11 +275,13 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
 }
 
 TileSelection Terrain::select_for_picture(const scene::Camera& camera, int width_px, int height_px,
-                                          double exaggeration) {
+                                          double exaggeration, Loading loading) {
     const LodView view =
         LodView::of_camera(camera, width_px, height_px, options_.pixel_error, exaggeration);
-    prepare_normals(LodView::of_camera(camera, width_px, height_px, 1, exaggeration), width_px);
-    return select(view);
+    complete_ = true;
+    TileSelection selection = loading == Loading::Beside ? select_beside(view) : select(view);
+    prepare_surface(LodView::of_camera(camera, width_px, height_px, 1, exaggeration), loading);
+    return selection;
 }
 
 std::optional<Terrain::Extent> Terrain::extent(const glm::dmat3& axes, double exaggeration,
@@ -259,36 +313,35 @@ std::optional<Terrain::Extent> Terrain::extent(const glm::dmat3& axes, double ex
     return extent;
 }
 
-void Terrain::prepare_normals(const LodView& view, int width_px) {
+void Terrain::prepare_surface(const LodView& view, Loading loading) {
     // A page is wanted where a pixel is no larger than its texels. Pixels are measured by view
     // depth, which in the corners of the picture is less than the distance.
     constexpr double kCorner = 0.7;
-    (void)width_px;
     std::vector<TileKey> pages;
-    for (double coarser = 1;; coarser *= kCoarser) {
+    for (double scale = 1;; scale *= kCoarser) {
         pages.clear();
         const auto wanted = [&](int tile_level, double distance_m) {
             const int level = std::max(tile_level - kNormalPageLevels, 0);
-            return kCorner * distance_m * view.tolerance * coarser <
+            return kCorner * distance_m * view.tolerance * scale <
                    normal_spacing_m_ * std::exp2(level);
         };
         tree_.visit(view, tree_.root(), kNormalPageLevels, wanted, [&](const TileKey& key) {
             pages.push_back({std::max(key.level - kNormalPageLevels, 0), key.at});
         });
-        if (static_cast<int>(pages.size()) <= normal_pages_.layers()) break;
+        if (static_cast<int>(pages.size()) <= surface_.slots()) break;
     }
-    const bool made = normal_pages_.require(pages, [&](const TileKey& key) {
-        const glm::ivec2 first = key.at * (kNormalNodes << key.level);
-        const PatchNet net = fit_patch_net(
-            [&](double column, double row) { return grid_.place(column, row); }, frame_,
-            glm::dvec2(first), glm::dvec2(span_on_dem(pyramid_, first, kNormalNodes << key.level)));
-        return bytes_of(normal_page(pyramid_, key.level, key.at, net, polar_axis_));
-    });
-    if (keeps_surface_)
-        surface_pages_.require(pages, [&](const TileKey& key) {
-            return bytes_of(surface_page(pyramid_, key.level, key.at));
-        });
-    if (made) write_page_table();
+    bool came = false;
+    if (loading == Loading::Beside && !pages.empty()) {
+        std::stable_sort(pages.begin(), pages.end(),
+                         [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
+        came = surface_.require(std::span(pages).first(1));  // covers all of it
+        came = surface_.request(pages) || came;
+        for (const TileKey& page : pages)
+            complete_ = complete_ && surface_.slot(page) >= 0;
+    } else {
+        came = surface_.require(pages);
+    }
+    if (came) write_page_table();
 }
 
 void Terrain::write_page_table() {
@@ -301,7 +354,7 @@ void Terrain::write_page_table() {
         for (int y = 0; y < side; ++y) {
             for (int x = 0; x < side; ++x) {
                 std::uint16_t* const entry = &entries[static_cast<std::size_t>(2 * (y * side + x))];
-                const int layer = normal_pages_.layer({level, {x, y}});
+                const int layer = surface_.slot({level, {x, y}});
                 if (layer >= 0) {
                     entry[0] = static_cast<std::uint16_t>(layer);
                     entry[1] = static_cast<std::uint16_t>(level);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <glm/mat3x3.hpp>
@@ -12,6 +14,7 @@
 #include "gl/buffer.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "render/loading.h"
 #include "render/lod.h"
 #include "render/page_cache.h"
 
@@ -67,13 +70,15 @@ class Terrain {
     /// Chooses the tiles of a view and makes their height pages.
     /// @param keep  a selection that has to stay drawable beside the new one
     TileSelection select(const LodView& view, const TileSelection* keep = nullptr);
-    /// A camera's view with the option's pixel error, and the normals that its picture needs.
+    /// A camera's view with the option's pixel error, and the pages that its picture needs.
     TileSelection select_for_picture(const scene::Camera& camera, int width_px, int height_px,
-                                     double exaggeration);
+                                     double exaggeration, Loading loading = Loading::Wait);
+    /// Whether the last picture had all its pages; so it is always where it waits for them.
+    bool is_complete() const { return complete_; }
 
-    /// Draws with the program and framebuffer that are bound. Texture unit 0 must hold
-    /// height_pages(). Positions are handed to the program relative to `origin_m`. A selection
-    /// holds until the next one is made, save where that keeps it.
+    /// Draws with the program and framebuffer that are bound, and its textures. Positions are
+    /// handed to the program relative to `origin_m`. A selection holds until the next one is made,
+    /// save where that keeps it.
     void draw(const TileSelection& selection, const glm::dvec3& origin_m);
 
     /// Least and greatest product of the ground's points with each of three axes [m]: of the tiles
@@ -90,10 +95,9 @@ class Terrain {
     /// them.
     void keep_surface();
 
-    const gl::Texture& height_pages() const { return height_pages_.texture(); }
-    const gl::Texture& normal_pages() const { return normal_pages_.texture(); }
-    const gl::Texture& surface_pages() const { return surface_pages_.texture(); }
-    const gl::Texture& page_table() const { return page_table_; }
+    /// What shaders read of the ground, by the sampler's name: a PageLayer's, or "page_table", the
+    /// slot and level of the finest page of the picture there is. Null for others.
+    const gl::Texture* texture(std::string_view name) const;
     /// No two terrains of a process have the same.
     std::uint64_t serial() const { return serial_; }
     bool has_holes() const { return pyramid_.has_holes(); }
@@ -104,9 +108,14 @@ class Terrain {
     double normal_spacing_m() const { return normal_spacing_m_; }  ///< of the finest of them
 
   private:
-    void prepare_normals(const LodView& view, int width_px);
-    void clear_normals();
+    TileSelection select_beside(const LodView& view);
+    /// Of tiles whose pages are there.
+    TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
+    bool in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const;
+    void prepare_surface(const LodView& view, Loading loading);
+    void clear_surface();
     void write_page_table();
+    std::vector<std::byte> make_normals(const TileKey& key) const;
 
     std::uint64_t serial_;
     TerrainOptions options_;
@@ -119,12 +128,14 @@ class Terrain {
     int normal_levels_ = 1;
     int normal_layers_ = 1;
 
-    PageCache height_pages_, normal_pages_;
-    PageCache surface_pages_;  // asked for the same pages as normal_pages_: has them in like layers
     bool keeps_surface_ = false;
+    bool complete_ = true;
     gl::Texture page_table_;
     gl::Buffer grid_vertices_, grid_indices_, instances_;
     std::optional<gl::VertexArray> vertex_array_;
+    // Last: threads make their pages from what stands above.
+    PageCache heights_;  // of tiles
+    PageCache surface_;  // of the picture: normals, and what else it reads by place
 };
 
 }  // namespace relevo::render

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "effect/json.h"
+#include "sun/event_time.h"
 
 namespace relevo::scene {
 namespace {
@@ -113,12 +114,10 @@ class SceneReader {
         if (const Json* const bounds = object.take("bounds")) {
             const std::vector<double> v =
                 numbers(object, *bounds, "bounds", 4, 4, "west, south, east, north in degrees");
-            try {
+            check(object, "bounds", [&] {
                 options.bounds =
                     dem::parse_bounds(fmt::format("{},{},{},{}", v[0], v[1], v[2], v[3]), "bounds");
-            } catch (const Error& error) {
-                object.fail(bounds->line, "bounds", error.what());
-            }
+            });
         }
         if (const auto mib =
                 static_cast<std::int64_t>(object.number("memory_mib", 0, 1, 1 << 20, true)))
@@ -130,10 +129,40 @@ class SceneReader {
         const Json* const value = top.take("time");
         if (!value) return;
         ObjectReader object = inside(*value, "time");
-        scene_.moment.time = object.string("at");
-        scene_.moment.date = object.string("date", "");
-        scene_.moment.zone = object.string("zone", "");
+        Moment& moment = scene_.moment;
+        moment.time = object.string("at");
+        moment.date = object.string("date", "");
+        moment.zone = object.string("zone", "");
         object.finish();
+        const bool event = sun::is_event_time(moment.time);
+        if (!moment.date.empty() && !event)
+            object.fail(object.line_of("date"), "date",
+                        "goes with an event in time.at, such as sunset-30min");
+        std::optional<sun::Zone> zone;
+        std::optional<sun::Date> date;
+        check(object, "zone", [&] {
+            if (!moment.zone.empty()) zone = sun::Zone::named(moment.zone);
+        });
+        check(object, "date", [&] {
+            if (!moment.date.empty()) date = sun::parse_date(moment.date);
+        });
+        check(object, "at", [&] {
+            if (event)
+                sun::day_of(sun::parse_event_time(moment.time), date, zone);
+            else
+                sun::parse_time(moment.time, zone);
+        });
+    }
+
+    /// What `parse` refuses is the fault of a member.
+    template <typename Parse>
+    void check(const ObjectReader& object, const char* key, const Parse& parse) const {
+        try {
+            parse();
+        } catch (const Error& error) {
+            const std::string_view what = error.what();
+            object.fail(object.line_of(key), key, what.substr(what.find(": ") + 2));
+        }
     }
 
     Standpoint standpoint(const ObjectReader& object, const Json& value, const char* key,

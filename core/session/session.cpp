@@ -45,15 +45,6 @@ Loaded load(const scene::Scene& scene) {
     return {std::move(source), std::move(field), milliseconds_since(began)};
 }
 
-void add_dem_inputs(const scene::Scene& scene, FilesInUse& files) {
-    for (const std::string& path : scene.dems)
-        files.add_input(path, "the DEM");
-    // Finding what belongs to them takes time.
-    if (!files.replaces_any()) return;
-    for (const std::filesystem::path& path : dem::files_of(scene.dems))
-        files.add_input(path, "a file that the DEM is read from,");
-}
-
 constexpr int kDivider_px = 2;
 
 /// Puts the left half of one picture beside the right half of the other, with a line between.
@@ -92,7 +83,7 @@ struct Session::Impl {
 
     Impl(scene::Scene given, Options o, FilesInUse& files)
         : scene(std::move(given)), options(std::move(o)) {
-        add_dem_inputs(scene, files);
+        dem::add_all(scene.dems, files);
         std::optional<sun::ParsedTime> time;
         const bool timed = !scene.moment.time.empty();
         if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
@@ -118,6 +109,8 @@ struct Session::Impl {
             others = ActiveEffects::of(session::without(scene.effects, options.compared, *effects),
                                        /*aloud=*/false);
         effects->add_inputs(files);
+        scene.effects.settings =
+            effect::with_absolute_files(std::move(scene.effects.settings), effects->values);
         context.emplace(gl::ContextOptions{.device = options.device});
         effects->fit(context->info());
         if (others) others->fit(context->info(), /*aloud=*/false);
@@ -182,6 +175,14 @@ struct Session::Impl {
         geo::Geodetic eye = ground->frame.to_geodetic(inputs.camera.eye_m);
         eye.height_m /= scene.exaggeration;
         return eye;
+    }
+
+    void draw(render::Loading loading, render::PassTimes* times = nullptr) {
+        context->make_current();
+        render::FrameInputs frame = inputs;
+        frame.loading = loading;
+        renderer->render_frame(*terrain, *ground, frame, times);
+        if (without) without->render_frame(*terrain, *ground, frame);
     }
 
     /// @throws Error where the last frame has light that is no number
@@ -254,10 +255,12 @@ void Session::resize(int width_px, int height_px) {
 }
 
 void Session::draw(render::PassTimes* times) {
-    impl_->context->make_current();
-    impl_->renderer->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs, times);
-    if (impl_->without)
-        impl_->without->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs);
+    impl_->draw(render::Loading::Wait, times);
+}
+
+bool Session::draw_what_is_there() {
+    impl_->draw(render::Loading::Beside);
+    return impl_->terrain->is_complete();
 }
 
 void Session::draw_alone() {

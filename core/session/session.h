@@ -42,6 +42,7 @@ class Session {
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
+    /// As it is now; files that parameters name have absolute paths.
     const scene::Scene& scene() const;
     /// Moves the camera. @throws Error (BadInput) as scene::make_camera
     void look(const scene::View& view);
@@ -54,9 +55,12 @@ class Session {
 
     sun::Instant moment() const;
 
-    /// Draws a frame of the scene as it is now.
+    /// Draws a frame of the scene as it is now, whole.
     /// @param times  filled with what each pass took if not null
     void draw(render::PassTimes* times = nullptr);
+    /// Draws a frame at once: what is not loaded yet is coarser, and being loaded.
+    /// @returns whether all was there; if not, the next frame has more
+    bool draw_what_is_there();
     /// Draws none of a comparison's other half, and waits for the device.
     void draw_alone();
 

@@ -1,5 +1,5 @@
-//! provides  frame: values that are the same for every pixel of a frame. render/frame_block.h is
-//!           its mirror on the host; append-only.
+//! provides  frame: values that are the same for every pixel of a frame; append-only. The build
+//!           makes the host's struct of this block.
 //! frame     x east, y north, z up at the DEM's centre, metres; radiance 1 is what a white diffuse
 //!           surface facing the sun outside the atmosphere reflects
 

@@ -360,6 +360,14 @@ TEST_F(Settings, TextsAreSetAsTheyAreAndFilesCountFromTheirPreset) {
     EXPECT_EQ(store_.text("way.title"), "walk.gpx");
     EXPECT_THAT(apply({winter}, {{"way.track", "own.gpx"}}), IsEmpty());
     EXPECT_EQ(store_.text("way.track"), "own.gpx");
+    // A scene that is written to another folder has them whole.
+    const std::vector<Setting> whole = with_absolute_files(
+        {{"way.track", "own.gpx"}, {"way.track", "walk.gpx", 3, "/maps"}, {"way.title", "own.gpx"}},
+        store_);
+    EXPECT_EQ(whole[0].text, (std::filesystem::current_path() / "own.gpx").string());
+    EXPECT_EQ(whole[1].text, "/maps/walk.gpx");
+    EXPECT_EQ(whole[1].folder, "");
+    EXPECT_EQ(whole[2].text, "own.gpx");
     store_.reset("way.track");
     EXPECT_EQ(store_.text("way.track"), "");
     EXPECT_EQ(error_of([&] {

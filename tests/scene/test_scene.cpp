@@ -120,6 +120,17 @@ TEST_F(SceneFile, MistakesNameTheirPlace) {
     EXPECT_EQ(error(with("\"picture\": {\"size\": [0, 10]}")),
               "2: picture.size: expected 1 to 16384 but got 0");
     EXPECT_EQ(error(with("\"time\": {}")), "2: time: expected a member \"at\"");
+    EXPECT_EQ(
+        error(with("\"time\": {\"at\": \"noonish\"}")),
+        "2: time.at: noonish: no such event as \"noonish\", expected one of sunrise, sunset, noon, "
+        "midnight, civil-dawn, civil-dusk, nautical-dawn, nautical-dusk, astronomical-dawn, "
+        "astronomical-dusk, first-light, last-light");
+    EXPECT_EQ(error(with("\"time\": {\"at\": \"2026-06-21T12:00\", \"zone\": \"Europe/Zurch\"}")),
+              "2: time.zone: Europe/Zurch: no such time zone; did you mean Europe/Zurich?");
+    EXPECT_EQ(error(with("\"time\": {\"at\": \"noon\",\n\"date\": \"June\"}")),
+              "3: time.date: June: not a date, expected YYYY-MM-DD such as 2026-06-21");
+    EXPECT_EQ(error(with("\"time\": {\"at\": \"2026-06-21T12:00Z\", \"date\": \"2026-06-21\"}")),
+              "2: time.date: goes with an event in time.at, such as sunset-30min");
     EXPECT_EQ(error(with("\"refraction\": \"some\"")),
               "2: refraction: expected one of standard, saemundsson, none but got \"some\"");
     EXPECT_EQ(error(with("\"effects\": {\"set\": {\"haze.density\": null}}")),

@@ -1,5 +1,7 @@
 // A session that goes on is one that began there.
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -69,6 +71,42 @@ TEST(Session, CameraMomentParametersAndSizeChangeWithoutANewProgram) {
     session.resize(first.width_px, first.height_px);
     session.draw();
     EXPECT_EQ(session.picture().values, before.values);
+}
+
+TEST(Session, DrawsCoarserGroundUntilItsPagesAreThere) {
+    scene::Scene scene = bundled_scene();
+    scene.effects.switches.only->clear();
+    scene.pixel_error = 0;  // every post
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    EXPECT_FALSE(session.draw_what_is_there());
+    const int first = session.triangles();
+    const image::Image8 coarse = session.picture();
+    const auto settle = [&] {
+        constexpr int kMost = 2000;
+        int frames = 1;
+        while (!session.draw_what_is_there() && frames < kMost) {
+            ++frames;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        EXPECT_LT(frames, kMost);
+    };
+    settle();
+    EXPECT_GT(session.triangles(), 4 * first);
+    EXPECT_NE(session.picture().values, coarse.values);
+    EXPECT_EQ(session.picture().values, picture_of(scene).values);
+
+    // The camera moves on while pages are made, and a capture waits for all.
+    scene.view.orbit = {20, 15, 3};
+    session.look(scene.view);
+    session.draw_what_is_there();
+    scene.view.orbit = {100, 35, 2};
+    session.look(scene.view);
+    session.draw_what_is_there();
+    session.draw();
+    EXPECT_EQ(session.picture().values, picture_of(scene).values);
+    settle();
+    EXPECT_EQ(session.picture().values, picture_of(scene).values);
 }
 
 TEST(Session, RefusesWhatNeedsAnotherProgram) {
