@@ -133,6 +133,7 @@ std::vector<Device> list_devices() {
 struct Context::Impl {
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLContext context = EGL_NO_CONTEXT;
+    std::function<void()> make_current;  // of others' contexts; then the two above are not there
     DeviceInfo info;
     std::vector<std::string> errors;
 
@@ -176,13 +177,17 @@ struct Context::Impl {
             return fmt::format("has no OpenGL 4.5 core, {}", egl_error());
         if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
             return fmt::format("cannot be made current, {}", egl_error());
-        info.device = candidate.device;
-        info.device.software =
-            candidate.device.software || is_software_renderer(gl_string(GL_RENDERER));
+        name(candidate.device);
+        return {};
+    }
+
+    /// Asks the current context what it is.
+    void name(const Device& device) {
+        info.device = device;
         info.renderer = gl_string(GL_RENDERER);
         info.vendor = gl_string(GL_VENDOR);
         info.version = gl_string(GL_VERSION);
-        return {};
+        info.device.software = device.software || is_software_renderer(info.renderer);
     }
 
     void close() {
@@ -289,6 +294,22 @@ Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()
                             all.size(), options.device, tried));
 }
 
+Context::Context(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Context Context::of_others(std::function<void()> make_current) {
+    auto impl = std::make_unique<Impl>();
+    impl->make_current = std::move(make_current);
+    impl->make_current();
+    constexpr int kVersion = 45;
+    if (epoxy_gl_version() < kVersion)
+        throw Error(ErrorCode::NoDevice,
+                    fmt::format("gl: expected a window that draws with OpenGL 4.5 core but got {}",
+                                gl_string(GL_VERSION)));
+    impl->name({.index = -1, .platform = "window", .description = "the window's"});
+    impl->start(/*debug=*/false);
+    return Context(std::move(impl));
+}
+
 Context::Context(Context&&) noexcept = default;
 Context& Context::operator=(Context&&) noexcept = default;
 Context::~Context() = default;
@@ -307,6 +328,7 @@ void Context::check_errors() {
 }
 
 void Context::make_current() {
+    if (impl_->make_current) return impl_->make_current();
     if (eglGetCurrentContext() == impl_->context) return;
     if (!eglMakeCurrent(impl_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, impl_->context))
         failed(fmt::format("gl: the context cannot be made current, {}", egl_error()));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -10,7 +11,7 @@ namespace relevo::gl {
 /// One way to get a GL context without a window.
 struct Device {
     int index = 0;         ///< as `--device` takes it
-    std::string platform;  ///< "device" (an EGL device) or "surfaceless"
+    std::string platform;  ///< "device" (an EGL device), "surfaceless", or "window"
     std::string
         description;  ///< what EGL says of it: render node, "software", extensions that matter
     bool software =
@@ -45,7 +46,7 @@ struct ContextOptions {
     bool debug = false;
 };
 
-/// An OpenGL 4.5 core context without a window, current on the thread that made it, through EGL:
+/// An OpenGL 4.5 core context. One of its own has no window and is current on the thread that made it, through EGL:
 /// the device platform, then the surfaceless one. Clip space has depth 0..1 (reversed-Z is the
 /// caller's).
 ///
@@ -56,6 +57,11 @@ class Context {
   public:
     /// @throws Error (NoDevice) with each device that was tried and why it would not do
     explicit Context(const ContextOptions& options = {});
+    /// A context that someone else has made, such as a window's, and made current on this thread.
+    /// It goes when they let it go.
+    /// @param make_current  makes it current on the calling thread
+    /// @throws Error (NoDevice) where it has no OpenGL 4.5 core
+    static Context of_others(std::function<void()> make_current);
     Context(Context&&) noexcept;
     Context& operator=(Context&&) noexcept;
     ~Context();
@@ -76,6 +82,7 @@ class Context {
 
   private:
     struct Impl;
+    explicit Context(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
 

@@ -33,6 +33,9 @@ class Framebuffer {
     void clear_depth(float value) const;
     void clear_stencil(int value) const;
 
+    /// Copies its first colour to the window of the current context, rows from below, stretched.
+    void copy_to_window(int width_px, int height_px) const;
+
     Extent extent() const { return extent_; }
 
   private:

@@ -62,16 +62,21 @@ Picture side_by_side(const Picture& left, const Picture& right, Value line) {
 
 }  // namespace
 
+/// What draws a scene: some effects, and of a comparison the rest of them.
+struct Session::DrawnEffects {
+    std::unique_ptr<ActiveEffects> effects, others;
+    std::unique_ptr<render::Renderer> renderer, without;  // refer to these
+};
+
 struct Session::Impl {
     scene::Scene scene;
     Options options;
     StageTimes stages;
 
     // In the order in which each needs those above.
-    std::unique_ptr<ActiveEffects> effects, others;
     std::optional<gl::Context> context;
     std::optional<Loaded> loaded;
-    std::optional<render::Renderer> renderer, without;
+    DrawnEffects drawn;
     std::optional<render::Ground> ground;
     std::optional<render::Terrain> terrain;
 
@@ -91,7 +96,9 @@ struct Session::Impl {
         auto loading =
             std::async(std::launch::async | std::launch::deferred, [this] { return load(scene); });
         open_device(files);
-        compile();
+        const auto began = Clock::now();
+        compile(drawn);
+        stages.emplace_back("compile", milliseconds_since(began));
         loaded.emplace(loading.get());
         stages.emplace_back("load", loaded->took_ms);
         if (timed && !time) time = parse_over(scene.moment, loaded->source, loaded->field);
@@ -100,21 +107,39 @@ struct Session::Impl {
         look(scene.view);
     }
 
+    DrawnEffects load_effects(const scene::Effects& asked) const {
+        DrawnEffects result;
+        const bool compared = !options.compared.empty();
+        result.effects = ActiveEffects::of(compared ? with(asked, options.compared) : asked);
+        if (compared)
+            result.others =
+                ActiveEffects::of(session::without(asked, options.compared, *result.effects),
+                                  /*aloud=*/false);
+        return result;
+    }
+
     void open_device(FilesInUse& files) {
         const auto began = Clock::now();
-        const bool compared = !options.compared.empty();
-        effects =
-            ActiveEffects::of(compared ? with(scene.effects, options.compared) : scene.effects);
-        if (compared)
-            others = ActiveEffects::of(session::without(scene.effects, options.compared, *effects),
-                                       /*aloud=*/false);
-        effects->add_inputs(files);
-        scene.effects.settings =
-            effect::with_absolute_files(std::move(scene.effects.settings), effects->values);
-        context.emplace(gl::ContextOptions{.device = options.device});
-        effects->fit(context->info());
-        if (others) others->fit(context->info(), /*aloud=*/false);
+        drawn = load_effects(scene.effects);
+        drawn.effects->add_inputs(files);
+        take_effects(scene.effects);
+        context.emplace(options.context
+                            ? options.context()
+                            : gl::Context(gl::ContextOptions{.device = options.device}));
+        fit(drawn);
         stages.emplace_back("device", milliseconds_since(began));
+    }
+
+    /// Says in the scene which effects there are.
+    void take_effects(const scene::Effects& asked) {
+        scene.effects = asked;
+        scene.effects.settings =
+            effect::with_absolute_files(std::move(scene.effects.settings), drawn.effects->values);
+    }
+
+    void fit(DrawnEffects& drawing) const {
+        drawing.effects->fit(context->info());
+        if (drawing.others) drawing.others->fit(context->info(), /*aloud=*/false);
     }
 
     render::RendererOptions renderer_options() const {
@@ -122,13 +147,27 @@ struct Session::Impl {
             .width_px = scene.width_px, .height_px = scene.height_px, .radiance = options.radiance};
     }
 
-    void compile() {
-        const auto began = Clock::now();
+    void compile(DrawnEffects& drawing) {
         render::RendererOptions with_texts = renderer_options();
         with_texts.stitched = options.stitched;
-        renderer.emplace(*context, effects->inputs(), with_texts);
-        if (others) without.emplace(*context, others->inputs(), renderer_options());
-        stages.emplace_back("compile", milliseconds_since(began));
+        drawing.renderer =
+            std::make_unique<render::Renderer>(*context, drawing.effects->inputs(), with_texts);
+        if (drawing.others)
+            drawing.without = std::make_unique<render::Renderer>(*context, drawing.others->inputs(),
+                                                                 renderer_options());
+    }
+
+    void set_effects(const scene::Effects& asked) {
+        context->make_current();
+        DrawnEffects fresh = load_effects(asked);
+        fit(fresh);
+        compile(fresh);
+        // A driver may refuse a program at its first draw.
+        fresh.renderer->render_frame(*terrain, *ground, inputs);
+        if (fresh.without) fresh.without->render_frame(*terrain, *ground, inputs);
+        std::swap(drawn, fresh);
+        take_effects(asked);
+        look(scene.view);  // what effects displace may be in sight
     }
 
     void upload() {
@@ -166,7 +205,8 @@ struct Session::Impl {
         inputs.camera = scene::make_camera(
             view, [this](const geo::Geodetic& at) { return ground_height_m(at); }, ground->frame,
             points, static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration,
-            render::points_moved_to(points, *ground, scene.exaggeration, renderer->displacement()));
+            render::points_moved_to(points, *ground, scene.exaggeration,
+                                    drawn.renderer->displacement()));
         scene.view = view;
     }
 
@@ -181,8 +221,8 @@ struct Session::Impl {
         context->make_current();
         render::FrameInputs frame = inputs;
         frame.loading = loading;
-        renderer->render_frame(*terrain, *ground, frame, times);
-        if (without) without->render_frame(*terrain, *ground, frame);
+        drawn.renderer->render_frame(*terrain, *ground, frame, times);
+        if (drawn.without) drawn.without->render_frame(*terrain, *ground, frame);
     }
 
     /// @throws Error where the last frame has light that is no number
@@ -195,10 +235,11 @@ struct Session::Impl {
     template <typename Read, typename Value>
     auto read(const Read& read_of, Value line) {
         int not_numbers = 0, others_not_numbers = 0;
-        auto picture = read_of(*renderer, &not_numbers);
-        if (without) picture = side_by_side(picture, read_of(*without, &others_not_numbers), line);
-        check_numbers(not_numbers, *effects);
-        if (without) check_numbers(others_not_numbers, *others);
+        auto picture = read_of(*drawn.renderer, &not_numbers);
+        if (drawn.without)
+            picture = side_by_side(picture, read_of(*drawn.without, &others_not_numbers), line);
+        check_numbers(not_numbers, *drawn.effects);
+        if (drawn.without) check_numbers(others_not_numbers, *drawn.others);
         return picture;
     }
 };
@@ -225,32 +266,47 @@ void Session::look(const scene::View& view) {
 
 void Session::set_moment(sun::Instant utc) {
     impl_->set_moment(utc);
+    impl_->scene.moment.time = sun::to_iso(utc);
+    impl_->scene.moment.date.clear();
 }
 
 sun::Instant Session::moment() const {
     return impl_->utc;
 }
 
+void Session::set_effects(const scene::Effects& effects) {
+    impl_->set_effects(effects);
+}
+
+const ActiveEffects& Session::effects() const {
+    return *impl_->drawn.effects;
+}
+
 void Session::set(const std::string& address, const std::string& value) {
     impl_->context->make_current();
-    for (const auto& [active, renderer] : {std::pair(impl_->effects.get(), &impl_->renderer),
-                                           std::pair(impl_->others.get(), &impl_->without)}) {
+    for (const auto& [active, renderer] :
+         {std::pair(impl_->drawn.effects.get(), impl_->drawn.renderer.get()),
+          std::pair(impl_->drawn.others.get(), impl_->drawn.without.get())}) {
         if (!active) continue;
         const shader::Param* const param = active->values.find(address);
         if (param && param->is_static)
             bad_input(fmt::format("session: {}: it is static: another value is another program",
                                   address));
         active->values.set(address, value);
-        (*renderer)->set_values(active->values);
+        renderer->set_values(active->values);
     }
+    std::vector<effect::Setting>& settings = impl_->scene.effects.settings;
+    std::erase_if(settings,
+                  [&](const effect::Setting& setting) { return setting.address == address; });
+    settings.push_back({address, value});
 }
 
 void Session::resize(int width_px, int height_px) {
     impl_->context->make_current();
     impl_->scene.width_px = width_px;
     impl_->scene.height_px = height_px;
-    impl_->renderer->resize(width_px, height_px);
-    if (impl_->without) impl_->without->resize(width_px, height_px);
+    impl_->drawn.renderer->resize(width_px, height_px);
+    if (impl_->drawn.without) impl_->drawn.without->resize(width_px, height_px);
     impl_->look(impl_->scene.view);
 }
 
@@ -265,7 +321,7 @@ bool Session::draw_what_is_there() {
 
 void Session::draw_alone() {
     impl_->context->make_current();
-    impl_->renderer->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs);
+    impl_->drawn.renderer->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs);
     impl_->context->finish();
 }
 
@@ -284,7 +340,7 @@ image::ImageF Session::radiance() const {
 }
 
 const gl::Texture& Session::texture() const {
-    return impl_->renderer->picture();
+    return impl_->drawn.renderer->picture();
 }
 
 std::string Session::place_text() const {
@@ -304,7 +360,7 @@ const StageTimes& Session::stages() const {
 }
 
 int Session::triangles() const {
-    return impl_->renderer->triangles();
+    return impl_->drawn.renderer->triangles();
 }
 
 const gl::DeviceInfo& Session::device() const {

@@ -18,12 +18,16 @@ namespace relevo::session {
 
 struct Options {
     std::string device = "auto";  ///< as gl::Context takes it
-    bool radiance = false;        ///< keep linear light, for Session::radiance()
+    /// Gives the context of a window instead of one on `device`.
+    std::function<gl::Context()> context{};
+    bool radiance = false;  ///< keep linear light, for Session::radiance()
     /// Effects of a comparison: pictures have them on the left and not on the right.
     std::vector<std::string> compared{};
     /// Called with the programs' texts before a driver sees them.
     std::function<void(const std::vector<render::ProgramText>&)> stitched{};
 };
+
+struct ActiveEffects;
 
 /// Milliseconds of stages by their names: "device", "compile", "load", "upload". Loading goes on
 /// beside the first two, so that their sum is more than the whole.
@@ -48,6 +52,11 @@ class Session {
     void look(const scene::View& view);
     /// Moves the sun.
     void set_moment(sun::Instant utc);
+    /// Draws with other effects, or with what their files have become, from the next frame on.
+    /// @throws Error as those who load, compile and draw; the session then goes on as it was
+    void set_effects(const scene::Effects& effects);
+    /// The effects there are, those that are on, and their parameters.
+    const ActiveEffects& effects() const;
     /// Sets a parameter that is not static. @throws Error (BadInput) as shader::ParamStore::set
     void set(const std::string& address, const std::string& value);
     /// Sides of the picture [px].
@@ -82,6 +91,7 @@ class Session {
     const gl::DeviceInfo& device() const;
 
   private:
+    struct DrawnEffects;
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

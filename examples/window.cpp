@@ -1,0 +1,100 @@
+// The smallest window on a session: drag to orbit, scroll to zoom, left and right move the sun by
+// half an hour, the slider thickens the haze, R reads the effects' files again. Takes a scene of
+// `relevo capture --save-scene`.
+#define GLFW_INCLUDE_NONE
+#include <algorithm>
+#include <cstdio>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include "base/error.h"
+#include "gl/framebuffer.h"
+#include "session/active_effects.h"
+#include "session/session.h"
+
+namespace {
+
+using relevo::session::Session;
+
+std::string read_effects_again(Session& session) {
+    try {
+        session.set_effects(session.scene().effects);
+        return "effects read again";
+    } catch (const relevo::Error& error) {
+        return error.what();  // the last good program stays
+    }
+}
+
+/// The mouse where no widget takes it.
+void orbit(Session& session) {
+    const ImGuiIO& io = ImGui::GetIO();
+    relevo::scene::View view = session.scene().view;
+    if (io.WantCaptureMouse) return;
+    view.orbit.zoom *= 1 + 0.2 * io.MouseWheel;
+    if (io.MouseDown[0]) {
+        view.orbit.azimuth_deg += 0.3 * io.MouseDelta.x;
+        view.orbit.elevation_deg =
+            std::clamp(view.orbit.elevation_deg + 0.3 * io.MouseDelta.y, 1.0, 89.0);
+    }
+    session.look(view);
+}
+
+struct Shown {
+    Session& session;
+    std::string message;
+};
+
+void on_key(GLFWwindow* window, int key, int, int action, int) {
+    auto& [session, message] = *static_cast<Shown*>(glfwGetWindowUserPointer(window));
+    if (action == GLFW_RELEASE) return;
+    if (key == GLFW_KEY_LEFT) session.set_moment(session.moment() + -1800.0);
+    if (key == GLFW_KEY_RIGHT) session.set_moment(session.moment() + 1800.0);
+    if (key == GLFW_KEY_R) message = read_effects_again(session);
+}
+
+void frame(GLFWwindow* window, Shown& shown) {
+    auto& [session, message] = shown;
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    float density = session.effects().values.value("haze.density")[0];
+    if (ImGui::SliderFloat("haze", &density, 0, 0.5f))
+        session.set("haze.density", std::to_string(density));
+    ImGui::TextUnformatted(session.sun_text().c_str());
+    orbit(session);
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window, &width, &height);
+    session.resize(std::max(width, 1), std::max(height, 1));
+    session.draw_what_is_there();
+    relevo::gl::Framebuffer({&session.texture()}, nullptr, "shown").copy_to_window(width, height);
+    ImGui::Render();
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    glfwSetWindowTitle(window, (session.sun_text() + " " + message).c_str());
+    glfwSwapBuffers(window);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) try {
+    if (count != 2 || !glfwInit()) return std::puts("example_window SCENE.json, on a display"), 1;
+    glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
+    GLFWwindow* const window = glfwCreateWindow(960, 640, "Relevo", nullptr, nullptr);
+    const auto make_current = [&] { glfwMakeContextCurrent(window); };
+    relevo::session::Options options;
+    options.context = [&] { return relevo::gl::Context::of_others(make_current); };
+    relevo::FilesInUse files;
+    Session session(relevo::scene::read_scene(arguments[1]), options, files);
+    ImGui::CreateContext();
+    ImGui_ImplGlfw_InitForOpenGL(window, /*install_callbacks=*/true);
+    ImGui_ImplOpenGL3_Init();
+    Shown shown{session, {}};
+    glfwSetWindowUserPointer(window, &shown);
+    glfwSetKeyCallback(window, on_key);
+    for (; !glfwWindowShouldClose(window); glfwPollEvents())
+        frame(window, shown);
+} catch (const relevo::Error& error) {
+    return std::puts(error.what()), 1;
+}

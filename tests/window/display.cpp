@@ -1,0 +1,176 @@
+#include "window/display.h"
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "support/support.h"
+
+namespace relevo::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Starts a program with its output and error in a file.
+pid_t start(const std::vector<std::string>& line, const std::vector<std::string>& environment,
+            const std::filesystem::path& output, int keep = -1) {
+    std::vector<char*> arguments;
+    for (const std::string& word : line)
+        arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    const pid_t child = fork();
+    if (child != 0) return child;
+    for (const std::string& setting : environment) {
+        const std::size_t equals = setting.find('=');
+        setenv(setting.substr(0, equals).c_str(), setting.substr(equals + 1).c_str(), 1);
+    }
+    const int file = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    dup2(file, STDOUT_FILENO);
+    dup2(file, STDERR_FILENO);
+    for (int descriptor = 3; descriptor < 64; ++descriptor)
+        if (descriptor != keep) close(descriptor);
+    execvp(arguments[0], arguments.data());
+    _exit(127);
+}
+
+void end(pid_t process) {
+    if (process <= 0) return;
+    kill(process, SIGTERM);
+    waitpid(process, nullptr, 0);
+}
+
+std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+}
+
+}  // namespace
+
+Display::Display(int width_px, int height_px)
+    : folder_(scratch_dir(fmt::format("display_{}", getpid()))) {
+    std::array<int, 2> tube{};
+    if (pipe(tube.data()) != 0) failed("test: no pipe");
+    // It takes a number that is free, and says which when it is ready.
+    server_ = start({"Xvfb", "-displayfd", std::to_string(tube[1]), "-screen", "0",
+                     fmt::format("{}x{}x24", width_px, height_px), "-fbdir", folder_.string(),
+                     "-nolisten", "tcp"},
+                    {}, folder_ / "server.txt", tube[1]);
+    close(tube[1]);
+    std::string number;
+    for (char c = 0; read(tube[0], &c, 1) == 1 && c != '\n';)
+        number += c;
+    close(tube[0]);
+    if (number.empty())
+        failed("test: Xvfb does not start: " + read_text(folder_ / "server.txt", "test"));
+    name_ = ":" + number;
+}
+
+Display::~Display() {
+    end(server_);
+}
+
+image::Image8 Display::screen() const {
+    // The X window dump: sizes as big-endian words, a table of colours, then BGRX rows.
+    const std::string dump = read_text(folder_ / "Xvfb_screen0", "test");
+    const auto word = [&](std::size_t i) { return std::size_t{big_endian(dump, 4 * i)}; };
+    const std::size_t width = word(4), height = word(5), stride = word(12), colours = word(19);
+    constexpr std::size_t kBytesAColour = 12;
+    image::Image8 picture(static_cast<int>(width), static_cast<int>(height), 3);
+    for (std::size_t y = 0; y < height; ++y) {
+        const char* from = dump.data() + word(0) + colours * kBytesAColour + y * stride;
+        std::uint8_t* to = picture.row(static_cast<int>(y));
+        for (std::size_t x = 0; x < width; ++x, from += 4, to += 3)
+            for (int c = 0; c < 3; ++c)
+                to[c] = static_cast<std::uint8_t>(from[2 - c]);
+    }
+    return picture;
+}
+
+std::string Display::act(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> line{"xdotool"};
+    line.insert(line.end(), arguments.begin(), arguments.end());
+    const std::filesystem::path output = folder_ / "xdotool.txt";
+    const pid_t process = start(line, {"DISPLAY=" + name_}, output);
+    int status = 0;
+    waitpid(process, &status, 0);
+    const std::string text = read_text(output, "test");
+    if (status != 0) failed(fmt::format("test: xdotool {}: {}", arguments.front(), text));
+    return text;
+}
+
+WindowedProgram::WindowedProgram(const Display& display, const std::filesystem::path& program,
+                                 const std::vector<std::string>& arguments,
+                                 const std::vector<std::string>& environment)
+    : display_(display), output_(scratch_dir(fmt::format("window_{}", getpid())) / "output.txt") {
+    std::vector<std::string> line{program.string()};
+    line.insert(line.end(), arguments.begin(), arguments.end());
+    std::vector<std::string> settings = environment;
+    settings.push_back("DISPLAY=" + display.name());
+    settings.push_back("WAYLAND_DISPLAY=");
+    process_ = start(line, settings, output_);
+}
+
+WindowedProgram::~WindowedProgram() {
+    if (is_running()) end(process_);
+}
+
+std::string WindowedProgram::title() const {
+    try {
+        const std::string window =
+            display_.act({"search", "--onlyvisible", "--pid", std::to_string(process_)});
+        return std::string(
+            trimmed(display_.act({"getwindowname", window.substr(0, window.find('\n'))})));
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+bool WindowedProgram::wait(const std::function<bool()>& holds, double at_most_s) {
+    const auto until = Clock::now() + std::chrono::duration<double>(at_most_s);
+    while (!holds()) {
+        if (Clock::now() > until) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return true;
+}
+
+bool WindowedProgram::is_running() {
+    if (ended_) return false;
+    int status = 0;
+    if (waitpid(process_, &status, WNOHANG) == 0) return true;
+    ended_ = true;
+    status_ = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return false;
+}
+
+int WindowedProgram::status(double at_most_s) {
+    wait([&] { return !is_running(); }, at_most_s);
+    return status_;
+}
+
+std::string WindowedProgram::output() const {
+    return read_text(output_, "test");
+}
+
+double difference(const image::Image8& a, const image::Image8& b, int by) {
+    if (a.width != b.width || a.height != b.height) return 1;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.values.size(); ++i)
+        count += std::abs(int{a.values[i]} - int{b.values[i]}) > by;
+    return static_cast<double>(count) / static_cast<double>(a.values.size());
+}
+
+}  // namespace relevo::test
