@@ -24,6 +24,12 @@ struct TextureSpec {
     Wrap wrap = Wrap::Repeat;
     bool mipmaps = true;
     int line = 0;  ///< in plugin.json
+
+    /// Whether another is the same on the device, whatever it is called.
+    bool same_texels(const TextureSpec& other) const {
+        return kind == other.kind && files == other.files && slices == other.slices &&
+               srgb == other.srgb && wrap == other.wrap && mipmaps == other.mipmaps;
+    }
 };
 
 /// How far a plugin's hook `displace` moves the ground at most, so that core draws what is moved

@@ -23,10 +23,16 @@ Framebuffer::Framebuffer(std::span<const Texture* const> colours, const Texture*
     set_label(GL_FRAMEBUFFER, name, label);
     std::vector<GLenum> targets;
     for (const Texture* colour : colours) {
-        const GLenum target = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(targets.size());
-        glNamedFramebufferTexture(name, target, colour->name(), 0);
-        targets.push_back(target);
-        extent_ = colour->extent();
+        const bool array = colour->kind() == TextureKind::D2Array;
+        for (int layer = 0; layer < (array ? colour->extent().depth : 1); ++layer) {
+            const GLenum target = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(targets.size());
+            if (array)
+                glNamedFramebufferTextureLayer(name, target, colour->name(), 0, layer);
+            else
+                glNamedFramebufferTexture(name, target, colour->name(), 0);
+            targets.push_back(target);
+        }
+        extent_ = {colour->extent().width, colour->extent().height, 1};
     }
     glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(targets.size()), targets.data());
     if (targets.empty()) glNamedFramebufferReadBuffer(name, GL_NONE);

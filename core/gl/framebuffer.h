@@ -15,7 +15,8 @@ namespace relevo::gl {
 class Framebuffer {
   public:
     Framebuffer() = default;
-    /// @param colours  in the order of the fragment program's outputs; may be empty
+    /// @param colours  in the order of the fragment program's outputs, an array's layers one after
+    ///                 another; may be empty
     /// @param depth    a Depth32F or a Stencil8 texture, or null
     /// @throws Error (Failed) if the device cannot draw to this combination
     Framebuffer(std::span<const Texture* const> colours, const Texture* depth,

@@ -7,8 +7,10 @@
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/paths.h"
 #include "base/units.h"
 #include "gl/framebuffer.h"
@@ -18,6 +20,7 @@
 #include "render/draw_watch.h"
 #include "render/native_host.h"
 #include "render/programs.h"
+#include "shader/stored_varyings.h"
 
 namespace relevo::render {
 namespace {
@@ -43,6 +46,8 @@ struct Scissor {
     Scissor& operator=(const Scissor&) = delete;
     ~Scissor() { glDisable(GL_SCISSOR_TEST); }
 };
+
+constexpr const char* kVaryings = shader::StoredVaryings::kTexture;
 
 constexpr const char* kNormalAddress = "terrain.normal";
 
@@ -82,8 +87,7 @@ struct Renderer::Impl {
     bool reads_surface = false;
 
     gl::Texture gbuffer, depth, radiance, overlay, tone_mapped, edge_marks, picture;
-    std::vector<gl::Texture> varyings;
-    gl::Texture height_steps;
+    gl::Texture varyings, height_steps;
     // Light is the radiance, or at once the picture's colours.
     gl::Framebuffer geometry_target, light_target, overlaid_target, post_target, picture_target;
     std::vector<NativeHost> natives;
@@ -137,16 +141,13 @@ struct Renderer::Impl {
         edge_marks = gl::Texture(gl::TextureKind::D2, gl::Format::Stencil8, size, 1, "edge marks");
         depth.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
         picture = target(gl::Format::RGBA8, "picture");
-        varyings.clear();
         std::vector<const gl::Texture*> outputs{&gbuffer};
-        const int varying_targets = text("geometry").stitched.varying_targets;
-        varyings.reserve(static_cast<std::size_t>(varying_targets));
-        for (int i = 0; i < varying_targets; ++i) {
-            varyings.push_back(target(gl::Format::RGBA32F, "varyings"));
-            varyings.back().set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+        if (const int layers = text("geometry").stitched.varying_targets; layers > 0) {
+            varyings = gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA32F,
+                                   {size.width, size.height, layers}, 1, kVaryings);
+            varyings.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
+            outputs.push_back(&varyings);
         }
-        for (const gl::Texture& texture : varyings)
-            outputs.push_back(&texture);
         if (reads(kHeightStepsTexture)) {
             height_steps = target(gl::Format::RG32F, kHeightStepsTexture);
             height_steps.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
@@ -184,7 +185,20 @@ struct Renderer::Impl {
                                                           .depth = !effects.modules.empty(),
                                                           .shown = !options.radiance});
         if (options.stitched) options.stitched(texts);
+        for (const ProgramText& text : texts)
+            log::debug(units_text(text, max_texture_units));
         return texts;
+    }
+
+    /// "render: terrain: 13 of 16 texture units; bump.rock also serves as layering.rock"
+    static std::string units_text(const ProgramText& program, int max_texture_units) {
+        std::string text = fmt::format("render: {}: {} of {} texture units", program.name,
+                                       program.stitched.textures.size(), max_texture_units);
+        for (const shader::TextureUnit& unit : program.stitched.textures)
+            if (!unit.also.empty())
+                text += fmt::format("; {} also serves as {}", unit.resource,
+                                    fmt::join(unit.also, ", "));
+        return text;
     }
 
     const ProgramText* find_text(const std::string& name) const {
@@ -271,8 +285,7 @@ struct Renderer::Impl {
         if (name == "colour") return &tone_mapped;
         if (name == "depth") return &depth;
         if (const gl::Texture* const pages = ground.texture(name)) return pages;
-        for (std::size_t i = 0; i < varyings.size(); ++i)
-            if (name == fmt::format("varyings_{}", i)) return &varyings[i];
+        if (name == kVaryings) return &varyings;
         return nullptr;
     }
 

@@ -37,8 +37,16 @@ render::EffectInputs ActiveEffects::inputs() const {
     inputs.stitch.values = &values;
     for (const effect::Effect* effect : loaded.selection.effects)
         if (effect->manifest.displaces) inputs.displaces.push_back(*effect->manifest.displaces);
-    for (const effect::LoadedTexture& texture : loaded.textures)
-        inputs.textures.push_back(&texture);
+    for (const effect::LoadedTexture& texture : loaded.textures) {
+        const auto same = std::find_if(inputs.textures.begin(), inputs.textures.end(),
+                                       [&](const effect::LoadedTexture* other) {
+                                           return other->spec.same_texels(texture.spec);
+                                       });
+        if (same == inputs.textures.end())
+            inputs.textures.push_back(&texture);
+        else
+            inputs.stitch.same_textures.emplace(texture.spec.resource, (*same)->spec.resource);
+    }
     for (const effect::NativeModule& module : loaded.modules)
         inputs.modules.push_back(&module);
     return inputs;

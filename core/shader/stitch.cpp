@@ -11,6 +11,7 @@
 #include "shader/stage.h"
 #include "shader/stored_varyings.h"
 #include "shader/text_builder.h"
+#include "shader/texture_units.h"
 
 namespace relevo::shader {
 namespace {
@@ -64,7 +65,10 @@ class Stitcher {
             params.insert(params.end(), snippet->source.params.begin(),
                           snippet->source.params.end());
         result_.params = block_layout(params);
-        give_out_units();
+        units_ = TextureUnits(vertex_, fragment_, input_);
+        if (loads() && stored_.targets() > 0) units_.add_core(StoredVaryings::kTexture, "sampler2DArray");
+        units_.check(program_name(), input_.max_texture_units);
+        result_.textures = units_.units();
 
         result_.vertex = write(vertex_);
         result_.fragment = write(fragment_);
@@ -110,90 +114,6 @@ class Stitcher {
                                              : varying.interpolation + ' ' + varying.type;
     }
 
-    // ---- texture units
-
-    struct Texture {
-        TextureUnit unit;
-        std::vector<const Sampler*> samplers;  // the first names the unit
-    };
-
-    void collect_samplers(bool core_ones, bool shared, std::vector<Texture>& textures) const {
-        for (const Stage* stage : {&vertex_, &fragment_}) {
-            for (const auto& [sampler, owner] : stage->samplers()) {
-                const auto same = std::find_if(textures.begin(), textures.end(),
-                                               [&, s = sampler](const Texture& texture) {
-                                                   return texture.unit.resource == s->resource;
-                                               });
-                if (same != textures.end()) {
-                    add_reader(*same, sampler, owner);
-                } else if ((owner == "core") == core_ones && is_shared(*sampler) == shared) {
-                    textures.push_back(
-                        {{0, sampler->name, sampler->type, sampler->resource, owner}, {sampler}});
-                }
-            }
-        }
-    }
-
-    // A texture that a plugin reads without having made it.
-    bool is_shared(const Sampler& sampler) const {
-        for (const Stage* stage : {&vertex_, &fragment_})
-            for (const auto& [other, owner] : stage->samplers())
-                if (other->resource == sampler.resource && stage->is_foreign(*other)) return true;
-        return false;
-    }
-
-    static void add_reader(Texture& texture, const Sampler* sampler, const std::string& owner) {
-        const Sampler& first = *texture.samplers.front();
-        if (sampler->type != first.type)
-            throw AuthorError(
-                owner,
-                fmt::format("shader::stitch: {}:{}: {}: expected a {} for the texture {}, as "
-                            "in {}:{}, but got a {}",
-                            sampler->file, sampler->line, sampler->name, first.type, first.resource,
-                            first.file, first.line, sampler->type));
-        const bool known =
-            std::any_of(texture.samplers.begin(), texture.samplers.end(),
-                        [&](const Sampler* other) { return other->name == sampler->name; });
-        if (!known) texture.samplers.push_back(sampler);
-    }
-
-    void give_out_units() {
-        collect_samplers(true, false, textures_);
-        std::vector<Texture> shared;
-        collect_samplers(false, true, shared);
-        std::sort(shared.begin(), shared.end(), [](const Texture& a, const Texture& b) {
-            return a.unit.resource < b.unit.resource;
-        });
-        textures_.insert(textures_.end(), shared.begin(), shared.end());
-        for (const Snippet* snippet : input_.snippets) {
-            // Both stages' samplers of one plugin together, in the order of its file.
-            std::vector<Texture> own;
-            collect_samplers(false, false, own);
-            for (const Sampler& sampler : snippet->source.samplers)
-                for (const Texture& texture : own)
-                    if (texture.unit.name == sampler.name) textures_.push_back(texture);
-        }
-        for (std::size_t i = 0; i < textures_.size(); ++i) {
-            textures_[i].unit.unit = static_cast<int>(i);
-            result_.textures.push_back(textures_[i].unit);
-        }
-        if (loads()) {
-            for (int i = 0; i < result_.varying_targets; ++i) {
-                const std::string name = StoredVaryings::texture(i);
-                result_.textures.push_back(
-                    {static_cast<int>(result_.textures.size()), name, "sampler2D", name, "core"});
-            }
-        }
-        if (static_cast<int>(result_.textures.size()) <= input_.max_texture_units) return;
-        std::string list;
-        for (const TextureUnit& unit : result_.textures)
-            list += fmt::format("\n  unit {}: {} of {}", unit.unit, unit.resource, unit.owner);
-        failed(
-            fmt::format("shader::stitch: {}: expected at most {} textures, as many as this "
-                        "device has units, but got {}; switch a plugin off:{}",
-                        program_name(), input_.max_texture_units, result_.textures.size(), list));
-    }
-
     // ---- text
 
     StageText write(Stage& stage) {
@@ -206,7 +126,7 @@ class Stitcher {
         write_unit(out, stage.unit(UnitRole::Types));
         write_unit(out, stage.unit(UnitRole::Frame));
         write_params(out, stage);
-        write_samplers(out, stage);
+        units_.write(out, stage);
         write_varyings(out, stage);
         // Before its readers: Mesa warns of a global that is read above the line that sets it.
         if (stage.kind() == StageKind::Fragment && loads()) stored_.write_load(out);
@@ -260,29 +180,6 @@ class Stitcher {
                          origin(stage, param.name, param.file, param.line));
             }
         }
-        out.heading("");
-    }
-
-    void write_samplers(TextBuilder& out, const Stage& stage) {
-        out.heading("textures");
-        for (const auto& [unit, samplers] : textures_) {
-            const bool used =
-                std::any_of(samplers.begin(), samplers.end(),
-                            [&](const Sampler* sampler) { return stage.reaches(sampler->name); });
-            if (!used) continue;
-            out.line(
-                fmt::format("layout(binding = {}) uniform {} {};", unit.unit, unit.type, unit.name),
-                {unit.owner, samplers[0]->file, samplers[0]->line});
-            for (std::size_t i = 1; i < samplers.size(); ++i)
-                if (stage.reaches(samplers[i]->name))
-                    out.line(
-                        fmt::format("#define {} {}", samplers[i]->name, unit.name),
-                        origin(stage, samplers[i]->name, samplers[i]->file, samplers[i]->line));
-        }
-        if (stage.kind() == StageKind::Fragment && !program_.geometry_of.empty())
-            for (std::size_t i = textures_.size(); i < result_.textures.size(); ++i)
-                out.line(fmt::format("layout(binding = {}) uniform sampler2D {};",
-                                     result_.textures[i].unit, result_.textures[i].name));
         out.heading("");
     }
 
@@ -378,7 +275,7 @@ class Stitcher {
     ProgramRecipe shading_recipe_;
     std::optional<Stage> shading_;
     StoredVaryings stored_;
-    std::vector<Texture> textures_;
+    TextureUnits units_;
     Stitched result_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +40,8 @@ struct StitchInput {
     std::vector<std::string> capabilities;  ///< what they provide: HAS_<word> is 1 for these
     const ParamStore* values = nullptr;     ///< of static parameters; null takes their defaults
     int max_texture_units = 16;             ///< GL_MAX_TEXTURE_IMAGE_UNITS
+    /// Textures that hold the same as another, by which name that one is on the device.
+    std::map<std::string, std::string> same_textures{};
 };
 
 /// The text of one stage, compiled as one string, and where its lines come from.
@@ -54,6 +57,8 @@ struct TextureUnit {
     std::string type;      ///< "sampler2DArray"
     std::string resource;  ///< "haze.noise"; the sampler's own name for core's
     std::string owner;     ///< plugin id, or "core"
+    /// Other names of the same texture, which need no unit of their own.
+    std::vector<std::string> also;
 };
 
 /// A hook that a program calls, and who answers.
@@ -69,8 +74,8 @@ struct Stitched {
     BlockLayout params;  ///< block `Params` at binding 1: the same for all programs of a selection
     bool uses_params = false;  ///< whether this program has the block
     std::vector<HookUse> hooks;
-    /// Of a geometry or a shading program: how many RGBA32F targets hold the stored varyings, named
-    /// `varyings_0` and so on among the textures of the shading program.
+    /// Of a geometry or a shading program: how many RGBA32F targets hold the stored varyings, which
+    /// the shading program reads as the layers of `varyings`.
     int varying_targets = 0;
 };
 

@@ -66,10 +66,6 @@ bool StoredVaryings::holds(const Varying& varying) const {
                        [&](const Stored& stored) { return stored.varying->name == varying.name; });
 }
 
-std::string StoredVaryings::texture(int target) {
-    return fmt::format("varyings_{}", target);
-}
-
 void StoredVaryings::write_store(TextBuilder& out) const {
     out.heading("stored varyings");
     for (int i = 0; i < targets_; ++i)
@@ -88,7 +84,7 @@ void StoredVaryings::write_load(TextBuilder& out) const {
     out.heading("stored varyings");
     out.line("void load_varyings(in ivec2 pixel) {");
     for (int i = 0; i < targets_; ++i)
-        out.line(fmt::format("    vec4 stored_{} = texelFetch({}, pixel, 0);", i, texture(i)));
+        out.line(fmt::format("    vec4 stored_{0} = texelFetch({1}, ivec3(pixel, {0}), 0);", i, kTexture));
     for (const Stored& stored : stored_)
         out.line(fmt::format("    {} = {}(stored_{}.{});", stored.varying->name,
                              stored.varying->type, stored.target, swizzle(stored)));

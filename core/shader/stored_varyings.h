@@ -28,8 +28,8 @@ class StoredVaryings {
     int targets() const { return targets_; }
     bool holds(const Varying& varying) const;
 
-    /// The sampler of a target in the shading program.
-    static std::string texture(int target);
+    /// The sampler of the targets in the shading program, an array of theirs.
+    static constexpr const char* kTexture = "varyings";
 
     /// `store_varyings()`, which fills the outputs at location 1 and up.
     void write_store(TextBuilder& out) const;

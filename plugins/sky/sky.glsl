@@ -8,9 +8,7 @@
 
 uniform sampler3D sky_radiance;  // by s, t and height of the sun
 uniform sampler3D sky_light;     // irradiance of slopes, likewise
-uniform sampler2D sky_day;
-uniform sampler2D sky_sunset;
-uniform sampler2D sky_night;
+uniform sampler2DArray sky_times;
 uniform sampler3D sky_star_cells;  // by direction, unfolded like an octahedron; a column of stars
 
 uniform int sky_colours = 0; //@ enum(model, three) static label("Colours") description("A sky for every height of the sun, or the paper's three, blended")
@@ -250,9 +248,9 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     } else {
         vec2 texel = sky_texel(vec3(at, 0.0), sky_size).xy;
         vec3 blend = sky_blend(sun_sine);
-        colour = blend.x * textureLod(sky_day, texel, 0.0).rgb +
-                 blend.y * textureLod(sky_sunset, texel, 0.0).rgb +
-                 blend.z * textureLod(sky_night, texel, 0.0).rgb;
+        colour = vec3(0.0);
+        for (int time = 0; time < 3; ++time)  // day, sunset, night
+            colour += blend[time] * textureLod(sky_times, vec3(texel, float(time)), 0.0).rgb;
     }
     vec3 radiance = sky_brightness * sky_luminance() * colour;
     float haze = sky_air_mass ? sky_air_mass_of(sun_sine) : 1.0;

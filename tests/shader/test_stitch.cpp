@@ -441,7 +441,7 @@ TEST(Varyings, OfADeferredProgramAreStoredAndLoaded) {
     EXPECT_THAT(geometry.vertex.text, HasSubstr("out float haze_strength;\n"));
     EXPECT_THAT(shading.fragment.text, HasSubstr("\nfloat haze_strength;\n"));
     EXPECT_THAT(shading.fragment.text, HasSubstr("    haze_strength = float(stored_0.x);\n"));
-    EXPECT_EQ(shading.textures.back().name, "varyings_0");
+    EXPECT_EQ(shading.textures.back().name, "varyings");
 }
 
 TEST(Varyings, OfADeferredProgramThatNobodyReadsNeedNoTarget) {
@@ -554,6 +554,29 @@ TEST(TextureUnits, TooManyAreListedWithTheirPlugins) {
               "  unit 1: ground.noise of ground\n"
               "  unit 2: ground.layers of ground\n"
               "  unit 3: bump.normals of bump");
+}
+
+TEST(TextureUnits, TexturesThatHoldTheSameShareOne) {
+    const Written written =
+        plugins({{"bump",
+                  "uniform sampler2D bump_rock;\n"
+                  "void bump_on_albedo(inout Surface s) { s.diffuse = "
+                  "texture(bump_rock, vec2(0)).rgb; }"},
+                 {"haze", "uniform sampler2D haze_a;\nuniform sampler2D haze_rock;\n" + kAlbedo +
+                              "texture(haze_rock, texture(haze_a, vec2(0)).xy).rgb; }"}});
+    StitchInput input = written.input();
+    EXPECT_THAT(stitch(Texts(), terrain_program(), input).textures, testing::SizeIs(4));
+    input.same_textures = {{"haze.rock", "bump.rock"}};
+    const Stitched stitched = stitch(Texts(), terrain_program(), input);
+    ASSERT_THAT(stitched.textures, testing::SizeIs(3));
+    EXPECT_EQ(stitched.textures[1].resource, "bump.rock");
+    EXPECT_THAT(stitched.textures[1].also, ElementsAre("haze.rock"));
+    EXPECT_THAT(stitched.fragment.text,
+                HasSubstr("layout(binding = 1) uniform sampler2D bump_rock;\n"
+                          "#define haze_rock bump_rock\n"));
+    input.max_texture_units = 2;
+    EXPECT_THAT(error_of([&] { stitch(Texts(), terrain_program(), input); }),
+                HasSubstr("\n  unit 1: bump.rock of bump, also haze.rock\n"));
 }
 
 // ---- hooks in use
