@@ -17,7 +17,6 @@ namespace {
 using geo::kEquatorialRadius_m;
 using geo::kFlattening;
 constexpr double kBennett45_rad = radians(59.7 / 3600);  // frame.glsl: eye_sun_light.a
-constexpr double kNear_m = 0.5;  // reversed depth: nothing is lost by a small one
 
 }  // namespace
 

@@ -47,6 +47,8 @@ struct FrameInputs {
     double exaggeration = 1;    ///< factor on heights
     Displacement displacement;  ///< by the effects; the renderer fills it
     Loading loading = Loading::Wait;
+    /// Native effects leave what they have made as it is, such as shadows of the sun as it was.
+    bool keep_native = false;
     double unix_s = 0;  ///< the sun's moment, since 1970-01-01T00:00Z, for native modules
 };
 
@@ -62,6 +64,9 @@ struct Ground {
     glm::dvec2 south_west_m{-1, -1};  ///< corner of the DEM's posts in the local frame
     glm::dvec2 north_east_m{1, 1};    ///< likewise
 };
+
+/// Nothing nearer is drawn; reversed depth, so that nothing is lost by a small one.
+inline constexpr double kNear_m = 0.5;
 
 /// From positions relative to the eye to the picture's axes: right, up, forward.
 glm::dmat4 view_matrix(const scene::Camera& camera);

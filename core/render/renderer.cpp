@@ -91,6 +91,7 @@ struct Renderer::Impl {
     // Light is the radiance, or at once the picture's colours.
     gl::Framebuffer geometry_target, light_target, overlaid_target, post_target, picture_target;
     std::vector<NativeHost> natives;
+    bool native_is_made = false;  // by a frame before
 
     Impl(gl::Context& c, const EffectInputs& effects, const RendererOptions& o)
         : context(c),
@@ -319,6 +320,7 @@ struct Renderer::Impl {
 
         if (!natives.empty()) {
             for (NativeHost& native : natives) {
+                if (inputs.keep_native && native_is_made) continue;
                 // Twice its patience at least: a module that hangs by itself is named by its own
                 // deadline, not by this one.
                 constexpr double kMapParts = 4e6;
@@ -328,6 +330,7 @@ struct Renderer::Impl {
                     params_block.write(shader::pack(texts.front().stitched.params, values));
                 passed(native.id().c_str());
             }
+            native_is_made = true;
             frame_block.bind_uniform(kFrameBinding);
         }
 
@@ -450,6 +453,14 @@ void Renderer::resize(int width_px, int height_px) {
 
 const gl::Texture& Renderer::picture() const {
     return impl_->picture;
+}
+
+void Renderer::read_depths(std::vector<float>& depths_m) const {
+    depths_m.resize(static_cast<std::size_t>(impl_->pixels()));
+    impl_->depth.read(0, std::as_writable_bytes(std::span(depths_m)));
+    const auto near_m = static_cast<float>(kNear_m);
+    for (float& depth : depths_m)
+        depth = near_m / depth;
 }
 
 Displacement Renderer::displacement() const {

@@ -75,6 +75,10 @@ class Renderer {
     /// The last frame on the device, RGBA8, rows from below.
     const gl::Texture& picture() const;
 
+    /// How far the last frame's ground is from the eye, along the direction it looks in [m]: row
+    /// after row from below, infinity where there is sky.
+    void read_depths(std::vector<float>& depths_m) const;
+
     /// How far its effects move the ground.
     Displacement displacement() const;
     /// Of all parameters, as the last frame was drawn.

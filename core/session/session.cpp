@@ -314,6 +314,10 @@ void Session::draw(render::PassTimes* times) {
     impl_->draw(render::Loading::Wait, times);
 }
 
+void Session::keep_native(bool keep) {
+    impl_->inputs.keep_native = keep;
+}
+
 bool Session::draw_what_is_there() {
     impl_->draw(render::Loading::Beside);
     return impl_->terrain->is_complete();
@@ -341,6 +345,27 @@ image::ImageF Session::radiance() const {
 
 const gl::Texture& Session::texture() const {
     return impl_->drawn.renderer->picture();
+}
+
+void Session::read_depths(std::vector<float>& depths_m) const {
+    impl_->context->make_current();
+    impl_->drawn.renderer->read_depths(depths_m);
+}
+
+const scene::Camera& Session::camera() const {
+    return impl_->inputs.camera;
+}
+
+const dem::Heightfield& Session::heightfield() const {
+    return impl_->loaded->field;
+}
+
+const dem::Source& Session::source() const {
+    return impl_->loaded->source;
+}
+
+const render::Ground& Session::ground() const {
+    return *impl_->ground;
 }
 
 std::string Session::place_text() const {

@@ -61,6 +61,9 @@ class Session {
     void set(const std::string& address, const std::string& value);
     /// Sides of the picture [px].
     void resize(int width_px, int height_px);
+    /// Whether native effects leave what they have made as it is, such as shadows while the sun is
+    /// dragged, which cost more than the frame.
+    void keep_native(bool keep);
 
     sun::Instant moment() const;
 
@@ -80,6 +83,14 @@ class Session {
     image::ImageF radiance() const;
     /// The picture on the device, RGBA with rows from below, until the next frame.
     const gl::Texture& texture() const;
+    /// As render::Renderer::read_depths().
+    void read_depths(std::vector<float>& depths_m) const;
+
+    const scene::Camera& camera() const;
+    const dem::Heightfield& heightfield() const;
+    const dem::Source& source() const;
+    /// The DEM's ground; its local frame is the camera's.
+    const render::Ground& ground() const;
 
     /// "46.50 N 8.00 E", with " (the eye)" where it is that and not the DEM's middle.
     std::string place_text() const;
