@@ -21,24 +21,19 @@ function(relevo_layer name)
     target_link_libraries(relevo_${name} PUBLIC ${LAYER_DEPENDS} ${LAYER_PUBLIC_LINKS})
 endfunction()
 
-# relevo_test(<layer> [WHOLE] SOURCES ... [DEPENDS <layers>...] [LINKS ...])
+# relevo_test(<layer> SOURCES ... [DEPENDS <layers>...] [LINKS ...])
 #
-# One GoogleTest program for a layer. ctest has an entry for each case, "<layer>.<suite>.<case>", found when
-# ctest starts, so that a build runs nothing (tests/CMakeLists.txt says which layers are WHOLE: one entry for all).
+# One GoogleTest program for a layer. ctest has an entry for each case, "<layer>.<suite>.<case>"; they are found when
+# ctest starts, so that a build runs nothing of what it has built.
 include(GoogleTest)
 function(relevo_test name)
-    cmake_parse_arguments(TEST "WHOLE" "" "SOURCES;DEPENDS;LINKS" ${ARGN})
+    cmake_parse_arguments(TEST "" "" "SOURCES;DEPENDS;LINKS" ${ARGN})
     add_executable(test_${name} ${TEST_SOURCES})
     list(TRANSFORM TEST_DEPENDS PREPEND relevo::)
     target_link_libraries(test_${name} PRIVATE relevo_options relevo_test_support ${TEST_DEPENDS}
         ${TEST_LINKS} GTest::gmock GTest::gtest)
-    if(TEST_WHOLE)
-        add_test(NAME ${name} COMMAND test_${name})
-        set_tests_properties(${name} PROPERTIES TIMEOUT 600)
-    else()
-        gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
-            PROPERTIES TIMEOUT 600)
-    endif()
+    gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+        PROPERTIES TIMEOUT 600)
 endfunction()
 
 # relevo_module(<plugin id> SOURCES ... [LINKS ...])

@@ -14,7 +14,6 @@
 namespace relevo::effect::test {
 namespace {
 
-using PixelFormat;
 using image::TextureData;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
