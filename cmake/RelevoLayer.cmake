@@ -32,7 +32,8 @@ function(relevo_test name)
     list(TRANSFORM TEST_DEPENDS PREPEND relevo::)
     target_link_libraries(test_${name} PRIVATE relevo_options relevo_test_support ${TEST_DEPENDS}
         ${TEST_LINKS} GTest::gmock GTest::gtest)
-    gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+    gtest_discover_tests(test_${name} TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_MODE PRE_TEST
+        DISCOVERY_TIMEOUT 60
         PROPERTIES TIMEOUT 600)
 endfunction()
 
