@@ -5,4 +5,4 @@ cd "$(dirname "$0")"
 tools/install_packages.sh test
 [ -f build/dev/build.ninja ] || cmake --preset dev >/dev/null
 cmake --build --preset dev
-ctest --preset dev "$@"
+ctest --preset dev -j "$(nproc)" "$@"

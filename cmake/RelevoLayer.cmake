@@ -23,15 +23,18 @@ endfunction()
 
 # relevo_test(<layer> SOURCES ... [DEPENDS <layers>...] [LINKS ...])
 #
-# One GoogleTest program for a layer, run once by ctest under the name of the layer.
+# One GoogleTest program for a layer. ctest has an entry for each case, "<layer>.<suite>.<case>"; they are found when
+# ctest starts, so that a build runs nothing of what it has built.
+include(GoogleTest)
 function(relevo_test name)
     cmake_parse_arguments(TEST "" "" "SOURCES;DEPENDS;LINKS" ${ARGN})
     add_executable(test_${name} ${TEST_SOURCES})
     list(TRANSFORM TEST_DEPENDS PREPEND relevo::)
     target_link_libraries(test_${name} PRIVATE relevo_options relevo_test_support ${TEST_DEPENDS}
         ${TEST_LINKS} GTest::gmock GTest::gtest)
-    add_test(NAME ${name} COMMAND test_${name})
-    set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+    gtest_discover_tests(test_${name} TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_MODE PRE_TEST
+        DISCOVERY_TIMEOUT 60
+        PROPERTIES TIMEOUT 600)
 endfunction()
 
 # relevo_module(<plugin id> SOURCES ... [LINKS ...])

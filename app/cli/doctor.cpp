@@ -145,86 +145,108 @@ Json to_json(const Tried& tried) {
     return json;
 }
 
-void doctor(const std::string& wanted, bool as_json) {
+/// What there is to tell.
+struct Findings {
+    std::string wanted;
     std::vector<Tried> devices;
-    for (const gl::Device& device : gl::list_devices())
-        devices.push_back(try_device(device));
     std::optional<gl::DeviceInfo> chosen;
-    std::string error;
-    try {
-        chosen = gl::Context({.device = wanted}).info();
-    } catch (const Error& none) {
-        error = none.what();
-    }
-    const Plugins plugins = find_plugins();
-    const std::vector<std::string> advice = remedies(devices, chosen);
-    const bool software = chosen && chosen->device.software;
-    std::error_code ignored;
-    const bool has_share = std::filesystem::is_directory(share_dir() / "shaders", ignored);
+    std::string error;  // why none is chosen
+    Plugins plugins;
+    std::vector<std::string> advice;
+    bool has_share = false;
 
-    if (as_json) {
-        Json json;
-        json["version"] = RELEVO_VERSION;
-        json["device"] = Json();
-        if (chosen) {
-            Json& device = json["device"] = to_json(chosen->device);
-            device["renderer"] = chosen->renderer;
-            device["vendor"] = chosen->vendor;
-            device["version"] = chosen->version;
-            device["software"] = software;
-            device["why"] = why(wanted, devices, *chosen);
-            device["limits"] = {{"texture_size_px", chosen->max_texture_size},
-                                {"array_layers", chosen->max_array_layers},
-                                {"texture_units", chosen->max_texture_units},
-                                {"samples", chosen->max_samples},
-                                {"anisotropy", chosen->max_anisotropy}};
-        }
-        json["devices"] = Json::array();
-        for (const Tried& tried : devices)
-            json["devices"].push_back(to_json(tried));
-        json["threads"] = thread_count();
-        json["gdal"] = dem::gdal_version();
-        json["proj"] = dem::proj_version();
-        json["share_dir"] = share_dir().string();
-        json["share_found"] = has_share;
-        json["plugin_folder"] = plugins.folder.string();
-        json["plugins"] = plugins.ids;
-        json["broken_plugins"] = plugins.broken;
-        json["advice"] = advice;
-        fmt::print("{}", json_text(json));
-    } else {
-        const auto line = [](std::string_view name, const std::string& value) {
-            fmt::print("{:<10} {}\n", name, value);
-        };
-        line("version", fmt::format("relevo {}, GDAL {}, PROJ {}", RELEVO_VERSION,
-                                    dem::gdal_version(), dem::proj_version()));
-        if (chosen) {
-            line("draws with", fmt::format("{}, {}{}", chosen->renderer, chosen->version,
-                                           software ? " (software, on the processor)" : ""));
-            line("because", why(wanted, devices, *chosen));
-            line("limits",
-                 fmt::format("textures of {} px, {} layers, {} units, {:g}x anisotropic filter",
-                             chosen->max_texture_size, chosen->max_array_layers,
-                             chosen->max_texture_units, chosen->max_anisotropy));
-        } else {
-            line("draws with", "nothing");
-        }
-        for (const Tried& tried : devices)
-            line(fmt::format("device {}", tried.device.index),
-                 fmt::format("{} ({}): {}", tried.device.platform, tried.device.description,
-                             tried.info
-                                 ? fmt::format("{}, {}", tried.info->renderer, tried.info->version)
-                                 : tried.reason));
-        line("threads", std::to_string(thread_count()));
-        line("data", fmt::format("{}{}", share_dir().string(),
-                                 has_share ? "" : " (not there; RELEVO_SHARE names another)"));
-        line("plugins", fmt::format("{} in {}", plugins.ids.size(), plugins.folder.string()));
-        for (const std::string& broken : plugins.broken)
-            line("broken", broken);
-        for (const std::string& text : advice)
-            line("advice", text);
+    bool software() const { return chosen && chosen->device.software; }
+};
+
+Findings examine(const std::string& wanted) {
+    Findings found{.wanted = wanted};
+    for (const gl::Device& device : gl::list_devices())
+        found.devices.push_back(try_device(device));
+    try {
+        found.chosen = gl::Context({.device = wanted}).info();
+    } catch (const Error& none) {
+        found.error = none.what();
     }
-    if (!chosen) throw Error(ErrorCode::NoDevice, error);
+    found.plugins = find_plugins();
+    found.advice = remedies(found.devices, found.chosen);
+    std::error_code ignored;
+    found.has_share = std::filesystem::is_directory(share_dir() / "shaders", ignored);
+    return found;
+}
+
+Json to_json(const Findings& found) {
+    Json json;
+    json["version"] = RELEVO_VERSION;
+    json["device"] = Json();
+    if (const auto& chosen = found.chosen) {
+        Json& device = json["device"] = to_json(chosen->device);
+        device["renderer"] = chosen->renderer;
+        device["vendor"] = chosen->vendor;
+        device["version"] = chosen->version;
+        device["software"] = found.software();
+        device["why"] = why(found.wanted, found.devices, *chosen);
+        device["limits"] = {{"texture_size_px", chosen->max_texture_size},
+                            {"array_layers", chosen->max_array_layers},
+                            {"texture_units", chosen->max_texture_units},
+                            {"samples", chosen->max_samples},
+                            {"anisotropy", chosen->max_anisotropy}};
+    }
+    json["devices"] = Json::array();
+    for (const Tried& tried : found.devices)
+        json["devices"].push_back(to_json(tried));
+    json["threads"] = thread_count();
+    json["gdal"] = dem::gdal_version();
+    json["proj"] = dem::proj_version();
+    json["share_dir"] = share_dir().string();
+    json["share_found"] = found.has_share;
+    json["plugin_folder"] = found.plugins.folder.string();
+    json["plugins"] = found.plugins.ids;
+    json["broken_plugins"] = found.plugins.broken;
+    json["advice"] = found.advice;
+    return json;
+}
+
+void print(const Findings& found) {
+    const auto line = [](std::string_view name, const std::string& value) {
+        fmt::print("{:<10} {}\n", name, value);
+    };
+    line("version", fmt::format("relevo {}, GDAL {}, PROJ {}", RELEVO_VERSION, dem::gdal_version(),
+                                dem::proj_version()));
+    if (const auto& chosen = found.chosen) {
+        line("draws with", fmt::format("{}, {}{}", chosen->renderer, chosen->version,
+                                       found.software() ? " (software, on the processor)" : ""));
+        line("because", why(found.wanted, found.devices, *chosen));
+        line("limits",
+             fmt::format("textures of {} px, {} layers, {} units, {:g}x anisotropic filter",
+                         chosen->max_texture_size, chosen->max_array_layers,
+                         chosen->max_texture_units, chosen->max_anisotropy));
+    } else {
+        line("draws with", "nothing");
+    }
+    for (const Tried& tried : found.devices)
+        line(fmt::format("device {}", tried.device.index),
+             fmt::format("{} ({}): {}", tried.device.platform, tried.device.description,
+                         tried.info
+                             ? fmt::format("{}, {}", tried.info->renderer, tried.info->version)
+                             : tried.reason));
+    line("threads", std::to_string(thread_count()));
+    line("data", fmt::format("{}{}", share_dir().string(),
+                             found.has_share ? "" : " (not there; RELEVO_SHARE names another)"));
+    line("plugins",
+         fmt::format("{} in {}", found.plugins.ids.size(), found.plugins.folder.string()));
+    for (const std::string& broken : found.plugins.broken)
+        line("broken", broken);
+    for (const std::string& text : found.advice)
+        line("advice", text);
+}
+
+void doctor(const std::string& wanted, bool as_json) {
+    const Findings found = examine(wanted);
+    if (as_json)
+        fmt::print("{}", json_text(to_json(found)));
+    else
+        print(found);
+    if (!found.chosen) throw Error(ErrorCode::NoDevice, found.error);
 }
 
 }  // namespace

@@ -12,6 +12,8 @@ namespace {
 constexpr double kMargin = 28;
 constexpr double kLeft = 116, kTop = 112;
 constexpr double kDayWidth = 2.8, kHourHeight = 20;
+constexpr double kLit = 40, kLevel = 57;  // lines of hours below the carpet
+const Pen kNoon{.stroke = Color{0xb06000}, .width = 1.1, .dash = {4, 3}};
 
 Color color_of(light::Light light) {
     switch (light) {
@@ -31,66 +33,44 @@ double y_of(double time_of_day_s) {
     return kTop + 24 * kHourHeight - time_of_day_s / 3600 * kHourHeight;
 }
 
-}  // namespace
+double x_of(int year, const sun::Date& date) {
+    return kLeft + sun::days_between({year, 1, 1}, date) * kDayWidth;
+}
 
-Drawing CarpetChart::draw() const {
-    const int year = carpet->year;
-    const int days = sun::days_between({year, 1, 1}, {year + 1, 1, 1});
-    const double width = days * kDayWidth, height = 24 * kHourHeight;
-    const double right = kLeft + width, bottom = kTop + height;
-    const std::vector<std::string> foot{
-        "D" + carpet->definition.substr(1) +
-            ". Level horizon: the same part of the sun at 0 degrees. Twilight: civil, the sun's "
-            "centre less than 6 degrees below the horizon.",
-        "T" + horizon_definition.substr(1) + "."};
-    const double keys_y = bottom + 92;
-    Drawing drawing(1160, keys_y + 22 + foot_height(1160, kMargin, foot) + kMargin);
-
-    std::string title = place_name.empty() ? "" : place_name + ": ";
-    title += fmt::format("{}irect sun through {}", title.empty() ? 'D' : 'd', year);
-    std::vector<std::string> lines{
-        fmt::format("{}, {}", place_text(place), carpet->zone.name()),
-        fmt::format("{:.0f} hours of direct sun, {:.0f} over a level horizon ({:.0f} %)",
-                    carpet->lit_s / 3600, carpet->level_s / 3600,
-                    carpet->level_s > 0 ? 100 * carpet->lit_s / carpet->level_s : 0)};
-    if (carpet->not_known_s > 0)
-        lines.back() += fmt::format("; {:.3g} hours of direct sun not known for holes of the DEM",
-                                    carpet->not_known_s / 3600);
-    drawing.describe(title, lines.back());
-    add_title(drawing, kMargin, title, lines);
-
-    // Cells of one kind that follow each other are one area.
-    drawing.rect({kLeft, kTop, width, height},
-                 {.fill = color_of(light::Light::Night), .crisp = true});
-    for (int row = 0; row < carpet->light.height(); ++row) {
-        const sun::Date date = carpet->days[static_cast<std::size_t>(row)].date;
-        const double x = kLeft + sun::days_between({year, 1, 1}, date) * kDayWidth;
-        for (int from = 0, to = 0; from < carpet->light.width(); from = to) {
-            const light::Light light = carpet->light.at(from, row);
-            while (to < carpet->light.width() && carpet->light.at(to, row) == light)
+/// Cells of one kind that follow each other are one area.
+void add_cells(Drawing& drawing, const light::Carpet& carpet, const Rect& area) {
+    drawing.rect(area, {.fill = color_of(light::Light::Night), .crisp = true});
+    for (int row = 0; row < carpet.light.height(); ++row) {
+        const sun::Date date = carpet.days[static_cast<std::size_t>(row)].date;
+        const double x = x_of(carpet.year, date);
+        for (int from = 0, to = 0; from < carpet.light.width(); from = to) {
+            const light::Light light = carpet.light.at(from, row);
+            while (to < carpet.light.width() && carpet.light.at(to, row) == light)
                 ++to;
             if (light == light::Light::Night) continue;
-            const double top = y_of(to * double{1} * carpet->step_s);
-            drawing.rect({x, top, kDayWidth, y_of(from * double{1} * carpet->step_s) - top},
+            const double top = y_of(to * double{1} * carpet.step_s);
+            drawing.rect({x, top, kDayWidth, y_of(from * double{1} * carpet.step_s) - top},
                          {.fill = color_of(light), .crisp = true});
         }
     }
+}
 
-    // True noon.
+void add_noon(Drawing& drawing, const light::Carpet& carpet) {
     std::vector<glm::dvec2> noon;
     double before_s = -1;
-    for (const light::LightDay& day : carpet->days) {
+    for (const light::LightDay& day : carpet.days) {
         const auto transit = day.flat.first(sun::EventKind::Transit);
         if (!transit) continue;
-        const sun::CivilTime wall = carpet->zone.local(*transit).wall;
+        const sun::CivilTime wall = carpet.zone.local(*transit).wall;
         const double s = wall.hour * 3600 + wall.minute * 60 + wall.second;
         if (before_s >= 0 && std::abs(s - before_s) > 600) noon.emplace_back(std::nan(""));
         before_s = s;
-        noon.emplace_back(kLeft + (sun::days_between({year, 1, 1}, day.date) + 0.5) * kDayWidth,
-                          y_of(s));
+        noon.emplace_back(x_of(carpet.year, day.date) + 0.5 * kDayWidth, y_of(s));
     }
-    drawing.path(std::move(noon), {.stroke = Color{0xb06000}, .width = 1.1, .dash = {4, 3}});
+    drawing.path(std::move(noon), kNoon);
+}
 
+void add_hours(Drawing& drawing, double right) {
     for (int hour = 0; hour <= 24; hour += 1) {
         const double y = y_of(hour * 3600.0);
         if (hour % 3 == 0 && hour % 24 != 0)
@@ -100,17 +80,21 @@ Drawing CarpetChart::draw() const {
             drawing.text({kLeft - 11, y + 4}, fmt::format("{:02}:00", hour),
                          {.size = 12, .color = kSoft, .anchor = Anchor::End});
     }
+}
+
+/// Names of the months, and their hours of light.
+void add_months(Drawing& drawing, const light::Carpet& carpet, double bottom) {
+    const int year = carpet.year;
     std::vector<double> month_level_s(12, 0);
-    for (std::size_t i = 0; i < carpet->days.size(); ++i)
-        month_level_s[static_cast<std::size_t>(carpet->days[i].date.month - 1)] +=
-            carpet->day_level_s[i];
-    const double names_y = bottom + 20, lit_y = bottom + 40, level_y = bottom + 57;
+    for (std::size_t i = 0; i < carpet.days.size(); ++i)
+        month_level_s[static_cast<std::size_t>(carpet.days[i].date.month - 1)] +=
+            carpet.day_level_s[i];
+    const double names_y = bottom + 20, lit_y = bottom + kLit, level_y = bottom + kLevel;
     for (int month = 1; month <= 12; ++month) {
-        const double from = kLeft + sun::days_between({year, 1, 1}, {year, month, 1}) * kDayWidth;
+        const double from = x_of(year, {year, month, 1});
         const sun::Date next =
             month < 12 ? sun::Date{year, month + 1, 1} : sun::Date{year + 1, 1, 1};
-        const double middle =
-            (from + kLeft + sun::days_between({year, 1, 1}, next) * kDayWidth) / 2;
+        const double middle = (from + x_of(year, next)) / 2;
         if (month > 1)
             drawing.line({from, kTop}, {from, bottom},
                          {.stroke = Color{0xffffff, 0.35}, .width = 0.8});
@@ -118,28 +102,76 @@ Drawing CarpetChart::draw() const {
         const auto i = static_cast<std::size_t>(month - 1);
         drawing.text({middle, names_y}, month_name(month).substr(0, 3),
                      {.size = 13, .color = kInk, .anchor = Anchor::Middle, .bold = true});
-        drawing.text({middle, lit_y}, fmt::format("{:.0f} h", carpet->month_lit_s[i] / 3600),
+        drawing.text({middle, lit_y}, fmt::format("{:.0f} h", carpet.month_lit_s[i] / 3600),
                      {.size = 12, .color = kInk, .anchor = Anchor::Middle});
         drawing.text({middle, level_y}, fmt::format("{:.0f} h", month_level_s[i] / 3600),
                      {.size = 12, .color = kSoft, .anchor = Anchor::Middle});
     }
+}
+
+void add_frame(Drawing& drawing, const Rect& area) {
+    const double right = area.x + area.width, bottom = area.y + area.height;
+    const double lit_y = bottom + kLit, level_y = bottom + kLevel;
     drawing.line({right, bottom}, {right, bottom + 7}, {.stroke = kSoft});
-    drawing.rect({kLeft, kTop, width, height}, {.stroke = kSoft, .width = 1.2});
+    drawing.rect(area, {.stroke = kSoft, .width = 1.2});
     drawing.text({kLeft - 11, lit_y}, "direct sun",
                  {.size = 12, .color = kInk, .anchor = Anchor::End});
     drawing.text({kLeft - 11, level_y}, "level horizon",
                  {.size = 12, .color = kSoft, .anchor = Anchor::End});
-    drawing.text({kMargin + 14, kTop + height / 2}, "time of day, by the clock",
+    drawing.text({kMargin + 14, area.y + area.height / 2}, "time of day, by the clock",
                  {.size = 12, .color = kSoft, .anchor = Anchor::Middle, .turn_deg = -90});
+}
 
+void add_keys(Drawing& drawing, double keys_y) {
     double x = kLeft;
     x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Lit)}, "direct sun");
     x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Shaded)},
                 "sun behind terrain, up over a level horizon");
     x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Twilight)}, "civil twilight");
     x = add_key(drawing, x, keys_y, {.fill = color_of(light::Light::Night)}, "night");
-    add_key(drawing, x, keys_y, {.stroke = Color{0xb06000}, .width = 1.1, .dash = {4, 3}},
-            "true noon");
+    add_key(drawing, x, keys_y, kNoon, "true noon");
+}
+
+/// @param title  filled
+/// @returns the lines below it
+std::vector<std::string> title_lines(const CarpetChart& chart, std::string& title) {
+    const light::Carpet& carpet = *chart.carpet;
+    title = chart.place_name.empty() ? "" : chart.place_name + ": ";
+    title += fmt::format("{}irect sun through {}", title.empty() ? 'D' : 'd', carpet.year);
+    std::vector<std::string> lines{
+        fmt::format("{}, {}", place_text(chart.place), carpet.zone.name()),
+        fmt::format("{:.0f} hours of direct sun, {:.0f} over a level horizon ({:.0f} %)",
+                    carpet.lit_s / 3600, carpet.level_s / 3600,
+                    carpet.level_s > 0 ? 100 * carpet.lit_s / carpet.level_s : 0)};
+    if (carpet.not_known_s > 0)
+        lines.back() += fmt::format("; {:.3g} hours of direct sun not known for holes of the DEM",
+                                    carpet.not_known_s / 3600);
+    return lines;
+}
+
+}  // namespace
+
+Drawing CarpetChart::draw() const {
+    const int days = sun::days_between({carpet->year, 1, 1}, {carpet->year + 1, 1, 1});
+    const Rect area{kLeft, kTop, days * kDayWidth, 24 * kHourHeight};
+    const double bottom = area.y + area.height;
+    const std::vector<std::string> foot{
+        "D" + carpet->definition.substr(1) +
+            ". Level horizon: the same part of the sun at 0 degrees. Twilight: civil, the sun's "
+            "centre less than 6 degrees below the horizon.",
+        "T" + horizon_definition.substr(1) + "."};
+    const double keys_y = bottom + 92;
+    Drawing drawing(1160, keys_y + 22 + foot_height(1160, kMargin, foot) + kMargin);
+    std::string title;
+    const std::vector<std::string> lines = title_lines(*this, title);
+    drawing.describe(title, lines.back());
+    add_title(drawing, kMargin, title, lines);
+    add_cells(drawing, *carpet, area);
+    add_noon(drawing, *carpet);
+    add_hours(drawing, area.x + area.width);
+    add_months(drawing, *carpet, bottom);
+    add_frame(drawing, area);
+    add_keys(drawing, keys_y);
     add_foot(drawing, kMargin, foot);
     return drawing;
 }

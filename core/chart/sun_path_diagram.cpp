@@ -83,6 +83,194 @@ class Disc {
     glm::dvec2 center_;
 };
 
+/// "civil dawn 04:37, sunrise 05:18, ..., day of 15:56:14"
+std::string events_text(const sun::Day& day, const SunPaths& paths) {
+    const auto time = [&](const char* name, sun::EventKind kind) {
+        const auto utc = day.first(kind);
+        return utc ? fmt::format("{} {}", name, paths.clock(*utc)) : std::string();
+    };
+    std::string events;
+    for (const std::string& part :
+         {time("civil dawn", sun::EventKind::CivilDawn), time("sunrise", sun::EventKind::Sunrise),
+          time("transit", sun::EventKind::Transit), time("sunset", sun::EventKind::Sunset),
+          time("civil dusk", sun::EventKind::CivilDusk)})
+        if (!part.empty()) events += part + ", ";
+    events += day.sun == sun::Crossing::AboveAllDay   ? "polar day"
+              : day.sun == sun::Crossing::BelowAllDay ? "polar night"
+                                                      : "day of " + duration_text(day.day_length_s);
+    return events;
+}
+
+/// A diagram while it is drawn.
+class Sheet {
+  public:
+    Sheet(const SunPathDiagram& of, const SunPaths& paths, Drawing& drawing,
+          const glm::dvec2& center)
+        : of_(of), paths_(paths), drawing_(drawing), center_(center), disc_(drawing, center) {}
+
+    /// Everything inside of the disc but marks, from the lowest to the highest.
+    void sky() const {
+        disc_.grid();
+        drawing_.clip_circle(center_, kRadius);
+        year();
+        if (of_.day) disc_.path(paths_.day(of_.day->date, 120), {.stroke = kDay, .width = 3.4});
+        if (of_.terrain) terrain();  // paths behind it shine through
+        disc_.elevations(south_of_sun() ? kPi : 0);
+        drawing_.end_clip();
+        disc_.rim();
+    }
+
+    void marks() const {
+        if (of_.day) {
+            day_hours();
+            rise_and_set();
+        } else {
+            year_hours();
+        }
+        if (of_.light) light_edges();
+    }
+
+    void keys(double keys_y) const {
+        double x = kMargin;
+        if (of_.day)
+            x = add_key(drawing_, x, keys_y, {.stroke = kDay, .width = 3.4},
+                        long_date(of_.day->date));
+        for (const SeasonPath& season : season_paths())
+            x = add_key(drawing_, x, keys_y,
+                        {.stroke = season.color, .width = season.month % 3 == 0 ? 2.0 : 1.2},
+                        season.label);
+        x = add_key(drawing_, kMargin, keys_y + 20, {.stroke = kFaint, .width = 0.9},
+                    fmt::format("full hour (UTC{}), 21 Dec to 21 Jun",
+                                sun::offset_text(paths_.standard_offset_s())));
+        x = add_key(drawing_, x, keys_y + 20, {.stroke = kFaint, .width = 1.2, .dash = {0.1, 3.2}},
+                    "21 Jun to 21 Dec");
+        if (of_.terrain)
+            x = add_key(drawing_, x, keys_y + 20, {.fill = kTerrain, .stroke = kRidge, .width = 1},
+                        "terrain");
+        if (marks_holes())
+            add_key(drawing_, x, keys_y + 20, {.stroke = kHole, .width = 3}, kHoleWords);
+    }
+
+  private:
+    bool south_of_sun() const { return of_.place.lat_rad < 0; }
+    bool marks_holes() const {
+        return of_.terrain &&
+               std::find(of_.holes.begin(), of_.holes.end(), true) != of_.holes.end();
+    }
+    glm::dvec2 skyline(double azimuth_rad) const {
+        return disc_.point(azimuth_rad, std::max(0.0, of_.terrain->elevation_rad(azimuth_rad)));
+    }
+
+    void year() const {
+        // Hours of the year: half of each line for growing days, half, dashed, for shrinking ones.
+        for (int hour = 0; hour < 24; ++hour) {
+            const std::vector<PathPoint> line = paths_.hour_line(hour);
+            const auto half = line.begin() + static_cast<std::ptrdiff_t>(line.size() / 2);
+            disc_.path({line.begin(), half + 1}, {.stroke = kFaint, .width = 0.9});
+            disc_.path({half, line.end()}, {.stroke = kFaint, .width = 1.2, .dash = {0.1, 3.2}});
+        }
+        for (const SeasonPath& season : season_paths())
+            disc_.path(paths_.day({of_.year, season.month, 21}),
+                       {.stroke = Color{season.color.rgb, of_.day ? 0.75 : 1.0},
+                        .width = season.month % 3 == 0 ? 2.0 : 1.2});
+    }
+
+    void terrain() const {
+        std::vector<glm::dvec2> ring;
+        constexpr int kSteps = 1440;
+        for (int i = 0; i <= kSteps; ++i) {
+            const double azimuth_rad = 2 * kPi * i / kSteps;
+            ring.push_back(skyline(azimuth_rad));
+        }
+        std::vector<glm::dvec2> area = ring;
+        for (int i = kSteps; i >= 0; --i)
+            area.push_back(disc_.outside(2 * kPi * i / kSteps, 2));
+        drawing_.path(area, {.fill = kTerrain}, true);
+        drawing_.path(ring, {.stroke = kRidge, .width = 1.2});
+        if (marks_holes())
+            for (const light::Sector& one : light::sectors_of(of_.holes))
+                mark_hole(one);
+    }
+
+    void mark_hole(const light::Sector& hole) const {
+        // A hole of one direction has a width, too.
+        const double step_rad = 2 * kPi / static_cast<double>(of_.holes.size());
+        const double from_rad = hole.from_azimuth_rad - step_rad;
+        double turn_rad = hole.to_azimuth_rad + step_rad - from_rad;
+        if (hole.to_azimuth_rad < hole.from_azimuth_rad) turn_rad += 2 * kPi;
+        const int steps = 1 + static_cast<int>(turn_rad / radians(0.25));
+        std::vector<glm::dvec2> line;
+        for (int i = 0; i <= steps; ++i) {
+            const double azimuth_rad = from_rad + turn_rad * i / steps;
+            line.push_back(skyline(azimuth_rad));
+        }
+        drawing_.path(std::move(line), {.stroke = kHole, .width = 3});
+    }
+
+    void year_hours() const {
+        // At the end of the longest day's side, away from the other paths.
+        for (int hour = 0; hour < 24; ++hour) {
+            const std::vector<PathPoint> line = paths_.hour_line(hour, 1);
+            const std::size_t june = 182, december = 0, march = 90;
+            const PathPoint& end = line[south_of_sun() ? december : june];
+            if (end.elevation_rad < radians(0.5)) continue;
+            const glm::dvec2 tip = disc_.point(end), inner = disc_.point(line[march]);
+            const glm::dvec2 away = glm::normalize(tip - inner);
+            drawing_.text(tip + 13.0 * away + glm::dvec2(0, 4), fmt::format("{}", hour),
+                          {.size = 11.5,
+                           .color = kInk,
+                           .anchor = Anchor::Middle,
+                           .bold = hour % 6 == 0,
+                           .halo = kSky});
+        }
+    }
+
+    void day_hours() const {
+        for (const PathPoint& p : paths_.full_hours(of_.day->date)) {
+            if (p.elevation_rad < 0) continue;
+            const glm::dvec2 at = disc_.point(p);
+            drawing_.circle(at, 3.6, {.fill = kPaper, .stroke = kDay, .width = 1.8});
+            const glm::dvec2 outward = at - center_;
+            const double length = glm::length(outward);
+            glm::dvec2 aside = length > 1 ? outward / length : glm::dvec2(0, 1);
+            if (length > 0.86 * kRadius) aside = -aside;  // the rim has words of its own
+            drawing_.text(
+                at + 15.0 * aside + glm::dvec2(0, 4),
+                fmt::format("{}", of_.zone.local(p.utc).wall.hour),
+                {.size = 12, .color = kInk, .anchor = Anchor::Middle, .bold = true, .halo = kSky});
+        }
+    }
+
+    void rise_and_set() const {
+        for (const sun::Event& event : of_.day->events) {
+            const bool rises = event.kind == sun::EventKind::Sunrise;
+            if (!rises && event.kind != sun::EventKind::Sunset) continue;
+            drawing_.circle(disc_.outside(event.azimuth_rad, 0), 4.5,
+                            {.fill = of_.light ? kPaper : kDay, .stroke = kDay, .width = 1.5});
+            const glm::dvec2 at = disc_.outside(event.azimuth_rad, 34);
+            drawing_.text(at + glm::dvec2(0, 4), paths_.clock(event.utc),
+                          {.size = 13,
+                           .color = kDay,
+                           .anchor = std::sin(event.azimuth_rad) > 0 ? Anchor::Start : Anchor::End,
+                           .bold = true});
+        }
+    }
+
+    void light_edges() const {
+        for (const light::LitInterval& lit : of_.light->lit)
+            for (const light::LightEdge& edge : {lit.begin, lit.end})
+                if (!edge.midnight)
+                    drawing_.circle(disc_.point(edge.azimuth_rad, edge.elevation_rad), 5,
+                                    {.fill = kDay, .stroke = kPaper, .width = 1.2});
+    }
+
+    const SunPathDiagram& of_;
+    const SunPaths& paths_;
+    Drawing& drawing_;
+    glm::dvec2 center_;
+    Disc disc_;
+};
+
 }  // namespace
 
 Drawing SunPathDiagram::draw() const {
@@ -95,7 +283,6 @@ Drawing SunPathDiagram::draw() const {
     if (light) foot.push_back("D" + light_definition.substr(1) + ".");
     if (terrain) foot.push_back("T" + terrain_definition.substr(1) + ".");
 
-    const bool marks_holes = terrain && std::find(holes.begin(), holes.end(), true) != holes.end();
     const double top = 82 + 18.0 * (day.has_value() + light.has_value());
     const glm::dvec2 center(kWidth / 2, top + 40 + kRadius);
     const double keys_y = center.y + kRadius + 66;
@@ -105,145 +292,15 @@ Drawing SunPathDiagram::draw() const {
     std::string title = place_name.empty() ? "P" : place_name + ": p";
     title +=
         day ? "ath of the sun, " + long_date(day->date) : fmt::format("aths of the sun, {}", year);
-    if (day) {
-        const auto time = [&](const char* name, sun::EventKind kind) {
-            const auto utc = day->first(kind);
-            return utc ? fmt::format("{} {}", name, paths.clock(*utc)) : std::string();
-        };
-        std::string events;
-        for (const std::string& part :
-             {time("civil dawn", sun::EventKind::CivilDawn),
-              time("sunrise", sun::EventKind::Sunrise), time("transit", sun::EventKind::Transit),
-              time("sunset", sun::EventKind::Sunset),
-              time("civil dusk", sun::EventKind::CivilDusk)})
-            if (!part.empty()) events += part + ", ";
-        events += day->sun == sun::Crossing::AboveAllDay ? "polar day"
-                  : day->sun == sun::Crossing::BelowAllDay
-                      ? "polar night"
-                      : "day of " + duration_text(day->day_length_s);
-        lines.push_back(events);
-    }
+    if (day) lines.push_back(events_text(*day, paths));
     if (light) lines.push_back(light_text(*light, paths));
     drawing.describe(title, lines.front());
     add_title(drawing, kMargin, title, lines);
 
-    const Disc disc(drawing, center);
-    disc.grid();
-    const bool south_of_sun = place.lat_rad < 0;
-    drawing.clip_circle(center, kRadius);
-    // Hours of the year: half of each line for growing days, half, dashed, for shrinking ones.
-    for (int hour = 0; hour < 24; ++hour) {
-        const std::vector<PathPoint> line = paths.hour_line(hour);
-        const auto half = line.begin() + static_cast<std::ptrdiff_t>(line.size() / 2);
-        disc.path({line.begin(), half + 1}, {.stroke = kFaint, .width = 0.9});
-        disc.path({half, line.end()}, {.stroke = kFaint, .width = 1.2, .dash = {0.1, 3.2}});
-    }
-    for (const SeasonPath& season : season_paths())
-        disc.path(paths.day({year, season.month, 21}),
-                  {.stroke = Color{season.color.rgb, day ? 0.75 : 1.0},
-                   .width = season.month % 3 == 0 ? 2.0 : 1.2});
-    if (day) disc.path(paths.day(day->date, 120), {.stroke = kDay, .width = 3.4});
-    // Paths behind terrain shine through.
-    if (terrain) {
-        std::vector<glm::dvec2> ring;
-        constexpr int kSteps = 1440;
-        for (int i = 0; i <= kSteps; ++i) {
-            const double azimuth_rad = 2 * kPi * i / kSteps;
-            ring.push_back(
-                disc.point(azimuth_rad, std::max(0.0, terrain->elevation_rad(azimuth_rad))));
-        }
-        std::vector<glm::dvec2> area = ring;
-        for (int i = kSteps; i >= 0; --i)
-            area.push_back(disc.outside(2 * kPi * i / kSteps, 2));
-        drawing.path(area, {.fill = kTerrain}, true);
-        drawing.path(ring, {.stroke = kRidge, .width = 1.2});
-        for (const light::Sector& hole :
-             marks_holes ? light::sectors_of(holes) : std::vector<light::Sector>()) {
-            // A hole of one direction has a width, too.
-            const double step_rad = 2 * kPi / static_cast<double>(holes.size());
-            const double from_rad = hole.from_azimuth_rad - step_rad;
-            double turn_rad = hole.to_azimuth_rad + step_rad - from_rad;
-            if (hole.to_azimuth_rad < hole.from_azimuth_rad) turn_rad += 2 * kPi;
-            const int steps = 1 + static_cast<int>(turn_rad / radians(0.25));
-            std::vector<glm::dvec2> line;
-            for (int i = 0; i <= steps; ++i) {
-                const double azimuth_rad = from_rad + turn_rad * i / steps;
-                line.push_back(
-                    disc.point(azimuth_rad, std::max(0.0, terrain->elevation_rad(azimuth_rad))));
-            }
-            drawing.path(std::move(line), {.stroke = kHole, .width = 3});
-        }
-    }
-    disc.elevations(south_of_sun ? kPi : 0);
-    drawing.end_clip();
-    disc.rim();
-
-    if (!day) {
-        // At the end of the longest day's side, away from the other paths.
-        for (int hour = 0; hour < 24; ++hour) {
-            const std::vector<PathPoint> line = paths.hour_line(hour, 1);
-            const std::size_t june = 182, december = 0, march = 90;
-            const PathPoint& end = line[south_of_sun ? december : june];
-            if (end.elevation_rad < radians(0.5)) continue;
-            const glm::dvec2 tip = disc.point(end), inner = disc.point(line[march]);
-            const glm::dvec2 away = glm::normalize(tip - inner);
-            drawing.text(tip + 13.0 * away + glm::dvec2(0, 4), fmt::format("{}", hour),
-                         {.size = 11.5,
-                          .color = kInk,
-                          .anchor = Anchor::Middle,
-                          .bold = hour % 6 == 0,
-                          .halo = kSky});
-        }
-    } else {
-        for (const PathPoint& p : paths.full_hours(day->date)) {
-            if (p.elevation_rad < 0) continue;
-            const glm::dvec2 at = disc.point(p);
-            drawing.circle(at, 3.6, {.fill = kPaper, .stroke = kDay, .width = 1.8});
-            const glm::dvec2 outward = at - center;
-            const double length = glm::length(outward);
-            glm::dvec2 aside = length > 1 ? outward / length : glm::dvec2(0, 1);
-            if (length > 0.86 * kRadius) aside = -aside;  // the rim has words of its own
-            drawing.text(
-                at + 15.0 * aside + glm::dvec2(0, 4),
-                fmt::format("{}", zone.local(p.utc).wall.hour),
-                {.size = 12, .color = kInk, .anchor = Anchor::Middle, .bold = true, .halo = kSky});
-        }
-        for (const sun::Event& event : day->events) {
-            const bool rises = event.kind == sun::EventKind::Sunrise;
-            if (!rises && event.kind != sun::EventKind::Sunset) continue;
-            drawing.circle(disc.outside(event.azimuth_rad, 0), 4.5,
-                           {.fill = light ? kPaper : kDay, .stroke = kDay, .width = 1.5});
-            const glm::dvec2 at = disc.outside(event.azimuth_rad, 34);
-            drawing.text(at + glm::dvec2(0, 4), paths.clock(event.utc),
-                         {.size = 13,
-                          .color = kDay,
-                          .anchor = std::sin(event.azimuth_rad) > 0 ? Anchor::Start : Anchor::End,
-                          .bold = true});
-        }
-    }
-
-    if (light)
-        for (const light::LitInterval& lit : light->lit)
-            for (const light::LightEdge& edge : {lit.begin, lit.end})
-                if (!edge.midnight)
-                    drawing.circle(disc.point(edge.azimuth_rad, edge.elevation_rad), 5,
-                                   {.fill = kDay, .stroke = kPaper, .width = 1.2});
-
-    double x = kMargin;
-    if (day) x = add_key(drawing, x, keys_y, {.stroke = kDay, .width = 3.4}, long_date(day->date));
-    for (const SeasonPath& season : season_paths())
-        x = add_key(drawing, x, keys_y,
-                    {.stroke = season.color, .width = season.month % 3 == 0 ? 2.0 : 1.2},
-                    season.label);
-    x = add_key(drawing, kMargin, keys_y + 20, {.stroke = kFaint, .width = 0.9},
-                fmt::format("full hour (UTC{}), 21 Dec to 21 Jun",
-                            sun::offset_text(paths.standard_offset_s())));
-    x = add_key(drawing, x, keys_y + 20, {.stroke = kFaint, .width = 1.2, .dash = {0.1, 3.2}},
-                "21 Jun to 21 Dec");
-    if (terrain)
-        x = add_key(drawing, x, keys_y + 20, {.fill = kTerrain, .stroke = kRidge, .width = 1},
-                    "terrain");
-    if (marks_holes) add_key(drawing, x, keys_y + 20, {.stroke = kHole, .width = 3}, kHoleWords);
+    const Sheet sheet(*this, paths, drawing, center);
+    sheet.sky();
+    sheet.marks();
+    sheet.keys(keys_y);
     add_foot(drawing, kMargin, foot);
     return drawing;
 }

@@ -120,6 +120,68 @@ std::vector<fs::path> sorted_entries(const std::string& folder) {
     return entries;
 }
 
+/// What lies in a folder.
+struct Contents {
+    std::vector<RasterFile> rasters;
+    std::vector<fs::path> others;
+    std::set<std::string> names;  // of files that are rasters
+    int folders = 0;
+};
+
+Contents contents_of(const std::string& folder) {
+    Contents found;
+    std::error_code error;
+    for (const fs::path& entry : sorted_entries(folder)) {
+        const fs::file_status status = fs::status(entry, error);
+        const bool is_folder = fs::is_directory(status);
+        found.folders += is_folder;
+        if (is_folder && gdal_open(entry.string())) {
+            found.rasters.push_back({entry, "", 0});
+        } else if (is_folder) {
+            continue;
+        } else if (!fs::is_regular_file(status)) {
+            found.others.push_back(entry);
+        } else {
+            refuse_unreadable(entry.string());
+            const std::string driver = ends_like(entry, kArchives) ? "archive" : driver_of(entry);
+            if (driver.empty()) {
+                found.others.push_back(entry);
+            } else {
+                found.rasters.push_back({entry, driver, fs::file_size(entry, error)});
+                found.names.insert(entry.string());
+            }
+        }
+    }
+    return found;
+}
+
+/// Leaves out what a virtual raster is made of.
+void drop_parts_of_virtual(std::vector<RasterFile>& rasters) {
+    std::set<std::string> parts;
+    for (const RasterFile& one : rasters)
+        if (one.driver == "VRT") parts.merge(parts_of(one.path.string()));
+    std::error_code error;
+    std::erase_if(rasters, [&](const RasterFile& one) {
+        return parts.contains(fs::weakly_canonical(one.path, error).string());
+    });
+}
+
+/// Tells of the files that are no part of any raster.
+void tell_of_others(const std::string& folder, const Contents& found) {
+    std::vector<std::string> left_out;
+    for (const fs::path& other : found.others)
+        if (!is_beside(other, found.names) && !is_read_me(other))
+            left_out.push_back(other.filename().string());
+    if (left_out.empty()) return;
+    constexpr std::size_t kMaxNamed = 3;
+    const auto named =
+        left_out.begin() + static_cast<std::ptrdiff_t>(std::min(left_out.size(), kMaxNamed));
+    log::info(fmt::format("{}: {} of its files {} and left out: {}{}", folder, left_out.size(),
+                          left_out.size() == 1 ? "is no raster" : "are no rasters",
+                          fmt::join(left_out.begin(), named, ", "),
+                          left_out.size() > kMaxNamed ? ", ..." : ""));
+}
+
 }  // namespace
 
 void drop_parts(std::vector<RasterFile>& rasters) {
@@ -139,61 +201,19 @@ std::vector<std::string> rasters_of(const std::string& path) {
     GdalMessages messages;
     if (gdal_open(path)) return {path};
 
-    std::vector<RasterFile> rasters;
-    std::vector<fs::path> others;
-    std::set<std::string> names;
-    int folders = 0;
-    for (const fs::path& entry : sorted_entries(path)) {
-        const fs::file_status status = fs::status(entry, error);
-        const bool is_folder = fs::is_directory(status);
-        folders += is_folder;
-        if (is_folder && gdal_open(entry.string())) {
-            rasters.push_back({entry, "", 0});
-        } else if (is_folder) {
-            continue;
-        } else if (!fs::is_regular_file(status)) {
-            others.push_back(entry);
-        } else {
-            refuse_unreadable(entry.string());
-            const std::string driver = ends_like(entry, kArchives) ? "archive" : driver_of(entry);
-            if (driver.empty()) {
-                others.push_back(entry);
-            } else {
-                rasters.push_back({entry, driver, fs::file_size(entry, error)});
-                names.insert(entry.string());
-            }
-        }
-    }
-    drop_parts(rasters);
-    std::set<std::string> parts;
-    for (const RasterFile& one : rasters)
-        if (one.driver == "VRT") parts.merge(parts_of(one.path.string()));
-    std::erase_if(rasters, [&](const RasterFile& one) {
-        return parts.contains(fs::weakly_canonical(one.path, error).string());
-    });
-
-    if (rasters.empty())
+    Contents found = contents_of(path);
+    drop_parts(found.rasters);
+    drop_parts_of_virtual(found.rasters);
+    if (found.rasters.empty())
         refuse(path, fmt::format("a folder without a raster in it, expected a raster or a folder "
                                  "of rasters{}",
-                                 folders > 0 ? "; name the folder in it that is meant" : ""));
+                                 found.folders > 0 ? "; name the folder in it that is meant" : ""));
     std::vector<std::string> paths;
-    for (const RasterFile& one : rasters) {
-        names.insert(without_ending(one));
+    for (const RasterFile& one : found.rasters) {
+        found.names.insert(without_ending(one));
         paths.push_back(one.path.string());
     }
-    std::vector<std::string> left_out;
-    for (const fs::path& other : others)
-        if (!is_beside(other, names) && !is_read_me(other))
-            left_out.push_back(other.filename().string());
-    constexpr std::size_t kMaxNamed = 3;
-    if (!left_out.empty())
-        log::info(fmt::format("{}: {} of its files {} and left out: {}{}", path, left_out.size(),
-                              left_out.size() == 1 ? "is no raster" : "are no rasters",
-                              fmt::join(left_out.begin(),
-                                        left_out.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                                               left_out.size(), kMaxNamed)),
-                                        ", "),
-                              left_out.size() > kMaxNamed ? ", ..." : ""));
+    tell_of_others(path, found);
     return paths;
 }
 

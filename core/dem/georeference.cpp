@@ -102,46 +102,25 @@ bool like_degrees(const Affine& cells, int columns, int rows) {
            globe(last);
 }
 
-}  // namespace
-
-Georeference georeference(const std::string& path, GDALDatasetH dataset, const LoadOptions& options,
-                          Description& about) {
-    const int columns = GDALGetRasterXSize(dataset);
-    const int rows = GDALGetRasterYSize(dataset);
+/// The CRS that a file says, or that is taken for what it leaves out; WGS 84 where nothing tells.
+/// @param affine  the file's; none where --bounds replaces it
+geo::Crs crs_of(const std::string& path, GDALDatasetH dataset, const std::optional<Affine>& affine,
+                const LoadOptions& options, Description& about) {
     const std::string who = fmt::format("dem::load: {}", path);
-    std::optional<Affine> affine;
-    if (!options.bounds) affine = affine_in(path, dataset);
-    if (!affine && !options.bounds) {
-        if (GDALGetGCPCount(dataset) > 0)
-            refuse(path,
-                   "georeferenced by control points only, expected a grid; make one with "
-                   "gdalwarp");
-        const std::optional<WebTile> tile = web_tile(path);
-        if (tile && options.crs.empty() && options.encoding != Encoding::None) {
-            guess(about,
-                  "the place is that of the web map tile that the path names, zoom/x/y with y from "
-                  "the north");
-            return {affine_of(*tile, columns, rows), geo::Crs::parse("EPSG:3857", who)};
-        }
-        refuse(path,
-               "no georeference, it does not say where its posts are; give its edges in degrees "
-               "with --bounds W,S,E,N");
-    }
-
     const FileCrs in_file = crs_in(path, dataset);
-    geo::Crs crs;
     if (!options.crs.empty()) {
-        crs = geo::Crs::parse(options.crs, who);
+        geo::Crs crs = geo::Crs::parse(options.crs, who);
         about.assumptions.push_back(fmt::format("the CRS is {}, as given{}", crs.name(),
                                                 in_file.wkt.empty() ? "" : ", not the file's own"));
-    } else if (!in_file.wkt.empty()) {
-        crs = defined_crs(in_file, who, about);
-    } else if (has_cf_lat_lon(dataset)) {
+        return crs;
+    }
+    if (!in_file.wkt.empty()) return defined_crs(in_file, who, about);
+    if (has_cf_lat_lon(dataset)) {
         about.assumptions.push_back(
             "the CRS is WGS 84: the file has latitude and longitude but names no datum; --crs sets "
             "another");
-    } else if (!options.bounds) {
-        if (!like_degrees(*affine, columns, rows))
+    } else if (affine) {
+        if (!like_degrees(*affine, GDALGetRasterXSize(dataset), GDALGetRasterYSize(dataset)))
             refuse(path,
                    fmt::format("no coordinate reference system{}; pass --crs EPSG:n",
                                in_file.reason.empty() ? "" : fmt::format(" ({})", in_file.reason)));
@@ -149,6 +128,39 @@ Georeference georeference(const std::string& path, GDALDatasetH dataset, const L
               "the CRS is WGS 84: the file names none, and its coordinates are like degrees; --crs "
               "sets another");
     }
+    return {};
+}
+
+/// The place of a file without a grid of its own: of a web map tile, by its path.
+Georeference place_by_name(const std::string& path, GDALDatasetH dataset,
+                           const LoadOptions& options, Description& about) {
+    if (GDALGetGCPCount(dataset) > 0)
+        refuse(path,
+               "georeferenced by control points only, expected a grid; make one with "
+               "gdalwarp");
+    const std::optional<WebTile> tile = web_tile(path);
+    if (!tile || !options.crs.empty() || options.encoding == Encoding::None)
+        refuse(path,
+               "no georeference, it does not say where its posts are; give its edges in degrees "
+               "with --bounds W,S,E,N");
+    guess(about,
+          "the place is that of the web map tile that the path names, zoom/x/y with y from "
+          "the north");
+    return {affine_of(*tile, GDALGetRasterXSize(dataset), GDALGetRasterYSize(dataset)),
+            geo::Crs::parse("EPSG:3857", fmt::format("dem::load: {}", path))};
+}
+
+}  // namespace
+
+Georeference georeference(const std::string& path, GDALDatasetH dataset, const LoadOptions& options,
+                          Description& about) {
+    const int columns = GDALGetRasterXSize(dataset);
+    const int rows = GDALGetRasterYSize(dataset);
+    std::optional<Affine> affine;
+    if (!options.bounds) affine = affine_in(path, dataset);
+    if (!affine && !options.bounds) return place_by_name(path, dataset, options, about);
+
+    geo::Crs crs = crs_of(path, dataset, affine, options, about);
     if (options.bounds) {
         const Bounds& b = *options.bounds;
         affine = affine_of(b, crs, columns, rows);

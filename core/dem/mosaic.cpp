@@ -162,57 +162,42 @@ void say_if_scattered(const std::vector<Piece>& pieces, double covered, Descript
     about.assumptions.push_back(about.warnings.back());
 }
 
-}  // namespace
+/// Gives each piece that lies on a grid its place there.
+/// @returns the places, none for pieces whose grid is another
+std::vector<std::optional<Window>> places_on(const std::vector<Piece>& pieces, const Grid& grid) {
+    std::vector<std::optional<Window>> places;
+    for (const Piece& piece : pieces)
+        places.push_back(place_on_grid(piece, grid));
+    return places;
+}
 
-Grid join(std::vector<Piece>& pieces, Description& about) {
-    if (pieces.size() == 1) {
-        about = pieces.front().about;
-        return pieces.front().grid;
-    }
-    std::vector<std::optional<Window>> places(pieces.size());
-    const auto try_grid = [&](const Grid& grid) {
-        bool all = true;
-        for (std::size_t i = 0; i < pieces.size(); ++i) {
-            places[i] = place_on_grid(pieces[i], grid);
-            all = all && places[i];
-        }
-        return all;
-    };
-    const Piece* reference = finest(pieces, false);
-    if (!try_grid(reference->grid)) {
-        reference = finest(pieces, true);
-        if (!reference)
-            refuse(pieces.front().path,
-                   "cannot be joined with the others: their grids differ and none of them runs "
-                   "east and south; bring them to one grid with gdalwarp");
-        try_grid(reference->grid);
-    }
-    const Grid& grid = reference->grid;
-    int resampled = 0;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-        Piece& piece = pieces[i];
-        if (places[i]) {
-            piece.place = *places[i];
-            continue;
-        }
-        if (piece.encoding != Encoding::None)
-            refuse(piece.path, fmt::format("cannot be joined with {}: pictures of encoded heights "
-                                           "must be on one grid, tiles of one zoom",
-                                           reference->path));
-        piece.place = place_resampled(piece, grid, *reference);
-        const glm::dvec2 first = grid.affine()(piece.place.column, piece.place.row);
-        Affine affine = grid.affine();
-        affine.x0 = first.x;
-        affine.y0 = first.y;
-        piece.resampling = Resampling{affine, grid.crs()};
-        piece.levels = {{-1, piece.place.columns, piece.place.rows}};
-        piece.sparse.reset();
-        ++resampled;
-    }
+bool is_whole(const std::vector<std::optional<Window>>& places) {
+    return std::all_of(places.begin(), places.end(), [](const auto& place) { return !!place; });
+}
 
+/// Has a piece read as it is resampled to another one's grid.
+void resample(Piece& piece, const Piece& reference) {
+    if (piece.encoding != Encoding::None)
+        refuse(piece.path, fmt::format("cannot be joined with {}: pictures of encoded heights "
+                                       "must be on one grid, tiles of one zoom",
+                                       reference.path));
+    const Grid& grid = reference.grid;
+    piece.place = place_resampled(piece, grid, reference);
+    const glm::dvec2 first = grid.affine()(piece.place.column, piece.place.row);
+    Affine affine = grid.affine();
+    affine.x0 = first.x;
+    affine.y0 = first.y;
+    piece.resampling = Resampling{affine, grid.crs()};
+    piece.levels = {{-1, piece.place.columns, piece.place.rows}};
+    piece.sparse.reset();
+}
+
+/// The grid around all places, from whose first post they count then.
+/// @param covered  filled with the share of its posts that the pieces have
+Grid grid_around(std::vector<Piece>& pieces, const Grid& grid, double& covered) {
     glm::dvec2 low(std::numeric_limits<double>::infinity());
     glm::dvec2 high = -low;
-    double covered = 0;
+    covered = 0;
     for (const Piece& piece : pieces) {
         const Window& w = piece.place;
         low = glm::min(low, glm::dvec2(w.column, w.row));
@@ -229,11 +214,60 @@ Grid join(std::vector<Piece>& pieces, Description& about) {
         piece.place.column -= static_cast<int>(low.x);
         piece.place.row -= static_cast<int>(low.y);
     }
+    covered /= size.x * size.y;
     const glm::dvec2 origin = grid.affine()(low.x, low.y);
     Affine affine = grid.affine();
     affine.x0 = origin.x;
     affine.y0 = origin.y;
-    const Grid whole(static_cast<int>(size.x), static_cast<int>(size.y), affine, grid.crs());
+    return {static_cast<int>(size.x), static_cast<int>(size.y), affine, grid.crs()};
+}
+
+/// Says what the pieces differ in.
+void describe_differences(const std::vector<Piece>& pieces, Description& about) {
+    const std::string units =
+        differing(pieces, [](const Piece& piece) { return piece.about.unit.name; });
+    if (!units.empty()) guess(about, fmt::format("heights are in {}: each file in its own", units));
+    const std::string datums = differing(pieces, [](const Piece& piece) {
+        return piece.about.vertical_datum.empty() ? "no stated datum" : piece.about.vertical_datum;
+    });
+    if (!datums.empty())
+        guess(about, fmt::format("heights are above {}, and are joined as they are", datums));
+    const auto nodata_text = [](const Piece& piece) {
+        return piece.about.nodata ? piece.about.nodata_text() : "no value";
+    };
+    if (const std::string nodata = differing(pieces, nodata_text); !nodata.empty())
+        about.assumptions.push_back(
+            fmt::format("holes are marked by {}: in each file by its own", nodata));
+}
+
+}  // namespace
+
+Grid join(std::vector<Piece>& pieces, Description& about) {
+    if (pieces.size() == 1) {
+        about = pieces.front().about;
+        return pieces.front().grid;
+    }
+    const Piece* reference = finest(pieces, false);
+    std::vector<std::optional<Window>> places = places_on(pieces, reference->grid);
+    if (!is_whole(places)) {
+        reference = finest(pieces, true);
+        if (!reference)
+            refuse(pieces.front().path,
+                   "cannot be joined with the others: their grids differ and none of them runs "
+                   "east and south; bring them to one grid with gdalwarp");
+        places = places_on(pieces, reference->grid);
+    }
+    int resampled = 0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (places[i]) {
+            pieces[i].place = *places[i];
+        } else {
+            resample(pieces[i], *reference);
+            ++resampled;
+        }
+    }
+    double covered = 0;
+    Grid whole = grid_around(pieces, reference->grid, covered);
 
     about = reference->about;
     about.files.clear();
@@ -249,21 +283,8 @@ Grid join(std::vector<Piece>& pieces, Description& about) {
     if (resampled > 0)
         guess(about, fmt::format("{} of the {} files {} resampled to the grid of {}", resampled,
                                  pieces.size(), resampled == 1 ? "is" : "are", reference->path));
-    say_if_scattered(pieces, covered / (size.x * size.y), about);
-    const std::string units =
-        differing(pieces, [](const Piece& piece) { return piece.about.unit.name; });
-    if (!units.empty()) guess(about, fmt::format("heights are in {}: each file in its own", units));
-    const std::string datums = differing(pieces, [](const Piece& piece) {
-        return piece.about.vertical_datum.empty() ? "no stated datum" : piece.about.vertical_datum;
-    });
-    if (!datums.empty())
-        guess(about, fmt::format("heights are above {}, and are joined as they are", datums));
-    const auto nodata_text = [](const Piece& piece) {
-        return piece.about.nodata ? piece.about.nodata_text() : "no value";
-    };
-    if (const std::string nodata = differing(pieces, nodata_text); !nodata.empty())
-        about.assumptions.push_back(
-            fmt::format("holes are marked by {}: in each file by its own", nodata));
+    say_if_scattered(pieces, covered, about);
+    describe_differences(pieces, about);
     return whole;
 }
 

@@ -430,66 +430,78 @@ void Pyramid::bound_tiles(int level) {
     });
 }
 
-void Pyramid::measure_errors(int level) {
-    const glm::ivec2 count = tiles(level), finer = tiles(level - 1);
+std::optional<Pyramid::Bounds> Pyramid::bounds_of_children(int level, glm::ivec2 tile) const {
+    const glm::ivec2 finer = tiles(level - 1);
+    Bounds all{.lowest_m = std::numeric_limits<float>::max(),
+               .highest_m = std::numeric_limits<float>::lowest()};
+    double squares = 0;
+    int children = 0;
+    for (int y = 2 * tile.y; y <= std::min(2 * tile.y + 1, finer.y - 1); ++y) {
+        for (int x = 2 * tile.x; x <= std::min(2 * tile.x + 1, finer.x - 1); ++x) {
+            const Bounds child = bounds(level - 1, {x, y});
+            if (child.empty()) continue;
+            all.lowest_m = std::min(all.lowest_m, child.lowest_m);
+            all.highest_m = std::max(all.highest_m, child.highest_m);
+            all.error_m = std::max(all.error_m, child.error_m);
+            squares += double{child.rms_m} * child.rms_m;
+            ++children;
+        }
+    }
+    if (children == 0) return std::nullopt;
+    all.rms_m = static_cast<float>(std::sqrt(squares / children));
+    return all;
+}
+
+Pyramid::Misfit Pyramid::misfit(int level, glm::ivec2 tile,
+                                const std::vector<Place>& columns) const {
     const Array2d<float>& fine = heights(level - 1);
     const Array2d<float>& coarse = heights(level);
+    const int nodes = 2 * kTileQuads;  // of the finer level, along a tile
+    Misfit found;
+    double squares = 0;
+    int measured = 0;
+    const int end = std::min((tile.x + 1) * nodes + 1, fine.width());
+    for (int y = tile.y * nodes; y < std::min((tile.y + 1) * nodes + 1, fine.height()); ++y) {
+        const Place row = row_in_coarser(level - 1, y);
+        const float* const from = fine.row(y).data();
+        const float* const upper = coarse.row(row.from).data();
+        const float* const lower = coarse.row(std::min(row.from + 1, coarse.height() - 1)).data();
+        float row_squares = 0;
+        for (int x = tile.x * nodes; x < end; ++x) {
+            // On the coarser level's triangles.
+            const Place& column = columns[static_cast<std::size_t>(x)];
+            const int c = column.from, d = std::min(c + 1, coarse.width() - 1);
+            const float surface =
+                on_triangles(upper[c], upper[d], lower[c], lower[d], column.share, row.share);
+            const float off = std::abs(from[x] - surface);
+            if (!(off >= 0)) continue;  // in or beside a hole
+            found.worst_m = std::max(found.worst_m, off);
+            row_squares += off * off;
+            ++measured;
+        }
+        squares += double{row_squares};
+    }
+    found.mean_square_m2 = squares / std::max(measured, 1);
+    return found;
+}
+
+void Pyramid::measure_errors(int level) {
+    const glm::ivec2 count = tiles(level);
     Level& here = levels_[static_cast<std::size_t>(level)];
     std::vector<Place> columns;
-    for (int x = 0; x < fine.width(); ++x)
+    for (int x = 0; x < heights(level - 1).width(); ++x)
         columns.push_back(column_in_coarser(level - 1, x));
-    const int nodes = 2 * kTileQuads;  // of the finer level, along a tile
     parallel_for(0, count.y, 1, [&](int first, int last) {
-        for (int ty = first; ty < last; ++ty) {
-            for (int tx = 0; tx < count.x; ++tx) {
-                Bounds bounds{.lowest_m = std::numeric_limits<float>::max(),
-                              .highest_m = std::numeric_limits<float>::lowest()};
-                float children_error = 0;
-                double children_squares = 0;
-                int children = 0;
-                for (int y = 2 * ty; y <= std::min(2 * ty + 1, finer.y - 1); ++y) {
-                    for (int x = 2 * tx; x <= std::min(2 * tx + 1, finer.x - 1); ++x) {
-                        const Bounds child = this->bounds(level - 1, {x, y});
-                        if (child.empty()) continue;
-                        bounds.lowest_m = std::min(bounds.lowest_m, child.lowest_m);
-                        bounds.highest_m = std::max(bounds.highest_m, child.highest_m);
-                        children_error = std::max(children_error, child.error_m);
-                        children_squares += double{child.rms_m} * child.rms_m;
-                        ++children;
-                    }
-                }
-                if (children == 0) continue;
-                float error = 0;
-                double squares = 0;
-                int measured = 0;
-                const int end = std::min((tx + 1) * nodes + 1, fine.width());
-                for (int y = ty * nodes; y < std::min((ty + 1) * nodes + 1, fine.height()); ++y) {
-                    const Place row = row_in_coarser(level - 1, y);
-                    const float* const from = fine.row(y).data();
-                    const float* const upper = coarse.row(row.from).data();
-                    const float* const lower =
-                        coarse.row(std::min(row.from + 1, coarse.height() - 1)).data();
-                    float row_squares = 0;
-                    for (int x = tx * nodes; x < end; ++x) {
-                        // On the coarser level's triangles.
-                        const Place& column = columns[static_cast<std::size_t>(x)];
-                        const int c = column.from, d = std::min(c + 1, coarse.width() - 1);
-                        const float surface = on_triangles(upper[c], upper[d], lower[c], lower[d],
-                                                           column.share, row.share);
-                        const float off = std::abs(from[x] - surface);
-                        if (!(off >= 0)) continue;  // in or beside a hole
-                        error = std::max(error, off);
-                        row_squares += off * off;
-                        ++measured;
-                    }
-                    squares += double{row_squares};
-                }
-                bounds.error_m = children_error + error;
-                bounds.rms_m = static_cast<float>(
-                    std::sqrt(children_squares / children + squares / std::max(measured, 1)));
-                here.tiles.at(tx, ty) = bounds;
+        for (int y = first; y < last; ++y)
+            for (int x = 0; x < count.x; ++x) {
+                std::optional<Bounds> bounds = bounds_of_children(level, {x, y});
+                if (!bounds) continue;
+                const Misfit off = misfit(level, {x, y}, columns);
+                bounds->error_m += off.worst_m;
+                bounds->rms_m = static_cast<float>(
+                    std::sqrt(double{bounds->rms_m} * bounds->rms_m + off.mean_square_m2));
+                here.tiles.at(x, y) = *bounds;
             }
-        }
     });
 }
 

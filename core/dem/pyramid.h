@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -124,6 +125,15 @@ class Pyramid {
     void make_coarser_levels();
     void make_level();
     void bound_tiles(int level);
+    /// How far a tile of a level is from the nodes of the next finer one.
+    struct Misfit {
+        float worst_m = 0;
+        double mean_square_m2 = 0;
+    };
+    /// @param columns  where those nodes lie between the coarser ones
+    Misfit misfit(int level, glm::ivec2 tile, const std::vector<Place>& columns) const;
+    /// Of the tiles of the next finer level below a tile; none where all are holes.
+    std::optional<Bounds> bounds_of_children(int level, glm::ivec2 tile) const;
     void measure_errors(int level);
     Level nodes_of_means(const Array2d<float>& means, glm::ivec2 first_mean, int level,
                          glm::ivec2 first, glm::ivec2 count) const;

@@ -250,6 +250,7 @@ struct Source::Impl::Sums {
     Array2d<double> area;    // of them
 };
 
+// In one piece: one pass over the cells, whose buffers all of its loops share.
 void Source::Impl::add_means(const Piece& piece, const Window& window, int columns, int rows,
                              Sums& sums, Progress* progress) const {
     const double columns_each = window.columns / double(columns);

@@ -152,19 +152,30 @@ class ManifestReader {
             manifest_.glsl.push_back(own_file(object, line, "glsl", manifest_.folder, name));
     }
 
-    void textures(ObjectReader& object) {
-        const Json* const list = object.take("textures");
+    /// Reads an object of names and values of one kind.
+    /// @param what  the kind, for messages
+    /// @param read  takes name and value
+    template <typename Read>
+    void named(ObjectReader& object, const std::string& key, std::string_view what,
+               const Read& read) {
+        const Json* const list = object.take(key);
         if (!list) return;
         if (list->kind != Json::Kind::Object)
             object.fail(
-                list->line, "textures",
-                fmt::format("expected an object of name and texture but got {}", describe(*list)));
+                list->line, key,
+                fmt::format("expected an object of name and {} but got {}", what, describe(*list)));
         for (const auto& [name, value] : list->members) {
             if (!is_word(name))
-                object.fail(value.line, "textures",
+                object.fail(value.line, key,
                             fmt::format("expected words of a-z, 0-9 and _ but got \"{}\"", name));
-            manifest_.textures.push_back(texture(name, value));
+            read(name, value);
         }
+    }
+
+    void textures(ObjectReader& object) {
+        named(object, "textures", "texture", [&](const std::string& name, const Json& value) {
+            manifest_.textures.push_back(texture(name, value));
+        });
     }
 
     TextureSpec texture(const std::string& name, const Json& value) {
@@ -201,20 +212,11 @@ class ManifestReader {
     }
 
     void texts(ObjectReader& object) {
-        const Json* const list = object.take("texts");
-        if (!list) return;
-        if (list->kind != Json::Kind::Object)
-            object.fail(
-                list->line, "texts",
-                fmt::format("expected an object of name and text but got {}", describe(*list)));
-        for (const auto& [name, value] : list->members) {
-            if (!is_word(name))
-                object.fail(value.line, "texts",
-                            fmt::format("expected words of a-z, 0-9 and _ but got \"{}\"", name));
+        named(object, "texts", "text", [&](const std::string& name, const Json& value) {
             manifest_.texts.push_back(text(name, value));
-        }
+        });
         if (manifest_.module.empty() && !manifest_.texts.empty())
-            object.fail(list->line, "texts",
+            object.fail(object.line_of("texts"), "texts",
                         "expected a \"module\" beside them: nothing else reads texts");
     }
 

@@ -147,6 +147,7 @@ relevo_status ServiceTables::serve_device(void* self, const char* function,
     return serve(self, function, body);
 }
 
+// In one piece: a table of short functions, one for each of the interface.
 void ServiceTables::fill_tables() {
     using Services = ModuleServices;
     log_ = {sizeof log_, 0, this, [](void* self, std::int32_t level, const char* text) {

@@ -4,10 +4,12 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "base/paths.h"
+#include "effect/texture_format.h"
 
 namespace relevo::effect {
 namespace {
@@ -25,34 +27,6 @@ constexpr double kNoon_s = 1'782'043'200;  // 2026-06-21T12:00Z
 /// The sun at noon, low, and below the horizon, east, north, up.
 constexpr std::array<std::array<double, 3>, 3> kSuns{
     {{0.0, -0.6, 0.8}, {0.995, 0.0, 0.0998749}, {0.0, 0.8, -0.6}}};
-
-int texel_bytes(std::int32_t format) {
-    switch (format) {
-        case RELEVO_FORMAT_R16F:
-            return 2;
-        case RELEVO_FORMAT_RG32F:
-        case RELEVO_FORMAT_RGBA16F:
-            return 8;
-        case RELEVO_FORMAT_RGBA32F:
-            return 16;
-        default:
-            return 4;
-    }
-}
-
-int floats_of(std::int32_t format) {
-    switch (format) {
-        case RELEVO_FORMAT_R32F:
-        case RELEVO_FORMAT_DEPTH32F:
-            return 1;
-        case RELEVO_FORMAT_RG32F:
-            return 2;
-        case RELEVO_FORMAT_RGBA32F:
-            return 4;
-        default:
-            return 0;
-    }
-}
 
 [[noreturn]] void refuse(const char* what) {
     throw std::invalid_argument(what);
@@ -137,14 +111,14 @@ relevo_frame StandInHost::frame() {
 
 relevo_texture StandInHost::create_texture(const relevo_texture_info& info) {
     const auto longest = static_cast<unsigned>(std::max({info.width, info.height, 1}));
-    if (info.format < RELEVO_FORMAT_R32F || info.format > RELEVO_FORMAT_RGBA8 || info.width < 1 ||
-        info.height < 1 || info.width > kMaxSide_px || info.height > kMaxSide_px ||
-        info.layers < 0 || info.layers > kMaxLayers || info.levels < 0 ||
-        info.levels > static_cast<int>(std::bit_width(longest)) ||
+    const std::optional<PixelFormat> format = texture_format(info.format);
+    if (!format || info.width < 1 || info.height < 1 || info.width > kMaxSide_px ||
+        info.height > kMaxSide_px || info.layers < 0 || info.layers > kMaxLayers ||
+        info.levels < 0 || info.levels > static_cast<int>(std::bit_width(longest)) ||
         info.filter < RELEVO_FILTER_NEAREST || info.filter > RELEVO_FILTER_MIPMAP)
         refuse("there is no such texture on this device");
     textures_[++last_texture_] = {info.width, info.height, std::max(info.layers, 1),
-                                  std::max(info.levels, 1), info.format};
+                                  std::max(info.levels, 1), *format};
     return last_texture_;
 }
 
@@ -155,7 +129,8 @@ void StandInHost::destroy_texture(relevo_texture texture) {
 
 void StandInHost::write_texture(const relevo_texels& texels) {
     const Texture& to = known(texels.texture);
-    const std::int64_t bytes = std::int64_t{texels.width} * texels.height * texel_bytes(to.format);
+    const std::int64_t bytes =
+        std::int64_t{texels.width} * texels.height * layout_of(to.format).bytes();
     if (texels.layer < 0 || texels.layer >= to.layers || texels.level < 0 || texels.x < 0 ||
         texels.y < 0 || texels.width < 1 || texels.height < 1 ||
         texels.x > std::max(1, to.width >> std::min(texels.level, 30)) - texels.width ||
@@ -178,7 +153,7 @@ void StandInHost::read_texture(relevo_texture texture, int layer, std::span<floa
     const Texture& from = known(texture);
     const std::uint64_t floats = std::uint64_t{1} * static_cast<unsigned>(from.width) *
                                  static_cast<unsigned>(from.height) *
-                                 static_cast<unsigned>(floats_of(from.format));
+                                 static_cast<unsigned>(readable_floats(from.format));
     if (floats == 0 || layer < 0 || layer >= from.layers || values.size() < floats)
         refuse("expected a texture of 32-bit floats, one of its layers and room for them");
     std::fill_n(values.begin(), floats, 0.0f);
@@ -229,7 +204,7 @@ bool StandInHost::fill_visible_bounds(double nearer_than_m, relevo_box& box) {
 
 int StandInHost::draw_depth(const relevo_box&, double, relevo_texture target) {
     need_frame();
-    if (known(target).format != RELEVO_FORMAT_DEPTH32F)
+    if (known(target).format != PixelFormat::Depth32F)
         refuse("expected a target of RELEVO_FORMAT_DEPTH32F without layers");
     return 0;
 }

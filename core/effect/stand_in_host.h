@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "base/pixel_format.h"
 #include "effect/module_services.h"
 
 namespace relevo::effect {
@@ -54,7 +55,7 @@ class StandInHost : public ModuleServices {
     };
     struct Texture {
         int width, height, layers, levels;
-        std::int32_t format;
+        PixelFormat format;
     };
     const Parameter& known(const char* address) const;
     const Texture& known(relevo_texture texture) const;

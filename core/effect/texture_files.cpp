@@ -17,10 +17,10 @@ constexpr std::string_view kWho = "effect::load";
     bad_input(fmt::format("{}: {}: {}", kWho, file.string(), what));
 }
 
-image::TextureFormat format_of(const image::Image8& picture, bool srgb) {
-    if (picture.channels == 1) return image::TextureFormat::R8;
-    if (picture.channels == 2) return image::TextureFormat::Rg8;
-    return srgb ? image::TextureFormat::SrgbA8 : image::TextureFormat::Rgba8;
+PixelFormat format_of(const image::Image8& picture, bool srgb) {
+    if (picture.channels == 1) return PixelFormat::R8;
+    if (picture.channels == 2) return PixelFormat::RG8;
+    return srgb ? PixelFormat::Srgb8A8 : PixelFormat::RGBA8;
 }
 
 image::TextureData decode(const std::filesystem::path& file, const TextureSpec& spec) {
@@ -64,8 +64,8 @@ void check_kind(const std::filesystem::path& file, const TextureSpec& spec,
     if (spec.slices > 1 && data.depth() != spec.slices)
         fail(file, fmt::format("expected {} slices, as the manifest says, but got {}", spec.slices,
                                data.depth()));
-    const bool colours = data.format() == image::TextureFormat::SrgbA8;
-    const bool numbers = data.format() == image::TextureFormat::Rgba8;
+    const bool colours = data.format() == PixelFormat::Srgb8A8;
+    const bool numbers = data.format() == PixelFormat::RGBA8;
     if (spec.srgb ? numbers : colours)
         fail(file,
              fmt::format("expected texels of encoding {} for textures.{} but got {}",
@@ -82,7 +82,7 @@ void check_alike(const TextureSpec& spec, const std::vector<image::TextureData>&
         if (same) continue;
         const auto texels = [](const image::TextureData& data) {
             return fmt::format("{} x {} texels of {} bytes in {} levels", data.width(),
-                               data.height(), bytes_per_texel(data.format()), data.levels());
+                               data.height(), layout_of(data.format()).bytes(), data.levels());
         };
         fail(spec.files[i], fmt::format("expected {} as in {} but got {}", texels(first),
                                         spec.files.front().string(), texels(layer)));

@@ -16,47 +16,69 @@ namespace {
 /// Of one call that reads texels: GL counts them in 31 bits, and drivers in fewer.
 constexpr std::size_t kMaxReadBytes = std::size_t{1} << 28;
 
-struct FormatInfo {
-    GLenum internal, format, type;
-    int bytes;
-};
-
-FormatInfo info(Format format) {
+/// GL's name of a format's storage.
+GLenum storage(Format format) {
     switch (format) {
         case Format::R8:
-            return {GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1};
+            return GL_R8;
         case Format::RG8:
-            return {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, 2};
+            return GL_RG8;
         case Format::RGBA8:
-            return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+            return GL_RGBA8;
         case Format::Srgb8A8:
-            return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+            return GL_SRGB8_ALPHA8;
         case Format::R16:
-            return {GL_R16, GL_RED, GL_UNSIGNED_SHORT, 2};
+            return GL_R16;
         case Format::RG16Snorm:
-            return {GL_RG16_SNORM, GL_RG, GL_SHORT, 4};
+            return GL_RG16_SNORM;
         case Format::RG16UI:
-            return {GL_RG16UI, GL_RG_INTEGER, GL_UNSIGNED_SHORT, 4};
+            return GL_RG16UI;
         case Format::R16F:
-            return {GL_R16F, GL_RED, GL_HALF_FLOAT, 2};
+            return GL_R16F;
         case Format::RG16F:
-            return {GL_RG16F, GL_RG, GL_HALF_FLOAT, 4};
+            return GL_RG16F;
         case Format::RGBA16F:
-            return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8};
+            return GL_RGBA16F;
         case Format::R32F:
-            return {GL_R32F, GL_RED, GL_FLOAT, 4};
+            return GL_R32F;
         case Format::RG32F:
-            return {GL_RG32F, GL_RG, GL_FLOAT, 8};
+            return GL_RG32F;
         case Format::RGBA32F:
-            return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
+            return GL_RGBA32F;
         case Format::RGBA32UI:
-            return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16};
+            return GL_RGBA32UI;
         case Format::Depth32F:
-            return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4};
+            return GL_DEPTH_COMPONENT32F;
         case Format::Stencil8:
-            return {GL_STENCIL_INDEX8, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, 1};
+            return GL_STENCIL_INDEX8;
     }
-    return {};
+    return GL_NONE;
+}
+
+/// Which channels the host hands over or gets.
+GLenum channels(Format format) {
+    if (format == Format::Depth32F) return GL_DEPTH_COMPONENT;
+    if (format == Format::Stencil8) return GL_STENCIL_INDEX;
+    const bool whole = layout_of(format).kind == ChannelKind::Whole;
+    switch (layout_of(format).channels) {
+        case 1:
+            return whole ? GL_RED_INTEGER : GL_RED;
+        case 2:
+            return whole ? GL_RG_INTEGER : GL_RG;
+        default:
+            return whole ? GL_RGBA_INTEGER : GL_RGBA;
+    }
+}
+
+/// And each of them as what.
+GLenum number_type(Format format) {
+    const PixelLayout& layout = layout_of(format);
+    if (layout.kind == ChannelKind::Float)
+        return layout.channel_bytes == 2 ? GL_HALF_FLOAT : GL_FLOAT;
+    if (layout.kind == ChannelKind::Snorm) return layout.channel_bytes == 1 ? GL_BYTE : GL_SHORT;
+    return layout.channel_bytes == 1   ? GL_UNSIGNED_BYTE
+           : layout.channel_bytes == 2 ? GL_UNSIGNED_SHORT
+                                       : GL_UNSIGNED_INT;
 }
 
 GLenum target(TextureKind kind) {
@@ -103,8 +125,8 @@ void check_storage(TextureKind kind, Format format, Extent extent, int levels,
             fmt::format("gl::Texture: {}: expected a texture of up to {} and a whole chain of "
                         "levels but got {} in {} levels ({})",
                         label, largest(kind), size_text(extent), levels, error_name(error)));
-    const double mib =
-        double{1.0 / (1 << 20)} * info(format).bytes * extent.width * extent.height * extent.depth;
+    const double mib = double{1.0 / (1 << 20)} * layout_of(format).bytes() * extent.width *
+                       extent.height * extent.depth;
     failed(
         fmt::format("gl::Texture: {}: the device has no {:.0f} MiB for {}; "
                     "take a smaller picture or a device with more",
@@ -126,10 +148,6 @@ int full_chain(TextureKind kind, Extent extent) {
 
 }  // namespace
 
-int texel_bytes(Format format) {
-    return info(format).bytes;
-}
-
 void Texture::destroy(unsigned name) {
     glDeleteTextures(1, &name);
 }
@@ -148,24 +166,25 @@ Texture::Texture(TextureKind kind, Format format, Extent extent, int levels, std
             label, full_chain(kind, extent), extent.width, extent.height, extent.depth, levels_));
     expect_no_error(label);
     if (kind == TextureKind::D2Array || kind == TextureKind::D3)
-        glTextureStorage3D(name(), levels_, info(format).internal, extent.width, extent.height,
+        glTextureStorage3D(name(), levels_, storage(format), extent.width, extent.height,
                            extent.depth);
     else
-        glTextureStorage2D(name(), levels_, info(format).internal, extent.width, extent.height);
+        glTextureStorage2D(name(), levels_, storage(format), extent.width, extent.height);
     check_storage(kind, format, extent, levels_, label);
 }
 
 void Texture::write(int level, Extent offset, Extent extent, std::span<const std::byte> texels) {
-    const FormatInfo format = info(format_);
-    assert(texels.size() ==
-           static_cast<std::size_t>(format.bytes) * static_cast<std::size_t>(extent.width) *
-               static_cast<std::size_t>(extent.height) * static_cast<std::size_t>(extent.depth));
+    assert(texels.size() == static_cast<std::size_t>(layout_of(format_).bytes()) *
+                                static_cast<std::size_t>(extent.width) *
+                                static_cast<std::size_t>(extent.height) *
+                                static_cast<std::size_t>(extent.depth));
     if (kind_ == TextureKind::D2)
         glTextureSubImage2D(name(), level, offset.width, offset.height, extent.width, extent.height,
-                            format.format, format.type, texels.data());
+                            channels(format_), number_type(format_), texels.data());
     else
         glTextureSubImage3D(name(), level, offset.width, offset.height, offset.depth, extent.width,
-                            extent.height, extent.depth, format.format, format.type, texels.data());
+                            extent.height, extent.depth, channels(format_), number_type(format_),
+                            texels.data());
 }
 
 std::vector<TexelBand> bands_of(Extent extent, std::size_t row_bytes, std::size_t most_bytes) {
@@ -201,8 +220,8 @@ void Texture::read_as(int level, unsigned format, unsigned type, std::size_t byt
 }
 
 void Texture::read(int level, std::span<std::byte> texels) const {
-    const FormatInfo format = info(format_);
-    read_as(level, format.format, format.type, static_cast<std::size_t>(format.bytes), texels);
+    read_as(level, channels(format_), number_type(format_),
+            static_cast<std::size_t>(layout_of(format_).bytes()), texels);
 }
 
 void Texture::read_floats(std::span<float> texels) const {

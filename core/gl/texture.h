@@ -5,31 +5,12 @@
 #include <string_view>
 #include <vector>
 
+#include "base/pixel_format.h"
 #include "gl/handle.h"
 
 namespace relevo::gl {
 
-enum class Format {
-    R8,
-    RG8,
-    RGBA8,
-    Srgb8A8,  ///< read as linear, alpha linear
-    R16,
-    RG16Snorm,
-    RG16UI,
-    R16F,
-    RG16F,
-    RGBA16F,
-    R32F,
-    RG32F,
-    RGBA32F,
-    RGBA32UI,
-    Depth32F,
-    Stencil8,
-};
-
-/// Bytes of one texel as the host hands it over: halves travel as halves.
-int texel_bytes(Format format);
+using Format = PixelFormat;
 
 enum class TextureKind { D2, D2Array, D3 };
 enum class Wrap { Clamp, Repeat };

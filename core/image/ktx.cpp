@@ -44,41 +44,43 @@ struct LevelIndex {
 };
 static_assert(sizeof(LevelIndex) == 24);
 
+/// A format that KTX files may have here.
 struct FormatInfo {
-    TextureFormat format;
+    PixelFormat format;
     std::uint32_t vk_format;
-    std::uint32_t channels;
-    std::uint32_t bytes_per_channel;
-    bool srgb;
     const char* name;
-    bool is_float = false;
+
+    std::uint32_t channels() const {
+        return static_cast<std::uint32_t>(layout_of(format).channels);
+    }
+    std::uint32_t channel_bytes() const {
+        return static_cast<std::uint32_t>(layout_of(format).channel_bytes);
+    }
+    std::size_t bytes() const { return static_cast<std::size_t>(layout_of(format).bytes()); }
+    bool srgb() const { return format == PixelFormat::Srgb8A8; }
+    bool is_float() const { return layout_of(format).kind == ChannelKind::Float; }
 };
 
 constexpr std::array kFormats{
-    FormatInfo{TextureFormat::R8, 9, 1, 1, false, "VK_FORMAT_R8_UNORM"},
-    FormatInfo{TextureFormat::Rg8, 16, 2, 1, false, "VK_FORMAT_R8G8_UNORM"},
-    FormatInfo{TextureFormat::Rgba8, 37, 4, 1, false, "VK_FORMAT_R8G8B8A8_UNORM"},
-    FormatInfo{TextureFormat::SrgbA8, 43, 4, 1, true, "VK_FORMAT_R8G8B8A8_SRGB"},
-    FormatInfo{TextureFormat::R16, 70, 1, 2, false, "VK_FORMAT_R16_UNORM"},
-    FormatInfo{TextureFormat::Rgba16F, 97, 4, 2, false, "VK_FORMAT_R16G16B16A16_SFLOAT", true},
+    FormatInfo{PixelFormat::R8, 9, "VK_FORMAT_R8_UNORM"},
+    FormatInfo{PixelFormat::RG8, 16, "VK_FORMAT_R8G8_UNORM"},
+    FormatInfo{PixelFormat::RGBA8, 37, "VK_FORMAT_R8G8B8A8_UNORM"},
+    FormatInfo{PixelFormat::Srgb8A8, 43, "VK_FORMAT_R8G8B8A8_SRGB"},
+    FormatInfo{PixelFormat::R16, 70, "VK_FORMAT_R16_UNORM"},
+    FormatInfo{PixelFormat::RGBA16F, 97, "VK_FORMAT_R16G16B16A16_SFLOAT"},
 };
 
-const FormatInfo& info(TextureFormat format) {
+const FormatInfo& info(PixelFormat format) {
     const auto found = std::find_if(kFormats.begin(), kFormats.end(),
                                     [&](const FormatInfo& f) { return f.format == format; });
     assert(found != kFormats.end());
     return *found;
 }
 
-std::size_t bytes_per_texel(const FormatInfo& f) {
-    return std::size_t{f.channels} * f.bytes_per_channel;
-}
-
 std::size_t level_bytes(const FormatInfo& f, int width, int height, int depth, int layers,
                         int level) {
     const auto side = [level](int s) { return static_cast<std::size_t>(std::max(1, s >> level)); };
-    return bytes_per_texel(f) * side(width) * side(height) * side(depth) *
-           static_cast<std::size_t>(layers);
+    return f.bytes() * side(width) * side(height) * side(depth) * static_cast<std::size_t>(layers);
 }
 
 std::size_t aligned(std::size_t offset, std::size_t alignment) {
@@ -91,24 +93,24 @@ std::vector<std::uint32_t> descriptor(const FormatInfo& f) {
     constexpr std::uint32_t kRgbsda = 1, kBt709 = 1, kLinear = 1, kSrgb = 2, kLinearAlpha = 0x10,
                             kSignedFloat = 0xC0;
     constexpr std::array<std::uint32_t, 4> kChannelId{0, 1, 2, 15};  // red, green, blue, alpha
-    const std::uint32_t block_size = 24 + 16 * f.channels;
+    const std::uint32_t block_size = 24 + 16 * f.channels();
     std::vector<std::uint32_t> words{
-        4 + block_size,                                            // total size
-        0,                                                         // Khronos, basic descriptor
-        2 | block_size << 16,                                      // version 1.3
-        kRgbsda | kBt709 << 8 | (f.srgb ? kSrgb : kLinear) << 16,  // and straight alpha
-        0,                                                         // one texel a block
-        f.channels * f.bytes_per_channel,                          // bytes of plane 0
+        4 + block_size,                                              // total size
+        0,                                                           // Khronos, basic descriptor
+        2 | block_size << 16,                                        // version 1.3
+        kRgbsda | kBt709 << 8 | (f.srgb() ? kSrgb : kLinear) << 16,  // and straight alpha
+        0,                                                           // one texel a block
+        f.channels() * f.channel_bytes(),                            // bytes of plane 0
         0};
-    const std::uint32_t bits = 8 * f.bytes_per_channel;
-    for (std::uint32_t c = 0; c < f.channels; ++c) {
+    const std::uint32_t bits = 8 * f.channel_bytes();
+    for (std::uint32_t c = 0; c < f.channels(); ++c) {
         std::uint32_t id = kChannelId[c];
-        if (f.srgb && c == 3) id |= kLinearAlpha;
-        if (f.is_float) id |= kSignedFloat;
+        if (f.srgb() && c == 3) id |= kLinearAlpha;
+        if (f.is_float()) id |= kSignedFloat;
         words.insert(words.end(),
                      {c * bits | (bits - 1) << 16 | id << 24, 0,
-                      f.is_float ? std::bit_cast<std::uint32_t>(-1.0f) : 0,
-                      f.is_float ? std::bit_cast<std::uint32_t>(1.0f) : (1u << bits) - 1});
+                      f.is_float() ? std::bit_cast<std::uint32_t>(-1.0f) : 0,
+                      f.is_float() ? std::bit_cast<std::uint32_t>(1.0f) : (1u << bits) - 1});
     }
     return words;
 }
@@ -168,9 +170,9 @@ const FormatInfo& Reader::format(const Header& h) const {
         bad(fmt::format("supercompression scheme {}, expected none (0)", h.supercompression));
     for (const FormatInfo& f : kFormats)
         if (f.vk_format == h.vk_format) {
-            if (h.type_size != f.bytes_per_channel)
+            if (h.type_size != f.channel_bytes())
                 bad(fmt::format("type size of {}, expected {} but got {}", f.name,
-                                f.bytes_per_channel, h.type_size));
+                                f.channel_bytes(), h.type_size));
             return f;
         }
     std::string known;
@@ -249,7 +251,7 @@ std::vector<std::size_t> Reader::level_offsets(const Header& h, const FormatInfo
             bad(fmt::format("level {}, expected {} bytes but got {}", l, expected,
                             index.size != expected ? index.size : index.uncompressed_size));
         part(fmt::format("level {}", l), index.offset, index.size);
-        if (index.offset % std::max<std::size_t>(4, bytes_per_texel(f)) != 0)
+        if (index.offset % std::max<std::size_t>(4, f.bytes()) != 0)
             bad(fmt::format("level {} at {}, expected a multiple of 4", l, index.offset));
         if (index.offset < sizeof(Header) + h.levels * sizeof(LevelIndex))
             bad(fmt::format("level {} at {} lies over the header", l, index.offset));
@@ -258,18 +260,28 @@ std::vector<std::size_t> Reader::level_offsets(const Header& h, const FormatInfo
     return offsets;
 }
 
-}  // namespace
-
-std::size_t bytes_per_texel(TextureFormat format) {
-    return bytes_per_texel(info(format));
+/// The key/value data of a file, with what wrote it.
+std::string key_values(std::map<std::string, std::string> pairs) {
+    pairs.emplace("KTXwriter", "relevo");
+    std::string data;  // std::map has the keys in the order the specification asks for
+    for (const auto& [key, value] : pairs) {
+        const auto size = static_cast<std::uint32_t>(key.size() + 1 + value.size() + 1);
+        data.append(reinterpret_cast<const char*>(&size), 4);
+        data.append(key).push_back('\0');
+        data.append(value).push_back('\0');
+        data.resize(aligned(data.size(), 4));
+    }
+    return data;
 }
+
+}  // namespace
 
 int full_chain_levels(int width, int height, int depth) {
     return static_cast<int>(
         std::bit_width(static_cast<unsigned>(std::max({width, height, depth}))));
 }
 
-TextureData::TextureData(TextureFormat format, int width, int height, int depth, int layers,
+TextureData::TextureData(PixelFormat format, int width, int height, int depth, int layers,
                          int levels)
     : format_(format),
       width_(width),
@@ -351,22 +363,12 @@ TextureData read_ktx(const std::filesystem::path& path) {
 void write_ktx(const std::filesystem::path& path, const TextureData& texture) {
     const FormatInfo& format = info(texture.format());
     const std::vector<std::uint32_t> dfd = descriptor(format);
-
-    std::map<std::string, std::string> pairs = texture.metadata;
-    pairs.emplace("KTXwriter", "relevo");
-    std::string kvd;  // std::map has the keys in the order the specification asks for
-    for (const auto& [key, value] : pairs) {
-        const auto size = static_cast<std::uint32_t>(key.size() + 1 + value.size() + 1);
-        kvd.append(reinterpret_cast<const char*>(&size), 4);
-        kvd.append(key).push_back('\0');
-        kvd.append(value).push_back('\0');
-        kvd.resize(aligned(kvd.size(), 4));
-    }
+    const std::string kvd = key_values(texture.metadata);
 
     Header header{};
     header.identifier = kIdentifier;
     header.vk_format = format.vk_format;
-    header.type_size = format.bytes_per_channel;
+    header.type_size = format.channel_bytes();
     header.width = static_cast<std::uint32_t>(texture.width());
     header.height = static_cast<std::uint32_t>(texture.height());
     header.depth = texture.depth() > 1 ? static_cast<std::uint32_t>(texture.depth()) : 0;
@@ -382,7 +384,7 @@ void write_ktx(const std::filesystem::path& path, const TextureData& texture) {
     offset += header.kvd_size;
 
     // The smallest level lies first, so that a reader over a network has something to show early.
-    const std::size_t alignment = std::max<std::size_t>(4, bytes_per_texel(format));
+    const std::size_t alignment = std::max<std::size_t>(4, format.bytes());
     std::vector<LevelIndex> index(header.levels);
     for (std::size_t l = header.levels; l-- > 0;) {
         offset = aligned(offset, alignment);

@@ -8,26 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "base/pixel_format.h"
+
 /// Textures with their mip chains in KTX 2 files, the container that the ground materials come in.
 ///
 /// Chosen because a level is used as it lies in the file: nothing is decoded, the file is mapped,
 /// and the bytes go from the page cache to the driver. Source: Khronos, KTX File Format
 /// Specification 2.0, https://registry.khronos.org/KTX/specs/2.0/ktxspec.v2.html
 namespace relevo::image {
-
-/// Texel formats that are read and written; each is one `VkFormat`.
-/// Whole numbers are normalised to 0..1; multi-byte values are little-endian.
-enum class TextureFormat {
-    R8,       ///< VK_FORMAT_R8_UNORM
-    Rg8,      ///< VK_FORMAT_R8G8_UNORM
-    Rgba8,    ///< VK_FORMAT_R8G8B8A8_UNORM
-    SrgbA8,   ///< VK_FORMAT_R8G8B8A8_SRGB: R, G, B in sRGB encoding, A linear
-    R16,      ///< VK_FORMAT_R16_UNORM
-    Rgba16F,  ///< VK_FORMAT_R16G16B16A16_SFLOAT: half floats, linear
-};
-
-/// Bytes of one texel of `format`: 1, 2, 4 or 8.
-std::size_t bytes_per_texel(TextureFormat format);
 
 /// Levels of a full mip chain down to 1 x 1 x 1: floor(log2(greatest side)) + 1.
 int full_chain_levels(int width, int height, int depth = 1);
@@ -43,9 +31,9 @@ class TextureData {
     /// @param depth   slices of a volume; 1 is a flat texture
     /// @param layers  elements of a texture array; 1 is no array
     /// @param levels  1 to full_chain_levels()
-    TextureData(TextureFormat format, int width, int height, int depth, int layers, int levels);
+    TextureData(PixelFormat format, int width, int height, int depth, int layers, int levels);
 
-    TextureFormat format() const { return format_; }
+    PixelFormat format() const { return format_; }
     int width() const { return width_; }    ///< texels of level 0
     int height() const { return height_; }  ///< rows of level 0
     int depth() const { return depth_; }    ///< slices of level 0
@@ -73,7 +61,7 @@ class TextureData {
         void operator()(const std::byte* bytes) const;
     };
 
-    TextureFormat format_ = TextureFormat::R8;
+    PixelFormat format_ = PixelFormat::R8;
     int width_ = 0;
     int height_ = 0;
     int depth_ = 0;
@@ -84,7 +72,8 @@ class TextureData {
     std::unique_ptr<const std::byte, Unmap> mapped_;
 };
 
-/// Maps a KTX 2 file: no supercompression, one face, a TextureFormat, 1 to 32768 texels a side, 1
+/// Maps a KTX 2 file: no supercompression, one face, one of its formats (R8, RG8, RGBA8,
+/// Srgb8A8, R16, RGBA16F), 1 to 32768 texels a side, 1
 /// to 2048 layers, every level stored. Everything that is used later is checked here, and nothing
 /// of the texels is touched, so the time does not depend on the size (tests/image/test_ktx.cpp).
 ///

@@ -578,6 +578,37 @@ geo::Geodetic TerrainHorizon::place_of(const HorizonPoint& point) const {
     return place;
 }
 
+namespace {
+
+/// Sectors of neighbours that are open, from one sector for each direction.
+std::vector<OpenSector> joined(const std::vector<HorizonPoint>& profile,
+                               const std::vector<OpenSector>& all) {
+    const std::size_t n = profile.size();
+    std::vector<bool> is_open(n);
+    for (std::size_t i = 0; i < n; ++i)
+        is_open[i] = all[i].needed_m > 0;
+    const auto index = [&](double azimuth_rad) {
+        return static_cast<std::size_t>(std::lround(azimuth_rad / (2 * kPi) * double(n))) % n;
+    };
+    std::vector<OpenSector> sectors;
+    for (const Sector& sector : sectors_of(is_open)) {
+        const std::size_t first = index(sector.from_azimuth_rad);
+        const std::size_t last = index(sector.to_azimuth_rad);
+        OpenSector whole{
+            {profile[first].azimuth_rad, profile[last].azimuth_rad}, kInfinity, 0, kInfinity};
+        for (std::size_t i = first;; i = (i + 1) % n) {
+            whole.reach_m = std::min(whole.reach_m, all[i].reach_m);
+            whole.needed_m = std::max(whole.needed_m, all[i].needed_m);
+            whole.least_m = std::min(whole.least_m, all[i].least_m);
+            if (i == last) break;
+        }
+        sectors.push_back(whole);
+    }
+    return sectors;
+}
+
+}  // namespace
+
 std::vector<OpenSector> TerrainHorizon::open_sectors(const std::vector<HorizonPoint>& profile,
                                                      double highest_m,
                                                      const std::vector<double>& matters_rad) const {
@@ -615,30 +646,9 @@ std::vector<OpenSector> TerrainHorizon::open_sectors(const std::vector<HorizonPo
         return found;
     };
     std::vector<OpenSector> all(profile.size());
-    std::vector<bool> is_open(profile.size());
-    for (std::size_t i = 0; i < profile.size(); ++i) {
+    for (std::size_t i = 0; i < profile.size(); ++i)
         all[i] = open(i);
-        is_open[i] = all[i].needed_m > 0;
-    }
-    std::vector<OpenSector> sectors;
-    for (const Sector& sector : sectors_of(is_open)) {
-        const auto n = profile.size();
-        const auto index = [&](double azimuth_rad) {
-            return static_cast<std::size_t>(std::lround(azimuth_rad / (2 * kPi) * double(n))) % n;
-        };
-        const std::size_t first = index(sector.from_azimuth_rad);
-        const std::size_t last = index(sector.to_azimuth_rad);
-        OpenSector joined{
-            {profile[first].azimuth_rad, profile[last].azimuth_rad}, kInfinity, 0, kInfinity};
-        for (std::size_t i = first;; i = (i + 1) % n) {
-            joined.reach_m = std::min(joined.reach_m, all[i].reach_m);
-            joined.needed_m = std::max(joined.needed_m, all[i].needed_m);
-            joined.least_m = std::min(joined.least_m, all[i].least_m);
-            if (i == last) break;
-        }
-        sectors.push_back(joined);
-    }
-    return sectors;
+    return joined(profile, all);
 }
 
 std::vector<Sector> sectors_of(const std::vector<bool>& holds) {

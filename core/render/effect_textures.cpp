@@ -3,24 +3,6 @@
 namespace relevo::render {
 namespace {
 
-gl::Format format_of(image::TextureFormat format) {
-    switch (format) {
-        case image::TextureFormat::R8:
-            return gl::Format::R8;
-        case image::TextureFormat::Rg8:
-            return gl::Format::RG8;
-        case image::TextureFormat::Rgba8:
-            return gl::Format::RGBA8;
-        case image::TextureFormat::SrgbA8:
-            return gl::Format::Srgb8A8;
-        case image::TextureFormat::R16:
-            return gl::Format::R16;
-        case image::TextureFormat::Rgba16F:
-            return gl::Format::RGBA16F;
-    }
-    return gl::Format::RGBA8;
-}
-
 gl::TextureKind kind_of(effect::TextureSpec::Kind kind) {
     switch (kind) {
         case effect::TextureSpec::Kind::D2:
@@ -40,7 +22,7 @@ gl::Texture make(const effect::LoadedTexture& from, double anisotropy) {
     const bool ready = from.has_mipmaps();
     const int levels = !spec.mipmaps ? 1 : ready ? first.levels() : 0;
     const int layers = static_cast<int>(from.layers.size());
-    gl::Texture texture(kind_of(spec.kind), format_of(first.format()),
+    gl::Texture texture(kind_of(spec.kind), first.format(),
                         gl::Extent{first.width(), first.height(), array ? layers : first.depth()},
                         levels, spec.resource);
     for (int layer = 0; layer < layers; ++layer) {

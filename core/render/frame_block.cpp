@@ -73,6 +73,7 @@ SunLightFit fit_sun_light(const SunLight& sun) {
     return fit;
 }
 
+// In one piece: a list of members, each filled once.
 FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int width_px,
                             int height_px, double footprint_limit) {
     const scene::Camera& camera = inputs.camera;

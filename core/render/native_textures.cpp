@@ -1,41 +1,17 @@
 #include "render/native_textures.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "effect/texture_format.h"
 
 namespace relevo::render {
-namespace {
-
-struct FormatRow {
-    std::int32_t abi;
-    gl::Format format;
-    int floats;
-};
-constexpr std::array kFormats = {
-    FormatRow{RELEVO_FORMAT_R32F, gl::Format::R32F, 1},
-    FormatRow{RELEVO_FORMAT_RG32F, gl::Format::RG32F, 2},
-    FormatRow{RELEVO_FORMAT_RGBA32F, gl::Format::RGBA32F, 4},
-    FormatRow{RELEVO_FORMAT_RG16F, gl::Format::RG16F, 2},
-    FormatRow{RELEVO_FORMAT_RGBA16F, gl::Format::RGBA16F, 4},
-    FormatRow{RELEVO_FORMAT_DEPTH32F, gl::Format::Depth32F, 1},
-    FormatRow{RELEVO_FORMAT_R16F, gl::Format::R16F, 1},
-    FormatRow{RELEVO_FORMAT_RGBA8, gl::Format::RGBA8, 4},
-};
-
-const FormatRow* format_row(std::int32_t abi) {
-    const auto found = std::find_if(kFormats.begin(), kFormats.end(),
-                                    [&](const FormatRow& row) { return row.abi == abi; });
-    return found == kFormats.end() ? nullptr : &*found;
-}
-
-}  // namespace
 
 NativeTextures::NativeTextures(std::string plugin, const gl::DeviceInfo& device)
     : plugin_(std::move(plugin)), device_(device) {}
@@ -51,8 +27,8 @@ gl::Texture& NativeTextures::get(relevo_texture name) {
 }
 
 relevo_texture NativeTextures::create(const relevo_texture_info& info) {
-    const FormatRow* row = format_row(info.format);
-    if (!row) failed(fmt::format("{} is no format of a texture", info.format));
+    const std::optional<PixelFormat> format = effect::texture_format(info.format);
+    if (!format) failed(fmt::format("{} is no format of a texture", info.format));
     const int most = device_.max_texture_size;
     if (info.width < 1 || info.height < 1 || info.width > most || info.height > most ||
         info.layers < 0 || info.layers > device_.max_array_layers)
@@ -67,9 +43,8 @@ relevo_texture NativeTextures::create(const relevo_texture_info& info) {
         failed(fmt::format("{} is no filter of a texture", info.filter));
     Made made;
     made.resource = info.name ? plugin_ + '.' + info.name : std::string();
-    made.floats = row->floats;
     made.texture = gl::Texture(info.layers > 0 ? gl::TextureKind::D2Array : gl::TextureKind::D2,
-                               row->format, {info.width, info.height, std::max(info.layers, 1)},
+                               *format, {info.width, info.height, std::max(info.layers, 1)},
                                info.levels, made.resource.empty() ? plugin_ : made.resource);
     made.texture.set_sampling(info.filter == RELEVO_FILTER_NEAREST  ? gl::Filter::Nearest
                               : info.filter == RELEVO_FILTER_LINEAR ? gl::Filter::Linear
@@ -102,7 +77,7 @@ void NativeTextures::write(const relevo_texels& texels) {
     if (to.format() == gl::Format::Depth32F) failed("a texture of depth is drawn, not written");
     const std::uint64_t bytes = std::uint64_t{1} * static_cast<unsigned>(texels.width) *
                                 static_cast<unsigned>(texels.height) *
-                                static_cast<unsigned>(gl::texel_bytes(to.format()));
+                                static_cast<unsigned>(layout_of(to.format()).bytes());
     if (texels.bytes != bytes)
         failed(fmt::format("expected {} bytes for {} x {} texels but got {}", bytes, texels.width,
                            texels.height, texels.bytes));
@@ -113,12 +88,11 @@ void NativeTextures::write(const relevo_texels& texels) {
 void NativeTextures::read(relevo_texture name, int layer, std::span<float> out) const {
     const Made& from = at(name);
     const gl::Extent extent = from.texture.extent();
+    const int floats = effect::readable_floats(from.texture.format());
     const std::uint64_t a_layer = std::uint64_t{1} * static_cast<unsigned>(extent.width) *
                                   static_cast<unsigned>(extent.height) *
-                                  static_cast<unsigned>(from.floats);
-    const gl::Format format = from.texture.format();
-    const bool floats = gl::texel_bytes(format) == 4 * from.floats && format != gl::Format::RGBA8;
-    if (!floats) failed("only textures of 32-bit floats can be read");
+                                  static_cast<unsigned>(floats);
+    if (floats == 0) failed("only textures of 32-bit floats can be read");
     if (layer < 0 || layer >= extent.depth || out.size() < a_layer)
         failed(fmt::format("expected room for {} floats and a layer below {} but got {} and {}",
                            a_layer, extent.depth, out.size(), layer));

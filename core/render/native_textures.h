@@ -36,7 +36,6 @@ class NativeTextures {
     struct Made {
         gl::Texture texture;
         std::string resource;
-        int floats = 0;
     };
     const Made& at(relevo_texture name) const;
 

@@ -79,6 +79,7 @@ std::vector<float> surface_page(const dem::Pyramid& pyramid, int level, glm::ive
     return texels;
 }
 
+// In one piece: two loops, the inner of which reads what the outer knows of its row.
 std::vector<std::int16_t> normal_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page,
                                       const PatchNet& net, const glm::dvec3& axis) {
     // Everything from here on is relative to the page's middle: floats hold it to micrometres.

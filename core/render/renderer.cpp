@@ -295,6 +295,7 @@ struct Renderer::Impl {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
+    // In one piece: the passes of a frame in their order.
     void draw(Terrain& ground, const Ground& about, const FrameInputs& inputs, FrameBlock block,
               PassTimes* times) {
         block.normal_levels = static_cast<float>(ground.normal_levels());

@@ -160,6 +160,109 @@ struct Group {
     std::vector<std::size_t> directives;
 };
 
+/// Follows the directives of a file from its first line to its last.
+class Walk {
+  public:
+    Walk(const Source& source, Macros& macros) : source_(source), macros_(macros) {
+        result_.active.resize(source.tokens.size());
+        result_.undecided.resize(source.tokens.size());
+    }
+
+    Conditions run() {
+        for (std::size_t i = 0; i < source_.tokens.size(); ++i) {
+            result_.active[i] = is_active();
+            if (source_.tokens[i].kind != TokenKind::Directive) continue;
+            words_ = directive_tokens(source_.text, source_.tokens[i], source_.file);
+            if (!words_.empty()) obey(i);
+        }
+        return std::move(result_);
+    }
+
+  private:
+    bool is_active() const { return groups_.empty() || groups_.back().active; }
+    bool is_certain() const {
+        return groups_.empty() || (groups_.back().parent_certain && groups_.back().decided);
+    }
+
+    std::string word(std::size_t n) const { return std::string(source_.str(words_[n])); }
+
+    /// Everything behind the directive's word `n`, as one text.
+    std::string rest(std::size_t n) const {
+        std::string text;
+        for (std::size_t k = n; k < words_.size(); ++k)
+            text += word(k) + ' ';
+        return text;
+    }
+
+    Value condition() const {
+        const std::string name = word(0);
+        if (name == "ifdef") return evaluate_expression("defined " + rest(1), macros_);
+        if (name == "ifndef") return evaluate_expression("!defined " + rest(1), macros_);
+        return truth(evaluate_expression(rest(1), macros_));
+    }
+
+    /// @param i  the directive's token
+    void obey(std::size_t i) {
+        const std::string name = word(0);
+        if (name == "define" && is_active() && words_.size() > 1) {
+            define();
+        } else if (name == "undef" && is_active() && words_.size() > 1) {
+            if (is_certain())
+                macros_.erase(word(1));
+            else
+                macros_[word(1)] = std::nullopt;
+        } else if (name.starts_with("if")) {
+            open(i);
+        } else if (name == "elif" || name == "else") {
+            go_on(i);
+        } else if (name == "endif") {
+            close(i);
+        }
+    }
+
+    void define() {
+        const bool function = words_.size() > 2 && word(2) == "(" &&
+                              words_[2].offset == words_[1].offset + words_[1].length;
+        macros_[word(1)] = function || !is_certain() ? std::nullopt : std::make_optional(rest(2));
+    }
+
+    void open(std::size_t i) {
+        Group group{is_active(), is_certain(), true, false, false, {i}};
+        const Value value = group.parent_active ? condition() : Value(0);
+        group.active = group.parent_active && value.value_or(1) != 0;
+        group.taken = value.value_or(0) != 0;
+        group.decided = value.has_value();
+        groups_.push_back(group);
+    }
+
+    void go_on(std::size_t i) {
+        Group& group = groups_.back();
+        group.directives.push_back(i);
+        const bool is_else = word(0) == "else";
+        Value value = is_else ? Value(1) : Value(0);
+        if (!is_else && group.parent_active && !group.taken) value = condition();
+        group.active = group.parent_active && !group.taken && value.value_or(1) != 0;
+        group.decided = group.decided && value.has_value();
+        group.taken = group.taken || value.value_or(0) != 0;
+    }
+
+    void close(std::size_t i) {
+        const Group& group = groups_.back();
+        if (group.parent_active && !group.decided) {
+            result_.undecided[i] = true;
+            for (const std::size_t directive : group.directives)
+                result_.undecided[directive] = true;
+        }
+        groups_.pop_back();
+    }
+
+    const Source& source_;
+    Macros& macros_;
+    Conditions result_;
+    std::vector<Group> groups_;
+    std::vector<Token> words_;  // of the directive
+};
+
 }  // namespace
 
 std::optional<long long> evaluate_expression(std::string_view expression, const Macros& macros) {
@@ -167,70 +270,7 @@ std::optional<long long> evaluate_expression(std::string_view expression, const 
 }
 
 Conditions evaluate_conditions(const Source& source, Macros& macros) {
-    Conditions result;
-    result.active.resize(source.tokens.size());
-    result.undecided.resize(source.tokens.size());
-    std::vector<Group> groups;
-
-    for (std::size_t i = 0; i < source.tokens.size(); ++i) {
-        const bool active = groups.empty() || groups.back().active;
-        const bool certain =
-            groups.empty() || (groups.back().parent_certain && groups.back().decided);
-        result.active[i] = active;
-        if (source.tokens[i].kind != TokenKind::Directive) continue;
-        const std::vector<Token> words =
-            directive_tokens(source.text, source.tokens[i], source.file);
-        if (words.empty()) continue;
-        const std::string_view name = source.str(words[0]);
-        // Everything behind the directive's word `n`, as one text.
-        const auto rest = [&](std::size_t n) {
-            std::string text;
-            for (std::size_t k = n; k < words.size(); ++k)
-                text += std::string(source.str(words[k])) + ' ';
-            return text;
-        };
-        const auto condition = [&]() -> Value {
-            if (name == "ifdef") return evaluate_expression("defined " + rest(1), macros);
-            if (name == "ifndef") return evaluate_expression("!defined " + rest(1), macros);
-            return truth(evaluate_expression(rest(1), macros));
-        };
-
-        if (name == "define" && active && words.size() > 1) {
-            const bool function = words.size() > 2 && source.str(words[2]) == "(" &&
-                                  words[2].offset == words[1].offset + words[1].length;
-            macros[std::string(source.str(words[1]))] =
-                function || !certain ? std::nullopt : std::make_optional(rest(2));
-        } else if (name == "undef" && active && words.size() > 1) {
-            if (certain)
-                macros.erase(std::string(source.str(words[1])));
-            else
-                macros[std::string(source.str(words[1]))] = std::nullopt;
-        } else if (name.substr(0, 2) == "if") {
-            Group group{active, certain, true, false, false, {i}};
-            const Value value = active ? condition() : Value(0);
-            group.active = active && value.value_or(1) != 0;
-            group.taken = value.value_or(0) != 0;
-            group.decided = value.has_value();
-            groups.push_back(group);
-        } else if (name == "elif" || name == "else") {
-            Group& group = groups.back();
-            group.directives.push_back(i);
-            Value value = name == "else" ? Value(1) : Value(0);
-            if (name == "elif" && group.parent_active && !group.taken) value = condition();
-            group.active = group.parent_active && !group.taken && value.value_or(1) != 0;
-            group.decided = group.decided && value.has_value();
-            group.taken = group.taken || value.value_or(0) != 0;
-        } else if (name == "endif") {
-            const Group& group = groups.back();
-            if (group.parent_active && !group.decided) {
-                result.undecided[i] = true;
-                for (const std::size_t directive : group.directives)
-                    result.undecided[directive] = true;
-            }
-            groups.pop_back();
-        }
-    }
-    return result;
+    return Walk(source, macros).run();
 }
 
 }  // namespace relevo::shader

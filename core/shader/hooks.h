@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-/// The places where a plugin's GLSL enters core's programs (docs/architecture.md, section 4).
+/// The places where a plugin's GLSL enters core's programs (docs/plugin-guide.md, Hooks).
 namespace relevo::shader {
 
 /// The programs' side that calls a hook. Post is the fragment side of the last, full-screen

@@ -91,10 +91,14 @@ class AuthorError : public Error {
     std::string owner_;
 };
 
-/// Puts a program together (docs/architecture.md, sections 4 and 7). Reads from `core` the two
-/// mains, lib/types.glsl, lib/frame.glsl, defaults.glsl and what is included. Of all of them, and
-/// of the snippets, only what the two `main` functions reach is in the texts; equal input gives
-/// equal bytes, and no path of a file is in them.
+/// Puts a program together. Reads from `core` the two mains, lib/types.glsl, lib/frame.glsl,
+/// defaults.glsl and what is included. Of all of them, and of the snippets, only what the two
+/// `main` functions reach is in the texts; equal input gives equal bytes, and no path of a file is
+/// in them.
+///
+/// A text is laid out as: version, a define for each capability and each word of `wants`,
+/// lib/types.glsl, the frame block, the block of parameters, samplers, varyings, prototypes of
+/// services, included files, defaults, snippets, the functions `hook_<name>` that call them, main.
 /// @throws AuthorError (BadInput) `shader::stitch: file:line: ...`
 /// @throws Error (BadInput) for two providers of an exclusive hook
 /// @throws Error (Failed) for core's own texts, and for more textures than units

@@ -211,23 +211,38 @@ std::string to_iso(Instant instant, const Zone& zone, int decimals) {
     return civil_text(local.wall, decimals) + offset_text(local.utc_offset_s);
 }
 
-ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone, int fold) {
-    const std::string_view whole = trimmed(text);
-    ParsedTime result;
-    if (whole == "now") {
-        result.utc = Instant::now();
-        if (zone) result.zone = *zone;
-        return result;
-    }
+namespace {
 
-    constexpr std::string_view kForm =
-        "not a time, expected YYYY-MM-DDThh:mm with Z or an offset, such as "
-        "2026-06-21T18:30+02:00";
-    FieldReader reader(whole, "sun::parse_time");
+constexpr std::string_view kForm =
+    "not a time, expected YYYY-MM-DDThh:mm with Z or an offset, such as 2026-06-21T18:30+02:00";
+
+/// What the clocks show, and the part of a second beyond it.
+struct WallTime {
     CivilTime wall;
+    double fraction_s = 0;
+};
+
+/// The seconds behind the colon that has been taken.
+void take_seconds(FieldReader& reader, WallTime& time) {
+    const auto second = reader.digits(2);
+    if (!second) reader.fail(kForm);
+    if (*second == 60)
+        reader.fail("leap seconds cannot be given; take second 59, or 00 of the next minute");
+    reader.check("second", *second, 0, 59);
+    time.wall.second = *second;
+    if (!reader.take('.') && !reader.take(',')) return;
+    double unit = 0.1;
+    auto digit = reader.digits(1);
+    if (!digit) reader.fail(kForm);
+    for (; digit; digit = reader.digits(1), unit /= 10)
+        time.fraction_s += *digit * unit;
+}
+
+WallTime take_wall_time(FieldReader& reader) {
+    WallTime time;
     const auto date = reader.date();
     if (!date) reader.fail(kForm);
-    wall.date = *date;
+    time.wall.date = *date;
     if (reader.rest().empty()) reader.fail("no time of day, expected one such as T18:30 after it");
     if (!reader.take('T') && !reader.take('t') && !reader.take(' ')) reader.fail(kForm);
     const auto hour = reader.digits(2);
@@ -236,65 +251,71 @@ ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone, in
     if (!minute) reader.fail(kForm);
     reader.check("hour", *hour, 0, 23);
     reader.check("minute", *minute, 0, 59);
-    wall.hour = *hour;
-    wall.minute = *minute;
-    double fraction_s = 0;
-    if (reader.take(':')) {
-        const auto second = reader.digits(2);
-        if (!second) reader.fail(kForm);
-        if (*second == 60)
-            reader.fail("leap seconds cannot be given; take second 59, or 00 of the next minute");
-        reader.check("second", *second, 0, 59);
-        wall.second = *second;
-        if (reader.take('.') || reader.take(',')) {
-            double unit = 0.1;
-            auto digit = reader.digits(1);
-            if (!digit) reader.fail(kForm);
-            for (; digit; digit = reader.digits(1), unit /= 10)
-                fraction_s += *digit * unit;
-        }
+    time.wall.hour = *hour;
+    time.wall.minute = *minute;
+    if (reader.take(':')) take_seconds(reader, time);
+    return time;
+}
+
+/// A time with its own offset. @param zone  that it is to be told in, which must not contradict
+ParsedTime with_offset(const FieldReader& reader, const WallTime& time, int offset_s,
+                       const std::optional<Zone>& zone) {
+    ParsedTime result;
+    result.zone = zone ? *zone : Zone::fixed(offset_s);
+    result.utc = Instant::from_utc(time.wall) - offset_s + time.fraction_s;
+    const LocalTime there = result.zone.local(result.utc);
+    if (offset_s != 0 && there.utc_offset_s != offset_s)
+        reader.fail(
+            fmt::format("offset {} contradicts {}, expected {} ({}); give only one of the two",
+                        offset_text(offset_s), zone->name(), offset_text(there.utc_offset_s),
+                        there.abbreviation));
+    return result;
+}
+
+/// A time by the clocks of a zone.
+ParsedTime by_clocks(std::string_view text, const WallTime& time, const Zone& zone, int fold) {
+    ParsedTime result;
+    result.zone = zone;
+    const ResolvedTime taken = zone.resolve(time.wall, fold);
+    result.utc = taken.utc + time.fraction_s;
+    result.kind = taken.kind;
+    if (taken.kind == WallTimeKind::Nonexistent) {
+        result.note = fmt::format(
+            "{}: does not exist in {}, the clocks were put forward over it; taken as {}", text,
+            zone.name(), to_iso(result.utc, zone));
+    } else if (taken.kind == WallTimeKind::Ambiguous) {
+        const ResolvedTime other = zone.resolve(time.wall, fold == 0 ? 1 : 0);
+        result.note = fmt::format(
+            "{}: comes twice in {}, the clocks were put back over it; taken as the {} ({}), not "
+            "the {} ({})",
+            text, zone.name(), fold == 0 ? "first" : "second", offset_text(taken.utc_offset_s),
+            fold == 0 ? "second" : "first", offset_text(other.utc_offset_s));
     }
+    return result;
+}
+
+}  // namespace
+
+ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone, int fold) {
+    const std::string_view whole = trimmed(text);
+    if (whole == "now") {
+        ParsedTime result;
+        result.utc = Instant::now();
+        if (zone) result.zone = *zone;
+        return result;
+    }
+    FieldReader reader(whole, "sun::parse_time");
+    const WallTime time = take_wall_time(reader);
     const std::string_view wall_text = whole.substr(0, whole.size() - reader.rest().size());
     reader.take(' ');
     const auto offset_s = reader.rest().empty() ? std::nullopt : take_offset(reader);
     if (!reader.rest().empty()) reader.fail(kForm);
-
-    if (offset_s) {
-        result.zone = zone ? *zone : Zone::fixed(*offset_s);
-        result.utc = Instant::from_utc(wall) - *offset_s + fraction_s;
-        const LocalTime there = result.zone.local(result.utc);
-        if (*offset_s != 0 && there.utc_offset_s != *offset_s)
-            reader.fail(
-                fmt::format("offset {} contradicts {}, expected {} ({}); give only one of "
-                            "the two",
-                            offset_text(*offset_s), zone->name(), offset_text(there.utc_offset_s),
-                            there.abbreviation));
-        return result;
-    }
+    if (offset_s) return with_offset(reader, time, *offset_s, zone);
     if (!zone)
         reader.fail(
-            fmt::format("no time zone; write {0}Z for UTC or {0}+02:00, or pass --tz "
-                        "Europe/Zurich",
+            fmt::format("no time zone; write {0}Z for UTC or {0}+02:00, or pass --tz Europe/Zurich",
                         wall_text));
-    result.zone = *zone;
-    const ResolvedTime taken = zone->resolve(wall, fold);
-    result.utc = taken.utc + fraction_s;
-    result.kind = taken.kind;
-    if (taken.kind == WallTimeKind::Nonexistent) {
-        result.note = fmt::format(
-            "{}: does not exist in {}, the clocks were put forward over it; "
-            "taken as {}",
-            wall_text, zone->name(), to_iso(result.utc, *zone));
-    } else if (taken.kind == WallTimeKind::Ambiguous) {
-        const ResolvedTime other = zone->resolve(wall, fold == 0 ? 1 : 0);
-        result.note = fmt::format(
-            "{}: comes twice in {}, the clocks were put back over it; taken as the {} ({}), not "
-            "the {} ({})",
-            wall_text, zone->name(), fold == 0 ? "first" : "second",
-            offset_text(taken.utc_offset_s), fold == 0 ? "second" : "first",
-            offset_text(other.utc_offset_s));
-    }
-    return result;
+    return by_clocks(wall_text, time, *zone, fold);
 }
 
 }  // namespace relevo::sun

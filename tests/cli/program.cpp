@@ -1,5 +1,6 @@
 #include "cli/program.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include <sys/wait.h>
@@ -49,8 +50,14 @@ Result run(const std::filesystem::path& program, const std::vector<std::string>&
 Result relevo(const std::vector<std::string>& arguments,
               const std::vector<std::string>& environment) {
     static const char* const given = std::getenv("RELEVO_PROGRAM");
-    return run(given && *given ? std::filesystem::path(given) : build_dir() / "bin/relevo",
-               arguments, environment);
+    std::vector<std::string> words = arguments;
+    const auto capture = std::find(words.begin(), words.end(), "capture");
+    const bool says_device = std::any_of(words.begin(), words.end(), [](const std::string& word) {
+        return word.starts_with("--device");
+    });
+    if (capture != words.end() && !says_device) words.insert(capture + 1, {"--device", "software"});
+    return run(given && *given ? std::filesystem::path(given) : build_dir() / "bin/relevo", words,
+               environment);
 }
 
 void expect_failure(const std::vector<std::string>& arguments, int status,

@@ -18,8 +18,8 @@ struct Result {
 Result run(const std::filesystem::path& program, const std::vector<std::string>& arguments,
            const std::vector<std::string>& environment = {});
 
-/// Runs `relevo` of the build under test. The device is the software renderer wherever one is drawn
-/// with.
+/// Runs `relevo` of the build under test. Pictures are drawn on the software device, whatever GPU
+/// is there, unless the arguments name another: a run on a machine without one fails and says so.
 Result relevo(const std::vector<std::string>& arguments,
               const std::vector<std::string>& environment = {});
 

@@ -81,8 +81,8 @@ TEST_F(Plugins, ABrokenTextureLeavesThePluginOutAndThePictureWhole) {
          R"("textures": {"map": {"kind": "2d-array", "files": ["a.ktx2", "b.ktx2"],
                                  "encoding": "linear"}})");
     using image::TextureData;
-    image::write_ktx(own() / "a.ktx2", TextureData(image::TextureFormat::R8, 64, 64, 1, 1, 7));
-    image::write_ktx(own() / "b.ktx2", TextureData(image::TextureFormat::R8, 64, 64, 1, 1, 1));
+    image::write_ktx(own() / "a.ktx2", TextureData(PixelFormat::R8, 64, 64, 1, 1, 7));
+    image::write_ktx(own() / "b.ktx2", TextureData(PixelFormat::R8, 64, 64, 1, 1, 1));
     const std::string reason =
         "effect::load: plugins/odd/b.ktx2: expected 64 x 64 texels of 1 bytes in 7 levels as in "
         "plugins/odd/a.ktx2 but got 64 x 64 texels of 1 bytes in 1 levels";

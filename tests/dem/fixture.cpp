@@ -7,6 +7,7 @@
 #include <ogr_srs_api.h>
 
 #include "base/error.h"
+#include "support/support.h"
 
 namespace relevo::test {
 namespace {
@@ -16,6 +17,15 @@ void must(bool condition, const char* what) {
 }
 
 }  // namespace
+
+const std::filesystem::path& folder() {
+    static std::filesystem::path made;
+    static const testing::TestInfo* of = nullptr;
+    const testing::TestInfo* const now = testing::UnitTest::GetInstance()->current_test_info();
+    if (made.empty() || now != of) made = scratch_dir("rasters");
+    of = now;
+    return made;
+}
 
 std::string write_raster(const std::filesystem::path& path, const Raster& raster) {
     GDALAllRegister();

@@ -23,10 +23,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::Not;
 
-std::filesystem::path folder() {
-    static const std::filesystem::path dir = test::scratch_dir("dem_dialects");
-    return dir;
-}
+using test::folder;
 
 Heightfield loaded(const char* name, const Raster& raster, const LoadOptions& options = {}) {
     return load(write_raster(folder() / name, raster), options);

@@ -16,10 +16,7 @@ namespace {
 using test::Raster;
 using test::write_raster;
 
-std::filesystem::path folder() {
-    static const std::filesystem::path dir = test::scratch_dir("dem_earth");
-    return dir;
-}
+using test::folder;
 
 std::string refusal(const std::string& path) {
     const std::string message = test::error_of([&] { load(path); });

@@ -17,10 +17,7 @@ namespace {
 using test::Raster;
 using test::write_raster;
 
-std::filesystem::path folder() {
-    static const std::filesystem::path dir = test::scratch_dir("dem_errors");
-    return dir;
-}
+using test::folder;
 
 /// The message without its beginning, "exit 3: dem::load: PATH: ", which is checked.
 std::string refusal(const std::string& path, const LoadOptions& options = {}) {

@@ -24,10 +24,7 @@ constexpr const char* kUnitAssumed =
 constexpr const char* kDatumAssumed =
     "heights are placed as ellipsoidal ones: the file does not say what they are above";
 
-std::filesystem::path folder() {
-    static const std::filesystem::path dir = test::scratch_dir("dem_load");
-    return dir;
-}
+using test::folder;
 
 Heightfield loaded(const char* name, const Raster& raster, const LoadOptions& options = {}) {
     return load(write_raster(folder() / name, raster), options);

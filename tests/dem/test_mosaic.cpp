@@ -20,10 +20,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using Paths = std::vector<std::string>;
 
-std::filesystem::path folder() {
-    static const std::filesystem::path dir = test::scratch_dir("dem_mosaic");
-    return dir;
-}
+using test::folder;
 
 /// A plane over UTM 32 N, so that any sampling of it is it.
 double plane_m(double x, double y) {

@@ -23,10 +23,7 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// Posts that are allowed: 32 tiles, so that most of what is read has been driven out again.
 constexpr std::int64_t kFew = 1 << 17;
 
-std::filesystem::path folder() {
-    static const std::filesystem::path dir = test::scratch_dir("dem_posts");
-    return dir;
-}
+using test::folder;
 
 /// Rough ground of no whole number of tiles, blocks or slabs, with a lone summit and holes.
 Raster rough(int columns, int rows) {

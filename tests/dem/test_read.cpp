@@ -14,10 +14,7 @@ namespace {
 using test::Raster;
 using test::write_raster;
 
-std::filesystem::path folder() {
-    static const std::filesystem::path dir = test::scratch_dir("dem_read");
-    return dir;
-}
+using test::folder;
 
 double ground(int column, int row) {
     return 500 + 200 * std::sin(column * 0.05) + 100 * std::cos(row * 0.07) + 0.5 * column;

@@ -17,10 +17,7 @@ namespace {
 using test::Raster;
 using test::write_raster;
 
-std::filesystem::path folder() {
-    static const std::filesystem::path dir = test::scratch_dir("dem_survey");
-    return dir;
-}
+using test::folder;
 
 /// Rough ground with holes, spikes in many places, and the lowest and the highest post alone.
 Raster rough(int columns, int rows) {

@@ -7,10 +7,7 @@
 namespace relevo::dem {
 namespace {
 
-std::filesystem::path folder() {
-    static const std::filesystem::path dir = test::scratch_dir("dem_whole_file");
-    return dir;
-}
+using test::folder;
 
 /// Bytes of a netCDF classic header, built by hand from the format's specification.
 class Bytes {

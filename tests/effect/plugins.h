@@ -13,17 +13,9 @@
 
 namespace relevo::effect::test {
 
-/// A folder of plugins that a test writes; named after the test that runs.
+/// A folder of plugins that a test writes.
 class Plugins {
   public:
-    Plugins() {
-        const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-        std::string name = std::string("effect_") + info.test_suite_name() + '_' + info.name();
-        for (char& c : name)
-            if (c == '/') c = '_';
-        folder_ = relevo::test::scratch_dir(name);
-    }
-
     const std::filesystem::path& folder() const { return folder_; }
     std::filesystem::path data() const { return folder_ / "data"; }
     std::filesystem::path plugins() const { return folder_ / "plugins"; }
@@ -56,7 +48,7 @@ class Plugins {
     }
 
   private:
-    std::filesystem::path folder_;
+    std::filesystem::path folder_ = relevo::test::scratch_dir();
 };
 
 inline std::vector<std::string> ids(const Selection& selection) {

@@ -15,7 +15,6 @@ namespace relevo::effect::test {
 namespace {
 
 using image::TextureData;
-using image::TextureFormat;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -54,7 +53,7 @@ const char* const kArray =
 
 TEST(TextureFiles, AnArraysLayersAreAlike) {
     const Textured plugins(kArray, "sampler2DArray");
-    plugins.ktx("a.ktx2", TextureData(TextureFormat::Rgba8, 8, 8, 1, 1, 4));
+    plugins.ktx("a.ktx2", TextureData(PixelFormat::RGBA8, 8, 8, 1, 1, 4));
     const auto error_with = [&](const TextureData& second) {
         plugins.ktx("b.ktx2", second);
         return plugins.error();
@@ -62,19 +61,19 @@ TEST(TextureFiles, AnArraysLayersAreAlike) {
     const std::string head =
         "exit 3: effect::load: plugins/haze/b.ktx2: expected 8 x 8 texels of 4 "
         "bytes in 4 levels as in plugins/haze/a.ktx2 but got ";
-    EXPECT_EQ(error_with(TextureData(TextureFormat::Rgba8, 8, 8, 1, 1, 4)), "no error");
-    EXPECT_EQ(error_with(TextureData(TextureFormat::Rgba8, 8, 8, 1, 1, 2)),
+    EXPECT_EQ(error_with(TextureData(PixelFormat::RGBA8, 8, 8, 1, 1, 4)), "no error");
+    EXPECT_EQ(error_with(TextureData(PixelFormat::RGBA8, 8, 8, 1, 1, 2)),
               head + "8 x 8 texels of 4 bytes in 2 levels");
-    EXPECT_EQ(error_with(TextureData(TextureFormat::Rgba8, 8, 4, 1, 1, 4)),
+    EXPECT_EQ(error_with(TextureData(PixelFormat::RGBA8, 8, 4, 1, 1, 4)),
               head + "8 x 4 texels of 4 bytes in 4 levels");
-    EXPECT_EQ(error_with(TextureData(TextureFormat::R8, 8, 8, 1, 1, 4)),
+    EXPECT_EQ(error_with(TextureData(PixelFormat::R8, 8, 8, 1, 1, 4)),
               head + "8 x 8 texels of 1 bytes in 4 levels");
 }
 
 TEST(TextureFiles, WithoutMipmapsLevelsNeedNotBeAlike) {
     const Textured plugins(std::string(kArray) + R"(, "mipmaps": false)", "sampler2DArray");
-    plugins.ktx("a.ktx2", TextureData(TextureFormat::R8, 8, 8, 1, 1, 4));
-    plugins.ktx("b.ktx2", TextureData(TextureFormat::R8, 8, 8, 1, 1, 1));
+    plugins.ktx("a.ktx2", TextureData(PixelFormat::R8, 8, 8, 1, 1, 4));
+    plugins.ktx("b.ktx2", TextureData(PixelFormat::R8, 8, 8, 1, 1, 1));
     EXPECT_EQ(plugins.error(), "no error");
 }
 
@@ -87,22 +86,22 @@ TEST(TextureFiles, AreOfTheKindThatTheManifestSays) {
         return plugins.error();
     };
     const std::string head = "exit 3: effect::load: plugins/haze/a.ktx2: expected ";
-    EXPECT_EQ(error_of(flat, "sampler2D", TextureData(TextureFormat::R8, 8, 4, 2, 1, 1)),
+    EXPECT_EQ(error_of(flat, "sampler2D", TextureData(PixelFormat::R8, 8, 4, 2, 1, 1)),
               head + "a file of kind 2d for textures.noise but got 3d, 8 x 4 x 2 texels");
-    EXPECT_EQ(error_of(flat, "sampler2D", TextureData(TextureFormat::R8, 8, 4, 1, 3, 1)),
+    EXPECT_EQ(error_of(flat, "sampler2D", TextureData(PixelFormat::R8, 8, 4, 1, 3, 1)),
               head +
                   "a file of kind 2d for textures.noise but got 2d-array, 8 x 4 texels, 3 "
                   "layers");
-    EXPECT_EQ(error_of(volume, "sampler3D", TextureData(TextureFormat::R8, 8, 4, 1, 3, 1)),
+    EXPECT_EQ(error_of(volume, "sampler3D", TextureData(PixelFormat::R8, 8, 4, 1, 3, 1)),
               head +
                   "a file of kind 3d for textures.noise but got 2d-array, 8 x 4 texels, 3 "
                   "layers");
-    EXPECT_EQ(error_of(volume, "sampler3D", TextureData(TextureFormat::R8, 8, 4, 2, 1, 1)),
+    EXPECT_EQ(error_of(volume, "sampler3D", TextureData(PixelFormat::R8, 8, 4, 2, 1, 1)),
               "no error");
     EXPECT_EQ(error_of(volume + R"(, "slices": 4)", "sampler3D",
-                       TextureData(TextureFormat::R8, 8, 4, 2, 1, 1)),
+                       TextureData(PixelFormat::R8, 8, 4, 2, 1, 1)),
               head + "4 slices, as the manifest says, but got 2");
-    EXPECT_EQ(error_of(flat, "sampler2D", TextureData(TextureFormat::SrgbA8, 8, 4, 1, 1, 1)),
+    EXPECT_EQ(error_of(flat, "sampler2D", TextureData(PixelFormat::Srgb8A8, 8, 4, 1, 1, 1)),
               head + "texels of encoding linear for textures.noise but got srgb");
 }
 
@@ -117,7 +116,7 @@ TEST(TextureFiles, APicturesRowsRunUpAndItsSlicesLieBelowEachOther) {
     const LoadedTexture texture =
         load_texture(registry.effect("haze", "test").manifest.textures[0]);
     const TextureData& data = texture.layers.at(0);
-    EXPECT_EQ(data.format(), TextureFormat::SrgbA8);
+    EXPECT_EQ(data.format(), PixelFormat::Srgb8A8);
     ASSERT_EQ(data.depth(), 2);
     const auto red = [&](std::size_t texel) {
         return std::to_integer<int>(data.level(0)[4 * texel]);
@@ -180,7 +179,7 @@ TEST(TextureFiles, VolumesAndLayersHaveLimitsOfTheirOwn) {
     const TextureSpec flat{
         .name = "n", .resource = "h.n", .kind = TextureSpec::Kind::D3, .files = {"v.ktx2"}};
     LoadedTexture volume{flat, {}};
-    volume.layers.emplace_back(TextureFormat::R8, 4, 4, 9, 1, 1);
+    volume.layers.emplace_back(PixelFormat::R8, 4, 4, 9, 1, 1);
     EXPECT_EQ(relevo::test::error_of([&] {
                   check_limits(volume, {99, 8, 99});
               }),
@@ -189,7 +188,7 @@ TEST(TextureFiles, VolumesAndLayersHaveLimitsOfTheirOwn) {
     LoadedTexture array{flat, {}};
     array.spec.kind = TextureSpec::Kind::D2Array;
     for (int i = 0; i < 3; ++i)
-        array.layers.emplace_back(TextureFormat::R8, 4, 4, 1, 1, 1);
+        array.layers.emplace_back(PixelFormat::R8, 4, 4, 1, 1, 1);
     EXPECT_EQ(relevo::test::error_of([&] {
                   check_limits(array, {99, 99, 2});
               }),

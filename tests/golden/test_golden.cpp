@@ -43,26 +43,31 @@ std::vector<Scene> read_scenes() {
 
 class Golden : public testing::TestWithParam<Scene> {};
 
-/// With RELEVO_WRITE_GOLDENS=1 in the environment the pictures are written instead of compared.
+/// With RELEVO_WRITE_GOLDENS=1 in the environment the pictures are written instead of compared, and
+/// the tests count as skipped.
 TEST_P(Golden, IsThePictureThatWasLookedAt) {
     const Scene& scene = GetParam();
     for (const std::string& plugin : scene.plugins)
         if (!std::filesystem::exists(source_dir() / "plugins" / plugin))
             GTEST_SKIP() << "the plugin " << plugin << " is not there";
     const std::filesystem::path golden = golden_dir() / (scene.name + ".png");
-    const std::filesystem::path taken = scratch_dir("golden_" + scene.name) / "taken.png";
-    std::vector<std::string> arguments{"-q",      "capture",    bundled_dem(),  "--pixel-error",
-                                       "2",       "-o",         taken.string(), "--size",
-                                       "240x160", "--overwrite"};
+    const std::filesystem::path dir = scratch_dir();
+    const std::filesystem::path taken = dir / "taken.png", timings = dir / "timings.json";
+    std::vector<std::string> arguments{
+        "-q",     "capture", bundled_dem(), "--device",       "software",      "-o", taken.string(),
+        "--size", "240x160", "--timings",   timings.string(), "--pixel-error", "2",  "--overwrite"};
     arguments.push_back("--only");
     arguments.push_back(fmt::format("{}", fmt::join(scene.plugins, ",")));
     arguments.insert(arguments.end(), scene.arguments.begin(), scene.arguments.end());
     const Result run = relevo(arguments);
-    ASSERT_EQ(run.status, 0) << run.err;
+    ASSERT_EQ(run.status, 0) << "goldens are taken on the software device: " << run.err;
+    const std::string device = nlohmann::json::parse(read_text(timings, "test"))["device"];
+    ASSERT_NE(device.find("llvmpipe"), std::string::npos)
+        << "goldens are Mesa's llvmpipe's, but the software device is " << device;
     if (std::getenv("RELEVO_WRITE_GOLDENS")) {
         std::filesystem::copy_file(taken, golden,
                                    std::filesystem::copy_options::overwrite_existing);
-        return;
+        GTEST_SKIP() << "written, not compared: " << golden;
     }
     const image::Image8 expected = image::read(golden), found = image::read(taken);
     ASSERT_EQ(found.width, expected.width);

@@ -76,8 +76,8 @@ INSTANTIATE_TEST_SUITE_P(Ground, Grounds, testing::Values("sand", "grass", "rock
 
 TEST_P(Grounds, FilesAreWhatTheLayersNeed) {
     const Ground& g = ground(GetParam());
-    EXPECT_EQ(g.albedo.format(), image::TextureFormat::SrgbA8);
-    EXPECT_EQ(g.normal.format(), image::TextureFormat::Rgba8);
+    EXPECT_EQ(g.albedo.format(), PixelFormat::Srgb8A8);
+    EXPECT_EQ(g.normal.format(), PixelFormat::RGBA8);
     for (const image::TextureData* t : {&g.albedo, &g.normal}) {
         EXPECT_EQ(t->width(), 1024);
         EXPECT_EQ(t->height(), 1024);

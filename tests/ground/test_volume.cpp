@@ -21,7 +21,7 @@ double value(int c, int r, int s) {
 }
 
 TEST(PerlinVolume, IsAVolumeWithAFullChain) {
-    EXPECT_EQ(volume().format(), image::TextureFormat::R8);
+    EXPECT_EQ(volume().format(), PixelFormat::R8);
     EXPECT_EQ(volume().width(), 128);
     EXPECT_EQ(volume().height(), 128);
     EXPECT_EQ(volume().depth(), 128);

@@ -15,7 +15,7 @@ namespace relevo::image {
 namespace {
 
 /// Every byte of every level differs from its neighbours.
-TextureData counted(TextureFormat format, int width, int height, int depth, int layers) {
+TextureData counted(PixelFormat format, int width, int height, int depth, int layers) {
     TextureData texture(format, width, height, depth, layers,
                         full_chain_levels(width, height, depth));
     for (int l = 0; l < texture.levels(); ++l) {
@@ -46,14 +46,14 @@ T number_at(const std::vector<char>& bytes, std::size_t offset) {
 TEST(Ktx, ReadsBackWhatWasWritten) {
     const auto dir = test::scratch_dir("ktx_round_trip");
     struct Case {
-        TextureFormat format;
+        PixelFormat format;
         int width, height, depth, layers;
     };
     for (const Case& c :
-         {Case{TextureFormat::R8, 16, 16, 16, 1}, Case{TextureFormat::Rg8, 5, 3, 1, 1},
-          Case{TextureFormat::Rgba8, 8, 2, 1, 4}, Case{TextureFormat::SrgbA8, 64, 64, 1, 1},
-          Case{TextureFormat::R16, 7, 9, 3, 1}, Case{TextureFormat::Rgba16F, 5, 4, 3, 1},
-          Case{TextureFormat::R8, 1, 1, 1, 1}}) {
+         {Case{PixelFormat::R8, 16, 16, 16, 1}, Case{PixelFormat::RG8, 5, 3, 1, 1},
+          Case{PixelFormat::RGBA8, 8, 2, 1, 4}, Case{PixelFormat::Srgb8A8, 64, 64, 1, 1},
+          Case{PixelFormat::R16, 7, 9, 3, 1}, Case{PixelFormat::RGBA16F, 5, 4, 3, 1},
+          Case{PixelFormat::R8, 1, 1, 1, 1}}) {
         TextureData texture = counted(c.format, c.width, c.height, c.depth, c.layers);
         texture.metadata = {{"KTXorientation", "ru"}, {"relevo.tile_m", "4"}, {"empty", ""}};
         const auto path = dir / "texture.ktx2";
@@ -76,7 +76,7 @@ TEST(Ktx, ReadsBackWhatWasWritten) {
 // mistake made in writer and reader alike shows.
 TEST(Ktx, WritesWhatTheSpecificationSays) {
     const auto path = test::scratch_dir("ktx_layout") / "texture.ktx2";
-    TextureData texture = counted(TextureFormat::SrgbA8, 4, 2, 1, 1);
+    TextureData texture = counted(PixelFormat::Srgb8A8, 4, 2, 1, 1);
     texture.metadata = {{"KTXorientation", "ru"}};
     write_ktx(path, texture);
     const std::vector<char> bytes = bytes_of(path);
@@ -128,7 +128,7 @@ class BrokenKtx : public testing::TestWithParam<BrokenFile> {};
 
 TEST_P(BrokenKtx, IsRejectedWithItsReason) {
     const auto path = test::scratch_dir(fmt::format("ktx_{}", GetParam().name)) / "texture.ktx2";
-    write_ktx(path, counted(TextureFormat::Rgba8, 4, 4, 1, 1));
+    write_ktx(path, counted(PixelFormat::RGBA8, 4, 4, 1, 1));
     std::vector<char> bytes = bytes_of(path);
     ASSERT_EQ(bytes.size(), 352u);
     ASSERT_EQ(number_at<std::uint32_t>(bytes, 12 + 4 * 11), 244u);
@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Ktx, AFileCutAnywhereIsRejected) {
     const auto dir = test::scratch_dir("ktx_cut");
-    write_ktx(dir / "whole.ktx2", counted(TextureFormat::R8, 8, 8, 8, 1));
+    write_ktx(dir / "whole.ktx2", counted(PixelFormat::R8, 8, 8, 8, 1));
     const std::vector<char> whole = bytes_of(dir / "whole.ktx2");
     const auto path = dir / "cut.ktx2";
     for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -246,7 +246,7 @@ TEST(Ktx, AFileCutAnywhereIsRejected) {
 // address sanitizer of the asan preset watches.
 TEST(Ktx, AnyOneWrongByteIsHandled) {
     const auto path = test::scratch_dir("ktx_fuzz") / "texture.ktx2";
-    write_ktx(path, counted(TextureFormat::Rg8, 4, 4, 1, 2));
+    write_ktx(path, counted(PixelFormat::RG8, 4, 4, 1, 2));
     const std::vector<char> whole = bytes_of(path);
     int accepted = 0;
     for (std::size_t i = 0; i < 288; ++i)
@@ -283,7 +283,7 @@ TEST(Ktx, WhatIsNoFileSaysSo) {
                           pipe.string()));
     const auto nowhere = dir / "missing" / "texture.ktx2";
     EXPECT_EQ(
-        test::error_of([&] { write_ktx(nowhere, counted(TextureFormat::R8, 2, 2, 1, 1)); }),
+        test::error_of([&] { write_ktx(nowhere, counted(PixelFormat::R8, 2, 2, 1, 1)); }),
         fmt::format("exit 3: image::write_ktx: {}: the folder {} does not exist; make it first",
                     nowhere.string(), nowhere.parent_path().string()));
 }
@@ -292,24 +292,24 @@ TEST(Ktx, AFailedWriteLeavesTheOldFile) {
     const auto dir = test::scratch_dir("ktx_replace");
     const auto path = dir / "texture.ktx2";
     std::filesystem::create_directories(path / "in_the_way");
-    EXPECT_EQ(test::error_of([&] { write_ktx(path, counted(TextureFormat::R8, 2, 2, 1, 1)); }),
+    EXPECT_EQ(test::error_of([&] { write_ktx(path, counted(PixelFormat::R8, 2, 2, 1, 1)); }),
               fmt::format("exit 3: image::write_ktx: {}: is a folder", path.string()));
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir), {}), 1);
 }
 
 TEST(Ktx, AnOpenTextureOutlivesItsFilesReplacement) {
     const auto path = test::scratch_dir("ktx_replaced") / "texture.ktx2";
-    const TextureData first = counted(TextureFormat::R8, 64, 64, 1, 1);
+    const TextureData first = counted(PixelFormat::R8, 64, 64, 1, 1);
     write_ktx(path, first);
     const TextureData open = read_ktx(path);
-    write_ktx(path, counted(TextureFormat::R8, 2, 2, 1, 1));
+    write_ktx(path, counted(PixelFormat::R8, 2, 2, 1, 1));
     EXPECT_TRUE(std::ranges::equal(open.level(0), first.level(0)));
     EXPECT_EQ(read_ktx(path).width(), 2);
 }
 
 TEST(Ktx, OpeningTakesNoLongerForALargeTexture) {
     const auto path = test::scratch_dir("ktx_large") / "texture.ktx2";
-    write_ktx(path, TextureData(TextureFormat::Rgba8, 2048, 2048, 1, 1, 12));
+    write_ktx(path, TextureData(PixelFormat::RGBA8, 2048, 2048, 1, 1, 12));
     std::vector<double> times_ms;
     for (int i = 0; i < 21; ++i) {
         const auto start = std::chrono::steady_clock::now();

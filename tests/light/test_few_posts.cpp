@@ -14,10 +14,7 @@ using test::write_raster;
 
 constexpr std::int64_t kFew = 1 << 16;  // posts that are allowed
 
-std::filesystem::path folder() {
-    static const std::filesystem::path dir = test::scratch_dir("light_few_posts");
-    return dir;
-}
+using test::folder;
 
 /// Alpine ground with ridges of one post, which means would flatten.
 double ground_m(int column, int row) {

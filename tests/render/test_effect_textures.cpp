@@ -48,7 +48,7 @@ TEST(EffectTextures, RepeatOrEndAsTheManifestSays) {
         texture.spec.resource = "probe.sides";
         texture.spec.wrap = wrap;
         texture.spec.mipmaps = false;
-        image::TextureData texels(image::TextureFormat::R8, 4, 4, 1, 1, 1);
+        image::TextureData texels(PixelFormat::R8, 4, 4, 1, 1, 1);
         for (std::size_t i = 0; i < 16; ++i)
             texels.writable_level(0)[i] = std::byte(i % 4 < 2 ? 0 : 255);
         texture.layers.push_back(std::move(texels));

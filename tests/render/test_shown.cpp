@@ -16,6 +16,37 @@
 namespace relevo::render {
 namespace {
 
+/// The bundled DEM under the sun of a moment, and a device to draw it on.
+struct Bundled {
+    dem::Heightfield dem = dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
+    Ground ground = make_ground(dem);
+    geo::Geodetic place = ground.frame.origin();
+    gl::Context context{{.device = "software", .debug = true}};
+    Terrain terrain{dem, ground.frame, {.max_array_layers = context.info().max_array_layers}};
+    shader::ParamStore values;
+    EffectInputs effects;
+    FrameInputs inputs;
+
+    explicit Bundled(const char* utc) {
+        values.declare(core_params());
+        effects.stitch.values = &values;
+        inputs.sun = make_sun_light(sun::position(sun::parse_time(utc).utc, place),
+                                    sun::Refraction::standard(place), ground, dem.grid);
+    }
+    Bundled(const Bundled&) = delete;  // its members look at each other
+    Bundled& operator=(const Bundled&) = delete;
+
+    void orbit(double aspect) {
+        inputs.camera = scene::orbit_camera({200, 20, 1.5}, points_to_show(dem, ground, 1),
+                                            radians(40), aspect);
+    }
+
+    image::Image8 picture(Renderer& renderer) {
+        renderer.render_frame(terrain, ground, inputs);
+        return renderer.read_picture();
+    }
+};
+
 TEST(Picture, ColoursFollowTheSrgbCurve) {
     test::GpuSnippet gpu("", "lib/srgb.glsl");
     const int count = 4096;
@@ -52,57 +83,32 @@ TEST(Picture, LargerThanTheDeviceDrawsIsAMessage) {
 
 TEST(Picture, IsTheSameWithAndWithoutKeepingItsRadiance) {
     // With it, the light is stored as half floats and tone-mapped by a pass of its own.
-    const dem::Heightfield dem =
-        dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
-    const Ground ground = make_ground(dem);
-    const geo::Geodetic place = ground.frame.origin();
-    gl::Context context({.device = "software", .debug = true});
-    shader::ParamStore values;
-    values.declare(core_params());
-    EffectInputs no_effects;
-    no_effects.stitch.values = &values;
-    FrameInputs inputs;
-    inputs.sun = make_sun_light(sun::position(sun::parse_time("2026-06-21T22:30Z").utc, place),
-                                sun::Refraction::standard(place), ground, dem.grid);
-    inputs.camera = scene::orbit_camera({200, 20, 1.5}, points_to_show(dem, ground, 1), radians(40),
-                                        320.0 / 256);
+    Bundled bundled("2026-06-21T22:30Z");
+    bundled.orbit(320.0 / 256);
     std::vector<image::Image8> pictures;
     for (const bool radiance : {true, false}) {
-        Renderer renderer(context, no_effects,
+        Renderer renderer(bundled.context, bundled.effects,
                           {.width_px = 320, .height_px = 256, .radiance = radiance});
-        Terrain terrain(dem, ground.frame, {.max_array_layers = context.info().max_array_layers});
-        renderer.render_frame(terrain, ground, inputs);
-        pictures.push_back(renderer.read_picture());
+        pictures.push_back(bundled.picture(renderer));
     }
     EXPECT_LE(image::compare(pictures[0], pictures[1]).worst, 1);
 }
 
 TEST(Picture, DithersByOneStepOfEightBits) {
     // A sky of one colour is drawn in the two numbers next to it.
-    const dem::Heightfield dem =
-        dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
-    const Ground ground = make_ground(dem);
-    gl::Context context({.device = "software", .debug = true});
     const shader::Snippet even = shader::parse_snippet(
         "even", "even.glsl",
         "vec3 even_on_background_radiance(in vec3 direction, in bool with_disc) {\n"
         "    return vec3(0.1, 0.2, 0.3) / frame.exposure;\n"
         "}\n");
-    shader::ParamStore values;
-    values.declare(core_params());
-    EffectInputs effects;
-    effects.stitch.snippets = {&even};
-    effects.stitch.values = &values;
-    FrameInputs inputs;
-    const geo::Geodetic place = ground.frame.origin();
-    inputs.sun = make_sun_light(sun::position(sun::parse_time("2026-06-21T15:30Z").utc, place),
-                                sun::Refraction::standard(place), ground, dem.grid);
-    inputs.camera = scene::heading_camera(
-        {0, 0, 5000}, ground.frame.axes(place.lat_rad, place.lon_rad), 0, 60, radians(40));
-    Renderer renderer(context, effects, {.width_px = 64, .height_px = 64, .radiance = false});
-    Terrain terrain(dem, ground.frame, {.max_array_layers = context.info().max_array_layers});
-    renderer.render_frame(terrain, ground, inputs);
-    const image::Image8 picture = renderer.read_picture();
+    Bundled bundled("2026-06-21T15:30Z");
+    bundled.effects.stitch.snippets = {&even};
+    bundled.inputs.camera = scene::heading_camera(
+        {0, 0, 5000}, bundled.ground.frame.axes(bundled.place.lat_rad, bundled.place.lon_rad), 0,
+        60, radians(40));
+    Renderer renderer(bundled.context, bundled.effects,
+                      {.width_px = 64, .height_px = 64, .radiance = false});
+    const image::Image8 picture = bundled.picture(renderer);
     for (int channel = 0; channel < 3; ++channel) {
         int low = 255, high = 0;
         for (int y = 0; y < 64; ++y)
@@ -118,26 +124,12 @@ TEST(Picture, DithersByOneStepOfEightBits) {
 TEST(Picture, OfALargeFirstFrameIsWhole) {
     // It is drawn in bands under a watch, the next one at once.
     constexpr int kSide_px = 1500;
-    const dem::Heightfield dem =
-        dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
-    const Ground ground = make_ground(dem);
-    gl::Context context({.device = "software", .debug = true});
-    shader::ParamStore values;
-    values.declare(core_params());
-    EffectInputs no_effects;
-    no_effects.stitch.values = &values;
-    FrameInputs inputs;
-    const geo::Geodetic place = ground.frame.origin();
-    inputs.sun = make_sun_light(sun::position(sun::parse_time("2026-06-21T15:30Z").utc, place),
-                                sun::Refraction::standard(place), ground, dem.grid);
-    inputs.camera =
-        scene::orbit_camera({200, 20, 1.5}, points_to_show(dem, ground, 1), radians(40), 1);
-    Renderer renderer(context, no_effects, {.width_px = kSide_px, .height_px = kSide_px});
-    Terrain terrain(dem, ground.frame, {.max_array_layers = context.info().max_array_layers});
-    renderer.render_frame(terrain, ground, inputs);
-    const image::Image8 first = renderer.read_picture();
-    renderer.render_frame(terrain, ground, inputs);
-    EXPECT_EQ(first.values, renderer.read_picture().values);
+    Bundled bundled("2026-06-21T15:30Z");
+    bundled.orbit(1);
+    Renderer renderer(bundled.context, bundled.effects,
+                      {.width_px = kSide_px, .height_px = kSide_px});
+    const image::Image8 first = bundled.picture(renderer);
+    EXPECT_EQ(first.values, bundled.picture(renderer).values);
     // Nothing of it is as the device left its memory.
     int black = 0;
     for (int y = 0; y < kSide_px; ++y)

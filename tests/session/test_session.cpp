@@ -1,6 +1,7 @@
 // A session that goes on is one that began there.
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include <fmt/format.h>
@@ -14,19 +15,41 @@
 namespace relevo::session {
 namespace {
 
+/// Two effects of the test's own: a film over the ground with a parameter, and one with a static
+/// parameter. The scene names them, so that nothing of the session depends on what is shipped.
+std::filesystem::path plugin_folder() {
+    static const std::filesystem::path folder = [] {
+        std::filesystem::path made = test::scratch_dir("session_plugins");
+        const auto add = [&](const std::string& id, const std::string& glsl) {
+            std::filesystem::create_directory(made / id);
+            std::ofstream(made / id / "plugin.json") << fmt::format(
+                R"({{"format": 1, "id": "{0}", "name": "{0}", "version": "1.0"}})", id);
+            std::ofstream(made / id / (id + ".glsl")) << glsl;
+        };
+        add("film",
+            "uniform float film_density = 0.2;  //@ range(0, 1) unit(1/km)\n"
+            "void film_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {\n"
+            "    radiance = mix(radiance, vec3(0.05, 0.1, 0.2) / frame.exposure, film_density);\n"
+            "}\n");
+        add("paint",
+            "uniform bool paint_slope = true;  //@ static\n"
+            "void paint_on_albedo(inout Surface s) {\n"
+            "    s.diffuse = paint_slope ? vec3(s.geometric_normal.z) : vec3(0.3);\n"
+            "}\n");
+        return made;
+    }();
+    return folder;
+}
+
 scene::Scene bundled_scene() {
     scene::Scene scene;
     scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
     scene.moment.time = "2026-06-21T22:30Z";
     scene.width_px = 200;
     scene.height_px = 160;
-    scene.effects.switches.only = std::vector<std::string>{"haze", "layering"};
+    scene.effects.switches.only = std::vector<std::string>{"film", "paint"};
+    scene.effects.plugin_path = {plugin_folder().string()};
     return scene;
-}
-
-bool has_effects() {
-    return std::filesystem::exists(test::source_dir() / "plugins/haze") &&
-           std::filesystem::exists(test::source_dir() / "plugins/layering");
 }
 
 image::Image8 picture_of(const scene::Scene& scene) {
@@ -37,7 +60,6 @@ image::Image8 picture_of(const scene::Scene& scene) {
 }
 
 TEST(Session, CameraMomentParametersAndSizeChangeWithoutANewProgram) {
-    if (!has_effects()) GTEST_SKIP() << "haze or layering is not there";
     FilesInUse files;
     int stitched = 0;
     Options options{.device = "software"};
@@ -50,11 +72,11 @@ TEST(Session, CameraMomentParametersAndSizeChangeWithoutANewProgram) {
     scene::Scene later = bundled_scene();
     later.view.orbit = {100, 20, 1.5};
     later.moment.time = "2026-12-21T15:00Z";
-    later.effects.settings = {{"haze.density", "0.1"}};
+    later.effects.settings = {{"film.density", "0.7"}};
     later.width_px = 320;
     session.look(later.view);
     session.set_moment(sun::Instant::from_utc({.date = {2026, 12, 21}, .hour = 15}));
-    session.set("haze.density", "0.1");
+    session.set("film.density", "0.7");
     session.resize(later.width_px, later.height_px);
     session.draw();
     const image::Image8 after = session.picture();
@@ -67,7 +89,7 @@ TEST(Session, CameraMomentParametersAndSizeChangeWithoutANewProgram) {
     const scene::Scene first = bundled_scene();
     session.look(first.view);
     session.set_moment(sun::Instant::from_utc({.date = {2026, 6, 21}, .hour = 22, .minute = 30}));
-    session.set("haze.density", "0.022");
+    session.set("film.density", "0.2");
     session.resize(first.width_px, first.height_px);
     session.draw();
     EXPECT_EQ(session.picture().values, before.values);
@@ -110,24 +132,22 @@ TEST(Session, DrawsCoarserGroundUntilItsPagesAreThere) {
 }
 
 TEST(Session, RefusesWhatNeedsAnotherProgram) {
-    if (!has_effects()) GTEST_SKIP() << "haze or layering is not there";
     FilesInUse files;
     Session session(bundled_scene(), {.device = "software"}, files);
-    EXPECT_EQ(test::error_of([&] { session.set("layering.slope", "false"); }),
-              "exit 3: session: layering.slope: it is static: another value is another program");
-    EXPECT_EQ(test::error_of([&] { session.set("haze.density", "-1"); }),
-              "exit 3: shader::parse_value: haze.density: expected a number in [0, 100] 1/km but "
-              "got \"-1\"");
-    EXPECT_EQ(test::error_of([&] { session.set("haze.densty", "1"); }),
-              "exit 3: shader::ParamStore: haze.densty: no such parameter; did you mean "
-              "haze.density?");
+    EXPECT_EQ(test::error_of([&] { session.set("paint.slope", "false"); }),
+              "exit 3: session: paint.slope: it is static: another value is another program");
+    EXPECT_EQ(test::error_of([&] { session.set("film.density", "-1"); }),
+              "exit 3: shader::parse_value: film.density: expected a number in [0, 1] 1/km but got "
+              "\"-1\"");
+    EXPECT_EQ(test::error_of([&] { session.set("film.densty", "1"); }),
+              "exit 3: shader::ParamStore: film.densty: no such parameter; did you mean "
+              "film.density?");
     // The last good values stay.
     session.draw();
     EXPECT_EQ(session.picture().values, picture_of(bundled_scene()).values);
 }
 
 TEST(Session, TellsOfTheSunAsItsEyeSeesIt) {
-    if (!has_effects()) GTEST_SKIP() << "haze or layering is not there";
     FilesInUse files;
     scene::Scene scene = bundled_scene();
     Session session(scene, {.device = "software"}, files);

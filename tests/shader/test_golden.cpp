@@ -1,4 +1,4 @@
-// Whole texts, compared byte by byte with tests/shader/golden. RELEVO_UPDATE_GOLDEN=1 writes them
+// Whole texts, compared byte by byte with tests/shader/golden. RELEVO_WRITE_GOLDENS=1 writes them
 // anew; read the difference before committing it.
 #include <cstdlib>
 #include <fstream>
@@ -34,7 +34,10 @@ void compare(const std::string& name, const StageText& stage) {
         text += place + std::string(place.size() < 30 ? 30 - place.size() : 0, ' ') + "| " +
                 lines[i] + '\n';
     }
-    if (std::getenv("RELEVO_UPDATE_GOLDEN")) std::ofstream(path, std::ios::binary) << text;
+    if (std::getenv("RELEVO_WRITE_GOLDENS")) {
+        std::ofstream(path, std::ios::binary) << text;
+        return;
+    }
     EXPECT_EQ(text, read_text(path, "golden"));
 }
 
@@ -43,6 +46,7 @@ TEST_P(GoldenText, IsByteForByte) {
     const Stitched stitched = stitch(fixture_core(), GetParam().program, selection.input());
     compare(std::string(GetParam().name) + ".vert.txt", stitched.vertex);
     compare(std::string(GetParam().name) + ".frag.txt", stitched.fragment);
+    if (std::getenv("RELEVO_WRITE_GOLDENS")) GTEST_SKIP() << "written, not compared";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GoldenText,

@@ -1,6 +1,7 @@
 #include "support/support.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -25,7 +26,12 @@ std::optional<std::filesystem::path> test_data_dir() {
 }
 
 std::filesystem::path scratch_dir(std::string_view name) {
-    const std::filesystem::path dir = build_dir() / "scratch" / name;
+    std::string test = "none";
+    if (const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info())
+        test = fmt::format("{}.{}", info->test_suite_name(), info->name());
+    std::replace(test.begin(), test.end(), '/', '_');  // of parameterised tests
+    const std::filesystem::path dir =
+        build_dir() / "scratch" / program_invocation_short_name / test / name;
     std::filesystem::remove_all(dir);
     std::filesystem::create_directories(dir);
     return dir;

@@ -22,8 +22,10 @@ std::filesystem::path build_dir();
 /// sources where that exists. Empty: print what is skipped with SKIP_WITHOUT_TEST_DATA.
 std::optional<std::filesystem::path> test_data_dir();
 
-/// An empty folder for one test, removed before the next run.
-std::filesystem::path scratch_dir(std::string_view name);
+/// An empty folder for files of a test, cleared by the test's next run: "<build>/scratch/<program>/
+/// <suite>.<case>/<name>", so that cases may run at once in processes of their own. What a static
+/// holds belongs to the case that came first.
+std::filesystem::path scratch_dir(std::string_view name = "files");
 
 /// The whole message of the Error that `body` throws, "exit N: message"; "no error" if it throws
 /// none.

@@ -68,7 +68,7 @@ void describe(image::TextureData& texture, const Material& material) {
 }
 
 template <typename Fill>
-image::TextureData with_chain(image::TextureFormat format, const Material& material, Fill fill) {
+image::TextureData with_chain(PixelFormat format, const Material& material, Fill fill) {
     const int n = material.height_m.width();
     image::TextureData texture(format, n, n, 1, 1, image::full_chain_levels(n, n));
     describe(texture, material);
@@ -110,7 +110,7 @@ float gloss_left(double shininess, double slope_variance) {
 
 image::TextureData albedo_texture(const Material& material) {
     image::TextureData texture = with_chain(
-        image::TextureFormat::SrgbA8, material,
+        PixelFormat::Srgb8A8, material,
         [&](const Level& level, int, int c, int r, std::byte* texel) {
             for (int channel = 0; channel < 3; ++channel)
                 texel[channel] = rounded(srgb_encoded(level.albedo.at(c, r)[channel]));
@@ -129,7 +129,7 @@ image::TextureData normal_texture(const Material& material) {
         std::minmax_element(material.height_m.begin(), material.height_m.end());
     const float min_m = *low, range_m = std::max(*high - *low, 1e-6f);
     image::TextureData texture = with_chain(
-        image::TextureFormat::Rgba8, material,
+        PixelFormat::RGBA8, material,
         [&](const Level& level, int l, int c, int r, std::byte* texel) {
             const glm::vec3 normal = normal_of_slope(level.ds.at(c, r), level.dt.at(c, r));
             const auto seed = static_cast<std::uint32_t>(l);

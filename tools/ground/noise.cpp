@@ -105,6 +105,7 @@ float fractal_noise(std::uint32_t seed, const Lattice& cells, float s, float t, 
     return sum / std::sqrt(square);
 }
 
+// In one piece: what it finds about the near points decides about the far ones.
 Cells cells(std::uint32_t seed, const Lattice& lattice, float s, float t, float jitter) {
     const glm::vec2 p = lattice.at(s, t);
     const int i0 = floor_int(p.x), j0 = floor_int(p.y);

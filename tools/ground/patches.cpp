@@ -76,8 +76,7 @@ void halve(Channels& channels) {
 
 image::TextureData patches_texture(int n) {
     Channels channels = make_channels(n);
-    image::TextureData texture(image::TextureFormat::Rgba8, n, n, 1, 1,
-                               image::full_chain_levels(n, n));
+    image::TextureData texture(PixelFormat::RGBA8, n, n, 1, 1, image::full_chain_levels(n, n));
     texture.metadata["relevo.channels"] = "r tone, g hue, b shrubs, a fine tone";
     texture.metadata["relevo.description"] = "How ground varies from place to place";
     for (int level = 0; level < texture.levels(); ++level) {
@@ -96,8 +95,7 @@ image::TextureData patches_texture(int n) {
 
 image::TextureData regions_texture(int n) {
     Channels channels = make_channels(n);
-    image::TextureData texture(image::TextureFormat::Rgba16F, n, n, 1, 1,
-                               image::full_chain_levels(n, n));
+    image::TextureData texture(PixelFormat::RGBA16F, n, n, 1, 1, image::full_chain_levels(n, n));
     texture.metadata["relevo.channels"] = "as of the patches, less 0.5";
     texture.metadata["relevo.description"] = "How ground varies from region to region";
     for (int level = 0; level < texture.levels(); ++level) {

@@ -100,6 +100,7 @@ glm::vec3 crust_colour(float kind) {
 
 }  // namespace
 
+// In one piece: a recipe, read from top to bottom.
 Material make_rock(int n) {
     Material m;
     m.name = "rock";

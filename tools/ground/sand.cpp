@@ -40,6 +40,7 @@ ComplexField ripple_wave(int n) {
 
 }  // namespace
 
+// In one piece: a recipe, read from top to bottom.
 Material make_sand(int n) {
     Material m;
     m.name = "sand";

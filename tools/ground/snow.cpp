@@ -18,6 +18,7 @@ const Lattice kRipples(52, 13, -6, 24);  // crests across the wind, 15 cm apart
 
 }  // namespace
 
+// In one piece: a recipe, read from top to bottom.
 Material make_snow(int n) {
     Material m;
     m.name = "snow";

@@ -51,8 +51,7 @@ image::TextureData perlin_texture(int n) {
         peak = std::max(peak, std::abs(v));
     }
 
-    image::TextureData texture(image::TextureFormat::R8, n, n, n, 1,
-                               image::full_chain_levels(n, n, n));
+    image::TextureData texture(PixelFormat::R8, n, n, n, 1, image::full_chain_levels(n, n, n));
     texture.metadata["relevo.channels"] = "r noise, mean 0.5";
     texture.metadata["relevo.description"] =
         fmt::format("Perlin noise, {} octaves of {} cells and finer", kVolumeOctaves, kVolumeCells);

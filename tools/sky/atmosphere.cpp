@@ -149,6 +149,7 @@ void Atmosphere::pass(Spectrum& through, const Columns& c, double length) const 
                                           c.ozone_m * ozone_[k]));
 }
 
+// In one piece: one integral, over heights, directions and steps along them.
 void Atmosphere::scatter_many() {
     constexpr int kDirections = 64, kSteps = 32;
     many_.assign(static_cast<std::size_t>(kManyHeights * kManySuns), Spectrum{});

@@ -144,7 +144,7 @@ image::TextureData star_texture(const std::vector<Star>& stars) {
                          [](const Star* a, const Star* b) { return a->magnitude < b->magnitude; });
         depth = std::max(depth, cell.size());
     }
-    image::TextureData data(image::TextureFormat::Rgba16F, n, n, static_cast<int>(depth), 1, 1);
+    image::TextureData data(PixelFormat::RGBA16F, n, n, static_cast<int>(depth), 1, 1);
     const std::span<std::byte> texels = data.writable_level(0);
     for (int y = 0; y < n; ++y) {
         for (int x = 0; x < n; ++x) {

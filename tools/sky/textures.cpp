@@ -95,7 +95,7 @@ glm::dvec3 slope_irradiance(const Picture& picture, double normal_up, double nor
 }
 
 image::TextureData texture(int width, int height, int depth) {
-    image::TextureData data(image::TextureFormat::Rgba16F, width, height, depth, 1, 1);
+    image::TextureData data(PixelFormat::RGBA16F, width, height, depth, 1, 1);
     data.metadata = {{"KTXorientation", depth > 1 ? "rui" : "ru"}};
     return data;
 }

@@ -40,8 +40,7 @@ void write_comparison(const std::filesystem::path& file, const relevo::dem::Heig
     using namespace relevo;
     using namespace relevo::shadow;
     constexpr int kPosts = 220, kScale = 2, kGap = 8;
-    const std::filesystem::path scratch = std::filesystem::temp_directory_path() /
-                                          fmt::format("relevo_shadow_comparison_{}", getpid());
+    const std::filesystem::path scratch = test::scratch_dir();
     const glm::dvec3 to_sun = direction(azimuth, elevation);
     // "Hard": no blur, no deviation and no bias, so that a texel is either nearer or not.
     Drawn hard(dem, scratch,
@@ -116,10 +115,7 @@ int main(int argc, char** argv) {
                 write_comparison(comparison, dem, elevations[0], azimuths[0]);
                 continue;
             }
-            Drawn drawn(dem,
-                        std::filesystem::temp_directory_path() /
-                            fmt::format("relevo_shadow_table_{}", getpid()),
-                        settings, pixel_error);
+            Drawn drawn(dem, test::scratch_dir(), settings, pixel_error);
             const Truth truth(dem, drawn.ground().frame);
             fmt::print("\n{}{}: {} x {} posts\n\n", std::filesystem::path(path).filename().string(),
                        factor == 1 ? "" : fmt::format(", heights times {}", factor),
