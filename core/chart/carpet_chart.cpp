@@ -46,8 +46,7 @@ Drawing CarpetChart::draw() const {
     const double keys_y = bottom + 92;
     Drawing drawing(1160, keys_y + 22 + foot_height(1160, kMargin, foot) + kMargin);
 
-    std::string title = place_name.empty() ? "" : place_name + ": ";
-    title += fmt::format("{}irect sun through {}", title.empty() ? 'D' : 'd', year);
+    const std::string subject = fmt::format("Direct sun through {}", year);
     std::vector<std::string> lines{
         fmt::format("{}, {}", place_text(place), carpet->zone.name()),
         fmt::format("{:.0f} hours of direct sun, {:.0f} over a level horizon ({:.0f} %)",
@@ -56,8 +55,8 @@ Drawing CarpetChart::draw() const {
     if (carpet->not_known_s > 0)
         lines.back() += fmt::format("; {:.3g} hours of direct sun not known for holes of the DEM",
                                     carpet->not_known_s / 3600);
-    drawing.describe(title, lines.back());
-    add_title(drawing, kMargin, title, lines);
+    drawing.describe(title_of(place_name, subject), lines.back());
+    add_title(drawing, kMargin, place_name, subject, lines);
 
     // Cells of one kind that follow each other are one area.
     drawing.rect({kLeft, kTop, width, height},
