@@ -3,6 +3,7 @@
 #
 # sanitizers.sh           every test: builds the presets asan and tsan as a whole (an hour on two cores)
 # sanitizers.sh reduced   the program alone, driven by the tests of build/dev that tests/sanitized_tests.txt names
+# sanitizers.sh small     the layers base and dem: the pool of threads, files, and what reads foreign bytes
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export TSAN_OPTIONS=${TSAN_OPTIONS:-suppressions=$PWD/tests/tsan.txt}
@@ -15,6 +16,9 @@ for preset in asan tsan; do
         RELEVO_PROGRAM=$PWD/build/$preset/bin/relevo RELEVO_SHARE=$PWD/build/dev/share/relevo \
             build/dev/bin/test_cli --gtest_brief=1 \
             --gtest_filter="$(sed '/^#/d; /^$/d' tests/sanitized_tests.txt | paste -sd:)"
+    elif [ "${1:-}" = small ]; then
+        cmake --build --preset $preset --target test_base test_dem
+        ctest --preset $preset -R '^(base|dem)$'
     else
         cmake --build --preset $preset
         ctest --preset $preset

@@ -127,6 +127,7 @@ void ViewArguments::add_to(CLI::App& verb) {
         ->group("View");
     verb.add_option("--heading", heading_deg,
                     "Direction from --eye, degrees clockwise from true north")
+        ->check(any_number())
         ->group("View");
     verb.add_option("--pitch", pitch_deg, "Degrees above the horizontal")
         ->check(in_range(-90.0, 90.0))
@@ -171,7 +172,7 @@ void ViewArguments::apply_to(scene::Scene& scene) const {
     if (!eye.empty()) result.eye = standpoint(eye, "--eye", scene::kEyeHeight_m);
     if (!look_at.empty()) result.look_at = standpoint(look_at, "--look-at", 0);
     if (heading_deg || pitch_deg) result.look_at.reset();
-    if (heading_deg) result.heading_deg = *heading_deg;
+    if (heading_deg) result.heading_deg = scene::within_a_turn_deg(*heading_deg);
     if (pitch_deg) result.pitch_deg = *pitch_deg;
     if (fov_deg || focal_length_mm) {
         result.fov_y_rad = radians(fov_deg.value_or(0));
@@ -188,6 +189,14 @@ CLI::Validator in_range(double min, double max) {
                            : fmt::format("expected {:.10g} to {:.10g} but got {}", min, max, text);
             },
             fmt::format("{:.10g} to {:.10g}", min, max)};
+}
+
+CLI::Validator any_number() {
+    return {[](const std::string& text) {
+                return parse_number(text) ? std::string()
+                                          : fmt::format("expected a number but got {}", text);
+            },
+            ""};
 }
 
 CLI::Validator whole_number() {

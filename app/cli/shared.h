@@ -72,6 +72,9 @@ struct ViewArguments {
 /// A number with both ends included; else "expected 0.1 to 170 but got 500".
 CLI::Validator in_range(double min, double max);
 
+/// Any number that is one: no infinity, nothing but digits and an exponent.
+CLI::Validator any_number();
+
 /// A whole number that an int holds; else "expected a whole number but got 1.5".
 CLI::Validator whole_number();
 

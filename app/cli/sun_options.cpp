@@ -186,6 +186,17 @@ std::string sector_text(const light::Sector& sector) {
                        to_deg, compass_point(to_deg));
 }
 
+const char* matters_text(light::Matters matters) {
+    switch (matters) {
+        case light::Matters::Sun:
+            return "hide sun that is taken to shine";
+        case light::Matters::Alignment:
+            return "hide the summit or the sun over it";
+        default:
+            return "stand over this horizon";
+    }
+}
+
 void warn_of_the_edge(const light::Doubt& doubt) {
     std::vector<std::string> parts;
     for (const light::OpenSector& s :
@@ -201,16 +212,14 @@ void warn_of_the_edge(const light::Doubt& doubt) {
     log::warning(fmt::format(
         "the blocking ridge may lie beyond the DEM, as terrain of up to {:.0f} m would {}: {}; use "
         "a DEM that goes so far, or --highest with the height that terrain has there at most",
-        doubt.highest_m,
-        doubt.of_the_sun ? "hide sun that is taken to shine" : "stand over this horizon",
-        fmt::join(parts, ", and ")));
+        doubt.highest_m, matters_text(doubt.matters), fmt::join(parts, ", and ")));
 }
 
 void warn_of_holes(const light::Doubt& doubt) {
     if (doubt.holes.empty()) return;
     log::warning(fmt::format(
         "the DEM has holes {}: {}; a DEM without them settles it", sectors_text(doubt.holes),
-        doubt.of_the_sun
+        doubt.matters == light::Matters::Sun
             ? fmt::format("of the direct sun {} is not known, as ground in them could hide it",
                           hours_text(std::max(1.0, doubt.not_known_s)))
             : "ground in them could stand over this horizon"));

@@ -11,6 +11,7 @@
 #include "cli/sun_options.h"
 #include "geo/format.h"
 #include "light/alignment.h"
+#include "light/doubt.h"
 
 namespace relevo::cli {
 namespace {
@@ -127,6 +128,8 @@ void run(const Arguments& arguments) {
         log::warning(
             "the DEM has holes in the way: ground in them could hide the summit or the sun over "
             "it; a DEM without them settles it");
+
+    warn_of(light::doubt_of(horizon, found, arguments.terrain.highest_m));
 
     output.deliver({.drawing = {},
                     .csv = [&] { return csv_of(found, asked.zone); },

@@ -28,13 +28,13 @@ class Error : public std::runtime_error {
     ErrorCode code_;
 };
 
-/// Throws `Error(ErrorCode::BadInput, message)`.
+/// Throws `Error(ErrorCode::BadInput, printable(message))`: one line, whatever names are in it.
 [[noreturn]] void bad_input(const std::string& message);
 
-/// Throws `Error(ErrorCode::Usage, message)`.
+/// Throws `Error(ErrorCode::Usage, printable(message))`, one line likewise.
 [[noreturn]] void bad_usage(const std::string& message);
 
-/// Throws `Error(ErrorCode::Failed, message)`.
+/// Throws `Error(ErrorCode::Failed, message)`; what a driver says may have several lines.
 [[noreturn]] void failed(const std::string& message);
 
 }  // namespace relevo

@@ -3,6 +3,7 @@
 #include <mutex>
 #include <utility>
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -33,13 +34,38 @@ State& state() {
     return instance;
 }
 
-/// A message may have several lines. None but the first begins as a message does: that would be a
-/// name's doing.
-std::string shown(std::string_view message) {
+constexpr std::size_t kLongestLine = 4000;
+constexpr std::size_t kKeptHead = 1500, kKeptTail = 500;
+
+/// A line without its middle where it is longer than anybody reads: values of any length come from
+/// files and command lines. What it is about stands at its head, the remedy at its tail.
+/// @param line  UTF-8
+std::string shortened(std::string_view line) {
+    if (line.size() <= kLongestLine) return std::string(line);
+    const auto inside_a_letter = [&](std::size_t at) {
+        return (static_cast<unsigned char>(line[at]) & 0xc0) == 0x80;
+    };
+    std::size_t head = kKeptHead, tail = line.size() - kKeptTail;
+    while (inside_a_letter(head))
+        --head;
+    while (inside_a_letter(tail))
+        ++tail;
+    return fmt::format("{} ... ({} bytes) ... {}", line.substr(0, head), tail - head,
+                       line.substr(tail));
+}
+
+/// An error may have several lines, as a driver's have. None but the first begins as a message
+/// does: that would be a name's doing.
+std::string shown(Level level, std::string_view message) {
+    if (level != Level::Error) return shortened(printable(message));
     std::string text = printable_lines(message);
     for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; ++at)
         if (text.compare(at + 1, kPrefix.size(), kPrefix) == 0) text.replace(at, 1, "\\n");
-    return text;
+    std::string lines;
+    for (const std::string& line : split(text, '\n'))
+        lines += shortened(line) + '\n';
+    if (!lines.empty()) lines.pop_back();
+    return lines;
 }
 
 void write(Level level, std::string_view message) {
@@ -50,7 +76,7 @@ void write(Level level, std::string_view message) {
         s.sink(level, message);
         return;
     }
-    const std::string text = shown(message);
+    const std::string text = shown(level, message);
     switch (level) {
         case Level::Debug:
             s.logger->debug("{}", text);

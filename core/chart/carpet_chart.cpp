@@ -132,12 +132,9 @@ void add_keys(Drawing& drawing, double keys_y) {
     add_key(drawing, x, keys_y, kNoon, "true noon");
 }
 
-/// @param title  filled
-/// @returns the lines below it
-std::vector<std::string> title_lines(const CarpetChart& chart, std::string& title) {
+/// What stands below the title.
+std::vector<std::string> title_lines(const CarpetChart& chart) {
     const light::Carpet& carpet = *chart.carpet;
-    title = chart.place_name.empty() ? "" : chart.place_name + ": ";
-    title += fmt::format("{}irect sun through {}", title.empty() ? 'D' : 'd', carpet.year);
     std::vector<std::string> lines{
         fmt::format("{}, {}", place_text(chart.place), carpet.zone.name()),
         fmt::format("{:.0f} hours of direct sun, {:.0f} over a level horizon ({:.0f} %)",
@@ -162,10 +159,10 @@ Drawing CarpetChart::draw() const {
         "T" + horizon_definition.substr(1) + "."};
     const double keys_y = bottom + 92;
     Drawing drawing(1160, keys_y + 22 + foot_height(1160, kMargin, foot) + kMargin);
-    std::string title;
-    const std::vector<std::string> lines = title_lines(*this, title);
-    drawing.describe(title, lines.back());
-    add_title(drawing, kMargin, title, lines);
+    const std::string subject = fmt::format("Direct sun through {}", carpet->year);
+    const std::vector<std::string> lines = title_lines(*this);
+    drawing.describe(title_of(place_name, subject), lines.back());
+    add_title(drawing, kMargin, place_name, subject, lines);
     add_cells(drawing, *carpet, area);
     add_noon(drawing, *carpet);
     add_hours(drawing, area.x + area.width);

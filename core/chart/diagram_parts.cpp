@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "base/units.h"
 #include "geo/format.h"
 #include "sun/position.h"
@@ -16,6 +17,7 @@ namespace {
 using sun::Date;
 using sun::Instant;
 
+constexpr double kTitleSize = 21;
 constexpr double kFootSize = 10.5;
 constexpr double kFootLead = 14;
 
@@ -130,9 +132,17 @@ std::string light_text(const light::LightDay& day, const SunPaths& paths) {
     return text + "; over a level horizon " + duration_text(day.flat.day_length_s);
 }
 
-void add_title(Drawing& drawing, double margin, const std::string& title,
-               const std::vector<std::string>& lines) {
-    drawing.text({margin, margin + 16}, title, {.size = 21, .color = kInk, .bold = true});
+std::string title_of(const std::string& place_name, const std::string& subject) {
+    if (place_name.empty()) return subject;
+    return place_name + ": " + lower(subject.substr(0, 1)) + subject.substr(1);
+}
+
+void add_title(Drawing& drawing, double margin, const std::string& place_name,
+               const std::string& subject, const std::vector<std::string>& lines) {
+    const double room = drawing.width() - 2 * margin - text_width(": " + subject, kTitleSize, true);
+    drawing.text({margin, margin + 16},
+                 title_of(shortened(printable(place_name), kTitleSize, room, true), subject),
+                 {.size = kTitleSize, .color = kInk, .bold = true});
     double y = margin + 38;
     for (const std::string& line : lines) {
         drawing.text({margin, y}, line, {.size = 13, .color = kSoft});

@@ -86,9 +86,13 @@ std::string place_text(const geo::Geodetic& place);
 /// "Direct sun 08:33 to 16:55 (8 h 21 min); over a level horizon 10 h 03 min".
 std::string light_text(const light::LightDay& day, const SunPaths& paths);
 
-/// Title and lines under it, at the top left; the lines of small print at the foot.
-void add_title(Drawing& drawing, double margin, const std::string& title,
-               const std::vector<std::string>& lines);
+/// "The valley: paths of the sun, 2026"; without a name "Paths of the sun, 2026".
+std::string title_of(const std::string& place_name, const std::string& subject);
+/// Title and lines under it, at the top left. A name that is too long for the drawing is shortened.
+/// @param subject  as title_of() takes it
+void add_title(Drawing& drawing, double margin, const std::string& place_name,
+               const std::string& subject, const std::vector<std::string>& lines);
+/// The lines of small print at the foot.
 void add_foot(Drawing& drawing, double margin, const std::vector<std::string>& sentences);
 double foot_height(double width, double margin, const std::vector<std::string>& sentences);
 

@@ -22,6 +22,9 @@ constexpr std::array<int, 95> kBold{
     667, 611, 333, 278, 333, 584, 556, 333, 556, 611, 556, 611, 556, 333, 611, 611, 278, 278, 556,
     278, 889, 611, 611, 611, 611, 389, 556, 333, 611, 556, 778, 556, 556, 500, 389, 280, 389, 584};
 constexpr int kOther = 556;  // accented letters; the degree sign is 400
+// The ellipsis, and from U+3000 on what fills a square: Chinese, Japanese and Korean letters.
+constexpr int kWhole = 1000;
+constexpr std::string_view kEllipsis = "\u2026";
 
 }  // namespace
 
@@ -86,10 +89,28 @@ double text_width(const std::string& words, double size, bool bold) {
             sum += (bold ? kBold : kRegular)[static_cast<std::size_t>(c - 32)];
         } else if (c >= 0xC0) {  // the first byte of a letter of several
             const bool degree = c == 0xC2 && i + 1 < words.size() && words[i + 1] == '\xB0';
-            sum += degree ? 400 : kOther;
+            const bool whole = c >= 0xE3 || words.compare(i, kEllipsis.size(), kEllipsis) == 0;
+            sum += degree ? 400 : whole ? kWhole : kOther;
         }
     }
     return sum * size / 1000;
+}
+
+std::string shortened(const std::string& words, double size, double width, bool bold) {
+    if (text_width(words, size, bold) <= width) return words;
+    const auto inside_a_letter = [&](std::size_t at) {
+        return (static_cast<unsigned char>(words[at]) & 0xC0) == 0x80;
+    };
+    // The most letters that leave room for the ellipsis: widths grow from letter to letter.
+    const double room = width - text_width(std::string(kEllipsis), size, bold);
+    std::size_t fits = 0, too_long = words.size();
+    while (too_long - fits > 1) {
+        const std::size_t middle = (fits + too_long) / 2;
+        (text_width(words.substr(0, middle), size, bold) <= room ? fits : too_long) = middle;
+    }
+    while (fits > 0 && inside_a_letter(fits))
+        --fits;
+    return std::string(trimmed(words.substr(0, fits))) + std::string(kEllipsis);
 }
 
 std::vector<std::string> wrapped(const std::string& words, double size, double width) {

@@ -108,6 +108,10 @@ class Drawing {
 /// (tests/light/test_drawing.cpp). Source: Adobe's font metrics, Helvetica and Helvetica-Bold.
 double text_width(const std::string& words, double size, bool bold = false);
 
+/// Words that are wider than `width` without their end, which is an ellipsis then.
+/// @param words  as printable() leaves them
+std::string shortened(const std::string& words, double size, double width, bool bold = false);
+
 /// Words broken into lines no wider than `width`.
 std::vector<std::string> wrapped(const std::string& words, double size, double width);
 

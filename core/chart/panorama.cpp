@@ -118,18 +118,17 @@ class Panorama {
     }
 
     void add_head() {
-        std::string title = of_.place_name.empty() ? "" : of_.place_name + ": ";
-        title += title.empty() ? "Horizon" : "horizon";
+        std::string subject = "Horizon";
         if (of_.day)
-            title += " and path of the sun, " + long_date(of_.day->date);
+            subject += " and path of the sun, " + long_date(of_.day->date);
         else if (paths_)
-            title += fmt::format(" and paths of the sun, {}", of_.year);
+            subject += fmt::format(" and paths of the sun, {}", of_.year);
         std::string where = place_text(of_.horizon->place());
         if (of_.year != 0) where += ", " + of_.zone.name();
         std::vector<std::string> lines{where};
         if (of_.day) lines.push_back(light_text(*of_.day, *paths_));
-        drawing_->describe(title, lines.back());
-        add_title(*drawing_, kMargin, title, lines);
+        drawing_->describe(title_of(of_.place_name, subject), lines.back());
+        add_title(*drawing_, kMargin, of_.place_name, subject, lines);
     }
 
     void add_sky() {

@@ -289,13 +289,12 @@ Drawing SunPathDiagram::draw() const {
     Drawing drawing(kWidth, keys_y + 34 + foot_height(kWidth, kMargin, foot) + kMargin);
 
     std::vector<std::string> lines{fmt::format("{}, {}", place_text(place), zone.name())};
-    std::string title = place_name.empty() ? "P" : place_name + ": p";
-    title +=
-        day ? "ath of the sun, " + long_date(day->date) : fmt::format("aths of the sun, {}", year);
+    const std::string subject = day ? "Path of the sun, " + long_date(day->date)
+                                    : fmt::format("Paths of the sun, {}", year);
     if (day) lines.push_back(events_text(*day, paths));
     if (light) lines.push_back(light_text(*light, paths));
-    drawing.describe(title, lines.front());
-    add_title(drawing, kMargin, title, lines);
+    drawing.describe(title_of(place_name, subject), lines.front());
+    add_title(drawing, kMargin, place_name, subject, lines);
 
     const Sheet sheet(*this, paths, drawing, center);
     sheet.sky();

@@ -291,7 +291,7 @@ Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()
     throw Error(ErrorCode::NoDevice,
                 fmt::format("gl: no GL device: none of the {} found is \"{}\" and can draw with "
                             "OpenGL 4.5 core{}; see `relevo doctor`",
-                            all.size(), options.device, tried));
+                            all.size(), printable(options.device), tried));
 }
 
 Context::Context(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -38,7 +38,7 @@ Doubt doubt_of(const TerrainHorizon& horizon, const std::vector<HorizonPoint>& p
 Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
                const std::vector<HorizonPoint>& profile, const std::optional<double>& highest_m) {
     Doubt doubt;
-    doubt.of_the_sun = true;
+    doubt.matters = Matters::Sun;
     doubt.highest_m = assumed_m(light.horizon(), highest_m);
     const auto n = profile.size();
     std::vector<double> lowest_rad(n, kInfinity);
@@ -79,6 +79,26 @@ Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
     }
     doubt.open = light.horizon().open_sectors(profile, doubt.highest_m, lowest_rad);
     doubt.holes = sectors_of(holes);
+    return doubt;
+}
+
+Doubt doubt_of(const TerrainHorizon& horizon, const Alignments& found,
+               const std::optional<double>& highest_m) {
+    Doubt doubt;
+    doubt.matters = Matters::Alignment;
+    doubt.highest_m = assumed_m(horizon, highest_m);
+    const auto look = [&](double azimuth_rad, double elevation_rad, double until_m) {
+        if (const auto open = horizon.open_beyond(horizon.at(azimuth_rad), doubt.highest_m,
+                                                  elevation_rad, until_m))
+            doubt.open.push_back(*open);
+    };
+    if (found.sight.visible)
+        look(found.sight.azimuth_rad, found.sight.elevation_rad, found.sight.distance_m);
+    for (const Alignment& passage : found.passages)
+        if (passage.sun_visible) look(passage.azimuth_rad, passage.elevation_rad, kInfinity);
+    std::sort(doubt.open.begin(), doubt.open.end(), [](const Sector& a, const Sector& b) {
+        return a.from_azimuth_rad < b.from_azimuth_rad;
+    });
     return doubt;
 }
 

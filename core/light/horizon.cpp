@@ -578,6 +578,39 @@ geo::Geodetic TerrainHorizon::place_of(const HorizonPoint& point) const {
     return place;
 }
 
+std::optional<OpenSector> TerrainHorizon::open_beyond(const HorizonPoint& point, double highest_m,
+                                                      double over_rad, double until_m) const {
+    if (!(over_rad < kPi / 2)) return std::nullopt;
+    std::optional<OpenSector> found;
+    with_ground(point.azimuth_rad, [&](const auto& ground) {
+        const double level = std::tan(over_rad);
+        const auto highest_at_m = [&](double reach_m) {
+            return std::min(farthest_rise_m(ground, highest_m, std::max(reach_m, 1.0)), until_m);
+        };
+        const auto stands_over = [&](double reach_m) {
+            return reach_m < until_m &&
+                   tangent(ground, highest_m, highest_at_m(reach_m)) > level + 1e-9;
+        };
+        if (!stands_over(point.reach_m)) return;
+        const double reach_m = edge_m(point);
+        if (!stands_over(reach_m)) return;
+        double low = highest_at_m(reach_m);
+        double high = std::min(kFarthestSeen_m, until_m);
+        while (high - low > 1) {
+            const double middle = (low + high) / 2;
+            (tangent(ground, highest_m, middle) > level ? low : high) = middle;
+        }
+        // A line of sight that goes down is lowest farther away.
+        const double from_m = std::max(reach_m, 1.0);
+        const double lowest_at_m =
+            level < 0 ? -level * ground.radius_m / (1 - ground.refraction) : 0;
+        const double least_m =
+            height_m(ground, level, std::clamp(lowest_at_m, from_m, std::max(from_m, high)));
+        found = {{point.azimuth_rad, point.azimuth_rad}, reach_m, high, least_m};
+    });
+    return found;
+}
+
 namespace {
 
 /// Sectors of neighbours that are open, from one sector for each direction.
@@ -613,41 +646,13 @@ std::vector<OpenSector> TerrainHorizon::open_sectors(const std::vector<HorizonPo
                                                      double highest_m,
                                                      const std::vector<double>& matters_rad) const {
     // Sectors of one direction each; none where the DEM reaches far enough.
-    const auto open = [&](std::size_t i) {
-        const HorizonPoint& point = profile[i];
-        OpenSector found;
-        const double over_rad = matters_rad.empty() ? point.elevation_rad
-                                                    : std::max(point.elevation_rad, matters_rad[i]);
-        if (!(over_rad < kPi / 2)) return found;
-        with_ground(point.azimuth_rad, [&](const auto& ground) {
-            const double level = std::tan(over_rad);
-            const auto stands_over = [&](double reach_m) {
-                return tangent(ground, highest_m,
-                               farthest_rise_m(ground, highest_m, std::max(reach_m, 1.0))) >
-                       level + 1e-9;
-            };
-            if (!stands_over(point.reach_m)) return;
-            found.reach_m = edge_m(point);
-            if (!stands_over(found.reach_m)) return;
-            const double from_m = std::max(found.reach_m, 1.0);
-            double low = farthest_rise_m(ground, highest_m, from_m);
-            double high = kFarthestSeen_m;
-            while (high - low > 1) {
-                const double middle = (low + high) / 2;
-                (tangent(ground, highest_m, middle) > level ? low : high) = middle;
-            }
-            found.needed_m = high;
-            // A line of sight that goes down is lowest farther away.
-            const double lowest_at_m =
-                level < 0 ? -level * ground.radius_m / (1 - ground.refraction) : 0;
-            found.least_m =
-                height_m(ground, level, std::clamp(lowest_at_m, from_m, std::max(from_m, high)));
-        });
-        return found;
-    };
     std::vector<OpenSector> all(profile.size());
-    for (std::size_t i = 0; i < profile.size(); ++i)
-        all[i] = open(i);
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+        const double horizon_rad = profile[i].elevation_rad;
+        const double over_rad =
+            matters_rad.empty() ? horizon_rad : std::max(horizon_rad, matters_rad[i]);
+        if (const auto open = open_beyond(profile[i], highest_m, over_rad)) all[i] = *open;
+    }
     return joined(profile, all);
 }
 

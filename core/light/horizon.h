@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -149,6 +150,14 @@ class TerrainHorizon {
     ///     that stands over the horizon: the lowest sun; infinity: nothing. Empty: the horizon
     std::vector<OpenSector> open_sectors(const std::vector<HorizonPoint>& profile, double highest_m,
                                          const std::vector<double>& matters_rad = {}) const;
+
+    /// The same in one direction, that of `point`.
+    /// @param over_rad  what must be hidden to matter
+    /// @param until_m   terrain from there on does not matter
+    /// @return none where the DEM reaches far enough
+    std::optional<OpenSector> open_beyond(
+        const HorizonPoint& point, double highest_m, double over_rad,
+        double until_m = std::numeric_limits<double>::infinity()) const;
 
     /// Another point, by its height above the DEM's zero. The DEM within one and a half posts of
     /// it does not hide it.

@@ -37,6 +37,10 @@ glm::dvec3 position_of(const Standpoint& standpoint, std::string_view option,
 
 }  // namespace
 
+double within_a_turn_deg(double angle_deg) {
+    return std::abs(angle_deg) <= 360 ? angle_deg : std::fmod(angle_deg, 360.0);
+}
+
 Orbit parse_orbit(std::string_view text) {
     Orbit orbit;
     for (const std::string& piece : split(text, ',')) {
@@ -48,7 +52,7 @@ Orbit parse_orbit(std::string_view text) {
         if (!value || (key != "az" && key != "el" && key != "zoom"))
             bad_usage(fmt::format(
                 "--view: {}: expected az=DEG, el=DEG or zoom=FACTOR but got \"{}\"", text, piece));
-        if (key == "az") orbit.azimuth_deg = *value;
+        if (key == "az") orbit.azimuth_deg = within_a_turn_deg(*value);
         if (key == "el") orbit.elevation_deg = *value;
         if (key == "zoom") orbit.zoom = *value;
     }

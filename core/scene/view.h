@@ -31,6 +31,9 @@ struct View {
 /// Beyond them the ground is less than a pixel, or less than a millimetre of it is seen.
 inline constexpr double kMinZoom = 0.001, kMaxZoom = 1000000;
 
+/// The same direction within one turn, -360 to 360, as scenes hold it.
+double within_a_turn_deg(double angle_deg);
+
 /// Reads `az=210,el=30,zoom=1`; what is left out stays as it is in Orbit.
 /// @throws Error (Usage) `--view: text: what, expected E but got G`
 Orbit parse_orbit(std::string_view text);

@@ -22,5 +22,31 @@ TEST(Log, NoNameEndsAMessageAndBeginsAnother) {
               "relevo: error: a\\r\\x1b[2Krelevo: b\\x07\\xc2\\x9b\\xff\\x7f\n");
 }
 
+TEST(Log, WarningsAndNoticesAreOneLine) {
+    testing::internal::CaptureStderr();
+    log::warning("dem::load: a\nb.tif: no unit");
+    log::info("a\tb\nc");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(),
+              "relevo: warning: dem::load: a\\nb.tif: no unit\nrelevo: a\\tb\\nc\n");
+}
+
+TEST(Log, WhatIsTooLongToReadLosesItsMiddle) {
+    const std::string longest = "a" + std::string(3998, '9') + "z";
+    EXPECT_EQ(written(longest), "relevo: error: " + longest + "\n");
+    // Letters of two bytes are not cut in two, wherever the cuts fall; other lines stay.
+    for (const char* first : {"", "x"}) {
+        std::string value;
+        for (int i = 0; i < 50'000; ++i)
+            value += "\u00e9";
+        const std::string text = written(std::string("--tz: ") + first + value + "; remedy\nnext");
+        EXPECT_TRUE(text.starts_with(std::string("relevo: error: --tz: ") + first + "\u00e9"));
+        EXPECT_NE(text.find("\u00e9 ... (98"), std::string::npos) << text;
+        EXPECT_NE(text.find(" bytes) ... \u00e9"), std::string::npos) << text;
+        EXPECT_TRUE(text.ends_with("\u00e9; remedy\nnext\n")) << text;
+        EXPECT_LT(text.size(), 2100U);
+    }
+    EXPECT_EQ(written(""), "relevo: error: \n");
+}
+
 }  // namespace
 }  // namespace relevo

@@ -162,6 +162,26 @@ TEST(Diagrams, WordsNeverStandOnEachOtherOrOverTheEdge) {
     }
 }
 
+TEST(Diagrams, ALongNameLeavesTheRestOfTheTitle) {
+    const Scene scene(places()[2]);
+    const std::string name = std::string(2000, 'n') + "\x1b";
+    SunPathDiagram diagram = scene.diagram(true);
+    HorizonPanorama panorama = scene.panorama(true);
+    const light::Carpet light = carpet(scene.direct, 2026, scene.zone, 1800);
+    CarpetChart chart{&light, scene.horizon.place(), name, scene.horizon.description()};
+    diagram.place_name = panorama.place_name = name;
+    const std::pair<Drawing, std::string> drawings[] = {
+        {diagram.draw(), "\u2026: path of the sun, 10 February 2026"},
+        {panorama.draw(), "\u2026: horizon and path of the sun, 10 February 2026"},
+        {chart.draw(), "\u2026: direct sun through 2026"}};
+    for (const auto& [drawing, end] : drawings) {
+        expect_readable(drawing);
+        EXPECT_TRUE(says(drawing, "nnn" + end));
+        // For those who do not see it, the whole of it.
+        EXPECT_TRUE(drawing.title().starts_with(std::string(2000, 'n') + "\\x1b: "));
+    }
+}
+
 TEST(Diagrams, SayPlaceDateZoneAndDefinitions) {
     const Scene scene(places()[2]);
     const Drawing diagram = scene.diagram(true).draw();

@@ -52,6 +52,23 @@ TEST(Drawing, WordsAreWrappedWithinTheWidth) {
     EXPECT_EQ(wrapped("incomprehensibilities", 10, 20).size(), 1U);  // nowhere to break
 }
 
+TEST(Drawing, WordsAreShortenedToTheWidth) {
+    EXPECT_EQ(shortened("The valley", 21, 200, true), "The valley");
+    for (const std::string letter : {"a", "W", "\u00e9", "\u5c71"}) {
+        std::string name;
+        for (int i = 0; i < 3000; ++i)
+            name += letter;
+        const std::string cut = shortened(name, 21, 400, true);
+        EXPECT_LE(text_width(cut, 21, true), 400) << letter;
+        EXPECT_GT(text_width(cut + letter, 21, true), 400) << letter;
+        ASSERT_TRUE(cut.ends_with("\u2026")) << letter;
+        // Nothing but whole letters before it.
+        EXPECT_EQ((cut.size() - 3) % letter.size(), 0U) << letter;
+    }
+    EXPECT_EQ(shortened("aaa bbb", 10, text_width("aaa \u2026", 10)), "aaa\u2026");
+    EXPECT_EQ(shortened("abc", 10, 0), "\u2026");
+}
+
 TEST(Drawing, SvgSaysWhatWasDrawn) {
     Drawing drawing(100, 50);
     drawing.describe("A & B", "1 < 2");

@@ -83,6 +83,33 @@ TEST(BadTime, EachHasItsMessage) {
                       "--tz: goes with --time, such as --time 2026-06-21T18:30");
 }
 
+TEST(BadValue, LineBreaksInItStandAsTheirNames) {
+    const std::vector<std::string> capture{"capture", bundled_dem(), "-o", out_png()};
+    const auto with = [&](const char* option, const char* value) {
+        std::vector<std::string> arguments = capture;
+        arguments.insert(arguments.end(), {option, value});
+        return arguments;
+    };
+    expect_no_picture(with("--view", "az=1\nrelevo: done"), 2,
+                      "--view: az=1\\nrelevo: done: expected az=DEG, el=DEG or zoom=FACTOR but got "
+                      "\"az=1\\nrelevo: done\"");
+    expect_no_picture(with("--time", "1\n2"), 3,
+                      "sun::parse_time: 1\\n2: not a time, expected YYYY-MM-DDThh:mm with Z or an "
+                      "offset, such as 2026-06-21T18:30+02:00");
+    const Result device = relevo(with("--device", "a\nb"));
+    EXPECT_EQ(device.status, 4);
+    EXPECT_NE(device.err.find(" found is \"a\\nb\" and can draw"), std::string::npos) << device.err;
+}
+
+TEST(BadValue, AHeadingIsANumber) {
+    for (const char* heading : {"nan", "inf", "-inf", "0x10", "1e309", "north"})
+        expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--eye", "36.3,-84.2",
+                           "--heading", heading},
+                          2,
+                          std::string("--heading: expected a number but got ") + heading +
+                              "; see relevo capture --help");
+}
+
 TEST(BadPlace, Latitude91) {
     expect_no_picture(
         {"sun", "position", "--at", "91,10", "--time", "2026-06-21T18:30Z"}, 2,

@@ -211,6 +211,16 @@ TEST(Edge, MattersWhereTheSunStandsAndHasAHeight) {
     EXPECT_NE(sectors({"--year", "2026", "--tz", kZurich}), day.err);
     EXPECT_EQ(count(sectors({"--year", "2026", "--tz", kZurich}), " (N) "), 0);
     EXPECT_EQ(sectors({"--date", "2026-12-21", "--tz", kZurich}), day.err);
+    // The sun over a point is as low as that point.
+    const std::vector<std::string> over{"--over", "46.98679,9.03,150", "--year", "2026", "--tz",
+                                        kZurich};
+    const Result when = relevo(verb("when", whole(), over));
+    EXPECT_TRUE(
+        when.err.starts_with("relevo: warning: the blocking ridge may lie beyond the DEM, as "
+                             "terrain of up to 520 m would "
+                             "hide the summit or the sun over it: above 1"))
+        << when.err;
+    EXPECT_EQ(relevo(with(verb("when", whole(), over), {"--highest", "50"})).err, "");
     // In a polar night no terrain matters.
     Raster north;
     north.columns = north.rows = 21;

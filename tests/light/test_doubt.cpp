@@ -132,6 +132,60 @@ TEST(Doubt, TerrainBeyondTheDemMattersWhereTheSunShines) {
     EXPECT_TRUE(doubt_of(DirectLight(plain), {}, plain.profile(360), std::nullopt).open.empty());
 }
 
+TEST(Doubt, TerrainBeyondTheDemCanHideASummitAndTheSunOverIt) {
+    const dem::Heightfield field = ridge(100);
+    const TerrainHorizon horizon(field, field.grid.place(100, 100));
+    AlignmentOptions options;
+    options.tolerance_rad = radians(3);
+    const auto doubt = [&](double column, double height_m, double highest_m) {
+        geo::Geodetic target = field.grid.place(column, 100);
+        target.height_m = height_m;
+        const Alignments found =
+            alignments(horizon, target, {2026, 3, 1}, {2026, 4, 20}, kZurich, options);
+        EXPECT_TRUE(found.sight.visible);
+        EXPECT_FALSE(found.passages.empty());
+        return doubt_of(horizon, found, highest_m);
+    };
+    // Through the gap, to the west, over a point of the DEM's own: terrain of 520 m beyond it,
+    // 3 km away and more, would hide the sun where that stands less than eight degrees high.
+    const Doubt within = doubt(10, 110, 520);
+    EXPECT_EQ(within.matters, Matters::Alignment);
+    ASSERT_FALSE(within.open.empty());
+    for (std::size_t i = 0; i < within.open.size(); ++i) {
+        const OpenSector& open = within.open[i];
+        EXPECT_NEAR(degrees(open.from_azimuth_rad), 270, 5);
+        EXPECT_NEAR(open.reach_m, 3000, 30);
+        EXPECT_GT(open.needed_m, open.reach_m);
+        EXPECT_GT(open.least_m, 100);
+        EXPECT_LT(open.least_m, 520);
+        EXPECT_LE(within.open[i > 0 ? i - 1 : 0].from_azimuth_rad, open.from_azimuth_rad);
+    }
+    EXPECT_TRUE(doubt(10, 110, 100).open.empty());
+    // A point 20 km off, twelve degrees up, with the sun over it: terrain of 400 m hides neither;
+    // terrain of 3000 m hides both, and the point from no farther away than itself.
+    const double high_m = 100 + 20'000 * std::tan(radians(12));
+    EXPECT_TRUE(doubt(100 - 20'000 / 30.0, high_m, 400).open.empty());
+    const Doubt beyond = doubt(100 - 20'000 / 30.0, high_m, 3000);
+    ASSERT_GE(beyond.open.size(), 2U);
+    EXPECT_TRUE(std::any_of(beyond.open.begin(), beyond.open.end(), [](const OpenSector& open) {
+        return std::abs(degrees(open.from_azimuth_rad) - 270) < 0.5 && open.needed_m < 20'000;
+    }));
+    // Without passages what is before the target still matters, and what is behind it does not.
+    const auto sight_alone = [&](double distance_m, double highest_m) {
+        geo::Geodetic target = field.grid.place(100 - distance_m / 30, 100);
+        target.height_m = 150;
+        Alignments found;
+        found.target = target;
+        found.sight = horizon.sight(target);
+        EXPECT_TRUE(found.sight.visible);
+        return doubt_of(horizon, found, highest_m).open;
+    };
+    EXPECT_TRUE(sight_alone(2900, 3000).empty());
+    ASSERT_EQ(sight_alone(4000, 3000).size(), 1U);
+    EXPECT_NEAR(sight_alone(4000, 3000)[0].needed_m, 4000, 5);
+    EXPECT_TRUE(sight_alone(4000, 100).empty());
+}
+
 TEST(Doubt, SectorsFollowEachOtherThroughNorth) {
     const auto of = [](const std::vector<int>& directions) {
         std::vector<bool> holds(360);

@@ -56,5 +56,14 @@ TEST(View, AnOrbitInsideOfAMountainStandsOnItAsItIsDrawn) {
         EXPECT_NEAR(eye_of(view, exaggeration).height_m, 1000 * exaggeration + 2, 1e-3);
 }
 
+TEST(View, AnglesBeyondATurnAreThoseWithin) {
+    // A scene's file holds -360 to 360: what the command line takes has to be read again.
+    EXPECT_EQ(parse_orbit("az=400").azimuth_deg, 40);
+    EXPECT_EQ(parse_orbit("az=-725").azimuth_deg, -5);
+    for (const double kept : {-360.0, -0.5, 0.0, 210.0, 360.0})
+        EXPECT_EQ(within_a_turn_deg(kept), kept);
+    EXPECT_LE(std::abs(within_a_turn_deg(1e308)), 360);
+}
+
 }  // namespace
 }  // namespace relevo::scene
