@@ -41,7 +41,7 @@ std::string command_of(const CLI::App* app) {
 
 /// CLI11 would only say that a command is missing.
 /// @param words  of the command line, from the one on that should be a verb of `app`
-void check_verb(const CLI::App& app, std::span<const char* const> words) {
+void check_verb(const CLI::App& app, std::span<const std::string> words) {
     const std::string word = words.empty() ? "" : words.front();
     const std::vector<const CLI::App*> verbs = app.get_subcommands({});
     if (word.starts_with('-') || verbs.empty()) return;
@@ -59,6 +59,26 @@ void check_verb(const CLI::App& app, std::span<const char* const> words) {
     relevo::bad_usage(fmt::format("{}: no such command; {}", word,
                                   near ? fmt::format("did you mean {}?", *near)
                                        : fmt::format("there are {}", fmt::join(names, ", "))));
+}
+
+/// `relevo DEM...` and `relevo` alone open the window: where no verb is named but what may be a
+/// file is, or nothing at all, the verb is put in.
+std::vector<std::string> with_verb(const CLI::App& app, std::vector<std::string> words) {
+    const auto first = std::find_if(words.begin(), words.end(), [](const std::string& word) {
+        return word != "-q" && word != "--quiet" && word != "-v" && word != "--verbose";
+    });
+    const auto names_a_file = [&](const std::string& word) {
+        const std::vector<const CLI::App*> verbs = app.get_subcommands({});
+        const bool is_verb = std::any_of(verbs.begin(), verbs.end(), [&](const CLI::App* verb) {
+            return verb->get_name() == word;
+        });
+        std::error_code ignored;
+        return !word.starts_with('-') && !is_verb &&
+               (word.find_first_of("./:") != std::string::npos ||
+                std::filesystem::exists(word, ignored));
+    };
+    if (first == words.end() || names_a_file(*first)) words.insert(first, "view");
+    return words;
 }
 
 /// --help-all with the verbs of verbs, which CLI11 only names.
@@ -85,14 +105,17 @@ int run(int argc, char** argv) {
         "-v,--verbose", [] { relevo::log::set_level(relevo::log::Level::Debug); },
         "Say more on standard error");
     app.fallthrough();
+    relevo::cli::add_view(app);
     relevo::cli::add_capture(app);
     relevo::cli::add_info(app);
     relevo::cli::add_sun(app);
     relevo::cli::add_plugins(app);
     relevo::cli::add_doctor(app);
-    check_verb(app, std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
+    std::vector<std::string> words = with_verb(app, {argv + std::min(argc, 1), argv + argc});
+    check_verb(app, words);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
     try {
-        app.parse(argc, argv);
+        app.parse(std::move(words));
     } catch (const CLI::ParseError& error) {
         // Help and version are "errors" of CLI11 with status 0; the others are usage errors.
         if (error.get_exit_code() != 0)

@@ -12,8 +12,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "cli/commands.h"
-#include "cli/effects.h"
-#include "cli/shared.h"
+#include "cli/scene_arguments.h"
 #include "dem/files_of.h"
 #include "session/session.h"
 
@@ -21,35 +20,11 @@ namespace relevo::cli {
 namespace {
 
 struct Arguments {
-    DemArguments dem;
-    TimeArguments time;
-    RefractionArguments refraction;
-    ViewArguments view;
-    EffectArguments effects;
-    std::string output, size, device = "auto", timings, dump_shaders, scene, save_scene;
+    SceneArguments scene;
+    std::string output, device = "auto", timings, dump_shaders, save_scene;
     std::vector<std::string> ab;
-    std::optional<double> exposure_ev, pixel_error;
     int repeat = 0;
     bool overwrite = false;
-
-    /// The scene of --scene, if there is one, with what else was given in the place of its own.
-    scene::Scene scene_of() const {
-        scene::Scene result;
-        if (!scene.empty()) result = scene::read_scene(scene);
-        dem.apply_to(result);
-        if (time.given()) result.moment = time.moment();
-        if (refraction.given()) result.refraction = refraction.name();
-        view.apply_to(result);
-        effects.apply_to(result.effects);
-        if (!size.empty()) {
-            const glm::ivec2 sides = parse_size(size);
-            result.width_px = sides.x;
-            result.height_px = sides.y;
-        }
-        if (exposure_ev) result.exposure_ev = *exposure_ev;
-        if (pixel_error) result.pixel_error = *pixel_error;
-        return result;
-    }
 };
 
 using Clock = std::chrono::steady_clock;
@@ -121,10 +96,10 @@ void deliver(OutputFile& file, const image::Metadata& metadata, Timings& timings
 
 void capture(const Arguments& arguments) {
     const std::filesystem::path output = arguments.output;
-    const scene::Scene scene = arguments.scene_of();
+    const scene::Scene scene = arguments.scene.scene();
     image::check_format(output, scene.width_px, scene.height_px);
     FilesInUse files;
-    if (!arguments.scene.empty()) files.add_input(arguments.scene, "the scene");
+    if (!arguments.scene.file.empty()) files.add_input(arguments.scene.file, "the scene");
     dem::add_named(scene.dems, files);  // before any output is opened
     const auto open = [&](const std::string& path, const char* who) {
         return path.empty() ? nullptr : &files.open_output(path, arguments.overwrite, who);
@@ -174,34 +149,16 @@ void capture(const Arguments& arguments) {
 void add_capture(CLI::App& app) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb = *app.add_subcommand("capture", "Takes one picture");
-    arguments->dem.add_to(verb);
+    arguments->scene.add_to(verb);
     verb.add_option("-o,--output", arguments->output,
                     "Picture to write: png, jpg, webp, tif, or exr in linear light")
         ->required();
-    verb.add_option("--size", arguments->size, "Width and height in pixels, 1280x1024");
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
-    verb.add_option_function<std::string>(
-        "--scene",
-        [arguments = arguments.get()](const std::string& file) {
-            arguments->scene = file;
-            arguments->dem.dem_option->required(false);
-        },
-        "Scene to draw, a file of --save-scene; other options replace what it says");
     verb.add_option("--save-scene", arguments->save_scene, "Write what is drawn as a scene, JSON");
-    arguments->time.add_to(verb);
-    arguments->refraction.add_to(verb);
-    arguments->view.add_to(verb);
-    arguments->effects.add_to(verb);
     verb.add_option("--ab", arguments->ab,
                     "Compare: the left half with these effects, the right half without them")
         ->delimiter(',')
         ->group("Effects");
-    verb.add_option("--exposure", arguments->exposure_ev, "Stops brighter than natural, EV")
-        ->check(in_range(-20.0, 20.0));
-    verb.add_option("--pixel-error", arguments->pixel_error,
-                    "Largest error of the ground's shape in the picture, pixels; 0 draws every "
-                    "post")
-        ->check(in_range(0.0, 100.0));
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
     CLI::Option* timings =
@@ -219,10 +176,10 @@ void add_capture(CLI::App& app) {
         try {
             capture(*arguments);
         } catch (const std::bad_alloc&) {
-            failed(
-                fmt::format("capture: --size {}: not enough memory for the picture and the DEM; "
-                            "use a smaller --size or --memory",
-                            arguments->size.empty() ? "1280x1024" : printable(arguments->size)));
+            failed(fmt::format(
+                "capture: --size {}: not enough memory for the picture and the DEM; "
+                "use a smaller --size or --memory",
+                arguments->scene.size.empty() ? "1280x1024" : printable(arguments->scene.size)));
         }
     });
 }

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/effects.h"
+#include "cli/shared.h"
+#include "scene/scene.h"
+
+namespace relevo::cli {
+
+/// Everything that a scene is made of: DEM..., --scene, and what else decides about a picture.
+struct SceneArguments {
+    DemArguments dem;
+    TimeArguments time;
+    RefractionArguments refraction;
+    ViewArguments view;
+    EffectArguments effects;
+    std::string file, size;
+    std::optional<double> exposure_ev, pixel_error;
+
+    void add_to(CLI::App& verb);
+    /// The scene of --scene, if there is one, with what else was given in the place of its own.
+    /// @throws Error as those who read
+    scene::Scene scene() const;
+};
+
+}  // namespace relevo::cli

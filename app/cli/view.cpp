@@ -1,0 +1,38 @@
+#include <memory>
+
+#include "base/paths.h"
+#include "cli/commands.h"
+#include "cli/scene_arguments.h"
+#include "viewer/viewer.h"
+
+namespace relevo::cli {
+namespace {
+
+struct Arguments {
+    SceneArguments scene;
+    std::string device = "auto";
+};
+
+void view(const Arguments& arguments) {
+    scene::Scene scene = arguments.scene.scene();
+    if (scene.dems.empty()) scene.dems.push_back((share_dir() / "data/dem/jacksboro.tif").string());
+    std::optional<sun::Zone> zone;
+    if (!scene.moment.zone.empty()) zone = sun::Zone::named(scene.moment.zone);
+    viewer::run(scene, arguments.device, zone);
+}
+
+}  // namespace
+
+void add_view(CLI::App& app) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App& verb = *app.add_subcommand(
+        "view", "Opens a window on a DEM; without one, on the DEM that comes along");
+    arguments->scene.add_to(verb);
+    arguments->scene.dem.dem_option->required(false);
+    verb.add_option("--device", arguments->device,
+                    "GL device that draws the ground: auto, an index, software, or a part of its "
+                    "name");
+    verb.callback([arguments] { view(*arguments); });
+}
+
+}  // namespace relevo::cli

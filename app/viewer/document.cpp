@@ -1,0 +1,202 @@
+#include "viewer/document.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/units.h"
+#include "render/renderer.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr std::size_t kMaxStates = 500;
+
+bool is_of(const std::string& address, const std::string& of) {
+    return address == of || address.starts_with(of + ".");
+}
+
+/// As one word of a POSIX shell.
+std::string quoted(const std::string& word) {
+    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+        return std::isalnum(c) ||
+               std::string_view("-_./,:=+@%").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    if (plain) return word;
+    std::string text = "'";
+    for (const char c : word)
+        text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+/// Options of a verb, word by word.
+class Command {
+  public:
+    explicit Command(std::string verb) : text_(std::move(verb)) {}
+    void word(const std::string& value) { text_ += " " + quoted(value); }
+    void option(const char* name, const std::string& value) {
+        // A value that begins with a dash would be taken for an option.
+        if (value.starts_with('-'))
+            text_ += fmt::format(" {}={}", name, quoted(value));
+        else
+            text_ += fmt::format(" {} {}", name, quoted(value));
+    }
+    void list(const char* name, const std::vector<std::string>& values) {
+        if (!values.empty()) option(name, fmt::format("{}", fmt::join(values, ",")));
+    }
+    std::string take() { return std::move(text_); }
+
+  private:
+    std::string text_;
+};
+
+void add_dem(Command& command, const scene::Scene& scene) {
+    for (const std::string& dem : scene.dems)
+        command.word(dem);
+    const dem::LoadOptions& dem = scene.dem;
+    if (!dem.crs.empty()) command.option("--crs", dem.crs);
+    if (dem.band > 0) command.option("--band", std::to_string(dem.band));
+    if (!dem.unit.empty()) command.option("--unit", dem.unit);
+    if (dem.no_nodata)
+        command.option("--nodata", "none");
+    else if (dem.nodata)
+        command.option("--nodata", fmt::format("{}", *dem.nodata));
+    if (dem.encoding != dem::Encoding::None)
+        command.option("--encoding",
+                       dem.encoding == dem::Encoding::Terrarium ? "terrarium" : "terrain-rgb");
+    if (dem.bounds)
+        command.option("--bounds",
+                       fmt::format("{},{},{},{}", dem.bounds->west_deg, dem.bounds->south_deg,
+                                   dem.bounds->east_deg, dem.bounds->north_deg));
+    if (dem.max_posts != dem::LoadOptions{}.max_posts)
+        command.option("--memory", std::to_string(dem.max_posts * 4 >> 20));
+}
+
+void add_view(Command& command, const scene::Scene& scene) {
+    const scene::View& view = scene.view;
+    const auto place = [](const scene::Standpoint& at) {
+        // A millimetre, and a tenth of one on the Earth.
+        return fmt::format("{:.9f},{:.9f},{:.3f}{}", degrees(at.place.lat_rad),
+                           degrees(at.place.lon_rad), at.place.height_m,
+                           at.above_ground ? "agl" : "");
+    };
+    if (view.eye) {
+        command.option("--eye", place(*view.eye));
+        if (view.look_at) {
+            command.option("--look-at", place(*view.look_at));
+        } else {
+            command.option("--heading", fmt::format("{:.6f}", view.heading_deg));
+            command.option("--pitch", fmt::format("{:.6f}", view.pitch_deg));
+        }
+    } else {
+        command.option("--view", fmt::format("az={},el={},zoom={}", view.orbit.azimuth_deg,
+                                             view.orbit.elevation_deg, view.orbit.zoom));
+    }
+    if (view.fov_y_rad > 0) command.option("--fov", fmt::format("{:.6g}", degrees(view.fov_y_rad)));
+    if (view.focal_length_mm > 0)
+        command.option("--focal-length", fmt::format("{}", view.focal_length_mm));
+    if (scene.exaggeration != 1)
+        command.option("--exaggerate", fmt::format("{}", scene.exaggeration));
+}
+
+}  // namespace
+
+scene::Scene Document::whole(const Land& land) const {
+    scene::Scene result = scene;
+    result.view = view_of(pose, land);
+    result.moment = {.time = sun::to_iso(utc, zone), .date = "", .zone = ""};
+    return result;
+}
+
+void History::add(const Document& document) {
+    if (!states_.empty()) states_.resize(at_ + 1);
+    states_.push_back(document);
+    if (states_.size() > kMaxStates) states_.erase(states_.begin());
+    at_ = states_.size() - 1;
+}
+
+const Document& History::undo() {
+    return states_[--at_];
+}
+
+const Document& History::redo() {
+    return states_[++at_];
+}
+
+std::unique_ptr<EffectsModel> EffectsModel::of(const scene::Effects& effects) {
+    auto model = std::make_unique<EffectsModel>();
+    model->registry =
+        effect::Registry::load_installed({effects.plugin_path.begin(), effects.plugin_path.end()});
+    std::vector<effect::Preset> presets;
+    for (const std::string& preset : effects.presets)
+        presets.push_back(effect::load_preset(preset));
+    std::vector<shader::Param> params = model->registry.params();
+    for (const shader::Param& param : render::core_params())
+        params.push_back(param);
+    model->values.declare(params, model->registry.texts());
+    model->selection = effect::select(model->registry, presets, effects.switches);
+    effect::apply_settings(model->values, model->registry, model->selection, presets,
+                           effects.settings);
+    return model;
+}
+
+scene::Effects switched(scene::Effects effects, const std::string& id, bool on) {
+    effect::Switches& switches = effects.switches;
+    const auto set = [&](std::vector<std::string>& list, bool has) {
+        std::erase(list, id);
+        if (has) list.push_back(id);
+    };
+    if (switches.only) {
+        set(*switches.only, on);
+        set(switches.enable, false);
+    } else {
+        set(switches.enable, on);
+    }
+    set(switches.disable, !on);
+    return effects;
+}
+
+scene::Effects with_value(scene::Effects effects, const std::string& address,
+                          const std::string& value) {
+    effects = without_values(std::move(effects), address);
+    effects.settings.push_back({address, value});
+    return effects;
+}
+
+scene::Effects without_values(scene::Effects effects, const std::string& of) {
+    std::erase_if(effects.settings,
+                  [&](const effect::Setting& setting) { return is_of(setting.address, of); });
+    return effects;
+}
+
+std::string capture_command(const scene::Scene& scene, const std::string& output) {
+    Command command("relevo capture");
+    add_dem(command, scene);
+    if (!scene.moment.time.empty()) {
+        command.option("--time", scene.moment.time);
+        if (!scene.moment.date.empty()) command.option("--date", scene.moment.date);
+        if (!scene.moment.zone.empty()) command.option("--tz", scene.moment.zone);
+    }
+    if (scene.refraction != "standard") command.option("--refraction", scene.refraction);
+    add_view(command, scene);
+    const scene::Effects& effects = scene.effects;
+    if (effects.switches.only)
+        command.option("--only", fmt::format("{}", fmt::join(*effects.switches.only, ",")));
+    command.list("--enable", effects.switches.enable);
+    command.list("--disable", effects.switches.disable);
+    for (const std::string& preset : effects.presets)
+        command.option("--preset", preset);
+    for (const std::string& folder : effects.plugin_path)
+        command.option("--plugin-path", folder);
+    for (const effect::Setting& setting : effects.settings)
+        command.option("--set", setting.address + "=" + setting.text);
+    if (scene.exposure_ev != 0) command.option("--exposure", fmt::format("{}", scene.exposure_ev));
+    if (scene.pixel_error != scene::Scene{}.pixel_error)
+        command.option("--pixel-error", fmt::format("{}", scene.pixel_error));
+    command.option("--size", fmt::format("{}x{}", scene.width_px, scene.height_px));
+    command.option("-o", output);
+    return command.take();
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "effect/preset.h"
+#include "effect/registry.h"
+#include "effect/selection.h"
+#include "scene/scene.h"
+#include "shader/param_store.h"
+#include "sun/zone.h"
+#include "viewer/navigation.h"
+
+namespace relevo::viewer {
+
+/// Everything that a person sets in the viewer, and that undo brings back.
+struct Document {
+    scene::Scene scene;  ///< DEMs, effects, exposure; place and time are the two below
+    Pose pose;
+    sun::Instant utc;
+    sun::Zone zone;  ///< that dates and times are shown in
+
+    /// The scene with the camera and the moment, as files and the command line have it.
+    /// @param land  of the pose
+    scene::Scene whole(const Land& land) const;
+};
+
+/// What was, step by step.
+class History {
+  public:
+    /// Remembers a state after it was changed; what had been undone is gone.
+    void add(const Document& document);
+    bool can_undo() const { return at_ > 0; }
+    bool can_redo() const { return at_ + 1 < states_.size(); }
+    const Document& undo();  ///< the state before; only where can_undo()
+    const Document& redo();  ///< the state after; only where can_redo()
+
+  private:
+    std::vector<Document> states_;
+    std::size_t at_ = 0;
+};
+
+/// The effects there are and what is on, without a device: for panels.
+struct EffectsModel {
+    effect::Registry registry;
+    effect::Selection selection;  ///< points into registry
+    shader::ParamStore values;
+
+    /// @throws Error (BadInput) as those who load and select
+    static std::unique_ptr<EffectsModel> of(const scene::Effects& effects);
+};
+
+/// The same with an effect on or off.
+scene::Effects switched(scene::Effects effects, const std::string& id, bool on);
+/// The same with a value of a parameter in the place of the one before.
+scene::Effects with_value(scene::Effects effects, const std::string& address,
+                          const std::string& value);
+/// The same with what the effect itself says in the place of all values; of one effect or of one
+/// parameter. @param of  "haze" or "haze.density"
+scene::Effects without_values(scene::Effects effects, const std::string& of);
+
+/// The command line that takes a scene's picture, quoted for a POSIX shell.
+std::string capture_command(const scene::Scene& scene, const std::string& output);
+
+}  // namespace relevo::viewer

@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "base/text.h"
+#include "shader/params.h"
+#include "viewer/state.h"
+
+namespace relevo::viewer {
+namespace {
+
+using shader::Param;
+using shader::ParamRole;
+using shader::ParamType;
+using shader::ParamValue;
+
+bool contains(const std::string& text, const std::string& word) {
+    return lower(text).find(lower(word)) != std::string::npos;
+}
+
+/// Ranges of several powers of ten have most of the use in the lowest.
+bool is_wide(const shader::ParamRange& range) {
+    return range.min >= 0 && range.max >= 100;
+}
+
+/// @returns whether the value was changed
+bool widget(const Param& param, ParamValue& value) {
+    const std::string unit = param.unit.empty() ? "" : " " + param.unit;
+    const std::string format = "%.3g" + unit;
+    const int components = shader::component_count(param.type);
+    std::array<float, 4> v{};
+    std::transform(value.begin(), value.end(), v.begin(),
+                   [](double x) { return static_cast<float>(x); });
+    bool changed = false;
+    if (param.type == ParamType::Bool) {
+        bool on = value[0] != 0;
+        changed = ImGui::Checkbox("##value", &on);
+        v[0] = on ? 1.0f : 0.0f;
+    } else if (!param.words.empty()) {
+        int word = static_cast<int>(value[0]);
+        const auto name = [](void* words, int i, const char** text) {
+            *text =
+                (*static_cast<const std::vector<std::string>*>(words))[static_cast<std::size_t>(i)]
+                    .c_str();
+            return true;
+        };
+        changed = ImGui::Combo("##value", &word, name,
+                               const_cast<std::vector<std::string>*>(&param.words),
+                               static_cast<int>(param.words.size()));
+        v[0] = static_cast<float>(word);
+    } else if (param.type == ParamType::Int) {
+        int number = static_cast<int>(value[0]);
+        changed = param.range
+                      ? ImGui::SliderInt("##value", &number, static_cast<int>(param.range->min),
+                                         static_cast<int>(param.range->max), ("%d" + unit).c_str())
+                      : ImGui::InputInt("##value", &number);
+        v[0] = static_cast<float>(number);
+    } else if (param.role == ParamRole::Colour || param.role == ParamRole::ColourSrgb) {
+        constexpr ImGuiColorEditFlags kFlags = ImGuiColorEditFlags_Float;
+        changed = components == 3 ? ImGui::ColorEdit3("##value", v.data(), kFlags)
+                                  : ImGui::ColorEdit4("##value", v.data(), kFlags);
+    } else if (param.range) {
+        const auto least = static_cast<float>(param.range->min);
+        const auto most = static_cast<float>(param.range->max);
+        const ImGuiSliderFlags flags =
+            ImGuiSliderFlags_AlwaysClamp |
+            (is_wide(*param.range) ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+        changed = ImGui::SliderScalarN("##value", ImGuiDataType_Float, v.data(), components, &least,
+                                       &most, format.c_str(), flags);
+    } else {
+        changed = ImGui::DragScalarN("##value", ImGuiDataType_Float, v.data(), components, 0.01f,
+                                     nullptr, nullptr, format.c_str());
+    }
+    if (changed)
+        for (int i = 0; i < components; ++i)
+            value[static_cast<std::size_t>(i)] = v[static_cast<std::size_t>(i)];
+    return changed;
+}
+
+void param_row(State& state, const Param& param, bool on) {
+    ImGui::PushID(param.address.c_str());
+    ParamValue value = state.effects->values.value(param.address);
+    ImGui::TextUnformatted(param.label.empty() ? param.address.c_str() : param.label.c_str());
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s\n%s%s", param.address.c_str(), param.description.c_str(),
+                          param.is_static ? "\nAnother value makes another program." : "");
+    ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.42f);
+    ImGui::SetNextItemWidth(-34);
+    if (widget(param, value) && shader::is_valid(param, value)) {
+        const std::string text = shader::format_value(param, value);
+        state.effects->values.set(param.address, text);
+        state.document.scene.effects =
+            with_value(std::move(state.document.scene.effects), param.address, text);
+        if (param.is_static || !on)
+            state.new_effects = state.document.scene.effects;
+        else
+            state.new_values.emplace_back(param.address, text);
+        if (param.is_static || param.type == ParamType::Bool || !param.words.empty())
+            state.step = true;
+    }
+    state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
+    ImGui::SameLine();
+    if (ImGui::SmallButton("x"))
+        state.set_effects(without_values(state.document.scene.effects, param.address));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Back to the default");
+    ImGui::PopID();
+}
+
+void effect_row(State& state, const effect::Effect& effect) {
+    const bool is_on = state.effects->selection.has(effect.id());
+    ImGui::PushID(effect.id().c_str());
+    bool on = is_on;
+    const bool changed = ImGui::Checkbox("##on", &on);
+    ImGui::SameLine();
+    const bool open = ImGui::TreeNodeEx(effect.manifest.name.c_str(), ImGuiTreeNodeFlags_None);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", effect.manifest.description.c_str());
+    if (open) {
+        for (const Param& param : effect.params())
+            if (!param.is_host) param_row(state, param, is_on);
+        if (!effect.params().empty() && ImGui::SmallButton("All values back to their defaults"))
+            state.set_effects(without_values(state.document.scene.effects, effect.id()));
+        ImGui::TreePop();
+    }
+    ImGui::PopID();
+    if (changed) state.set_effects(switched(state.document.scene.effects, effect.id(), on));
+}
+
+bool is_found(const effect::Effect& effect, const std::string& word) {
+    if (word.empty() ||
+        contains(effect.id() + " " + effect.manifest.name + " " + effect.manifest.description,
+                 word))
+        return true;
+    const std::vector<Param> params = effect.params();
+    return std::any_of(params.begin(), params.end(), [&](const Param& param) {
+        return contains(param.address + " " + param.label, word);
+    });
+}
+
+}  // namespace
+
+void effects_panel(State& state) {
+    ImGui::SetNextItemWidth(-1);
+    ImGui::InputTextWithHint("##search", "search effects and parameters", &state.search);
+    // Rows may make another model, whose effects are other objects.
+    const std::vector<effect::Effect>& effects = state.effects->registry.effects();
+    for (std::size_t i = 0; i < effects.size() && !state.new_effects; ++i)
+        if (is_found(effects[i], state.search)) effect_row(state, effects[i]);
+    ImGui::PushTextWrapPos();
+    for (const effect::BrokenEffect& broken : state.effects->registry.broken())
+        ImGui::TextColored({1, 0.5f, 0.4f, 1}, "%s", broken.error.c_str());
+    for (const std::string& notice : state.effects->selection.notices)
+        ImGui::TextDisabled("%s", notice.c_str());
+    ImGui::PopTextWrapPos();
+}
+
+}  // namespace relevo::viewer

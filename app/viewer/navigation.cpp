@@ -1,0 +1,175 @@
+#include "viewer/navigation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "base/units.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr double kSteepest_deg = 89.9;
+constexpr double kNearest_m = 2;  // that zooming comes to what it zooms to
+
+double wrapped_deg(double angle_deg) {
+    return angle_deg - 360 * std::floor(angle_deg / 360);
+}
+
+/// Up to where there is room above the ground.
+Pose above_ground(Pose pose, const Land& land) {
+    const geo::Geodetic place = land.frame->to_geodetic(pose.eye_m);
+    const double ground_m = land.height_m(place) * land.exaggeration;
+    if (std::isnan(ground_m) || place.height_m >= ground_m + kClearance_m) return pose;
+    pose.eye_m = land.frame->to_local({place.lat_rad, place.lon_rad, ground_m + kClearance_m});
+    return pose;
+}
+
+/// The pose whose camera stands at `eye_m` and looks along `forward`; its heading is kept where
+/// that is straight up or down.
+Pose looking(const Pose& before, const Land& land, const glm::dvec3& eye_m,
+             const glm::dvec3& forward) {
+    const geo::Axes axes = land.axes(eye_m);
+    const double east = dot(forward, axes.east), north = dot(forward, axes.north);
+    Pose pose = before;
+    pose.eye_m = eye_m;
+    pose.pitch_deg = degrees(std::asin(std::clamp(dot(forward, axes.up), -1.0, 1.0)));
+    if (std::hypot(east, north) > 1e-6)
+        pose.heading_deg = wrapped_deg(degrees(std::atan2(east, north)));
+    return pose;
+}
+
+}  // namespace
+
+double Land::ground_under(const glm::dvec3& point_m) const {
+    return height_m(frame->to_geodetic(point_m)) * exaggeration;
+}
+
+geo::Axes Land::axes(const glm::dvec3& point_m) const {
+    const geo::Geodetic place = frame->to_geodetic(point_m);
+    return frame->axes(place.lat_rad, place.lon_rad);
+}
+
+scene::Camera camera_of(const Pose& pose, const Land& land) {
+    return scene::heading_camera(pose.eye_m, land.axes(pose.eye_m), pose.heading_deg,
+                                 pose.pitch_deg, pose.fov_y_rad);
+}
+
+Pose pose_of(const scene::Camera& camera, const Land& land) {
+    Pose pose;
+    pose.fov_y_rad = camera.fov_y_rad;
+    // Straight down the top of the picture tells where it is turned to.
+    const geo::Axes axes = land.axes(camera.eye_m);
+    pose.heading_deg =
+        wrapped_deg(degrees(std::atan2(dot(camera.up, axes.east), dot(camera.up, axes.north))));
+    return looking(pose, land, camera.eye_m, camera.forward);
+}
+
+scene::View view_of(const Pose& pose, const Land& land) {
+    geo::Geodetic place = land.frame->to_geodetic(pose.eye_m);
+    place.height_m /= land.exaggeration;
+    scene::View view;
+    view.eye = scene::Standpoint{place, /*above_ground=*/false};
+    view.heading_deg = pose.heading_deg;
+    view.pitch_deg = pose.pitch_deg;
+    view.fov_y_rad = pose.fov_y_rad;
+    return view;
+}
+
+glm::dvec3 ray(const scene::Camera& camera, glm::dvec2 at, double aspect) {
+    const double tan_y = std::tan(camera.fov_y_rad / 2);
+    const glm::dvec3 right = cross(camera.forward, camera.up);
+    return normalize(camera.forward + at.x * tan_y * aspect * right + at.y * tan_y * camera.up);
+}
+
+std::optional<glm::dvec2> in_picture(const scene::Camera& camera, const glm::dvec3& point_m,
+                                     double aspect) {
+    const glm::dvec3 to = point_m - camera.eye_m;
+    const double depth = dot(to, camera.forward);
+    if (depth <= 1e-9) return std::nullopt;
+    const double tan_y = std::tan(camera.fov_y_rad / 2);
+    const glm::dvec3 right = cross(camera.forward, camera.up);
+    return glm::dvec2(dot(to, right) / (depth * tan_y * aspect),
+                      dot(to, camera.up) / (depth * tan_y));
+}
+
+Pose orbit(const Pose& pose, const Land& land, const glm::dvec3& pivot_m, double right_deg,
+           double up_deg) {
+    const scene::Camera camera = camera_of(pose, land);
+    const glm::dvec3 up = land.axes(pivot_m).up;
+    const glm::dvec3 offset = pose.eye_m - pivot_m;
+    // Neither over the top nor through the ground.
+    const double pitch_deg =
+        std::clamp(pose.pitch_deg - up_deg, -kSteepest_deg, std::max(pose.pitch_deg, 60.0));
+    const double tilt = radians(pitch_deg - pose.pitch_deg);
+    const glm::dvec3 right = normalize(cross(camera.forward, camera.up));
+    const glm::dquat turn = glm::angleAxis(radians(right_deg), up) * glm::angleAxis(tilt, right);
+    return above_ground(looking(pose, land, pivot_m + turn * offset, turn * camera.forward), land);
+}
+
+Pose pan(const Pose& pose, const Land& land, const glm::dvec3& grabbed_m, glm::dvec2 to,
+         double aspect) {
+    const scene::Camera camera = camera_of(pose, land);
+    const glm::dvec3 up = land.axes(grabbed_m).up;
+    const glm::dvec3 direction = ray(camera, to, aspect);
+    const double falls = -dot(direction, up), above_m = dot(pose.eye_m - grabbed_m, up);
+    // Towards the horizon the ground runs away from under the hand.
+    constexpr double kLeast = 0.02;
+    if (above_m <= 0 || falls <= kLeast) return pose;
+    const glm::dvec3 under_hand = pose.eye_m + above_m / falls * direction;
+    Pose moved = looking(pose, land, pose.eye_m + (grabbed_m - under_hand), camera.forward);
+    moved.heading_deg = pose.heading_deg;
+    moved.pitch_deg = pose.pitch_deg;
+    return above_ground(moved, land);
+}
+
+Pose zoom(const Pose& pose, const Land& land, const glm::dvec3& point_m, double factor) {
+    const glm::dvec3 offset = pose.eye_m - point_m;
+    const double now_m = length(offset);
+    if (now_m <= 0) return pose;
+    const double then_m = std::clamp(now_m * factor, std::min(now_m, kNearest_m), 1e9);
+    Pose moved = pose;
+    moved.eye_m = point_m + offset * (then_m / now_m);
+    return above_ground(moved, land);
+}
+
+Pose look_around(const Pose& pose, double right_deg, double up_deg) {
+    Pose turned = pose;
+    turned.heading_deg = wrapped_deg(pose.heading_deg + right_deg);
+    turned.pitch_deg = std::clamp(pose.pitch_deg + up_deg, -kSteepest_deg, kSteepest_deg);
+    return turned;
+}
+
+Pose fly(const Pose& pose, const Land& land, const glm::dvec3& by_m) {
+    const scene::Camera camera = camera_of(pose, land);
+    const glm::dvec3 right = cross(camera.forward, camera.up);
+    Pose moved = pose;
+    moved.eye_m += by_m.x * right + by_m.y * camera.forward + by_m.z * land.axes(pose.eye_m).up;
+    return above_ground(moved, land);
+}
+
+Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m) {
+    const geo::Axes axes = land.axes(pose.eye_m);
+    const double heading = radians(pose.heading_deg);
+    const glm::dvec3 forward = std::sin(heading) * axes.east + std::cos(heading) * axes.north;
+    const glm::dvec3 right = cross(forward, axes.up);
+    Pose moved = pose;
+    moved.eye_m += by_m.x * right + by_m.y * forward;
+    const geo::Geodetic place = land.frame->to_geodetic(moved.eye_m);
+    const double ground_m = land.height_m(place) * land.exaggeration;
+    if (std::isnan(ground_m)) return pose;  // no ground to stand on
+    moved.eye_m = land.frame->to_local({place.lat_rad, place.lon_rad, ground_m + kWalk_m});
+    return moved;
+}
+
+Pose from_above(const Pose& pose, const Land& land, const glm::dvec3& point_m, double distance_m) {
+    Pose above = pose;
+    above.eye_m = point_m + land.axes(point_m).up * distance_m;
+    above.heading_deg = 0;
+    above.pitch_deg = -90;
+    return above_ground(above, land);
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,236 @@
+#include "viewer/scene_thread.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "base/error.h"
+#include "gl/texture.h"
+#include "session/session.h"
+
+namespace relevo::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// What a frame may take while the hand moves [ms].
+constexpr double kSoon_ms = 40;
+/// Shares of the window's sides that frames are drawn at then, the largest that is soon enough.
+constexpr std::array<double, 5> kScales = {1, 0.8, 0.65, 0.5, 0.34};
+constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
+/// Shadows are this old at most while the sun is dragged.
+constexpr auto kShadowsAge = std::chrono::milliseconds(350);
+
+double milliseconds_since(Clock::time_point began) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+}  // namespace
+
+struct SceneThread::Impl {
+    scene::Scene scene;
+    std::string device;
+    std::function<void()> on_change;
+
+    mutable std::mutex mutex;
+    std::condition_variable changed;
+    Wanted wanted;
+    bool has_new_wants = false, ends = false;
+    std::optional<scene::Effects> effects;
+    std::map<std::string, std::string> values;
+    std::shared_ptr<const Picture> picture;
+    std::optional<std::string> message;
+    std::exception_ptr failure;
+    std::unique_ptr<session::Session> session;  // made and ended on the thread
+
+    // The thread's own.
+    double ms_a_pixel = 0;
+    Clock::time_point shadows_at;
+    bool shadows_lag = false;
+
+    std::thread thread;
+
+    void run() {
+        try {
+            session::Options options;
+            options.device = device;
+            FilesInUse files;
+            auto opened = std::make_unique<session::Session>(scene, options, files);
+            const std::lock_guard lock(mutex);
+            session = std::move(opened);
+        } catch (...) {
+            const std::lock_guard lock(mutex);
+            failure = std::current_exception();
+        }
+        on_change();
+        if (!failure) draw_until_end();
+        std::unique_ptr<session::Session> last;
+        {
+            const std::lock_guard lock(mutex);
+            last = std::move(session);
+        }
+    }
+
+    void draw_until_end() {
+        bool sharp = false;
+        std::unique_lock lock(mutex);
+        while (!ends) {
+            changed.wait(lock, [&] {
+                return ends || has_new_wants || effects || !values.empty() || !sharp;
+            });
+            if (ends) return;
+            const Wanted now = wanted;
+            const auto new_effects = std::exchange(effects, std::nullopt);
+            const auto new_values = std::exchange(values, {});
+            has_new_wants = false;
+            lock.unlock();
+            try {
+                change(new_effects, new_values);
+                sharp = draw(now);
+            } catch (const Error& error) {
+                say(error.what());
+                sharp = true;  // the last good picture stays until something changes
+            }
+            on_change();
+            lock.lock();
+        }
+    }
+
+    void say(std::string text) {
+        const std::lock_guard lock(mutex);
+        message = std::move(text);
+    }
+
+    void change(const std::optional<scene::Effects>& new_effects,
+                const std::map<std::string, std::string>& new_values) {
+        if (new_effects) session->set_effects(*new_effects);
+        for (const auto& [address, value] : new_values)
+            session->set(address, value);
+    }
+
+    /// The share of the window's sides that can be drawn soon.
+    double scale_for(const Wanted& now) const {
+        if (!now.moving && !now.sun_moving) return 1;
+        const double least = now.sun_moving ? kLeastScaleOfSun : kLeastScale;
+        const double pixels = double{1} * now.width_px * now.height_px;
+        for (const double scale : kScales)
+            if (scale <= least || pixels * scale * scale * ms_a_pixel <= kSoon_ms) return scale;
+        return least;
+    }
+
+    /// @returns whether there is nothing left to do for it
+    bool draw(const Wanted& now) {
+        const auto began = Clock::now();
+        const double scale = scale_for(now);
+        if (now.view) session->look(*now.view);
+        if (now.utc && *now.utc != session->moment()) {
+            session->set_moment(*now.utc);
+            shadows_lag = true;
+        }
+        session->resize(std::max(1, static_cast<int>(std::lround(now.width_px * scale))),
+                        std::max(1, static_cast<int>(std::lround(now.height_px * scale))));
+        const bool keep = now.sun_moving && shadows_lag && Clock::now() - shadows_at < kShadowsAge;
+        session->keep_native(keep);
+        const bool whole = session->draw_what_is_there();
+        if (!keep) {
+            shadows_at = Clock::now();
+            shadows_lag = false;
+        }
+        publish(began, whole && scale == 1 && !keep);
+        // Shadows that lag are drawn by the frame after the hand has come to rest.
+        return whole && (scale == 1 || now.moving || now.sun_moving) && !(keep && !now.sun_moving);
+    }
+
+    void publish(Clock::time_point began, bool sharp) {
+        auto made = std::make_shared<Picture>();
+        const gl::Texture& texture = session->texture();
+        made->width_px = texture.extent().width;
+        made->height_px = texture.extent().height;
+        const auto pixels =
+            static_cast<std::size_t>(made->width_px) * static_cast<std::size_t>(made->height_px);
+        made->rgba.resize(4 * pixels);
+        texture.read(0, std::as_writable_bytes(std::span(made->rgba)));
+        session->read_depths(made->depths_m);
+        made->camera = session->camera();
+        made->utc = session->moment();
+        made->sun_text = session->sun_text();
+        made->took_ms = milliseconds_since(began);
+        made->sharp = sharp;
+        ms_a_pixel = made->took_ms / static_cast<double>(pixels);
+        const std::lock_guard lock(mutex);
+        made->number = picture ? picture->number + 1 : 1;
+        picture = std::move(made);
+    }
+};
+
+SceneThread::SceneThread(scene::Scene scene, std::string device, std::function<void()> on_change)
+    : impl_(std::make_unique<Impl>()) {
+    impl_->scene = std::move(scene);
+    impl_->device = std::move(device);
+    impl_->on_change = std::move(on_change);
+    impl_->thread = std::thread([this] { impl_->run(); });
+}
+
+SceneThread::~SceneThread() {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        impl_->ends = true;
+    }
+    impl_->changed.notify_one();
+    impl_->thread.join();
+}
+
+const session::Session* SceneThread::opened() const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->session.get();
+}
+
+void SceneThread::check() const {
+    const std::lock_guard lock(impl_->mutex);
+    if (impl_->failure) std::rethrow_exception(impl_->failure);
+}
+
+void SceneThread::want(const Wanted& wanted) {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        impl_->wanted = wanted;
+        impl_->has_new_wants = true;
+    }
+    impl_->changed.notify_one();
+}
+
+void SceneThread::want_effects(const scene::Effects& effects) {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        impl_->effects = effects;
+        impl_->values.clear();
+    }
+    impl_->changed.notify_one();
+}
+
+void SceneThread::want_value(const std::string& address, const std::string& value) {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        impl_->values[address] = value;
+    }
+    impl_->changed.notify_one();
+}
+
+std::shared_ptr<const Picture> SceneThread::newer_than(std::uint64_t number) const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->picture && impl_->picture->number > number ? impl_->picture : nullptr;
+}
+
+std::optional<std::string> SceneThread::take_message() {
+    const std::lock_guard lock(impl_->mutex);
+    return std::exchange(impl_->message, std::nullopt);
+}
+
+}  // namespace relevo::viewer

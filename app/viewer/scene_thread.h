@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "sun/time.h"
+
+namespace relevo::session {
+class Session;
+}
+
+/// The scene is drawn on a thread of its own, in a context of its own, so that the window never
+/// waits for it.
+namespace relevo::viewer {
+
+/// What the window wants to see: the last word counts.
+struct Wanted {
+    std::optional<scene::View> view;  ///< none: the scene's
+    std::optional<sun::Instant> utc;  ///< likewise
+    int width_px = 1, height_px = 1;  ///< of the window
+    bool moving = false;              ///< the hand moves the camera: rather soon than sharp
+    bool sun_moving = false;          ///< likewise the sun: shadows may lag behind
+};
+
+/// A frame as it was drawn, whatever has been asked for since.
+struct Picture {
+    std::uint64_t number = 0;
+    int width_px = 0, height_px = 0;
+    std::vector<std::uint8_t> rgba;  ///< rows from below
+    std::vector<float> depths_m;     ///< as session::Session::read_depths
+    scene::Camera camera;
+    sun::Instant utc;
+    std::string sun_text;  ///< session::Session::sun_text
+    double took_ms = 0;
+    bool sharp = false;  ///< in the window's size, with all its ground and its sun's shadows
+};
+
+class SceneThread {
+  public:
+    /// Opens the scene and draws.
+    /// @param device    as session::Options
+    /// @param on_change called on that thread whenever there is something to fetch
+    SceneThread(scene::Scene scene, std::string device, std::function<void()> on_change);
+    SceneThread(const SceneThread&) = delete;
+    SceneThread& operator=(const SceneThread&) = delete;
+    /// Waits for the frame in work.
+    ~SceneThread();
+
+    /// Once the scene is open: what does not change, to be read on any thread; else null.
+    const session::Session* opened() const;
+    /// Why it cannot be opened.
+    /// @throws Error what opening threw
+    void check() const;
+
+    void want(const Wanted& wanted);
+    /// Other effects, or the same read again from their files.
+    void want_effects(const scene::Effects& effects);
+    /// A value of a parameter that is not static.
+    void want_value(const std::string& address, const std::string& value);
+
+    /// The newest picture, if it is newer than `number`.
+    std::shared_ptr<const Picture> newer_than(std::uint64_t number) const;
+    /// What went wrong since the last call, such as a shader that no driver takes.
+    std::optional<std::string> take_message();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relevo::viewer

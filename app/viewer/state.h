@@ -1,0 +1,68 @@
+#pragma once
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "viewer/document.h"
+#include "viewer/point_light.h"
+#include "viewer/scene_thread.h"
+#include "viewer/sun_model.h"
+
+/// What panels show and change.
+namespace relevo::viewer {
+
+/// The ground under the cursor.
+struct Cursor {
+    glm::dvec3 point_m{0};  ///< in the local frame
+    geo::Geodetic place;    ///< height as the DEM has it
+    double slope_deg = 0;   ///< NaN beside holes and at the rim
+    double aspect_deg = 0;  ///< downhill, from true north; NaN where level
+};
+
+struct State {
+    Document document;
+    Land land;
+    geo::Geodetic centre;  ///< of the DEM
+    std::unique_ptr<EffectsModel> effects;
+    SunDay day;
+
+    bool playing = false;
+    double hours_a_second = 1;
+    std::string search;
+
+    std::optional<Cursor> cursor;
+    std::optional<PointLight> point;  ///< that was clicked
+    std::future<PointLight> point_in_work;
+    std::vector<glm::dvec3> measured;  ///< ends of a measured line, up to two
+
+    std::string message;  ///< the last thing that went wrong, or was done
+
+    // What panels have done in this frame.
+    bool sun_moves = false;  ///< a widget of the sun is held
+    bool step = false;       ///< a change is done, for undo
+    std::optional<scene::Effects> new_effects;
+    std::vector<std::pair<std::string, std::string>> new_values;
+
+    /// Moves the sun. Dates outside 1900-2100 leave it where it is.
+    void set_utc(sun::Instant utc);
+    /// Other switches or values, of parameters that need another program too.
+    void set_effects(scene::Effects changed);
+};
+
+void sun_panel(State& state);
+void effects_panel(State& state);
+void point_panel(State& state);
+
+/// The sun's way of the day over the picture, with its hours; what the ground hides is faint.
+/// @param picture  that is shown, in whose pixels the ground is looked up
+/// @param size_px  of the window
+void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px);
+/// The moment whose sun is nearest to a place in the window; none where no part of the way is near.
+std::optional<sun::Instant> moment_at(const State& state, const Picture& picture, glm::vec2 size_px,
+                                      glm::vec2 at_px);
+
+}  // namespace relevo::viewer

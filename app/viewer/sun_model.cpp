@@ -1,0 +1,63 @@
+#include "viewer/sun_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "base/units.h"
+#include "sun/position.h"
+#include "sun/refraction.h"
+
+namespace relevo::viewer {
+
+SunPoint sun_at(sun::Instant utc, const geo::Geodetic& place) {
+    const sun::Position position = sun::position(utc, place);
+    // Saemundsson's formula is near enough for a line in a picture, and has no table to make.
+    const double elevation = sun::Refraction::saemundsson().apparent_rad(position.elevation_rad);
+    const double level = std::cos(elevation);
+    return {utc,
+            {level * std::sin(position.azimuth_rad), level * std::cos(position.azimuth_rad),
+             std::sin(elevation)},
+            degrees(elevation)};
+}
+
+SunDay SunDay::of(sun::Date date, const sun::Zone& zone, const geo::Geodetic& place) {
+    SunDay day;
+    day.date = date;
+    day.events = sun::day_events(date, zone, place);
+    constexpr double kStep_s = 600;
+    const double length_s = day.events.span.length_s();
+    for (double s = 0; s < length_s + kStep_s; s += kStep_s)
+        day.points.push_back(sun_at(day.events.span.begin + std::min(s, length_s), place));
+    return day;
+}
+
+DayMinute DayMinute::of(sun::Instant utc, const sun::Zone& zone) {
+    const sun::CivilTime wall = zone.local(utc).wall;
+    return {wall.date, wall.hour * 60 + wall.minute};
+}
+
+sun::Instant DayMinute::utc(const sun::Zone& zone) const {
+    return zone.resolve({.date = date, .hour = minute / 60, .minute = minute % 60}).utc;
+}
+
+int days_in_month(int year, int month) {
+    const sun::Date first{year, month, 1};
+    return sun::days_between(
+        first, month == 12 ? sun::Date{year + 1, 1, 1} : sun::Date{year, month + 1, 1});
+}
+
+sun::Date in_year(sun::Date date, int year) {
+    return {year, date.month, std::min(date.day, days_in_month(year, date.month))};
+}
+
+int day_of_year(sun::Date date) {
+    return sun::days_between({date.year, 1, 1}, date);
+}
+
+sun::Date date_of(int year, int day_of_year) {
+    return sun::add_days({year, 1, 1}, day_of_year);
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "geo/geodetic.h"
+#include "sun/events.h"
+#include "sun/zone.h"
+
+namespace relevo::viewer {
+
+/// Where the sun is at a moment, as seen from the DEM's middle.
+struct SunPoint {
+    sun::Instant utc;
+    glm::dvec3 direction{0};   ///< in the DEM's local frame, lifted by the air, unit
+    double elevation_deg = 0;  ///< apparent
+};
+
+/// The sun's way on a local day.
+struct SunDay {
+    sun::Date date;
+    std::vector<SunPoint> points;  ///< every ten minutes of the day, both ends included
+    sun::Day events;
+
+    static SunDay of(sun::Date date, const sun::Zone& zone, const geo::Geodetic& place);
+};
+
+/// @param place  the DEM's middle
+SunPoint sun_at(sun::Instant utc, const geo::Geodetic& place);
+
+/// A wall clock's minute of a local day, 0 to 1439, and the day.
+struct DayMinute {
+    sun::Date date;
+    int minute = 0;
+
+    static DayMinute of(sun::Instant utc, const sun::Zone& zone);
+    sun::Instant utc(const sun::Zone& zone) const;
+};
+
+/// The same date in another year; the 29th of February becomes the 28th where there is none.
+sun::Date in_year(sun::Date date, int year);
+/// The day of the year, from 0, and the date that it is.
+int day_of_year(sun::Date date);
+sun::Date date_of(int year, int day_of_year);
+int days_in_month(int year, int month);
+
+}  // namespace relevo::viewer

@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "sun/seasons.h"
+#include "viewer/state.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr std::array<const char*, 12> kMonths = {"January",   "February", "March",    "April",
+                                                 "May",       "June",     "July",     "August",
+                                                 "September", "October",  "November", "December"};
+constexpr int kFirstYear = 1900, kLastYear = 2100;
+
+/// What a strip has where the sun stands so high.
+ImU32 colour_of(double elevation_deg) {
+    if (elevation_deg < -18) return IM_COL32(14, 18, 38, 255);
+    if (elevation_deg < -6) return IM_COL32(28, 40, 84, 255);
+    if (elevation_deg < -0.3) return IM_COL32(84, 84, 140, 255);
+    if (elevation_deg < 6) return IM_COL32(232, 160, 84, 255);
+    return IM_COL32(244, 216, 140, 255);
+}
+
+/// The day from midnight to midnight, as the sun lights it.
+void day_strip(const State& state) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::CalcItemWidth(), height = ImGui::GetTextLineHeight() * 0.5f;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const std::vector<SunPoint>& points = state.day.points;
+    const double length_s = state.day.events.span.length_s();
+    const auto x_of = [&](sun::Instant utc) {
+        return at.x + width * static_cast<float>((utc - state.day.events.span.begin) / length_s);
+    };
+    for (std::size_t i = 0; i + 1 < points.size(); ++i)
+        list.AddRectFilled({x_of(points[i].utc), at.y}, {x_of(points[i + 1].utc), at.y + height},
+                           colour_of(points[i].elevation_deg));
+    const float now = x_of(state.document.utc);
+    list.AddLine({now, at.y - 1}, {now, at.y + height + 1}, IM_COL32_WHITE, 2);
+    ImGui::Dummy({width, height});
+}
+
+void set_date(State& state, sun::Date date) {
+    const int minute = DayMinute::of(state.document.utc, state.document.zone).minute;
+    state.set_utc(DayMinute{date, minute}.utc(state.document.zone));
+}
+
+void calendar(State& state, sun::Date date) {
+    if (ImGui::Button(fmt::format("{} {} {}###date", date.day,
+                                  kMonths[static_cast<std::size_t>(date.month - 1)], date.year)
+                          .c_str()))
+        ImGui::OpenPopup("calendar");
+    if (!ImGui::BeginPopup("calendar")) return;
+    int year = date.year, month = date.month - 1;
+    ImGui::SetNextItemWidth(140);
+    if (ImGui::Combo("##month", &month, kMonths.data(), 12))
+        set_date(state, in_year({date.year, month + 1,
+                                 std::min(date.day, days_in_month(date.year, month + 1))},
+                                date.year));
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(120);
+    if (ImGui::InputInt("##year", &year))
+        set_date(state, in_year(date, std::clamp(year, kFirstYear, kLastYear)));
+    // Weeks begin on Monday; 1 January 1900 was one.
+    const int offset = ((sun::days_between({1900, 1, 1}, {date.year, date.month, 1}) % 7) + 7) % 7;
+    for (const char* name : {"Mo", "Tu", "We", "Th", "Fr", "Sa", "Su"}) {
+        ImGui::TextDisabled("%s", name);
+        ImGui::SameLine(0, 14);
+    }
+    ImGui::NewLine();
+    const ImVec2 cell{28, 0};
+    for (int i = 0; i < offset; ++i) {
+        ImGui::Dummy(cell);
+        ImGui::SameLine(0, 4);
+    }
+    for (int day = 1; day <= days_in_month(date.year, date.month); ++day) {
+        const bool chosen = day == date.day;
+        if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.26f, 0.59f, 0.98f, 0.8f));
+        if (ImGui::Button(fmt::format("{}##day", day).c_str(), cell)) {
+            set_date(state, {date.year, date.month, day});
+            state.step = true;
+            ImGui::CloseCurrentPopup();
+        }
+        if (chosen) ImGui::PopStyleColor();
+        if ((offset + day) % 7 != 0) ImGui::SameLine(0, 4);
+    }
+    ImGui::EndPopup();
+}
+
+void jump(State& state, const char* name, std::optional<sun::Instant> to, const char* otherwise) {
+    if (!to) ImGui::BeginDisabled();
+    if (ImGui::SmallButton(name) && to) {
+        state.set_utc(*to);
+        state.step = true;
+    }
+    if (!to) ImGui::EndDisabled();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+        if (to)
+            ImGui::SetTooltip("%s", sun::to_iso(*to, state.document.zone).c_str());
+        else
+            ImGui::SetTooltip("%s", otherwise);
+    }
+    ImGui::SameLine();
+}
+
+void jumps(State& state, sun::Date date) {
+    const sun::Day& day = state.day.events;
+    constexpr const char* kNone = "does not happen on this day";
+    jump(state, "Sunrise", day.first(sun::EventKind::Sunrise), kNone);
+    jump(state, "Noon", day.first(sun::EventKind::Transit), kNone);
+    jump(state, "Sunset", day.first(sun::EventKind::Sunset), kNone);
+    const sun::Seasons seasons = sun::seasons(date.year);
+    ImGui::NewLine();
+    const auto season = [&](const char* name, sun::Instant of) {
+        // The day of it, at the hour there is.
+        const sun::Date then = state.document.zone.local(of).wall.date;
+        const int minute = DayMinute::of(state.document.utc, state.document.zone).minute;
+        jump(state, name, DayMinute{then, minute}.utc(state.document.zone), kNone);
+    };
+    season("20 Mar", seasons.march_equinox);
+    season("21 Jun", seasons.june_solstice);
+    season("23 Sep", seasons.september_equinox);
+    season("21 Dec", seasons.december_solstice);
+    ImGui::NewLine();
+}
+
+void play(State& state) {
+    if (ImGui::Button(state.playing ? "Pause##play" : "Play##play", {80, 0}))
+        state.playing = !state.playing;
+    ImGui::SameLine();
+    static constexpr std::array<double, 5> kSpeeds = {1.0 / 6, 0.5, 1, 3, 24};
+    static constexpr std::array<const char*, 5> kNames = {"10 min/s", "30 min/s", "1 h/s", "3 h/s",
+                                                          "1 day/s"};
+    int speed = 0;
+    for (std::size_t i = 0; i < kSpeeds.size(); ++i)
+        if (kSpeeds[i] <= state.hours_a_second + 1e-9) speed = static_cast<int>(i);
+    ImGui::SetNextItemWidth(110);
+    if (ImGui::Combo("##speed", &speed, kNames.data(), static_cast<int>(kNames.size())))
+        state.hours_a_second = kSpeeds[static_cast<std::size_t>(speed)];
+}
+
+}  // namespace
+
+void sun_panel(State& state) {
+    const DayMinute now = DayMinute::of(state.document.utc, state.document.zone);
+    ImGui::PushItemWidth(-1);
+    calendar(state, now.date);
+    ImGui::SameLine();
+    if (ImGui::SmallButton("-1 d")) set_date(state, sun::add_days(now.date, -1));
+    ImGui::SameLine();
+    if (ImGui::SmallButton("+1 d")) set_date(state, sun::add_days(now.date, 1));
+
+    int day = day_of_year(now.date);
+    const int days = sun::days_between({now.date.year, 1, 1}, {now.date.year + 1, 1, 1});
+    if (ImGui::SliderInt("##day", &day, 0, days - 1,
+                         kMonths[static_cast<std::size_t>(now.date.month - 1)]))
+        set_date(state, date_of(now.date.year, std::clamp(day, 0, days - 1)));
+    state.sun_moves = state.sun_moves || ImGui::IsItemActive();
+    state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
+
+    day_strip(state);
+    int minute = now.minute;
+    const std::string clock = fmt::format("{:02}:{:02}", minute / 60, minute % 60);
+    if (ImGui::SliderInt("##minute", &minute, 0, 24 * 60 - 1, clock.c_str()))
+        state.set_utc(
+            DayMinute{now.date, std::clamp(minute, 0, 24 * 60 - 1)}.utc(state.document.zone));
+    state.sun_moves = state.sun_moves || ImGui::IsItemActive();
+    state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
+    ImGui::PopItemWidth();
+    jumps(state, now.date);
+    play(state);
+
+    const sun::LocalTime local = state.document.zone.local(state.document.utc);
+    ImGui::TextDisabled("%s (UTC%s)", state.document.zone.name().c_str(),
+                        sun::offset_text(local.utc_offset_s).c_str());
+    const SunPoint sun = sun_at(state.document.utc, state.centre);
+    double azimuth_deg = degrees(std::atan2(sun.direction.x, sun.direction.y));
+    if (azimuth_deg < 0) azimuth_deg += 360;
+    ImGui::Text("azimuth %.2f°, height %.2f°", azimuth_deg, sun.elevation_deg);
+    const int length_min = static_cast<int>(std::lround(state.day.events.day_length_s / 60));
+    ImGui::Text("day length %d h %02d min", length_min / 60, length_min % 60);
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,82 @@
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "viewer/state.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr float kSun_px = 11, kReach_px = 26;
+constexpr double kFar_m = 1e9;
+
+/// Where a direction is in the window; none behind the camera.
+std::optional<ImVec2> at_window(const Picture& picture, glm::vec2 size_px,
+                                const glm::dvec3& direction) {
+    const auto at = in_picture(picture.camera, picture.camera.eye_m + kFar_m * direction,
+                               static_cast<double>(size_px.x) / size_px.y);
+    if (!at || std::abs(at->x) > 4 || std::abs(at->y) > 4) return std::nullopt;
+    return ImVec2(static_cast<float>((at->x + 1) / 2) * size_px.x,
+                  static_cast<float>((1 - at->y) / 2) * size_px.y);
+}
+
+/// Whether there is sky at a place of the window.
+bool is_sky(const Picture& picture, glm::vec2 size_px, ImVec2 at) {
+    const int x = static_cast<int>(at.x / size_px.x * static_cast<float>(picture.width_px));
+    const int y = static_cast<int>((1 - at.y / size_px.y) * static_cast<float>(picture.height_px));
+    if (x < 0 || y < 0 || x >= picture.width_px || y >= picture.height_px) return true;
+    return std::isinf(picture.depths_m[static_cast<std::size_t>(y * picture.width_px + x)]);
+}
+
+}  // namespace
+
+void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const std::vector<SunPoint>& points = state.day.points;
+    const auto visible = [&](ImVec2 at) { return is_sky(picture, size_px, at); };
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        if (points[i].elevation_deg < -1 && points[i + 1].elevation_deg < -1) continue;
+        const auto a = at_window(picture, size_px, points[i].direction);
+        const auto b = at_window(picture, size_px, points[i + 1].direction);
+        if (!a || !b) continue;
+        const bool clear = visible(*a) && visible(*b);
+        list.AddLine(*a, *b, IM_COL32(255, 214, 120, clear ? 220 : 70), clear ? 2.5f : 1.5f);
+        const int minute = DayMinute::of(points[i].utc, state.document.zone).minute;
+        if (minute % 60 != 0) continue;
+        list.AddCircleFilled(*a, 3, IM_COL32(255, 230, 160, clear ? 255 : 90));
+        if (clear)
+            list.AddText({a->x + 5, a->y - 16}, IM_COL32(255, 235, 190, 230),
+                         fmt::format("{}", minute / 60).c_str());
+    }
+    const SunPoint now = sun_at(picture.utc, state.centre);
+    if (const auto at = at_window(picture, size_px, now.direction); at && now.elevation_deg > -1) {
+        const bool clear = visible(*at);
+        list.AddCircleFilled(*at, kSun_px, IM_COL32(255, 226, 130, clear ? 255 : 90));
+        list.AddCircle(*at, kSun_px + 1, IM_COL32(120, 80, 20, 200), 0, 1.5f);
+    }
+}
+
+std::optional<sun::Instant> moment_at(const State& state, const Picture& picture, glm::vec2 size_px,
+                                      glm::vec2 at_px) {
+    std::optional<sun::Instant> best;
+    float least = kReach_px;
+    const std::vector<SunPoint>& points = state.day.points;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        if (points[i].elevation_deg < -1) continue;
+        const auto a = at_window(picture, size_px, points[i].direction);
+        const auto b = at_window(picture, size_px, points[i + 1].direction);
+        if (!a || !b) continue;
+        const glm::vec2 from(a->x, a->y), along(b->x - a->x, b->y - a->y);
+        const float length2 = dot(along, along);
+        const float share =
+            length2 > 0 ? std::clamp(dot(at_px - from, along) / length2, 0.0f, 1.0f) : 0.0f;
+        const float away = length(at_px - (from + share * along));
+        if (away >= least) continue;
+        least = away;
+        best = points[i].utc + share * (points[i + 1].utc - points[i].utc);
+    }
+    return best;
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,232 @@
+#include "viewer/window.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <utility>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "base/error.h"
+#include "gl/context.h"
+#include "gl/framebuffer.h"
+#include "viewer/scene_thread.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr int kWidth = 1280, kHeight = 800;
+constexpr float kText_px = 16;
+
+/// What GLFW said last; it is told of in the Error.
+std::string& last_error() {
+    static std::string text;
+    return text;
+}
+
+/// The first of the system's fonts that is there.
+std::string font_file() {
+    for (const char* file : {"/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+                             "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"}) {
+        std::error_code ignored;
+        if (std::filesystem::exists(file, ignored)) return file;
+    }
+    return {};
+}
+
+/// One that has Chinese, Japanese and Korean, for names of files and places.
+std::string wide_font_file() {
+    for (const char* file : {"/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc",
+                             "/usr/share/fonts/truetype/wqy/wqy-microhei.ttc",
+                             "/usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf"}) {
+        std::error_code ignored;
+        if (std::filesystem::exists(file, ignored)) return file;
+    }
+    return {};
+}
+
+void load_fonts(float scale) {
+    ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+    // Latin with its accents, Greek, Cyrillic, and dashes and degrees.
+    static const ImWchar ranges[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x2044, 0x2190, 0x2193, 0};
+    const std::string file = font_file();
+    if (file.empty()) return;
+    fonts.AddFontFromFileTTF(file.c_str(), kText_px * scale, nullptr, ranges);
+    if (const std::string wide = wide_font_file(); !wide.empty()) {
+        ImFontConfig config;
+        config.MergeMode = true;
+        fonts.AddFontFromFileTTF(wide.c_str(), kText_px * scale, &config,
+                                 fonts.GetGlyphRangesChineseSimplifiedCommon());
+        fonts.AddFontFromFileTTF(wide.c_str(), kText_px * scale, &config,
+                                 fonts.GetGlyphRangesJapanese());
+    }
+}
+
+}  // namespace
+
+struct Window::Impl {
+    GLFWwindow* handle = nullptr;
+    std::optional<gl::Context> context;
+    gl::Texture picture;
+    std::optional<gl::Framebuffer> shown;
+    std::vector<KeyPress> keys;
+    std::vector<std::string> dropped;
+
+    explicit Impl(const std::string& title) {
+        glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
+        if (!glfwInit())
+            throw Error(ErrorCode::NoDevice,
+                        "view: there is no display to open a window on; relevo capture takes a "
+                        "picture without one");
+        glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+        glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+        glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+        handle = glfwCreateWindow(kWidth, kHeight, title.c_str(), nullptr, nullptr);
+        if (!handle) {
+            const std::string why = last_error();
+            glfwTerminate();
+            throw Error(ErrorCode::NoDevice,
+                        fmt::format("view: the display opens no window with OpenGL 4.5, {}; relevo "
+                                    "capture takes a picture without one",
+                                    why));
+        }
+        try {
+            open();
+        } catch (...) {
+            close();
+            throw;
+        }
+    }
+
+    void open() {
+        context.emplace(gl::Context::of_others([this] { glfwMakeContextCurrent(handle); }));
+        glfwSwapInterval(1);
+        glfwSetWindowUserPointer(handle, this);
+        glfwSetKeyCallback(handle, [](GLFWwindow* window, int key, int, int action, int mods) {
+            auto& self = *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+            if (action != GLFW_RELEASE)
+                self.keys.push_back(
+                    {key, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
+        });
+        glfwSetDropCallback(handle, [](GLFWwindow* window, int count, const char** names) {
+            auto& self = *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+            self.dropped.assign(names, names + count);
+        });
+        IMGUI_CHECKVERSION();
+        ImGui::CreateContext();
+        ImGui::GetIO().IniFilename = nullptr;
+        ImGui::GetIO().LogFilename = nullptr;
+        ImGui_ImplGlfw_InitForOpenGL(handle, /*install_callbacks=*/true);
+        ImGui_ImplOpenGL3_Init("#version 450 core");
+        float scale = 1;
+        glfwGetWindowContentScale(handle, &scale, nullptr);
+        load_fonts(scale);
+        ImGui::StyleColorsDark();
+        ImGui::GetStyle().ScaleAllSizes(scale);
+        ImGui::GetStyle().WindowRounding = 6 * scale;
+        ImGui::GetStyle().FrameRounding = 3 * scale;
+        ImGui::GetStyle().Colors[ImGuiCol_WindowBg].w = 0.86f;
+    }
+
+    void close() {
+        if (ImGui::GetCurrentContext()) {
+            ImGui_ImplOpenGL3_Shutdown();
+            ImGui_ImplGlfw_Shutdown();
+            ImGui::DestroyContext();
+        }
+        shown.reset();
+        picture = {};
+        context.reset();
+        glfwDestroyWindow(handle);
+        glfwTerminate();
+    }
+
+    ~Impl() { close(); }
+};
+
+Window::Window(const std::string& title) : impl_(std::make_unique<Impl>(title)) {}
+Window::~Window() = default;
+
+bool Window::should_close() const {
+    return glfwWindowShouldClose(impl_->handle);
+}
+
+void Window::set_title(const std::string& title) {
+    glfwSetWindowTitle(impl_->handle, title.c_str());
+}
+
+glm::ivec2 Window::size_px() const {
+    glm::ivec2 size(0);
+    glfwGetFramebufferSize(impl_->handle, &size.x, &size.y);
+    return {std::max(size.x, 1), std::max(size.y, 1)};
+}
+
+float Window::scale() const {
+    float scale = 1;
+    glfwGetWindowContentScale(impl_->handle, &scale, nullptr);
+    return scale;
+}
+
+void Window::wait(double at_most_s) {
+    if (at_most_s > 0)
+        glfwWaitEventsTimeout(at_most_s);
+    else
+        glfwPollEvents();
+}
+
+void Window::wake() {
+    glfwPostEmptyEvent();
+}
+
+void Window::take(const Picture& picture) {
+    const gl::Extent extent{picture.width_px, picture.height_px, 1};
+    if (!impl_->shown || impl_->picture.extent().width != extent.width ||
+        impl_->picture.extent().height != extent.height) {
+        impl_->shown.reset();
+        impl_->picture =
+            gl::Texture(gl::TextureKind::D2, gl::Format::RGBA8, extent, 1, "scene's picture");
+        impl_->shown.emplace(std::initializer_list<const gl::Texture*>{&impl_->picture}, nullptr,
+                             "shown");
+    }
+    impl_->picture.write(0, {0, 0, 0}, extent, std::as_bytes(std::span(picture.rgba)));
+}
+
+void Window::draw(const std::function<void()>& panels) {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    panels();
+    ImGui::Render();
+    const glm::ivec2 size = size_px();
+    if (impl_->shown) impl_->shown->copy_to_window(size.x, size.y);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    glfwSwapBuffers(impl_->handle);
+}
+
+std::vector<KeyPress> Window::take_keys() {
+    std::vector<KeyPress> keys = std::exchange(impl_->keys, {});
+    if (ImGui::GetIO().WantTextInput) keys.clear();
+    return keys;
+}
+
+std::vector<std::string> Window::take_dropped_files() {
+    return std::exchange(impl_->dropped, {});
+}
+
+bool Window::is_down(int key) const {
+    return !ImGui::GetIO().WantTextInput && glfwGetKey(impl_->handle, key) == GLFW_PRESS;
+}
+
+void Window::copy(const std::string& text) {
+    glfwSetClipboardString(impl_->handle, text.c_str());
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+struct GLFWwindow;
+
+namespace relevo::viewer {
+
+struct Picture;
+
+/// A key that was pressed, where no field of a panel takes it.
+struct KeyPress {
+    int key = 0;  ///< GLFW_KEY_...
+    bool control = false, shift = false;
+};
+
+/// A window with panels in it, on the display there is.
+class Window {
+  public:
+    /// @throws Error (NoDevice) without a display, or one that has no OpenGL
+    explicit Window(const std::string& title);
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+    ~Window();
+
+    bool should_close() const;
+    void set_title(const std::string& title);
+    glm::ivec2 size_px() const;  ///< of what is drawn into
+    /// Pixels that are drawn for one of the mouse's units, for text that can be read.
+    float scale() const;
+
+    /// Waits for input for so long at most, or for wake().
+    void wait(double at_most_s);
+    /// Ends a wait; from any thread.
+    static void wake();
+
+    /// Shows a picture from the next frame on.
+    void take(const Picture& picture);
+    /// Draws the picture, and over it what `panels` draws with ImGui.
+    void draw(const std::function<void()>& panels);
+
+    std::vector<KeyPress> take_keys();
+    std::vector<std::string> take_dropped_files();
+    bool is_down(int key) const;         ///< GLFW_KEY_...
+    void copy(const std::string& text);  ///< to the clipboard
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relevo::viewer
