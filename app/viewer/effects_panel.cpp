@@ -141,7 +141,28 @@ bool is_found(const effect::Effect& effect, const std::string& word) {
 
 }  // namespace
 
+namespace {
+
+void preset_choice(State& state) {
+    const std::vector<std::string>& chosen = state.document.scene.effects.presets;
+    const std::string shown = chosen.empty() ? "no preset" : chosen.back();
+    ImGui::SetNextItemWidth(-1);
+    if (!ImGui::BeginCombo("##preset", shown.c_str())) return;
+    scene::Effects effects = state.document.scene.effects;
+    effects.presets.clear();
+    if (ImGui::Selectable("no preset", chosen.empty())) state.set_effects(effects);
+    for (const std::string& name : effect::preset_names()) {
+        if (!ImGui::Selectable(name.c_str(), shown == name)) continue;
+        effects.presets = {name};
+        state.set_effects(effects);
+    }
+    ImGui::EndCombo();
+}
+
+}  // namespace
+
 void effects_panel(State& state) {
+    preset_choice(state);
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##search", "search effects and parameters", &state.search);
     // Rows may make another model, whose effects are other objects.

@@ -130,9 +130,9 @@ Pose zoom(const Pose& pose, const Land& land, const glm::dvec3& point_m, double 
     const double now_m = length(offset);
     if (now_m <= 0) return pose;
     const double then_m = std::clamp(now_m * factor, std::min(now_m, kNearest_m), 1e9);
-    Pose moved = pose;
-    moved.eye_m = point_m + offset * (then_m / now_m);
-    return above_ground(moved, land);
+    return above_ground(
+        looking(pose, land, point_m + offset * (then_m / now_m), camera_of(pose, land).forward),
+        land);
 }
 
 Pose look_around(const Pose& pose, double right_deg, double up_deg) {

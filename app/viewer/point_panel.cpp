@@ -20,7 +20,15 @@ std::string duration_text(double seconds) {
     return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
-void light_of(const State& state, const PointLight& point) {
+void go_to_edge(State& state, const char* name, sun::Instant utc) {
+    if (ImGui::SmallButton(name)) {
+        state.set_utc(utc);
+        state.step = true;
+    }
+    ImGui::SameLine();
+}
+
+void light_of(State& state, const PointLight& point) {
     const sun::Zone& zone = state.document.zone;
     if (!point.error.empty()) {
         ImGui::TextWrapped("%s", point.error.c_str());
@@ -38,6 +46,11 @@ void light_of(const State& state, const PointLight& point) {
     for (const sun::TimeSpan& span : point.lit)
         ImGui::Text("%s to %s  (%s)", clock_text(span.begin, zone).c_str(),
                     clock_text(span.end, zone).c_str(), duration_text(span.length_s()).c_str());
+    if (!point.lit.empty()) {
+        go_to_edge(state, "First light", point.lit.front().begin);
+        go_to_edge(state, "Last light", point.lit.back().end);
+        ImGui::NewLine();
+    }
     ImGui::Text("%s of sun, %s over a flat horizon", duration_text(point.lit_s).c_str(),
                 duration_text(point.flat_s).c_str());
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "viewer/document.h"
+#include "viewer/overlay.h"
 #include "viewer/point_light.h"
 #include "viewer/scene_thread.h"
 #include "viewer/sun_model.h"
@@ -29,6 +30,7 @@ struct State {
     geo::Geodetic centre;  ///< of the DEM
     std::unique_ptr<EffectsModel> effects;
     SunDay day;
+    std::vector<SunDay> extremes;  ///< the solstices of its year
 
     bool playing = false;
     double hours_a_second = 1;
@@ -38,6 +40,7 @@ struct State {
     std::optional<PointLight> point;  ///< that was clicked
     std::future<PointLight> point_in_work;
     std::vector<glm::dvec3> measured;  ///< ends of a measured line, up to two
+    std::optional<Profile> profile;    ///< of that line
 
     std::string message;  ///< the last thing that went wrong, or was done
 

@@ -31,30 +31,53 @@ bool is_sky(const Picture& picture, glm::vec2 size_px, ImVec2 at) {
 
 }  // namespace
 
-void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px) {
+namespace {
+
+void draw_way(const SunDay& day, const Picture& picture, glm::vec2 size_px, ImU32 clear,
+              ImU32 hidden, float width) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    const std::vector<SunPoint>& points = state.day.points;
-    const auto visible = [&](ImVec2 at) { return is_sky(picture, size_px, at); };
+    const std::vector<SunPoint>& points = day.points;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         if (points[i].elevation_deg < -1 && points[i + 1].elevation_deg < -1) continue;
         const auto a = at_window(picture, size_px, points[i].direction);
         const auto b = at_window(picture, size_px, points[i + 1].direction);
         if (!a || !b) continue;
-        const bool clear = visible(*a) && visible(*b);
-        list.AddLine(*a, *b, IM_COL32(255, 214, 120, clear ? 220 : 70), clear ? 2.5f : 1.5f);
-        const int minute = DayMinute::of(points[i].utc, state.document.zone).minute;
-        if (minute % 60 != 0) continue;
-        list.AddCircleFilled(*a, 3, IM_COL32(255, 230, 160, clear ? 255 : 90));
+        const bool seen = is_sky(picture, size_px, *a) && is_sky(picture, size_px, *b);
+        list.AddLine(*a, *b, seen ? clear : hidden, seen ? width : 0.6f * width);
+    }
+}
+
+void draw_hours(const SunDay& day, const sun::Zone& zone, const Picture& picture,
+                glm::vec2 size_px) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    for (const SunPoint& point : day.points) {
+        const int minute = DayMinute::of(point.utc, zone).minute;
+        const auto at = at_window(picture, size_px, point.direction);
+        if (minute % 60 != 0 || point.elevation_deg < -1 || !at) continue;
+        const bool clear = is_sky(picture, size_px, *at);
+        list.AddCircleFilled(*at, 3, IM_COL32(255, 230, 160, clear ? 255 : 90));
         if (clear)
-            list.AddText({a->x + 5, a->y - 16}, IM_COL32(255, 235, 190, 230),
+            list.AddText({at->x + 5, at->y - 16}, IM_COL32(255, 235, 190, 230),
                          fmt::format("{}", minute / 60).c_str());
     }
+}
+
+}  // namespace
+
+void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px) {
+    for (const SunDay& extreme : state.extremes)
+        draw_way(extreme, picture, size_px, IM_COL32(255, 255, 255, 90),
+                 IM_COL32(255, 255, 255, 25), 1.5f);
+    draw_way(state.day, picture, size_px, IM_COL32(255, 214, 120, 220), IM_COL32(255, 214, 120, 70),
+             2.5f);
+    draw_hours(state.day, state.document.zone, picture, size_px);
     const SunPoint now = sun_at(picture.utc, state.centre);
-    if (const auto at = at_window(picture, size_px, now.direction); at && now.elevation_deg > -1) {
-        const bool clear = visible(*at);
-        list.AddCircleFilled(*at, kSun_px, IM_COL32(255, 226, 130, clear ? 255 : 90));
-        list.AddCircle(*at, kSun_px + 1, IM_COL32(120, 80, 20, 200), 0, 1.5f);
-    }
+    const auto at = at_window(picture, size_px, now.direction);
+    if (!at || now.elevation_deg <= -1) return;
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const bool clear = is_sky(picture, size_px, *at);
+    list.AddCircleFilled(*at, kSun_px, IM_COL32(255, 226, 130, clear ? 255 : 90));
+    list.AddCircle(*at, kSun_px + 1, IM_COL32(120, 80, 20, 200), 0, 1.5f);
 }
 
 std::optional<sun::Instant> moment_at(const State& state, const Picture& picture, glm::vec2 size_px,

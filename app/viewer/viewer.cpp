@@ -15,11 +15,15 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_file.h"
+#include "base/paths.h"
 #include "base/units.h"
 #include "geo/format.h"
 #include "geo/geodetic.h"
 #include "image/image.h"
 #include "session/session.h"
+#include "viewer/file_dialog.h"
+#include "viewer/file_watch.h"
+#include "viewer/overlay.h"
 #include "viewer/state.h"
 #include "viewer/window.h"
 
@@ -29,7 +33,11 @@ void State::set_utc(sun::Instant utc) {
     const sun::Date date = document.zone.local(utc).wall.date;
     if (date.year < 1900 || date.year > 2100) return;
     document.utc = utc;
-    if (day.date != date || day.points.empty()) day = SunDay::of(date, document.zone, centre);
+    if (day.date == date && !day.points.empty()) return;
+    if (day.date.year != date.year || day.points.empty())
+        extremes = {SunDay::of({date.year, 6, 21}, document.zone, centre),
+                    SunDay::of({date.year, 12, 21}, document.zone, centre)};
+    day = SunDay::of(date, document.zone, centre);
 }
 
 void State::set_effects(scene::Effects changed) {
@@ -50,6 +58,8 @@ using Clock = std::chrono::steady_clock;
 constexpr float kPanel_px = 360;
 /// After the last input the hand counts as moving for so long.
 constexpr double kRest_s = 0.15;
+/// Files are looked at again so often.
+constexpr double kWatch_s = 1;
 constexpr double kClick_px = 4;  // that a click may move by
 /// The last turn of the wheel and the last pull of the hand die away so fast [1/s].
 constexpr double kZoomRate = 14, kGlideRate = 7;
@@ -57,23 +67,6 @@ constexpr double kZoomRate = 14, kGlideRate = 7;
 double seconds_since(Clock::time_point began) {
     return std::chrono::duration<double>(Clock::now() - began).count();
 }
-
-constexpr const char* kKeys =
-    "Left drag        move the ground\n"
-    "Right drag       turn about the ground under the cursor\n"
-    "Shift + drag     turn likewise\n"
-    "Middle drag      look around\n"
-    "Wheel            nearer to and farther from the ground under the cursor\n"
-    "Arrows           turn about the middle;  Page up, page down: nearer, farther\n"
-    "W A S D  Q E     fly;  with Shift faster;  G: walk at eye height, or fly again\n"
-    "Home             the whole DEM;  N: north up;  T: from above\n"
-    "[ ]              half an hour earlier, later;  { }: a day\n"
-    "Space            let the day pass, or pause\n"
-    "Click            the ground's sun of the day;  M: measure from it to the cursor\n"
-    "F12              take the picture;  Ctrl+C: copy it as a command\n"
-    "Ctrl+S           save the scene;  F5: read effects and DEM again\n"
-    "Ctrl+Z, Ctrl+Y   undo, redo\n"
-    "Tab              panels on and off;  H: this sheet;  Esc: close it";
 
 /// A name in the working folder that no file has: relevo-1.png.
 std::string free_name(const std::string& ending) {
@@ -96,7 +89,12 @@ class Viewer {
 
     void run() {
         while (!window_.should_close()) {
-            window_.wait(waiting_s());
+            const double most_s = waiting_s();
+            const auto waits_from = Clock::now();
+            window_.wait(most_s);
+            // Panels take in a frame what has come before it, and show it in the next.
+            const bool input = most_s >= kWatch_s && seconds_since(waits_from) < most_s;
+            if (input) busy_frames_ = std::max(busy_frames_, 3);
             const double passed_s = seconds_since(frame_at_);
             frame_at_ = Clock::now();
             read_thread();
@@ -105,7 +103,9 @@ class Viewer {
                 navigate(std::min(passed_s, 0.1));
                 pass_time(std::min(passed_s, 0.5));
             }
-            drop_files();
+            open_files();
+            watch_files();
+            if (most_s >= kWatch_s && busy_frames_ == 0) continue;
             window_.draw([&] { panels(); });
             if (is_open()) hand_over();
         }
@@ -120,6 +120,7 @@ class Viewer {
         state_.point_in_work = {};
         state_.point.reset();
         state_.measured.clear();
+        state_.profile.reset();
         session_ = nullptr;
         picture_ = nullptr;
         scene_.reset();
@@ -139,7 +140,7 @@ class Viewer {
     double waiting_s() const {
         if (busy_frames_ > 0 || state_.playing || glides() || keys_held_) return 0.008;
         if (!rested_) return 0.05;
-        return 3600;
+        return kWatch_s;
     }
 
     bool glides() const { return std::abs(zoom_left_) > 1e-3 || length(glide_deg_a_s_) > 0.5; }
@@ -191,6 +192,11 @@ class Viewer {
         history_.add(document);
         window_.set_title(fmt::format("{} - Relevo", scene.dems.front()));
         last_dems_ = scene.dems;
+        dem_files_.watch({scene.dems.begin(), scene.dems.end()});
+        std::vector<std::filesystem::path> plugins{share_dir() / "plugins"};
+        plugins.insert(plugins.end(), scene.effects.plugin_path.begin(),
+                       scene.effects.plugin_path.end());
+        effect_files_.watch(std::move(plugins));
         was_open_ = true;
         busy_frames_ = 3;
     }
@@ -210,12 +216,6 @@ class Viewer {
         return {2 * at_px.x / size().x - 1, 1 - 2 * at_px.y / size().y};
     }
 
-    glm::vec2 mouse_px() const {
-        const ImGuiIO& io = ImGui::GetIO();
-        return glm::vec2(io.MousePos.x, io.MousePos.y) *
-               glm::vec2(io.DisplayFramebufferScale.x, io.DisplayFramebufferScale.y);
-    }
-
     /// The ground of the picture that is shown.
     std::optional<glm::dvec3> ground_at(glm::vec2 at_px) const {
         if (!picture_) return std::nullopt;
@@ -232,10 +232,19 @@ class Viewer {
                depth_m / dot(direction, picture_->camera.forward) * direction;
     }
 
-    /// What the hand takes hold of: the ground there, else in the middle, else some way ahead.
+    /// What the hand takes hold of: the ground there, else where that of the middle would be if it
+    /// were level, else some way ahead.
     glm::dvec3 hold(glm::vec2 at_px) const {
         if (const auto ground = ground_at(at_px)) return *ground;
-        if (const auto ground = ground_at(0.5f * size())) return *ground;
+        if (const auto middle = ground_at(0.5f * size())) {
+            const glm::dvec3 direction = ray(picture_->camera, in_view(at_px), aspect());
+            const glm::dvec3 up = state_.land.axes(*middle).up;
+            const double falls = -dot(direction, up);
+            const double above_m = dot(picture_->camera.eye_m - *middle, up);
+            if (falls > 0.05 && above_m > 0)
+                return picture_->camera.eye_m + above_m / falls * direction;
+            return *middle;
+        }
         const scene::Camera camera = camera_of(state_.document.pose, state_.land);
         return camera.eye_m + std::max(100.0, height_above_ground()) * 3 * camera.forward;
     }
@@ -254,7 +263,7 @@ class Viewer {
 
     void navigate(double passed_s) {
         const ImGuiIO& io = ImGui::GetIO();
-        const glm::vec2 mouse = mouse_px();
+        const glm::vec2 mouse = window_.mouse_px();
         Pose& pose = state_.document.pose;
         const Pose before = pose;
         if (!io.WantCaptureMouse) {
@@ -404,6 +413,7 @@ class Viewer {
         place.height_m = state_.land.height_m(place);
         if (std::isnan(place.height_m)) return;
         state_.measured = {*point};
+        state_.profile.reset();
         work_out_light(place);
     }
 
@@ -429,6 +439,8 @@ class Viewer {
     void with_control(const KeyPress& press) {
         if (press.key == GLFW_KEY_C) copy_command();
         if (press.key == GLFW_KEY_S) save_scene();
+        if (press.key == GLFW_KEY_O) ask_for_dem();
+        if (press.key == GLFW_KEY_Q) window_.close();
         const bool redo = press.key == GLFW_KEY_Y || (press.key == GLFW_KEY_Z && press.shift);
         if (redo && history_.can_redo())
             go_to(history_.redo());
@@ -501,10 +513,14 @@ class Viewer {
 
     void measure() {
         if (!state_.cursor) return;
-        if (state_.measured.size() != 1)
+        if (state_.measured.size() != 1) {
             state_.measured = {state_.cursor->point_m};
-        else
-            state_.measured.push_back(state_.cursor->point_m);
+            state_.profile.reset();
+            return;
+        }
+        const geo::Geodetic from = state_.land.frame->to_geodetic(state_.measured[0]);
+        state_.measured.push_back(state_.cursor->point_m);
+        state_.profile = Profile::between(from, state_.cursor->place, state_.land);
     }
 
     void go_to(const Document& document) {
@@ -591,16 +607,42 @@ class Viewer {
     void read_again() {
         state_.set_effects(state_.document.scene.effects);
         state_.step = false;
+        busy_frames_ = 3;
     }
 
-    void drop_files() {
+    void open_files() {
         std::vector<std::string> files = window_.take_dropped_files();
+        if (asked_files_ &&
+            asked_files_->wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+            files = asked_files_->get();
+            asked_files_.reset();
+        }
         if (files.empty() || !was_open_) return;
         state_.document.scene.dems = std::move(files);
         state_.document.scene.view = {};
         state_.document.scene.dem = {};
         history_ = {};
         open();
+    }
+
+    void ask_for_dem() {
+        if (!asked_files_) asked_files_ = ask_for_files();
+        if (!asked_files_)
+            state_.message =
+                "this desktop has no file dialog (zenity, kdialog); drop a DEM on the window, or "
+                "start relevo with its name";
+    }
+
+    /// Effects are read again when their files are written, and the DEM when its are.
+    void watch_files() {
+        if (!is_open() || seconds_since(watched_at_) < kWatch_s) return;
+        watched_at_ = Clock::now();
+        if (effect_files_.changed()) read_again();
+        if (dem_files_.changed()) {
+            state_.document.scene.view = view_of(state_.document.pose, state_.land);
+            state_.message = "the DEM was written again, and read again";
+            open();
+        }
     }
 
     // ---- time
@@ -618,11 +660,14 @@ class Viewer {
             waiting_text();
             return;
         }
-        if (picture_) draw_sun_path(state_, *picture_, size());
-        draw_measured();
+        if (picture_) {
+            draw_sun_path(state_, *picture_, size());
+            draw_measured(state_.measured, state_.profile, *picture_, size());
+            draw_scale_and_north(*picture_, state_.land, ground_at(0.5f * size()), size());
+        }
         if (panels_) side_panel();
         status_line();
-        if (sheet_) sheet();
+        if (sheet_) key_sheet();
     }
 
     void waiting_text() const {
@@ -636,11 +681,15 @@ class Viewer {
     void side_panel() {
         const float scale = window_.scale();
         ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
-        ImGui::SetNextWindowSize({kPanel_px * scale, size().y * 0.82f}, ImGuiCond_FirstUseEver);
-        ImGui::Begin("Relevo", nullptr, ImGuiWindowFlags_NoFocusOnAppearing);
+        ImGui::SetNextWindowSizeConstraints({kPanel_px * scale, 60},
+                                            {kPanel_px * scale, size().y - 60});
+        ImGui::Begin("Relevo", nullptr,
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
         constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
         if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state_);
         if (ImGui::CollapsingHeader("Point", kOpen)) point_panel(state_);
+        if (state_.profile && ImGui::CollapsingHeader("Profile", kOpen))
+            profile_panel(*state_.profile);
         if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state_);
         if (ImGui::CollapsingHeader("Take it away", kOpen)) {
             if (ImGui::Button("Picture (F12)")) take_picture();
@@ -674,44 +723,6 @@ class Viewer {
         list.AddRectFilled({at.x - 6, at.y - 4}, {at.x + extent.x + 6, at.y + extent.y + 4},
                            IM_COL32(0, 0, 0, 150), 4);
         list.AddText(at, IM_COL32(255, 255, 255, 235), text.c_str());
-    }
-
-    /// The measured line, straight and over the ground.
-    void draw_measured() {
-        if (state_.measured.empty() || !picture_) return;
-        ImDrawList& list = *ImGui::GetBackgroundDrawList();
-        std::optional<ImVec2> before;
-        for (const glm::dvec3& point : state_.measured) {
-            const auto at = in_picture(picture_->camera, point, aspect());
-            if (!at) return;
-            const ImVec2 px(static_cast<float>((at->x + 1) / 2) * size().x,
-                            static_cast<float>((1 - at->y) / 2) * size().y);
-            list.AddCircleFilled(px, 5, IM_COL32(255, 80, 60, 255));
-            list.AddCircle(px, 6, IM_COL32_WHITE, 0, 1.5f);
-            if (before) {
-                list.AddLine(*before, px, IM_COL32(255, 80, 60, 255), 2);
-                list.AddText({px.x + 10, px.y - 8}, IM_COL32_WHITE, measured_text().c_str());
-            }
-            before = px;
-        }
-    }
-
-    std::string measured_text() const {
-        const geo::Geodetic a = state_.land.frame->to_geodetic(state_.measured[0]);
-        const geo::Geodetic b = state_.land.frame->to_geodetic(state_.measured[1]);
-        const double level_m = geo::geodesic(a, b).distance_m;
-        return fmt::format("{:.0f} m, {:+.0f} m", level_m,
-                           (b.height_m - a.height_m) / state_.land.exaggeration);
-    }
-
-    static void sheet() {
-        ImGui::SetNextWindowPos(
-            {ImGui::GetIO().DisplaySize.x / 2, ImGui::GetIO().DisplaySize.y / 2}, ImGuiCond_Always,
-            {0.5f, 0.5f});
-        ImGui::Begin("Keys", nullptr,
-                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse);
-        ImGui::TextUnformatted(kKeys);
-        ImGui::End();
     }
 
     // ---- to the thread that draws
@@ -781,6 +792,9 @@ class Viewer {
     std::optional<Wanted> wanted_;
     std::vector<std::string> last_dems_;
     bool was_open_ = false;
+    std::optional<std::future<std::vector<std::string>>> asked_files_;
+    FileWatch effect_files_, dem_files_;
+    Clock::time_point watched_at_ = Clock::now();
 
     std::optional<Drag> dragging_;
     glm::vec2 pressed_px_{0}, last_px_{0};

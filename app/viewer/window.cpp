@@ -11,6 +11,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
+#include <glm/common.hpp>
 #include <imgui.h>
 
 #include "base/error.h"
@@ -159,6 +160,10 @@ bool Window::should_close() const {
     return glfwWindowShouldClose(impl_->handle);
 }
 
+void Window::close() {
+    glfwSetWindowShouldClose(impl_->handle, GLFW_TRUE);
+}
+
 void Window::set_title(const std::string& title) {
     glfwSetWindowTitle(impl_->handle, title.c_str());
 }
@@ -219,6 +224,14 @@ std::vector<KeyPress> Window::take_keys() {
 
 std::vector<std::string> Window::take_dropped_files() {
     return std::exchange(impl_->dropped, {});
+}
+
+glm::vec2 Window::mouse_px() const {
+    glm::dvec2 at(0);
+    glm::ivec2 units(1);
+    glfwGetCursorPos(impl_->handle, &at.x, &at.y);
+    glfwGetWindowSize(impl_->handle, &units.x, &units.y);
+    return glm::vec2(at * glm::dvec2(size_px()) / glm::dvec2(glm::max(units, glm::ivec2(1))));
 }
 
 bool Window::is_down(int key) const {

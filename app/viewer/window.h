@@ -29,6 +29,7 @@ class Window {
     ~Window();
 
     bool should_close() const;
+    void close();
     void set_title(const std::string& title);
     glm::ivec2 size_px() const;  ///< of what is drawn into
     /// Pixels that are drawn for one of the mouse's units, for text that can be read.
@@ -46,6 +47,7 @@ class Window {
 
     std::vector<KeyPress> take_keys();
     std::vector<std::string> take_dropped_files();
+    glm::vec2 mouse_px() const;          ///< from the window's upper left corner
     bool is_down(int key) const;         ///< GLFW_KEY_...
     void copy(const std::string& text);  ///< to the clipboard
 

@@ -24,13 +24,15 @@ using Clock = std::chrono::steady_clock;
 
 /// Starts a program with its output and error in a file.
 pid_t start(const std::vector<std::string>& line, const std::vector<std::string>& environment,
-            const std::filesystem::path& output, int keep = -1) {
+            const std::filesystem::path& output, const std::filesystem::path& folder = {},
+            int keep = -1) {
     std::vector<char*> arguments;
     for (const std::string& word : line)
         arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
     const pid_t child = fork();
     if (child != 0) return child;
+    if (!folder.empty() && chdir(folder.c_str()) != 0) _exit(127);
     for (const std::string& setting : environment) {
         const std::size_t equals = setting.find('=');
         setenv(setting.substr(0, equals).c_str(), setting.substr(equals + 1).c_str(), 1);
@@ -67,7 +69,7 @@ Display::Display(int width_px, int height_px)
     server_ = start({"Xvfb", "-displayfd", std::to_string(tube[1]), "-screen", "0",
                      fmt::format("{}x{}x24", width_px, height_px), "-fbdir", folder_.string(),
                      "-nolisten", "tcp"},
-                    {}, folder_ / "server.txt", tube[1]);
+                    {}, folder_ / "server.txt", {}, tube[1]);
     close(tube[1]);
     std::string number;
     for (char c = 0; read(tube[0], &c, 1) == 1 && c != '\n';)
@@ -113,14 +115,14 @@ std::string Display::act(const std::vector<std::string>& arguments) const {
 
 WindowedProgram::WindowedProgram(const Display& display, const std::filesystem::path& program,
                                  const std::vector<std::string>& arguments,
-                                 const std::vector<std::string>& environment)
+                                 const std::vector<std::string>& environment,
+                                 const std::filesystem::path& folder)
     : display_(display), output_(scratch_dir(fmt::format("window_{}", getpid())) / "output.txt") {
     std::vector<std::string> line{program.string()};
     line.insert(line.end(), arguments.begin(), arguments.end());
-    std::vector<std::string> settings = environment;
-    settings.push_back("DISPLAY=" + display.name());
-    settings.push_back("WAYLAND_DISPLAY=");
-    process_ = start(line, settings, output_);
+    std::vector<std::string> settings{"DISPLAY=" + display.name(), "WAYLAND_DISPLAY="};
+    settings.insert(settings.end(), environment.begin(), environment.end());
+    process_ = start(line, settings, output_, folder);
 }
 
 WindowedProgram::~WindowedProgram() {

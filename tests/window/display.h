@@ -37,9 +37,12 @@ class Display {
 /// A program on a display. Ends with this.
 class WindowedProgram {
   public:
+    /// @param environment  "NAME=value"; a DISPLAY of its own takes the place of the display's
+    /// @param folder       where it runs; empty: where the test does
     WindowedProgram(const Display& display, const std::filesystem::path& program,
                     const std::vector<std::string>& arguments,
-                    const std::vector<std::string>& environment = {});
+                    const std::vector<std::string>& environment = {},
+                    const std::filesystem::path& folder = {});
     WindowedProgram(const WindowedProgram&) = delete;
     WindowedProgram& operator=(const WindowedProgram&) = delete;
     ~WindowedProgram();
@@ -51,6 +54,7 @@ class WindowedProgram {
     /// Waits for its end. @returns its exit status; -1 if it does not end in time or by a signal
     int status(double at_most_s = 30);
     std::string output() const;  ///< standard output and error so far
+    pid_t process() const { return process_; }
 
   private:
     const Display& display_;

@@ -1,0 +1,44 @@
+#include "viewer/file_watch.h"
+
+#include <utility>
+
+namespace relevo::viewer {
+
+namespace fs = std::filesystem;
+
+void FileWatch::watch(std::vector<fs::path> paths) {
+    paths_ = std::move(paths);
+    known_ = last_ = look();
+}
+
+FileWatch::Times FileWatch::look() const {
+    Times times;
+    std::error_code ignored;
+    const auto add = [&](const fs::path& file) {
+        const fs::file_time_type time = fs::last_write_time(file, ignored);
+        if (!ignored) times[file] = time;
+    };
+    for (const fs::path& path : paths_) {
+        if (!fs::is_directory(path, ignored)) {
+            add(path);
+            continue;
+        }
+        for (fs::recursive_directory_iterator it(path, ignored), end; it != end;
+             it.increment(ignored)) {
+            if (ignored) break;
+            if (it->is_regular_file(ignored)) add(it->path());
+        }
+    }
+    return times;
+}
+
+bool FileWatch::changed() {
+    Times now = look();
+    const bool rests = now == last_;
+    last_ = std::move(now);
+    if (!rests || last_ == known_) return false;
+    known_ = last_;
+    return true;
+}
+
+}  // namespace relevo::viewer

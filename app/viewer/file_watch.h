@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+namespace relevo::viewer {
+
+/// Tells when files are written: by their times, looked at now and then.
+class FileWatch {
+  public:
+    /// Files, and folders with all that lies in them.
+    void watch(std::vector<std::filesystem::path> paths);
+    /// Whether any has changed since the last call that said so, come or gone; after a change it
+    /// waits until nothing has changed any more, so that a file is whole.
+    bool changed();
+
+  private:
+    using Times = std::map<std::filesystem::path, std::filesystem::file_time_type>;
+    Times look() const;
+
+    std::vector<std::filesystem::path> paths_;
+    Times known_, last_;
+};
+
+}  // namespace relevo::viewer

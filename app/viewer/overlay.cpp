@@ -1,0 +1,173 @@
+#include "viewer/overlay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <imgui.h>
+
+#include "base/units.h"
+#include "geo/geodetic.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr ImU32 kLine = IM_COL32(255, 80, 60, 255);
+constexpr ImU32 kInk = IM_COL32(255, 255, 255, 235), kShade = IM_COL32(0, 0, 0, 150);
+
+ImVec2 at_window(glm::dvec2 at, glm::vec2 size_px) {
+    return {static_cast<float>((at.x + 1) / 2) * size_px.x,
+            static_cast<float>((1 - at.y) / 2) * size_px.y};
+}
+
+/// 1, 2 or 5 times a power of ten, no larger.
+double round_length(double length) {
+    const double power = std::pow(10, std::floor(std::log10(length)));
+    for (const double digit : {5.0, 2.0})
+        if (digit * power <= length) return digit * power;
+    return power;
+}
+
+std::string length_text(double length_m) {
+    if (length_m >= 10000) return fmt::format("{:.1f} km", length_m / 1000);
+    if (length_m >= 1000) return fmt::format("{:.2f} km", length_m / 1000);
+    return fmt::format("{:.0f} m", length_m);
+}
+
+}  // namespace
+
+Profile Profile::between(const geo::Geodetic& from, const geo::Geodetic& to, const Land& land) {
+    constexpr int kSteps = 400;
+    Profile profile;
+    const geo::Geodesic line = geo::geodesic(from, to);
+    profile.level_m = line.distance_m;
+    double before_m = 0;
+    for (int i = 0; i <= kSteps; ++i) {
+        const geo::Geodetic at =
+            geo::destination(from, line.azimuth_rad, line.distance_m * i / kSteps);
+        const double height_m = land.height_m(at);
+        profile.heights_m.push_back(static_cast<float>(height_m));
+        if (std::isnan(height_m)) {
+            profile.has_holes = true;
+        } else {
+            if (i > 0 && !std::isnan(before_m)) {
+                const double rise_m = height_m - before_m;
+                profile.surface_m += std::hypot(line.distance_m / kSteps, rise_m);
+                (rise_m > 0 ? profile.up_m : profile.down_m) += std::abs(rise_m);
+            }
+        }
+        before_m = height_m;
+    }
+    return profile;
+}
+
+void draw_measured(const std::vector<glm::dvec3>& points, const std::optional<Profile>& profile,
+                   const Picture& picture, glm::vec2 size_px) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const double aspect = static_cast<double>(size_px.x) / size_px.y;
+    std::optional<ImVec2> before;
+    for (const glm::dvec3& point : points) {
+        const auto at = in_picture(picture.camera, point, aspect);
+        if (!at) return;
+        const ImVec2 px = at_window(*at, size_px);
+        if (before) list.AddLine(*before, px, kLine, 2);
+        list.AddCircleFilled(px, 5, kLine);
+        list.AddCircle(px, 6, IM_COL32_WHITE, 0, 1.5f);
+        if (before && profile)
+            list.AddText({px.x + 10, px.y - 8}, kInk, length_text(profile->level_m).c_str());
+        before = px;
+    }
+}
+
+void profile_panel(const Profile& profile) {
+    const auto [low, high] =
+        std::minmax_element(profile.heights_m.begin(), profile.heights_m.end(),
+                            [](float a, float b) { return !(a >= b) && !std::isnan(b); });
+    ImGui::PlotLines("##profile", profile.heights_m.data(),
+                     static_cast<int>(profile.heights_m.size()), 0,
+                     fmt::format("{:.0f} to {:.0f} m", *low, *high).c_str(), *low, *high,
+                     {ImGui::GetContentRegionAvail().x, 90});
+    ImGui::Text("%s level, %s over the ground%s", length_text(profile.level_m).c_str(),
+                length_text(profile.surface_m).c_str(), profile.has_holes ? " without holes" : "");
+    ImGui::Text("%.0f m up, %.0f m down", profile.up_m, profile.down_m);
+}
+
+void draw_scale_and_north(const Picture& picture, const Land& land,
+                          const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px) {
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    // North, as it is at the eye, on a level plate.
+    const geo::Axes axes = land.axes(picture.camera.eye_m);
+    const glm::dvec3 right = cross(picture.camera.forward, picture.camera.up);
+    const glm::dvec2 north(dot(axes.north, right), dot(axes.north, picture.camera.up));
+    const glm::dvec2 east(dot(axes.east, right), dot(axes.east, picture.camera.up));
+    const ImVec2 middle{size_px.x - 46, 46};
+    const auto tip = [&](glm::dvec2 way, double length) {
+        return ImVec2(middle.x + static_cast<float>(way.x * length),
+                      middle.y - static_cast<float>(way.y * length));
+    };
+    list.AddCircleFilled(middle, 34, kShade);
+    list.AddTriangleFilled(tip(north, 26), tip(east, 7), tip(-east, 7), kLine);
+    list.AddTriangleFilled(tip(-north, 26), tip(-east, 7), tip(east, 7), kInk);
+    const ImVec2 letter = tip(north, 26);
+    list.AddText({letter.x - 5, letter.y - 8}, kInk, "N");
+    if (!middle_m) return;
+    // A length across the picture, at the distance of the ground in its middle.
+    const double depth_m = dot(*middle_m - picture.camera.eye_m, picture.camera.forward);
+    const double m_a_px = 2 * depth_m * std::tan(picture.camera.fov_y_rad / 2) / size_px.y;
+    constexpr double kBar_px = 160;
+    const double length_m = round_length(kBar_px * m_a_px);
+    const auto width = static_cast<float>(length_m / m_a_px);
+    const ImVec2 end{size_px.x - 24, size_px.y - 24};
+    list.AddRectFilled({end.x - width - 8, end.y - 26}, {end.x + 8, end.y + 8}, kShade, 4);
+    list.AddLine({end.x - width, end.y}, end, kInk, 2);
+    list.AddLine({end.x - width, end.y - 5}, {end.x - width, end.y + 1}, kInk, 2);
+    list.AddLine({end.x, end.y - 5}, {end.x, end.y + 1}, kInk, 2);
+    const std::string text = length_text(length_m) + " here";
+    const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
+    list.AddText({end.x - width / 2 - extent.x / 2, end.y - 22}, kInk, text.c_str());
+}
+
+void key_sheet() {
+    static constexpr std::array<std::array<const char*, 2>, 23> kKeys = {{
+        {"Left drag", "move the ground"},
+        {"Right drag, Shift + drag", "turn about the ground under the cursor"},
+        {"Middle drag", "look around"},
+        {"Wheel", "nearer to the ground under the cursor, and farther"},
+        {"Drag the sun", "along its way of the day"},
+        {"Arrows", "turn about the middle"},
+        {"Page up, Page down", "nearer, farther"},
+        {"W A S D, Q E", "fly, down and up; faster with Shift"},
+        {"G", "walk at eye height, and fly again"},
+        {"Home, N, T", "the whole DEM, north up, from above"},
+        {"[ ]", "half an hour earlier, later; with Shift a day"},
+        {"Space", "let the time pass, and pause"},
+        {"Click", "the ground's sun of the day"},
+        {"M", "measure from there to the cursor"},
+        {"F12", "take the picture"},
+        {"Ctrl + C", "copy the command that takes it"},
+        {"Ctrl + S", "save the scene"},
+        {"Ctrl + O", "open a DEM; files can be dropped too"},
+        {"F5", "read effects and DEM again"},
+        {"Ctrl + Z, Ctrl + Y", "undo, redo"},
+        {"Tab", "panels on and off"},
+        {"H, Esc", "this sheet"},
+        {"Ctrl + Q", "end"},
+    }};
+    ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x / 2, ImGui::GetIO().DisplaySize.y / 2},
+                            ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin("Keys", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse);
+    if (ImGui::BeginTable("keys", 2)) {
+        for (const auto& [key, what] : kKeys) {
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(key);
+            ImGui::TableNextColumn();
+            ImGui::TextDisabled("%s", what);
+        }
+        ImGui::EndTable();
+    }
+    ImGui::End();
+}
+
+}  // namespace relevo::viewer

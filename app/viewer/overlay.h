@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "viewer/navigation.h"
+#include "viewer/scene_thread.h"
+
+/// What is drawn over the picture.
+namespace relevo::viewer {
+
+/// The ground along a geodesic.
+struct Profile {
+    std::vector<float> heights_m;  ///< at even steps from end to end, NaN at holes
+    double level_m = 0;            ///< along the ellipsoid
+    double surface_m = 0;          ///< over the ground, up and down, holes left out
+    double up_m = 0, down_m = 0;   ///< together
+    bool has_holes = false;
+
+    static Profile between(const geo::Geodetic& from, const geo::Geodetic& to, const Land& land);
+};
+
+/// @param points  of the ground, at most two
+void draw_measured(const std::vector<glm::dvec3>& points, const std::optional<Profile>& profile,
+                   const Picture& picture, glm::vec2 size_px);
+void profile_panel(const Profile& profile);
+
+/// @param middle_m  ground in the picture's middle; without it there is no scale
+void draw_scale_and_north(const Picture& picture, const Land& land,
+                          const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px);
+
+void key_sheet();
+
+}  // namespace relevo::viewer

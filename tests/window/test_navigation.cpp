@@ -1,0 +1,139 @@
+// How the hand moves the camera, in numbers.
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+#include "base/units.h"
+#include "support/support.h"
+#include "viewer/navigation.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr double kAspect = 1.5;
+
+class Navigation : public testing::Test {
+  protected:
+    Navigation() {
+        land_.frame = &frame_;
+        land_.height_m = [](const geo::Geodetic&) { return 500.0; };
+        pose_.eye_m = at(46.0, 8.0, 3000);
+        pose_.heading_deg = 30;
+        pose_.pitch_deg = -25;
+        pose_.fov_y_rad = radians(40.0);
+    }
+    glm::dvec3 at(double lat_deg, double lon_deg, double height_m) const {
+        return frame_.to_local(geo::geodetic_deg(lat_deg, lon_deg, height_m));
+    }
+    glm::dvec2 seen(const Pose& pose, const glm::dvec3& point_m) const {
+        return in_picture(camera_of(pose, land_), point_m, kAspect).value();
+    }
+    /// Where a ray of the picture meets level ground, nearly.
+    glm::dvec3 ground(const Pose& pose, glm::dvec2 in) const {
+        const glm::dvec3 direction = ray(camera_of(pose, land_), in, kAspect);
+        const glm::dvec3 up = land_.axes(pose.eye_m).up;
+        return pose.eye_m + 2500 / -dot(direction, up) * direction;
+    }
+
+    geo::LocalFrame frame_{geo::geodetic_deg(46.1, 8.1, 0)};
+    Land land_;
+    Pose pose_;
+};
+
+TEST_F(Navigation, APoseComesBackFromItsCameraAndItsView) {
+    const Pose back = pose_of(camera_of(pose_, land_), land_);
+    EXPECT_NEAR(back.heading_deg, 30, 1e-9);
+    EXPECT_NEAR(back.pitch_deg, -25, 1e-9);
+    EXPECT_LT(distance(back.eye_m, pose_.eye_m), 1e-6);
+    land_.exaggeration = 2;
+    const scene::View view = view_of(pose_, land_);
+    const scene::Camera camera =
+        scene::make_camera(view, land_.height_m, frame_, {}, kAspect, land_.exaggeration);
+    EXPECT_LT(distance(camera.eye_m, pose_.eye_m), 1e-6);
+    EXPECT_GT(dot(camera.forward, camera_of(pose_, land_).forward), 1 - 1e-12);
+    // Straight down the heading is where the top of the picture is.
+    pose_.pitch_deg = -90;
+    EXPECT_NEAR(pose_of(camera_of(pose_, land_), land_).heading_deg, 30, 1e-6);
+}
+
+TEST_F(Navigation, PlacesInThePictureAreWhereTheirRaysGo) {
+    for (const glm::dvec2 in : {glm::dvec2(0, 0), glm::dvec2(0.7, -0.4), glm::dvec2(-1, 1)}) {
+        const glm::dvec3 point = pose_.eye_m + 1234.0 * ray(camera_of(pose_, land_), in, kAspect);
+        EXPECT_LT(distance(seen(pose_, point), in), 1e-9);
+    }
+    EXPECT_FALSE(in_picture(camera_of(pose_, land_), pose_.eye_m - camera_of(pose_, land_).forward,
+                            kAspect));
+}
+
+TEST_F(Navigation, OrbitingKeepsThePointWhereItIsAndThePictureUpright) {
+    const glm::dvec3 pivot = ground(pose_, {0.4, -0.3});
+    const Pose turned = orbit(pose_, land_, pivot, 70, 12);
+    EXPECT_LT(distance(seen(turned, pivot), seen(pose_, pivot)), 2e-3);
+    EXPECT_NEAR(distance(turned.eye_m, pivot), distance(pose_.eye_m, pivot), 1e-3);
+    EXPECT_NEAR(turned.pitch_deg, -37, 0.05);
+    // 70 degrees to the left as seen from above, that is the camera turns that way.
+    EXPECT_NEAR(turned.heading_deg, 360 + 30 - 70, 0.1);
+    // Neither over the top nor through the ground.
+    EXPECT_GE(orbit(pose_, land_, pivot, 0, 500).pitch_deg, -89.9);
+    const Pose low = orbit(pose_, land_, pivot, 0, -500);
+    EXPECT_GE(frame_.to_geodetic(low.eye_m).height_m, 500 + kClearance_m - 1e-6);
+}
+
+TEST_F(Navigation, PanningBringsTheGrabbedGroundUnderTheHand) {
+    const glm::dvec3 grabbed = ground(pose_, {0.2, -0.2});
+    const Pose moved = pan(pose_, land_, grabbed, {-0.3, -0.5}, kAspect);
+    // The ground falls away a little over so many kilometres.
+    EXPECT_LT(distance(seen(moved, grabbed), glm::dvec2(-0.3, -0.5)), 2e-3);
+    EXPECT_NEAR(moved.heading_deg, pose_.heading_deg, 1e-12);
+    // Not towards the sky, where there is no ground to be held.
+    EXPECT_EQ(pan(pose_, land_, grabbed, {0, 3}, kAspect).eye_m, pose_.eye_m);
+}
+
+TEST_F(Navigation, ZoomingKeepsThePointUnderTheCursor) {
+    const glm::dvec3 point = ground(pose_, {0.6, 0.1});
+    const Pose nearer = zoom(pose_, land_, point, 0.25);
+    // The horizon of the place that it comes to is a little aslant.
+    EXPECT_LT(distance(seen(nearer, point), seen(pose_, point)), 5e-4);
+    EXPECT_NEAR(distance(nearer.eye_m, point), 0.25 * distance(pose_.eye_m, point), 1e-3);
+    // However often, it never goes through.
+    Pose nearest = pose_;
+    for (int i = 0; i < 100; ++i)
+        nearest = zoom(nearest, land_, point, 0.5);
+    EXPECT_GE(frame_.to_geodetic(nearest.eye_m).height_m, 500 + kClearance_m - 1e-6);
+}
+
+TEST_F(Navigation, WalkingStaysAtEyeHeightAndFlyingAboveTheGround) {
+    // A slope up to the north.
+    land_.height_m = [](const geo::Geodetic& place) {
+        return 500 + 20000 * (degrees(place.lat_rad) - 46.0);
+    };
+    pose_.heading_deg = 0;
+    Pose walker = walk(pose_, land_, {0, 0});
+    for (int i = 0; i < 50; ++i)
+        walker = walk(walker, land_, {0, 20});
+    const geo::Geodetic place = frame_.to_geodetic(walker.eye_m);
+    EXPECT_NEAR(place.height_m, land_.height_m(place) + kWalk_m, 1e-6);
+    EXPECT_NEAR(place.lat_rad, radians(46.0) + 1000 / 6367000.0, 1e-5);
+    Pose flyer = pose_;
+    flyer.pitch_deg = -80;
+    for (int i = 0; i < 100; ++i)
+        flyer = fly(flyer, land_, {0, 100, 0});
+    const geo::Geodetic down = frame_.to_geodetic(flyer.eye_m);
+    EXPECT_GE(down.height_m, land_.height_m(down) + kClearance_m - 1e-6);
+    // No ground, no walk.
+    land_.height_m = [](const geo::Geodetic&) { return std::numeric_limits<double>::quiet_NaN(); };
+    EXPECT_EQ(walk(pose_, land_, {0, 5}).eye_m, pose_.eye_m);
+}
+
+TEST_F(Navigation, FromAboveNorthIsUp) {
+    const glm::dvec3 point = at(46.05, 8.05, 500);
+    const Pose above = from_above(pose_, land_, point, 4000);
+    EXPECT_LT(length(seen(above, point)), 1e-6);
+    const glm::dvec2 north = seen(above, at(46.06, 8.05, 500));
+    EXPECT_NEAR(north.x, 0, 1e-3);
+    EXPECT_GT(north.y, 0.5);
+}
+
+}  // namespace
+}  // namespace relevo::viewer

@@ -1,0 +1,223 @@
+// The window of `relevo DEM`, driven by a mouse and keys on a display of the tests' own.
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "base/text.h"
+#include "image/image.h"
+#include "support/support.h"
+#include "window/display.h"
+
+namespace relevo {
+namespace {
+
+using testing::HasSubstr;
+
+class Viewer : public testing::Test {
+  protected:
+    /// Opens the window in a folder of its own, without panels over the picture.
+    void open(const std::vector<std::string>& arguments) {
+        std::vector<std::string> words = arguments;
+        program_.emplace(display_, test::build_dir() / "bin/relevo", words,
+                         std::vector<std::string>{}, folder_);
+        ASSERT_TRUE(wait([&] { return program_->title().find("Relevo") != std::string::npos; }))
+            << program_->output();
+        act({"mousemove", "900", "500"});
+        ASSERT_TRUE(settles()) << program_->output();
+    }
+    static bool wait(const std::function<bool()>& holds) {
+        return test::WindowedProgram::wait(holds);
+    }
+    void act(const std::vector<std::string>& arguments) const { display_.act(arguments); }
+    /// Waits until the screen shows something, and the same for a while.
+    bool settles() {
+        image::Image8 before = display_.screen();
+        int same = 0;
+        return wait([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(60));
+            image::Image8 now = display_.screen();
+            same = test::difference(now, before) < 1e-4 && brightness(now) > 30 ? same + 1 : 0;
+            before = std::move(now);
+            return same >= 6;
+        });
+    }
+    static double brightness(const image::Image8& picture) {
+        double sum = 0;
+        for (const std::uint8_t value : picture.values)
+            sum += value;
+        return sum / static_cast<double>(picture.values.size());
+    }
+    /// Whether doing it makes another picture, of which this share differs at least.
+    bool changes(const std::function<void()>& act, double share = 0.05) {
+        const image::Image8 before = display_.screen();
+        act();
+        if (!wait([&] { return test::difference(display_.screen(), before) > share; }))
+            return false;
+        return settles();
+    }
+    /// The scene as Ctrl+S saves it now.
+    nlohmann::json scene() {
+        const auto name = folder_ / fmt::format("relevo-{}.json", ++saved_);
+        act({"key", "ctrl+s"});
+        EXPECT_TRUE(wait([&] { return std::filesystem::exists(name); })) << program_->output();
+        return nlohmann::json::parse(read_text(name, "test"));
+    }
+    void drag(int button, int x, int y, int dx, int dy) {
+        act({"mousemove", std::to_string(x), std::to_string(y)});
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        act({"mousedown", std::to_string(button)});
+        for (int step = 1; step <= 5; ++step) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(60));
+            act({"mousemove", std::to_string(x + dx * step / 5),
+                 std::to_string(y + dy * step / 5)});
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(60));
+        act({"mouseup", std::to_string(button)});
+    }
+
+    const std::filesystem::path folder_ = test::scratch_dir("viewer");
+    const std::string dem_ = (test::source_dir() / "data/dem/jacksboro.tif").string();
+    test::Display display_{1280, 800};
+    std::optional<test::WindowedProgram> program_;
+    int saved_ = 0;
+};
+
+TEST_F(Viewer, TurnsPansZoomsAndGoesHome) {
+    open({dem_});
+    const nlohmann::json home = scene();
+    const auto camera = [&] { return scene()["camera"]; };
+    EXPECT_EQ(home["camera"]["eye_above_ground"], false);
+    ASSERT_TRUE(changes([&] { drag(3, 800, 400, 150, 60); }));
+    const auto turned = camera();
+    EXPECT_GT(std::abs(turned["heading"].get<double>() - home["camera"]["heading"].get<double>()),
+              10);
+    EXPECT_LT(turned["pitch"].get<double>(), home["camera"]["pitch"].get<double>() - 2);
+    ASSERT_TRUE(changes([&] { act({"click", "--repeat", "6", "--delay", "60", "4"}); }));
+    const auto nearer = camera();
+    EXPECT_LT(nearer["eye"][2].get<double>(), 0.6 * turned["eye"][2].get<double>());
+    ASSERT_TRUE(changes([&] { drag(1, 850, 450, -120, 80); }));
+    const auto panned = camera();
+    EXPECT_EQ(panned["heading"], nearer["heading"]);
+    EXPECT_NE(panned["eye"][0], nearer["eye"][0]);
+    ASSERT_TRUE(changes([&] { act({"key", "Home"}); }));
+    EXPECT_EQ(camera()["eye"], home["camera"]["eye"]);
+    // And everything back again.
+    ASSERT_TRUE(changes([&] { act({"key", "ctrl+z"}); }));
+    EXPECT_EQ(camera()["eye"], panned["eye"]);
+}
+
+TEST_F(Viewer, MovesTheSunByKeysAndLetsTheDayPass) {
+    open({dem_, "--time", "2026-06-21T18:00:00Z"});
+    ASSERT_TRUE(changes(
+        [&] {
+            act({"key", "--repeat", "8", "--delay", "80", "bracketright"});
+        },
+        0.01));
+    EXPECT_THAT(
+        scene()["time"]["at"].get<std::string>(),
+        testing::AnyOf(HasSubstr("2026-06-21T22:00:00Z"), HasSubstr("2026-06-21T16:00:00-06:00"),
+                       HasSubstr("2026-06-21T18:00:00-04:00")));
+    act({"key", "space"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(800));
+    act({"key", "space"});
+    EXPECT_NE(scene()["time"]["at"].get<std::string>().substr(13), ":00:00-06:00");
+}
+
+TEST_F(Viewer, APictureIsWhatACaptureOfItsSceneIs) {
+    open({dem_, "--time", "2026-06-21T20:00:00Z"});
+    ASSERT_TRUE(changes([&] { drag(3, 800, 400, 90, 30); }));
+    scene();
+    act({"key", "F12"});
+    const auto taken = folder_ / "relevo-1.png";
+    ASSERT_TRUE(wait([&] { return std::filesystem::exists(taken); })) << program_->output();
+    const auto captured = folder_ / "captured.png";
+    test::WindowedProgram capture(display_, test::build_dir() / "bin/relevo",
+                                  {"-q", "capture", "--scene", (folder_ / "relevo-1.json").string(),
+                                   "-o", captured.string()});
+    ASSERT_EQ(capture.status(), 0) << capture.output();
+    const image::Image8 a = image::read(taken), b = image::read(captured);
+    EXPECT_LE(test::difference(a, b, 1), 2e-4);
+    EXPECT_EQ(test::difference(a, b, 3), 0);
+}
+
+TEST_F(Viewer, TheCopiedCommandTakesThePicture) {
+    open({dem_, "--time", "2026-06-21T20:00:00Z", "--disable", "haze"});
+    ASSERT_TRUE(changes([&] { drag(3, 800, 400, 90, 30); }));
+    act({"key", "F12"});
+    const auto taken = folder_ / "relevo-1.png";
+    ASSERT_TRUE(wait([&] { return std::filesystem::exists(taken); }));
+    // The picture says how it was taken.
+    const std::string bytes = read_text(taken, "test");
+    const std::size_t begin = bytes.find("relevo capture ");
+    ASSERT_NE(begin, std::string::npos);
+    std::string command =
+        bytes.substr(begin + 7, bytes.find("picture.png", begin) + 11 - begin - 7);
+    EXPECT_THAT(command, HasSubstr("--disable haze"));
+    EXPECT_THAT(command, HasSubstr("--eye 3"));
+    test::WindowedProgram capture(
+        display_, "/bin/sh", {"-c", (test::build_dir() / "bin/relevo").string() + " -q " + command},
+        {}, folder_);
+    ASSERT_EQ(capture.status(), 0) << capture.output();
+    EXPECT_LE(test::difference(image::read(taken), image::read(folder_ / "picture.png"), 3), 2e-4);
+}
+
+TEST_F(Viewer, ReadsEffectsAgainWhenTheirFilesAreWritten) {
+    const auto plugin = folder_ / "plugins/paint";
+    std::filesystem::create_directories(plugin);
+    std::ofstream(plugin / "plugin.json")
+        << R"({"format": 1, "id": "paint", "name": "Paint", "description": "One colour",)"
+           R"( "version": "1.0.0"})";
+    const auto write = [&](const char* body) {
+        std::ofstream(plugin / "paint.glsl")
+            << "void paint_on_lit(in Surface s, inout vec3 radiance) { " << body << " }\n";
+    };
+    write("radiance.r += 0.1;");
+    open({dem_, "--only", "paint", "--plugin-path", (folder_ / "plugins").string()});
+    EXPECT_TRUE(changes([&] { write("radiance.b += 0.3;"); }));
+    const image::Image8 good = display_.screen();
+    write("radiance.b += nothing;");
+    std::this_thread::sleep_for(std::chrono::seconds(4));
+    EXPECT_TRUE(program_->is_running());
+    EXPECT_LT(test::difference(display_.screen(), good), 0.05);  // but for the panel's message
+    EXPECT_TRUE(changes([&] { write("radiance.g += 0.3;"); }));
+}
+
+TEST_F(Viewer, EndsWithItsWindowAndRestsWhenNothingChanges) {
+    open({dem_});
+    const auto processor_s = [&] {
+        std::ifstream stat(fmt::format("/proc/{}/stat", program_->process()));
+        const std::string text{std::istreambuf_iterator<char>(stat), {}};
+        const std::vector<std::string> words = split(text.substr(text.rfind(')') + 2), ' ');
+        return (std::stod(words.at(11)) + std::stod(words.at(12))) /
+               static_cast<double>(sysconf(_SC_CLK_TCK));
+    };
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    const double before_s = processor_s();
+    std::this_thread::sleep_for(std::chrono::seconds(5));
+    const double share = (processor_s() - before_s) / 5;
+    fmt::print("[ measured ] idle: {:.2f} % of a processor (limit 2)\n", 100 * share);
+    EXPECT_LT(share, 0.02);
+    act({"key", "ctrl+q"});
+    EXPECT_EQ(program_->status(), 0) << program_->output();
+}
+
+TEST(WithoutADisplay, OneLineNamesTheWayWithoutOne) {
+    const test::Display display;  // that the program is not told of
+    test::WindowedProgram program(display, test::build_dir() / "bin/relevo", {"view"},
+                                  {"DISPLAY="});
+    EXPECT_EQ(program.status(), 4);
+    EXPECT_EQ(program.output(),
+              "relevo: error: view: there is no display to open a window on; relevo capture takes "
+              "a picture without one\n");
+}
+
+}  // namespace
+}  // namespace relevo
