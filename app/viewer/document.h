@@ -56,8 +56,8 @@ scene::Effects switched(scene::Effects effects, const std::string& id, bool on);
 /// The same with a value of a parameter in the place of the one before.
 scene::Effects with_value(scene::Effects effects, const std::string& address,
                           const std::string& value);
-/// The same with what the effect itself says in the place of all values; of one effect or of one
-/// parameter. @param of  "haze" or "haze.density"
+/// The same with what effects themselves say in the place of values that were set.
+/// @param of  an effect's id, or the address of one of its parameters
 scene::Effects without_values(scene::Effects effects, const std::string& of);
 
 /// The command line that takes a scene's picture, quoted for a POSIX shell.

@@ -163,6 +163,9 @@ void preset_choice(State& state) {
 
 void effects_panel(State& state) {
     preset_choice(state);
+    ImGui::Checkbox("Compare with what is on now", &state.compare_is_wanted);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("The left of the line stays as it is, the right follows. Drag the line.");
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##search", "search effects and parameters", &state.search);
     // Rows may make another model, whose effects are other objects.

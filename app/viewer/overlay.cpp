@@ -130,7 +130,7 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 23> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 24> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
@@ -145,6 +145,7 @@ void key_sheet() {
         {"Space", "let the time pass, and pause"},
         {"Click", "the ground's sun of the day"},
         {"M", "measure from there to the cursor"},
+        {"C", "compare: the left stays as it is, the right follows; drag the line"},
         {"F12", "take the picture"},
         {"Ctrl + C", "copy the command that takes it"},
         {"Ctrl + S", "save the scene"},

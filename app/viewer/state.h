@@ -35,6 +35,7 @@ struct State {
     bool playing = false;
     double hours_a_second = 1;
     std::string search;
+    bool compare_is_wanted = false;  ///< with the effects as they are when it is
 
     std::optional<Cursor> cursor;
     std::optional<PointLight> point;  ///< that was clicked

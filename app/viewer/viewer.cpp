@@ -60,6 +60,7 @@ constexpr float kPanel_px = 360;
 constexpr double kRest_s = 0.15;
 /// Files are looked at again so often.
 constexpr double kWatch_s = 1;
+constexpr float kLine_px = 8;    // beside the line of a comparison that take hold of it
 constexpr double kClick_px = 4;  // that a click may move by
 /// The last turn of the wheel and the last pull of the hand die away so fast [1/s].
 constexpr double kZoomRate = 14, kGlideRate = 7;
@@ -123,9 +124,24 @@ class Viewer {
         state_.profile.reset();
         session_ = nullptr;
         picture_ = nullptr;
+        stop_comparing();
         scene_.reset();
         scene_ = std::make_unique<SceneThread>(state_.document.scene, device_, &Window::wake);
         want_size();
+    }
+
+    /// From now on the left of the line is drawn with the effects as they are now.
+    void compare() {
+        scene::Scene scene = whole_scene();
+        before_ = std::make_unique<SceneThread>(scene, device_, &Window::wake);
+        before_->want(wanted_now());
+    }
+
+    void stop_comparing() {
+        before_.reset();
+        picture_before_ = nullptr;
+        window_.take_before(nullptr);
+        state_.compare_is_wanted = false;
     }
 
     void want_size() {
@@ -162,6 +178,13 @@ class Viewer {
             window_.take(*newer);
             busy_frames_ = std::max(busy_frames_, 1);
         }
+        if (before_)
+            if (const auto newer =
+                    before_->newer_than(picture_before_ ? picture_before_->number : 0)) {
+                picture_before_ = newer;
+                window_.take_before(newer.get());
+                busy_frames_ = std::max(busy_frames_, 1);
+            }
         if (auto message = scene_->take_message()) {
             state_.message = std::move(*message);
             busy_frames_ = 2;
@@ -291,7 +314,7 @@ class Viewer {
         hover(mouse);
     }
 
-    enum class Drag { Pan, Orbit, Look, Sun };
+    enum class Drag { Pan, Orbit, Look, Sun, Line };
 
     void press(glm::vec2 mouse) {
         const ImGuiIO& io = ImGui::GetIO();
@@ -305,6 +328,8 @@ class Viewer {
             if (button == 0 && picture_ && !ground_at(mouse) &&
                 moment_at(state_, *picture_, size(), mouse))
                 dragging_ = Drag::Sun;
+            if (button == 0 && before_ && std::abs(mouse.x - window_.line() * size().x) < kLine_px)
+                dragging_ = Drag::Line;
             glide_deg_a_s_ = {};
             zoom_left_ = 0;
         }
@@ -316,7 +341,7 @@ class Viewer {
         if (!io.MouseDown[0] && !io.MouseDown[1] && !io.MouseDown[2]) {
             const bool click = distance(mouse, pressed_px_) < kClick_px;
             if (click && *dragging_ == Drag::Pan) choose_point(mouse);
-            state_.step = state_.step || !click;
+            state_.step = state_.step || (!click && *dragging_ != Drag::Line);
             dragging_.reset();
             return;
         }
@@ -342,6 +367,9 @@ class Viewer {
                 if (const auto utc = moment_at(state_, *picture_, size(), mouse))
                     state_.set_utc(*utc);
                 state_.sun_moves = true;
+                break;
+            case Drag::Line:
+                window_.set_line(std::clamp(mouse.x / size().x, 0.02f, 0.98f));
                 break;
         }
     }
@@ -449,9 +477,6 @@ class Viewer {
     }
 
     void plain(const KeyPress& press) {
-        Pose& pose = state_.document.pose;
-        constexpr double kHour_s = 3600, kDay_s = 86400;
-        const double step_s = press.shift ? kDay_s : kHour_s / 2;
         switch (press.key) {
             case GLFW_KEY_H:
                 sheet_ = !sheet_;
@@ -462,40 +487,11 @@ class Viewer {
             case GLFW_KEY_TAB:
                 panels_ = !panels_;
                 break;
-            case GLFW_KEY_HOME:
-                pose = home_;
-                moved();
-                state_.step = true;
-                break;
-            case GLFW_KEY_N:
-                pose = orbit(pose, state_.land, hold(0.5f * size()), pose.heading_deg, 0);
-                pose.heading_deg = 0;
-                moved();
-                state_.step = true;
-                break;
-            case GLFW_KEY_T: {
-                const glm::dvec3 at = hold(0.5f * size());
-                pose = from_above(pose, state_.land, at, distance(pose.eye_m, at));
-                moved();
-                state_.step = true;
-                break;
-            }
-            case GLFW_KEY_G:
-                walking_ = !walking_;
-                if (walking_) pose = walk(pose, state_.land, {0, 0});
-                moved();
-                state_.step = true;
-                break;
-            case GLFW_KEY_LEFT_BRACKET:
-                state_.set_utc(state_.document.utc - step_s);
-                state_.step = true;
-                break;
-            case GLFW_KEY_RIGHT_BRACKET:
-                state_.set_utc(state_.document.utc + step_s);
-                state_.step = true;
-                break;
             case GLFW_KEY_SPACE:
                 state_.playing = !state_.playing;
+                break;
+            case GLFW_KEY_C:
+                state_.compare_is_wanted = !state_.compare_is_wanted;
                 break;
             case GLFW_KEY_M:
                 measure();
@@ -507,8 +503,34 @@ class Viewer {
                 take_picture();
                 break;
             default:
-                break;
+                move_by_key(press);
         }
+    }
+
+    void move_by_key(const KeyPress& press) {
+        Pose& pose = state_.document.pose;
+        constexpr double kHour_s = 3600, kDay_s = 86400;
+        const double step_s = press.shift ? kDay_s : kHour_s / 2;
+        const glm::dvec3 middle = hold(0.5f * size());
+        if (press.key == GLFW_KEY_LEFT_BRACKET) {
+            state_.set_utc(state_.document.utc - step_s);
+        } else if (press.key == GLFW_KEY_RIGHT_BRACKET) {
+            state_.set_utc(state_.document.utc + step_s);
+        } else if (press.key == GLFW_KEY_HOME) {
+            pose = home_;
+        } else if (press.key == GLFW_KEY_N) {
+            pose = orbit(pose, state_.land, middle, pose.heading_deg, 0);
+            pose.heading_deg = 0;
+        } else if (press.key == GLFW_KEY_T) {
+            pose = from_above(pose, state_.land, middle, distance(pose.eye_m, middle));
+        } else if (press.key == GLFW_KEY_G) {
+            walking_ = !walking_;
+            if (walking_) pose = walk(pose, state_.land, {0, 0});
+        } else {
+            return;
+        }
+        moved();
+        state_.step = true;
     }
 
     void measure() {
@@ -731,7 +753,10 @@ class Viewer {
         if (state_.sun_moves) moved();
         rested_ = seconds_since(moved_at_) > kRest_s;
         const Wanted wanted = wanted_now();
-        if (!(wanted_ && same(*wanted_, wanted))) scene_->want(wanted);
+        if (!(wanted_ && same(*wanted_, wanted))) {
+            scene_->want(wanted);
+            if (before_) before_->want(wanted);
+        }
         wanted_ = wanted;
         if (state_.new_effects) scene_->want_effects(*state_.new_effects);
         for (const auto& [address, value] : state_.new_values)
@@ -742,6 +767,8 @@ class Viewer {
             busy_frames_ = 2;
         }
         if (busy_frames_ > 0) --busy_frames_;
+        if (state_.compare_is_wanted && !before_) compare();
+        if (!state_.compare_is_wanted && before_) stop_comparing();
         state_.step = state_.sun_moves = false;
         state_.new_effects.reset();
         state_.new_values.clear();
@@ -789,6 +816,8 @@ class Viewer {
     History history_;
     Pose home_;
     std::shared_ptr<const Picture> picture_;
+    std::unique_ptr<SceneThread> before_;  // of a comparison
+    std::shared_ptr<const Picture> picture_before_;
     std::optional<Wanted> wanted_;
     std::vector<std::string> last_dems_;
     bool was_open_ = false;

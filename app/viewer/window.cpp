@@ -69,13 +69,31 @@ void load_fonts(float scale) {
     }
 }
 
+/// A picture on the display's device.
+struct Shown {
+    gl::Texture texture;
+    std::optional<gl::Framebuffer> target;
+
+    void take(const Picture& picture) {
+        const gl::Extent extent{picture.width_px, picture.height_px, 1};
+        if (!target || texture.extent().width != extent.width ||
+            texture.extent().height != extent.height) {
+            target.reset();
+            texture =
+                gl::Texture(gl::TextureKind::D2, gl::Format::RGBA8, extent, 1, "scene's picture");
+            target.emplace(std::initializer_list<const gl::Texture*>{&texture}, nullptr, "shown");
+        }
+        texture.write(0, {0, 0, 0}, extent, std::as_bytes(std::span(picture.rgba)));
+    }
+};
+
 }  // namespace
 
 struct Window::Impl {
     GLFWwindow* handle = nullptr;
     std::optional<gl::Context> context;
-    gl::Texture picture;
-    std::optional<gl::Framebuffer> shown;
+    Shown shown, before;
+    float line = 0.5f;
     std::vector<KeyPress> keys;
     std::vector<std::string> dropped;
 
@@ -143,14 +161,21 @@ struct Window::Impl {
             ImGui_ImplGlfw_Shutdown();
             ImGui::DestroyContext();
         }
-        shown.reset();
-        picture = {};
+        shown = {};
+        before = {};
         context.reset();
         glfwDestroyWindow(handle);
         glfwTerminate();
     }
 
     ~Impl() { close(); }
+
+    void show(glm::ivec2 size) const {
+        if (!shown.target) return;
+        shown.target->copy_to_window(size.x, size.y);
+        if (!before.target) return;
+        before.target->copy_to_window(size.x, size.y, line);
+    }
 };
 
 Window::Window(const std::string& title) : impl_(std::make_unique<Impl>(title)) {}
@@ -192,16 +217,22 @@ void Window::wake() {
 }
 
 void Window::take(const Picture& picture) {
-    const gl::Extent extent{picture.width_px, picture.height_px, 1};
-    if (!impl_->shown || impl_->picture.extent().width != extent.width ||
-        impl_->picture.extent().height != extent.height) {
-        impl_->shown.reset();
-        impl_->picture =
-            gl::Texture(gl::TextureKind::D2, gl::Format::RGBA8, extent, 1, "scene's picture");
-        impl_->shown.emplace(std::initializer_list<const gl::Texture*>{&impl_->picture}, nullptr,
-                             "shown");
-    }
-    impl_->picture.write(0, {0, 0, 0}, extent, std::as_bytes(std::span(picture.rgba)));
+    impl_->shown.take(picture);
+}
+
+void Window::take_before(const Picture* picture) {
+    if (picture)
+        impl_->before.take(*picture);
+    else
+        impl_->before = {};
+}
+
+float Window::line() const {
+    return impl_->line;
+}
+
+void Window::set_line(float share) {
+    impl_->line = share;
 }
 
 void Window::draw(const std::function<void()>& panels) {
@@ -209,9 +240,14 @@ void Window::draw(const std::function<void()>& panels) {
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     panels();
-    ImGui::Render();
     const glm::ivec2 size = size_px();
-    if (impl_->shown) impl_->shown->copy_to_window(size.x, size.y);
+    if (impl_->before.target) {
+        const float x = impl_->line * ImGui::GetIO().DisplaySize.x;
+        ImGui::GetBackgroundDrawList()->AddLine({x, 0}, {x, ImGui::GetIO().DisplaySize.y},
+                                                IM_COL32(255, 255, 255, 200), 2);
+    }
+    ImGui::Render();
+    impl_->show(size);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     glfwSwapBuffers(impl_->handle);
 }

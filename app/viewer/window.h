@@ -42,6 +42,11 @@ class Window {
 
     /// Shows a picture from the next frame on.
     void take(const Picture& picture);
+    /// Shows another picture on the left of a line, which has to be the same view; null: none.
+    void take_before(const Picture* picture);
+    /// The line's place, as a share of the window's width.
+    float line() const;
+    void set_line(float share);
     /// Draws the picture, and over it what `panels` draws with ImGui.
     void draw(const std::function<void()>& panels);
 

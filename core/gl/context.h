@@ -46,9 +46,9 @@ struct ContextOptions {
     bool debug = false;
 };
 
-/// An OpenGL 4.5 core context. One of its own has no window and is current on the thread that made it, through EGL:
-/// the device platform, then the surfaceless one. Clip space has depth 0..1 (reversed-Z is the
-/// caller's).
+/// An OpenGL 4.5 core context. One of its own has no window and is current on the thread that made
+/// it, through EGL: the device platform, then the surfaceless one. Clip space has depth 0..1
+/// (reversed-Z is the caller's).
 ///
 /// Every other object of this layer needs a Context that lives longer than it does. Contexts share
 /// the display of a device, with each other and with all else in the process, and leave it as it is

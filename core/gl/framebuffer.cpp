@@ -1,6 +1,7 @@
 #include "gl/framebuffer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <epoxy/gl.h>
@@ -82,11 +83,15 @@ void Framebuffer::clear_stencil(int value) const {
     glClearNamedFramebufferiv(handle_.name(), GL_STENCIL, 0, &value);
 }
 
-void Framebuffer::copy_to_window(int width_px, int height_px) const {
+void Framebuffer::copy_to_window(int width_px, int height_px, float share) const {
     constexpr GLuint kWindow = 0;
     const bool same = width_px == extent_.width && height_px == extent_.height;
-    glBlitNamedFramebuffer(handle_.name(), kWindow, 0, 0, extent_.width, extent_.height, 0, 0,
-                           width_px, height_px, GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
+    const auto part = [&](int width) {
+        return static_cast<int>(std::lround(share * static_cast<float>(width)));
+    };
+    glBlitNamedFramebuffer(handle_.name(), kWindow, 0, 0, part(extent_.width), extent_.height, 0, 0,
+                           part(width_px), height_px, GL_COLOR_BUFFER_BIT,
+                           same ? GL_NEAREST : GL_LINEAR);
     glBindFramebuffer(GL_FRAMEBUFFER, kWindow);
     glViewport(0, 0, width_px, height_px);
 }

@@ -35,7 +35,8 @@ class Framebuffer {
     void clear_stencil(int value) const;
 
     /// Copies its first colour to the window of the current context, rows from below, stretched.
-    void copy_to_window(int width_px, int height_px) const;
+    /// @param share  of the width, from the left, that is copied
+    void copy_to_window(int width_px, int height_px, float share = 1) const;
 
     Extent extent() const { return extent_; }
 

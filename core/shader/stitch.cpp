@@ -66,7 +66,8 @@ class Stitcher {
                           snippet->source.params.end());
         result_.params = block_layout(params);
         units_ = TextureUnits(vertex_, fragment_, input_);
-        if (loads() && stored_.targets() > 0) units_.add_core(StoredVaryings::kTexture, "sampler2DArray");
+        if (loads() && stored_.targets() > 0)
+            units_.add_core(StoredVaryings::kTexture, "sampler2DArray");
         units_.check(program_name(), input_.max_texture_units);
         result_.textures = units_.units();
 

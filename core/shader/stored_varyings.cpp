@@ -84,7 +84,8 @@ void StoredVaryings::write_load(TextBuilder& out) const {
     out.heading("stored varyings");
     out.line("void load_varyings(in ivec2 pixel) {");
     for (int i = 0; i < targets_; ++i)
-        out.line(fmt::format("    vec4 stored_{0} = texelFetch({1}, ivec3(pixel, {0}), 0);", i, kTexture));
+        out.line(fmt::format("    vec4 stored_{0} = texelFetch({1}, ivec3(pixel, {0}), 0);", i,
+                             kTexture));
     for (const Stored& stored : stored_)
         out.line(fmt::format("    {} = {}(stored_{}.{});", stored.varying->name,
                              stored.varying->type, stored.target, swizzle(stored)));

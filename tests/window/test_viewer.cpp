@@ -190,6 +190,39 @@ TEST_F(Viewer, ReadsEffectsAgainWhenTheirFilesAreWritten) {
     EXPECT_TRUE(changes([&] { write("radiance.g += 0.3;"); }));
 }
 
+TEST_F(Viewer, ComparesWithWhatWas) {
+    const auto plugin = folder_ / "plugins/paint";
+    std::filesystem::create_directories(plugin);
+    std::ofstream(plugin / "plugin.json")
+        << R"({"format": 1, "id": "paint", "name": "Paint", "description": "One colour",)"
+           R"( "version": "1.0.0"})";
+    const auto write = [&](const char* body) {
+        std::ofstream(plugin / "paint.glsl")
+            << "void paint_on_lit(in Surface s, inout vec3 radiance) { " << body << " }\n";
+    };
+    write("radiance.r += 0.1;");
+    open({dem_, "--only", "paint", "--plugin-path", (folder_ / "plugins").string()});
+    act({"key", "Tab"});
+    ASSERT_TRUE(settles());
+    act({"key", "c"});
+    ASSERT_TRUE(changes([] {}, 1e-4));  // the line
+    const image::Image8 before = display_.screen();
+    ASSERT_TRUE(changes([&] { write("radiance.b += 0.3;"); }, 0.02));
+    const auto half_differs = [&](const image::Image8& a, int from, int to) {
+        int count = 0;
+        for (int y = 100; y < 600; ++y)
+            for (int x = from; x < to; ++x)
+                count += std::abs(a.row(y)[3 * x + 2] - before.row(y)[3 * x + 2]) > 8;
+        return count;
+    };
+    const image::Image8 after = display_.screen();
+    EXPECT_EQ(half_differs(after, 0, 600), 0);
+    EXPECT_GT(half_differs(after, 660, 1200), 10000);
+    // The line is dragged: more of it stays as it was.
+    ASSERT_TRUE(changes([&] { drag(1, 640, 300, 400, 0); }, 0.01));
+    EXPECT_LT(half_differs(display_.screen(), 0, 1000), half_differs(after, 0, 1000) / 4);
+}
+
 TEST_F(Viewer, EndsWithItsWindowAndRestsWhenNothingChanges) {
     open({dem_});
     const auto processor_s = [&] {
