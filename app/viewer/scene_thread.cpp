@@ -27,6 +27,8 @@ constexpr std::array<double, 5> kScales = {1, 0.8, 0.65, 0.5, 0.34};
 constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
 /// Shadows are this old at most while the sun is dragged.
 constexpr auto kShadowsAge = std::chrono::milliseconds(350);
+/// Where the camera alone moves they stay right, but are made for another view.
+constexpr auto kShadowsViewAge = std::chrono::milliseconds(2000);
 
 double milliseconds_since(Clock::time_point began) {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
@@ -136,7 +138,9 @@ struct SceneThread::Impl {
         }
         session->resize(std::max(1, static_cast<int>(std::lround(now.width_px * scale))),
                         std::max(1, static_cast<int>(std::lround(now.height_px * scale))));
-        const bool keep = now.sun_moving && shadows_lag && Clock::now() - shadows_at < kShadowsAge;
+        const auto age = Clock::now() - shadows_at;
+        const bool keep =
+            shadows_lag ? now.sun_moving && age < kShadowsAge : now.moving && age < kShadowsViewAge;
         session->keep_native(keep);
         const bool whole = session->draw_what_is_there();
         if (!keep) {
@@ -144,8 +148,8 @@ struct SceneThread::Impl {
             shadows_lag = false;
         }
         publish(began, whole && scale == 1 && !keep);
-        // Shadows that lag are drawn by the frame after the hand has come to rest.
-        return whole && (scale == 1 || now.moving || now.sun_moving) && !(keep && !now.sun_moving);
+        // What is coarse or lags is drawn anew when the hand has come to rest.
+        return whole && (scale == 1 || now.moving || now.sun_moving);
     }
 
     void publish(Clock::time_point began, bool sharp) {

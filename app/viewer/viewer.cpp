@@ -82,17 +82,20 @@ std::string free_name(const std::string& ending) {
 class Viewer {
   public:
     Viewer(const scene::Scene& scene, std::string device, const std::optional<sun::Zone>& zone)
-        : window_("Relevo"), device_(std::move(device)), zone_(zone) {
+        : device_(std::move(device)), zone_(zone) {
         state_.document.scene = scene;
+        // The scene opens beside the window.
+        scene_ = std::make_unique<SceneThread>(scene, device_, &Window::wake);
+        window_ = std::make_unique<Window>("Relevo");
         state_.effects = EffectsModel::of(scene.effects);
-        open();
+        want_size();
     }
 
     void run() {
-        while (!window_.should_close()) {
+        while (!window_->should_close()) {
             const double most_s = waiting_s();
             const auto waits_from = Clock::now();
-            window_.wait(most_s);
+            window_->wait(most_s);
             // Panels take in a frame what has come before it, and show it in the next.
             const bool input = most_s >= kWatch_s && seconds_since(waits_from) < most_s;
             if (input) busy_frames_ = std::max(busy_frames_, 3);
@@ -107,7 +110,7 @@ class Viewer {
             open_files();
             watch_files();
             if (most_s >= kWatch_s && busy_frames_ == 0) continue;
-            window_.draw([&] { panels(); });
+            window_->draw([&] { panels(); });
             if (is_open()) hand_over();
         }
     }
@@ -140,12 +143,12 @@ class Viewer {
     void stop_comparing() {
         before_.reset();
         picture_before_ = nullptr;
-        window_.take_before(nullptr);
+        window_->take_before(nullptr);
         state_.compare_is_wanted = false;
     }
 
     void want_size() {
-        const glm::ivec2 size = window_.size_px();
+        const glm::ivec2 size = window_->size_px();
         Wanted wanted;
         wanted.width_px = size.x;
         wanted.height_px = size.y;
@@ -175,14 +178,14 @@ class Viewer {
             if (const session::Session* opened = scene_->opened()) start(*opened);
         if (const auto newer = scene_->newer_than(picture_ ? picture_->number : 0)) {
             picture_ = newer;
-            window_.take(*newer);
+            window_->take(*newer);
             busy_frames_ = std::max(busy_frames_, 1);
         }
         if (before_)
             if (const auto newer =
                     before_->newer_than(picture_before_ ? picture_before_->number : 0)) {
                 picture_before_ = newer;
-                window_.take_before(newer.get());
+                window_->take_before(newer.get());
                 busy_frames_ = std::max(busy_frames_, 1);
             }
         if (auto message = scene_->take_message()) {
@@ -213,7 +216,7 @@ class Viewer {
         state_.day = {};
         state_.set_utc(was_open_ ? document.utc : session.moment());
         history_.add(document);
-        window_.set_title(fmt::format("{} - Relevo", scene.dems.front()));
+        window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
         last_dems_ = scene.dems;
         dem_files_.watch({scene.dems.begin(), scene.dems.end()});
         std::vector<std::filesystem::path> plugins{share_dir() / "plugins"};
@@ -231,7 +234,7 @@ class Viewer {
 
     // ---- the hand
 
-    glm::vec2 size() const { return glm::vec2(window_.size_px()); }
+    glm::vec2 size() const { return glm::vec2(window_->size_px()); }
     double aspect() const { return static_cast<double>(size().x) / size().y; }
 
     /// From the window's pixels to -1 to 1.
@@ -286,7 +289,7 @@ class Viewer {
 
     void navigate(double passed_s) {
         const ImGuiIO& io = ImGui::GetIO();
-        const glm::vec2 mouse = window_.mouse_px();
+        const glm::vec2 mouse = window_->mouse_px();
         Pose& pose = state_.document.pose;
         const Pose before = pose;
         if (!io.WantCaptureMouse) {
@@ -328,7 +331,7 @@ class Viewer {
             if (button == 0 && picture_ && !ground_at(mouse) &&
                 moment_at(state_, *picture_, size(), mouse))
                 dragging_ = Drag::Sun;
-            if (button == 0 && before_ && std::abs(mouse.x - window_.line() * size().x) < kLine_px)
+            if (button == 0 && before_ && std::abs(mouse.x - window_->line() * size().x) < kLine_px)
                 dragging_ = Drag::Line;
             glide_deg_a_s_ = {};
             zoom_left_ = 0;
@@ -369,14 +372,14 @@ class Viewer {
                 state_.sun_moves = true;
                 break;
             case Drag::Line:
-                window_.set_line(std::clamp(mouse.x / size().x, 0.02f, 0.98f));
+                window_->set_line(std::clamp(mouse.x / size().x, 0.02f, 0.98f));
                 break;
         }
     }
 
     void fly_by_keys(double passed_s) {
         const auto axis = [&](int plus, int minus) {
-            return (window_.is_down(plus) ? 1.0 : 0.0) - (window_.is_down(minus) ? 1.0 : 0.0);
+            return (window_->is_down(plus) ? 1.0 : 0.0) - (window_->is_down(minus) ? 1.0 : 0.0);
         };
         if (ImGui::GetIO().KeyCtrl) return;
         const glm::dvec3 by(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_W, GLFW_KEY_S),
@@ -455,7 +458,7 @@ class Viewer {
     // ---- keys
 
     void keys() {
-        for (const KeyPress& press : window_.take_keys()) {
+        for (const KeyPress& press : window_->take_keys()) {
             busy_frames_ = 3;
             if (press.control)
                 with_control(press);
@@ -468,7 +471,7 @@ class Viewer {
         if (press.key == GLFW_KEY_C) copy_command();
         if (press.key == GLFW_KEY_S) save_scene();
         if (press.key == GLFW_KEY_O) ask_for_dem();
-        if (press.key == GLFW_KEY_Q) window_.close();
+        if (press.key == GLFW_KEY_Q) window_->close();
         const bool redo = press.key == GLFW_KEY_Y || (press.key == GLFW_KEY_Z && press.shift);
         if (redo && history_.can_redo())
             go_to(history_.redo());
@@ -568,7 +571,7 @@ class Viewer {
 
     scene::Scene whole_scene() const {
         scene::Scene scene = state_.document.whole(state_.land);
-        const glm::ivec2 size = window_.size_px();
+        const glm::ivec2 size = window_->size_px();
         scene.width_px = size.x;
         scene.height_px = size.y;
         for (std::string& dem : scene.dems) {
@@ -580,7 +583,7 @@ class Viewer {
     }
 
     void copy_command() {
-        window_.copy(capture_command(whole_scene(), "picture.png"));
+        window_->copy(capture_command(whole_scene(), "picture.png"));
         state_.message = "the command that takes this picture is on the clipboard";
     }
 
@@ -633,7 +636,7 @@ class Viewer {
     }
 
     void open_files() {
-        std::vector<std::string> files = window_.take_dropped_files();
+        std::vector<std::string> files = window_->take_dropped_files();
         if (asked_files_ &&
             asked_files_->wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
             files = asked_files_->get();
@@ -701,7 +704,7 @@ class Viewer {
     }
 
     void side_panel() {
-        const float scale = window_.scale();
+        const float scale = window_->scale();
         ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
         ImGui::SetNextWindowSizeConstraints({kPanel_px * scale, 60},
                                             {kPanel_px * scale, size().y - 60});
@@ -786,7 +789,7 @@ class Viewer {
     }
 
     Wanted wanted_now() const {
-        const glm::ivec2 size = window_.size_px();
+        const glm::ivec2 size = window_->size_px();
         Wanted wanted;
         wanted.view = view_of(state_.document.pose, state_.land);
         wanted.utc = state_.document.utc;
@@ -807,7 +810,7 @@ class Viewer {
                a.view->eye->place.height_m == b.view->eye->place.height_m;
     }
 
-    Window window_;
+    std::unique_ptr<Window> window_;  // ends after the threads that wake it
     std::string device_;
     std::optional<sun::Zone> zone_;
     std::unique_ptr<SceneThread> scene_;

@@ -1,6 +1,7 @@
 #include "viewer/window.h"
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -29,6 +30,12 @@ constexpr float kText_px = 16;
 std::string& last_error() {
     static std::string text;
     return text;
+}
+
+/// Whether there is a window that can be woken.
+std::atomic<bool>& is_open() {
+    static std::atomic<bool> open{false};
+    return open;
 }
 
 /// The first of the system's fonts that is there.
@@ -153,9 +160,11 @@ struct Window::Impl {
         ImGui::GetStyle().WindowRounding = 6 * scale;
         ImGui::GetStyle().FrameRounding = 3 * scale;
         ImGui::GetStyle().Colors[ImGuiCol_WindowBg].w = 0.86f;
+        is_open() = true;
     }
 
     void close() {
+        is_open() = false;
         if (ImGui::GetCurrentContext()) {
             ImGui_ImplOpenGL3_Shutdown();
             ImGui_ImplGlfw_Shutdown();
@@ -213,7 +222,7 @@ void Window::wait(double at_most_s) {
 }
 
 void Window::wake() {
-    glfwPostEmptyEvent();
+    if (is_open()) glfwPostEmptyEvent();
 }
 
 void Window::take(const Picture& picture) {

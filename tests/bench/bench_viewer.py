@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""How quick the window is: first picture, pictures a second while the hand moves, input to picture.
+
+Usage: bench_viewer.py BUILD [DEM...]   (BUILD is build/release or build/dev; needs Xvfb and xdotool)
+
+Everything is read off the screen of a display of its own (Xvfb's screen is a file), as a person would see it.
+"""
+
+import mmap
+import os
+import pathlib
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+WIDTH, HEIGHT = 1280, 800
+COLUMNS = range(500, 1200, 7)  # beside the panel
+ROWS = (150, 250, 350, 450, 550, 650)
+
+
+class Screen:
+    def __init__(self):
+        self.folder = tempfile.TemporaryDirectory()
+        reads, writes = os.pipe()
+        self.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(writes), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", self.folder.name],
+            pass_fds=(writes,), stderr=subprocess.DEVNULL)
+        os.close(writes)
+        with os.fdopen(reads) as number:
+            self.name = ":" + number.readline().strip()
+        with open(pathlib.Path(self.folder.name) / "Xvfb_screen0", "rb") as file:
+            self.map = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+        head = struct.unpack(">25I", self.map[:100])
+        self.stride, self.begin = head[12], head[0] + 12 * head[19]
+
+    def sample(self):
+        pieces = []
+        for row in ROWS:
+            at = self.begin + row * self.stride
+            line = self.map[at:at + self.stride]
+            pieces.append(bytes(line[4 * x] for x in COLUMNS))
+        return b"".join(pieces)
+
+    def act(self, *words):
+        subprocess.run(["xdotool", *map(str, words)], env={**os.environ, "DISPLAY": self.name}, check=True,
+                       stdout=subprocess.DEVNULL)
+
+    def close(self):
+        self.server.terminate()
+        self.server.wait()
+
+
+def wait_for_picture(screen, began):
+    while time.perf_counter() - began < 60:
+        sample = screen.sample()
+        if len(set(sample)) > 40:
+            return time.perf_counter() - began
+        time.sleep(0.005)
+    sys.exit("no picture within a minute")
+
+
+def settle(screen):
+    before, since = screen.sample(), time.perf_counter()
+    while time.perf_counter() - since < 0.5:
+        now = screen.sample()
+        if now != before:
+            before, since = now, time.perf_counter()
+        time.sleep(0.01)
+
+
+def pictures_a_second(screen, move, seconds=4):
+    """Distinct pictures on the screen while `move` is called again and again."""
+    count, before, began, turn = 0, screen.sample(), time.perf_counter(), 0
+    while time.perf_counter() - began < seconds:
+        move(turn)
+        turn += 1
+        until = time.perf_counter() + 0.016
+        while time.perf_counter() < until:
+            now = screen.sample()
+            if now != before:
+                count, before = count + 1, now
+            time.sleep(0.001)
+    return count / seconds
+
+
+def latencies_ms(screen, move, times=40):
+    result = []
+    for turn in range(times):
+        settle(screen)
+        before, began = screen.sample(), time.perf_counter()
+        move(turn)
+        while screen.sample() == before and time.perf_counter() - began < 3:
+            time.sleep(0.001)
+        result.append(1e3 * (time.perf_counter() - began))
+    return sorted(result)
+
+
+def bench(program, dem):
+    screen = Screen()
+    env = {**os.environ, "DISPLAY": screen.name, "WAYLAND_DISPLAY": ""}
+    began = time.perf_counter()
+    viewer = subprocess.Popen([program, "-q", *([dem] if dem else [])], env=env, cwd=screen.folder.name)
+    try:
+        first_s = wait_for_picture(screen, began)
+        settle(screen)
+        screen.act("mousemove", 850, 400)
+        screen.act("mousedown", 3)
+        orbit = pictures_a_second(screen, lambda i: screen.act("mousemove", 850 + 3 * (i % 60), 400))
+        screen.act("mouseup", 3)
+        settle(screen)
+        screen.act("mousedown", 3)
+        delays = latencies_ms(screen, lambda i: screen.act("mousemove", 850 + 5 * (i % 30), 400))
+        screen.act("mouseup", 3)
+        settle(screen)
+        screen.act("key", "space")
+        sun = pictures_a_second(screen, lambda i: time.sleep(0.001))
+        screen.act("key", "space")
+        print(f"{dem or 'bundled DEM'}: first picture {first_s:.2f} s; orbiting {orbit:.1f} pictures/s; "
+              f"sun moving {sun:.1f} pictures/s; input to picture median {statistics.median(delays):.0f} ms, "
+              f"95 % {delays[int(0.95 * len(delays))]:.0f} ms")
+    finally:
+        viewer.terminate()
+        viewer.wait()
+        screen.close()
+
+
+def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    program = str(pathlib.Path(sys.argv[1]).resolve() / "bin/relevo")
+    for dem in sys.argv[2:] or [None]:
+        bench(program, str(pathlib.Path(dem).resolve()) if dem else None)
+
+
+main()
