@@ -1,6 +1,8 @@
 // The least front end does what a window has to, on a display.
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "base/text.h"
 #include "support/support.h"
@@ -57,7 +59,11 @@ TEST(Window, OrbitsMovesTheSunDragsASliderAndSurvivesABrokenShader) {
     EXPECT_TRUE(changes({"mousemove_relative", "--sync", "200", "0"}));
     display.act({"mouseup", "1", "mousemove", "700", "500"});
     // A shader that no driver takes: the last good picture stays, and says so.
-    before = display.screen();
+    EXPECT_TRUE(test::WindowedProgram::wait([&] {
+        before = display.screen();
+        std::this_thread::sleep_for(std::chrono::milliseconds(400));
+        return test::difference(display.screen(), before) == 0;
+    }));
     write("radiance.r += no_such_name;");
     display.act({"key", "r"});
     EXPECT_TRUE(title_has("paint.glsl:2")) << window.title() << window.output();
