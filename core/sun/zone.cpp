@@ -1,13 +1,16 @@
 #include "sun/zone.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <utility>
 
 #include <date/tz.h>
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/text.h"
+#include "base/units.h"
 #include "sun/posix_rule.h"
 #include "sun/time_fields.h"
 
@@ -83,6 +86,14 @@ Zone::Zone(int utc_offset_s) {
     periods_.push_back({INT64_MIN, utc_offset_s, name_});
 }
 
+Zone Zone::mean_solar(double lon_rad) {
+    constexpr double kDegree_s = kDay_s / 360;
+    Zone zone(static_cast<int>(std::lround(degrees(lon_rad) * kDegree_s)));
+    zone.name_ = "LMT" + offset_text(zone.periods_.front().utc_offset_s);
+    zone.periods_.front().abbreviation = "LMT";
+    return zone;
+}
+
 Zone Zone::named(std::string_view text) {
     const std::string_view trimmed_text = trimmed(text);
     FieldReader reader(trimmed_text, "sun::Zone");
@@ -95,18 +106,23 @@ Zone Zone::named(std::string_view text) {
         return Zone(*offset);
     }
 
+    if (auto zone = find(trimmed_text)) return *std::move(zone);
+    const auto meant = suggestion(trimmed_text);
+    reader.fail(meant ? fmt::format("no such time zone; did you mean {}?", *meant)
+                      : "no such time zone, expected a name of the IANA database such as "
+                        "Europe/Zurich or an offset such as +02:00");
+}
+
+std::optional<Zone> Zone::find(std::string_view name) {
     const date::time_zone* found = nullptr;
     try {
-        found = date::locate_zone(std::string(trimmed_text));
+        found = date::locate_zone(std::string(name));
     } catch (const std::exception&) {
-        const auto meant = suggestion(trimmed_text);
-        reader.fail(meant ? fmt::format("no such time zone; did you mean {}?", *meant)
-                          : "no such time zone, expected a name of the IANA database such as "
-                            "Europe/Zurich or an offset such as +02:00");
+        return std::nullopt;
     }
 
     Zone zone;
-    zone.name_ = trimmed_text;
+    zone.name_ = name;
     zone.periods_.clear();
     // A day more at both ends than any local date of 1900-2100 needs.
     const date::sys_seconds first = date::sys_days{date::year{kFirstYear} / 1 / 1} - date::days{3};
@@ -213,17 +229,20 @@ std::string to_iso(Instant instant, const Zone& zone, int decimals) {
 
 namespace {
 
+constexpr std::string_view kNow = "now";
 constexpr std::string_view kForm =
     "not a time, expected YYYY-MM-DDThh:mm with Z or an offset, such as 2026-06-21T18:30+02:00";
 
-/// What the clocks show, and the part of a second beyond it.
-struct WallTime {
-    CivilTime wall;
-    double fraction_s = 0;
+/// A time as it stands in a text.
+struct WrittenTime {
+    CivilTime wall;              ///< what the clocks show
+    double fraction_s = 0;       ///< the part of a second beyond it
+    std::string_view wall_text;  ///< without the offset
+    std::optional<int> offset_s{};
 };
 
 /// The seconds behind the colon that has been taken.
-void take_seconds(FieldReader& reader, WallTime& time) {
+void take_seconds(FieldReader& reader, WrittenTime& time) {
     const auto second = reader.digits(2);
     if (!second) reader.fail(kForm);
     if (*second == 60)
@@ -238,8 +257,8 @@ void take_seconds(FieldReader& reader, WallTime& time) {
         time.fraction_s += *digit * unit;
 }
 
-WallTime take_wall_time(FieldReader& reader) {
-    WallTime time;
+WrittenTime take_wall_time(FieldReader& reader) {
+    WrittenTime time;
     const auto date = reader.date();
     if (!date) reader.fail(kForm);
     time.wall.date = *date;
@@ -257,8 +276,18 @@ WallTime take_wall_time(FieldReader& reader) {
     return time;
 }
 
+/// All of a text. @param reader  of `whole`, nothing taken
+WrittenTime read_time(FieldReader& reader, std::string_view whole) {
+    WrittenTime time = take_wall_time(reader);
+    time.wall_text = whole.substr(0, whole.size() - reader.rest().size());
+    reader.take(' ');
+    if (!reader.rest().empty()) time.offset_s = take_offset(reader);
+    if (!reader.rest().empty()) reader.fail(kForm);
+    return time;
+}
+
 /// A time with its own offset. @param zone  that it is to be told in, which must not contradict
-ParsedTime with_offset(const FieldReader& reader, const WallTime& time, int offset_s,
+ParsedTime with_offset(const FieldReader& reader, const WrittenTime& time, int offset_s,
                        const std::optional<Zone>& zone) {
     ParsedTime result;
     result.zone = zone ? *zone : Zone::fixed(offset_s);
@@ -273,7 +302,7 @@ ParsedTime with_offset(const FieldReader& reader, const WallTime& time, int offs
 }
 
 /// A time by the clocks of a zone.
-ParsedTime by_clocks(std::string_view text, const WallTime& time, const Zone& zone, int fold) {
+ParsedTime by_clocks(const WrittenTime& time, const Zone& zone, int fold) {
     ParsedTime result;
     result.zone = zone;
     const ResolvedTime taken = zone.resolve(time.wall, fold);
@@ -281,15 +310,16 @@ ParsedTime by_clocks(std::string_view text, const WallTime& time, const Zone& zo
     result.kind = taken.kind;
     if (taken.kind == WallTimeKind::Nonexistent) {
         result.note = fmt::format(
-            "{}: does not exist in {}, the clocks were put forward over it; taken as {}", text,
-            zone.name(), to_iso(result.utc, zone));
+            "{}: does not exist in {}, the clocks were put forward over it; taken as {}",
+            time.wall_text, zone.name(), to_iso(result.utc, zone));
     } else if (taken.kind == WallTimeKind::Ambiguous) {
         const ResolvedTime other = zone.resolve(time.wall, fold == 0 ? 1 : 0);
         result.note = fmt::format(
             "{}: comes twice in {}, the clocks were put back over it; taken as the {} ({}), not "
             "the {} ({})",
-            text, zone.name(), fold == 0 ? "first" : "second", offset_text(taken.utc_offset_s),
-            fold == 0 ? "second" : "first", offset_text(other.utc_offset_s));
+            time.wall_text, zone.name(), fold == 0 ? "first" : "second",
+            offset_text(taken.utc_offset_s), fold == 0 ? "second" : "first",
+            offset_text(other.utc_offset_s));
     }
     return result;
 }
@@ -298,24 +328,27 @@ ParsedTime by_clocks(std::string_view text, const WallTime& time, const Zone& zo
 
 ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone, int fold) {
     const std::string_view whole = trimmed(text);
-    if (whole == "now") {
+    if (whole == kNow) {
         ParsedTime result;
         result.utc = Instant::now();
         if (zone) result.zone = *zone;
         return result;
     }
     FieldReader reader(whole, "sun::parse_time");
-    const WallTime time = take_wall_time(reader);
-    const std::string_view wall_text = whole.substr(0, whole.size() - reader.rest().size());
-    reader.take(' ');
-    const auto offset_s = reader.rest().empty() ? std::nullopt : take_offset(reader);
-    if (!reader.rest().empty()) reader.fail(kForm);
-    if (offset_s) return with_offset(reader, time, *offset_s, zone);
+    const WrittenTime time = read_time(reader, whole);
+    if (time.offset_s) return with_offset(reader, time, *time.offset_s, zone);
     if (!zone)
         reader.fail(
             fmt::format("no time zone; write {0}Z for UTC or {0}+02:00, or pass --tz Europe/Zurich",
-                        wall_text));
-    return by_clocks(wall_text, time, *zone, fold);
+                        time.wall_text));
+    return by_clocks(time, *zone, fold);
+}
+
+bool is_wall_time(std::string_view text) {
+    const std::string_view whole = trimmed(text);
+    if (whole == kNow) return false;
+    FieldReader reader(whole, "sun::parse_time");
+    return !read_time(reader, whole).offset_s;
 }
 
 }  // namespace relevo::sun

@@ -53,10 +53,16 @@ class Zone {
     /// @param text  an IANA name ("Europe/Zurich"), or an offset ("+05:30", "+0530", "+05", "Z")
     /// @throws Error (BadInput) if there is no such zone, with the nearest name
     static Zone named(std::string_view text);
+    /// A zone of the database; nothing where this computer's has none of that name.
+    /// @param name  an IANA name
+    static std::optional<Zone> find(std::string_view name);
     /// @param utc_offset_s  less than 24 hours either way
     static Zone fixed(int utc_offset_s) { return Zone(utc_offset_s); }
+    /// Mean solar time of a meridian: a fixed offset, 240 s for each degree, to the whole second.
+    /// @param lon_rad  [-pi, pi]
+    static Zone mean_solar(double lon_rad);
 
-    /// "Europe/Zurich", "+05:30", "UTC".
+    /// "Europe/Zurich", "+05:30", "UTC"; "LMT+00:34:11" (local mean time) of a meridian.
     const std::string& name() const { return name_; }
 
     LocalTime local(Instant instant) const;
@@ -102,6 +108,8 @@ struct ParsedTime {
     WallTimeKind kind = WallTimeKind::Unique;
     /// What the user should be told when the wall time was skipped or came twice; else empty.
     std::string note;
+    /// What was assumed of the zone by whoever gave it, as sun/zone_of_place.h says it; else empty.
+    std::string assumption;
 };
 
 /// Reads a moment: "2026-06-21T18:30+02:00", "2026-06-21 16:30:15.25Z", "now", or a wall time such
@@ -116,5 +124,9 @@ struct ParsedTime {
 ///     not have
 ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone = std::nullopt,
                       int fold = 0);
+
+/// Whether a moment that parse_time() reads is a wall time, which means nothing without a zone.
+/// @throws Error (BadInput) for text that is not a time, as parse_time()
+bool is_wall_time(std::string_view text);
 
 }  // namespace relevo::sun
