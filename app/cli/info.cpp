@@ -63,6 +63,16 @@ NetError net_error(const dem::Grid& grid, double height_m) {
     return error;
 }
 
+/// A moment that needs the DEM.
+/// @param field  loaded where the moment needs heights
+sun::ParsedTime parse_over(const scene::Moment& moment, const dem::Source& source,
+                           std::int64_t max_posts, std::optional<dem::Heightfield>& field) {
+    if (!sun::is_event_time(moment.time))  // the zone of its middle is all that is missing
+        return session::parse(moment, {.middle = [&] { return source.grid().center(); }});
+    field = dem::load(source, max_posts);
+    return session::parse_over(moment, source, *field);
+}
+
 }  // namespace
 
 void add_info(CLI::App& app) {
@@ -77,16 +87,15 @@ void add_info(CLI::App& app) {
     arguments->time.add_to(verb);
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");
     verb.callback([arguments] {
+        const scene::Moment moment = arguments->time.moment();
         std::optional<sun::ParsedTime> given_time;
-        if (arguments->time.given() && !session::needs_dem(arguments->time.moment()))
-            given_time = session::parse(arguments->time.moment());
+        if (arguments->time.given() && !session::needs_dem(moment))
+            given_time = session::parse(moment);
         const std::int64_t max_posts = arguments->dem.options.max_posts;
         const dem::Source source = dem::Source::open(arguments->dem.paths, arguments->dem.options);
         std::optional<dem::Heightfield> field;
-        if (arguments->time.given() && !given_time) {
-            field = dem::load(source, max_posts);
-            given_time = session::parse_over(arguments->time.moment(), source, *field);
-        }
+        if (arguments->time.given() && !given_time)
+            given_time = parse_over(moment, source, max_posts, field);
         // Means would hide the lowest and the highest post.
         const dem::Summary summary = field && field->reduction == 1
                                          ? dem::summarize(*field)
@@ -103,6 +112,8 @@ void add_info(CLI::App& app) {
                 {"azimuth_deg", degrees(sun.azimuth_rad)},
                 {"elevation_deg", degrees(sun.elevation_rad)},
                 {"apparent_elevation_deg", degrees(air.apparent_rad(sun.elevation_rad))}};
+            if (given_time && !given_time->assumption.empty())
+                json["assumptions"].push_back(given_time->assumption);
             json["position_net"] = {{"piece_posts", net.posts}, {"error_m", net.worst_m}};
             fmt::print("{}", json_text(json));
             return;

@@ -88,11 +88,13 @@ void DemArguments::apply_to(scene::Scene& scene) const {
 }
 
 void TimeArguments::add_to(CLI::App& verb) {
-    verb.add_option("--time", time,
-                    "Moment: 2026-06-21T18:30+02:00, or without offset together with --tz; or an "
-                    "event, sunset-30min or sunrise@46.55,8.56, together with --date and --tz");
+    verb.add_option(
+        "--time", time,
+        "Moment: 2026-06-21T18:30+02:00, or without offset, by the clocks of --tz; or an "
+        "event, sunset-30min or sunrise@46.55,8.56, together with --date");
     verb.add_option("--date", date, "Day of the event in --time: 2026-06-21");
-    verb.add_option("--tz", zone, "Time zone: Europe/Zurich, +05:30");
+    verb.add_option("--tz", zone,
+                    "Time zone: Europe/Zurich, +05:30, solar, or auto, that of the place (auto)");
 }
 
 bool TimeArguments::given() const {

@@ -48,11 +48,12 @@ std::string holes_text(const light::Carpet& carpet, const light::Doubt& doubt) {
         carpet.not_known_s / 3600, sectors_text(doubt.holes));
 }
 
-ordered_json json_of(const light::Carpet& carpet, const light::TerrainHorizon& horizon,
-                     const light::Doubt& doubt) {
+ordered_json json_of(const light::Carpet& carpet, const std::string& assumption,
+                     const light::TerrainHorizon& horizon, const light::Doubt& doubt) {
     ordered_json json;
     json["place"] = place_json(horizon.place());
     json["zone"] = carpet.zone.name();
+    add_assumption(json, assumption);
     json["year"] = carpet.year;
     json["light_definition"] = carpet.definition;
     json["horizon_definition"] = horizon.description();
@@ -141,7 +142,7 @@ void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
     FilesInUse files;
     OutputFile* const file = output.open(files, arguments.terrain.dem);
-    const DaysArguments::Days asked = arguments.days.parse();
+    const DaysArguments::Days asked = arguments.days.parse(arguments.place.parse().place);
     const auto step_s = sun::parse_duration_s(arguments.step);
     if (!step_s || *step_s != std::round(*step_s) || *step_s < 1 || *step_s > 86400)
         bad_usage(
@@ -168,7 +169,7 @@ void run(const Arguments& arguments) {
                             return chart.draw();
                         },
                     .csv = [&] { return csv_of(carpet, horizon, doubt); },
-                    .json = [&] { return json_of(carpet, horizon, doubt); },
+                    .json = [&] { return json_of(carpet, asked.assumption, horizon, doubt); },
                     .print = [&] { print_text(carpet, horizon, doubt); }},
                    file);
 }

@@ -107,6 +107,7 @@ ordered_json json_of(const Result& result) {
     ordered_json json;
     json["place"] = place_json(result.place);
     json["zone"] = result.asked.zone.name();
+    add_assumption(json, result.asked.assumption);
     json["definition"] = result.definition;
     json["twilight_definition"] = kTwilights;
     if (!result.light.empty()) {
@@ -331,7 +332,7 @@ void run(const Arguments& arguments) {
     FilesInUse files;
     OutputFile* const file = output.open(files, arguments.terrain.dem);
     Result result;
-    result.asked = arguments.days.parse();
+    result.asked = arguments.days.parse(arguments.place.parse().place);
     const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
     std::unique_ptr<TerrainView> view;
     std::optional<light::DirectLight> direct;

@@ -141,7 +141,7 @@ void run(const Arguments& arguments) {
     OutputFile* const file = output.open(files, arguments.terrain.dem);
     std::optional<DaysArguments::Days> asked;
     if (arguments.days.given()) {
-        asked = arguments.days.parse();
+        asked = arguments.days.parse(arguments.place.parse().place);
         if (!asked->single && !arguments.days.year)
             bad_usage(
                 "--from and --to: a panorama shows one day or one year; pass --date or "

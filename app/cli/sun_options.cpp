@@ -53,10 +53,13 @@ void DaysArguments::add_to(CLI::App& verb) {
 
 void DaysArguments::add_year_to(CLI::App& verb) {
     verb.add_option("--year", year, "All days of a year, 1900 to 2100")->check(year_number());
-    verb.add_option("--tz", zone, "Time zone that days are counted by: Europe/Zurich, +05:30");
+    verb.add_option(
+        "--tz", zone,
+        "Time zone that days are counted by: Europe/Zurich, +05:30, solar, or auto, that of "
+        "the place (auto)");
 }
 
-DaysArguments::Days DaysArguments::parse() const {
+DaysArguments::Days DaysArguments::parse(const geo::Geodetic& place) const {
     const int ways = !date.empty() + (!from.empty() || !to.empty()) + year.has_value();
     if (ways == 0)
         bad_usage("--date: missing; pass --date 2026-06-21, --from and --to, or --year 2026");
@@ -65,30 +68,27 @@ DaysArguments::Days DaysArguments::parse() const {
     if (from.empty() != to.empty())
         bad_usage(from.empty() ? "--to needs --from" : "--from needs --to");
     Days days;
-    std::string given;
     if (year) {
         if (*year < sun::kFirstYear || *year > sun::kLastYear)
             bad_input(fmt::format("--year: {}: the sun is computed for the years {} to {}", *year,
                                   sun::kFirstYear, sun::kLastYear));
         days.first = {*year, 1, 1};
         days.last = {*year, 12, 31};
-        given = fmt::format("--year {}", *year);
     } else if (!date.empty()) {
         days.first = days.last = sun::parse_date(date);
         days.single = true;
-        given = "--date " + date;
     } else {
         days.first = sun::parse_date(from);
         days.last = sun::parse_date(to);
-        given = fmt::format("--from {} --to {}", from, to);
         if (days.last < days.first)
-            bad_input(given + ": ends before it begins, expected the earlier day first");
+            bad_input(
+                fmt::format("--from {} --to {}: ends before it begins, expected the earlier "
+                            "day first",
+                            from, to));
     }
-    if (zone.empty())
-        bad_input(given +
-                  ": no time zone to count days by; pass --tz, as in --tz Europe/Zurich or --tz "
-                  "+05:30");
-    days.zone = sun::Zone::named(zone);
+    sun::ChosenZone chosen = session::zone_of(zone, place);
+    days.zone = std::move(chosen.zone);
+    days.assumption = std::move(chosen.assumption);
     if (days.single) days.zone.day(days.first);  // says so where the zone skipped it
     return days;
 }
@@ -313,6 +313,10 @@ nlohmann::ordered_json place_json(const geo::Geodetic& place) {
     return {{"lat_deg", angle_deg(place.lat_rad)},
             {"lon_deg", angle_deg(place.lon_rad)},
             {"height_m", place.height_m}};
+}
+
+void add_assumption(nlohmann::ordered_json& json, const std::string& assumption) {
+    if (!assumption.empty()) json["assumptions"] = {assumption};
 }
 
 double angle_deg(double angle_rad) {

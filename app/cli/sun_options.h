@@ -30,7 +30,7 @@ struct PlaceArguments {
     geo::PlaceText parse() const;
 };
 
-/// --date, or --from and --to, or --year; with --tz, by which days are counted.
+/// --date, or --from and --to, or --year; and --tz, by which days are counted.
 struct DaysArguments {
     std::string date, from, to, zone;
     std::optional<int> year;
@@ -43,11 +43,13 @@ struct DaysArguments {
     struct Days {
         sun::Date first, last;
         sun::Zone zone;
-        bool single = false;  ///< --date
+        std::string assumption;  ///< of the zone; empty where none was made
+        bool single = false;     ///< --date
     };
+    /// @param place  whose zone is taken where --tz names none, which the user is told
     /// @throws Error (Usage) for no date or too many, (BadInput) for a day that is none, dates
-    ///     backwards, a year that is not computed, a date without zone
-    Days parse() const;
+    ///     backwards, a year that is not computed, and as session::zone_of
+    Days parse(const geo::Geodetic& place) const;
 };
 
 /// --limb, --refraction, --dip: what rising and shining mean.
@@ -134,6 +136,9 @@ struct OutputArguments {
 
 /// "46.55,8.56" as --at takes it, whole.
 nlohmann::ordered_json place_json(const geo::Geodetic& place);
+
+/// Puts `assumptions` into an object, where there is one.
+void add_assumption(nlohmann::ordered_json& json, const std::string& assumption);
 
 /// An angle in degrees, rounded to 0.04 milliarcseconds: 236.9, not 236.89999999999998.
 double angle_deg(double angle_rad);

@@ -37,7 +37,7 @@ void add_sun_position(CLI::App& sun_verb) {
         const double apparent_deg = degrees(air.apparent_rad(position.elevation_rad));
         const double azimuth_deg = degrees(position.azimuth_rad);
         if (arguments->json) {
-            const nlohmann::ordered_json json = {
+            nlohmann::ordered_json json = {
                 {"utc", sun::to_iso(when.utc, 3)},
                 {"azimuth_deg", azimuth_deg},
                 {"elevation_deg", degrees(position.elevation_rad)},
@@ -48,6 +48,7 @@ void add_sun_position(CLI::App& sun_verb) {
                 {"right_ascension_deg", degrees(position.right_ascension_rad)},
                 {"semidiameter_deg", degrees(position.semidiameter_rad)},
                 {"equation_of_time_min", position.equation_of_time_s / 60}};
+            add_assumption(json, when.assumption);
             fmt::print("{}", json_text(json));
             return;
         }

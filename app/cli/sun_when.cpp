@@ -29,7 +29,8 @@ struct Arguments {
 };
 
 ordered_json json_of(const light::Alignments& found, const light::TerrainHorizon& horizon,
-                     const sun::Zone& zone) {
+                     const DaysArguments::Days& asked) {
+    const sun::Zone& zone = asked.zone;
     ordered_json json;
     json["place"] = place_json(horizon.place());
     json["eye_m"] = horizon.eye_m();
@@ -41,6 +42,7 @@ ordered_json json_of(const light::Alignments& found, const light::TerrainHorizon
                      {"hidden_by_deg", angle_deg(found.sight.hidden_by_rad)}};
     if (found.sight.hole) json["sight"]["hole"] = true;
     json["zone"] = zone.name();
+    add_assumption(json, asked.assumption);
     json["definition"] = found.definition;
     ordered_json& passages = json["passages"] = ordered_json::array();
     for (const light::Alignment& p : found.passages) {
@@ -107,7 +109,7 @@ void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
     FilesInUse files;
     OutputFile* const file = output.open(files, arguments.terrain.dem);
-    const DaysArguments::Days asked = arguments.days.parse();
+    const DaysArguments::Days asked = arguments.days.parse(arguments.place.parse().place);
     const geo::PlaceText over = geo::parse_place(arguments.over, "--over");
     const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
     const light::TerrainHorizon& horizon = view->horizon;
@@ -133,7 +135,7 @@ void run(const Arguments& arguments) {
 
     output.deliver({.drawing = {},
                     .csv = [&] { return csv_of(found, asked.zone); },
-                    .json = [&] { return json_of(found, horizon, asked.zone); },
+                    .json = [&] { return json_of(found, horizon, asked); },
                     .print = [&] { print_text(found, horizon, asked.zone); }},
                    file);
 }

@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "effect/json.h"
 #include "sun/event_time.h"
+#include "sun/zone_of_place.h"
 
 namespace relevo::scene {
 namespace {
@@ -141,7 +142,8 @@ class SceneReader {
         std::optional<sun::Zone> zone;
         std::optional<sun::Date> date;
         check(object, "zone", [&] {
-            if (!moment.zone.empty()) zone = sun::Zone::named(moment.zone);
+            // That of a place is known with the DEM; until then any shows what is wrong otherwise.
+            zone = sun::is_zone_by_place(moment.zone) ? sun::Zone() : sun::Zone::named(moment.zone);
         });
         check(object, "date", [&] {
             if (!moment.date.empty()) date = sun::parse_date(moment.date);
@@ -149,7 +151,7 @@ class SceneReader {
         check(object, "at", [&] {
             if (event)
                 sun::day_of(sun::parse_event_time(moment.time), date, zone);
-            else
+            else if (!sun::is_zone_by_place(moment.zone) || sun::is_wall_time(moment.time))
                 sun::parse_time(moment.time, zone);
         });
     }

@@ -15,7 +15,7 @@ namespace relevo::scene {
 struct Moment {
     std::string time;  ///< "2026-06-21T18:30+02:00", "sunset-30min"; empty: a summer morning
     std::string date;  ///< of an event
-    std::string zone;  ///< "Europe/Zurich"
+    std::string zone;  ///< "Europe/Zurich", "auto", "solar"; empty: auto, by the place
 };
 
 /// Which effects are on, with which values.

@@ -1,33 +1,86 @@
 #include "session/words.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/units.h"
+#include "sun/event_time.h"
 #include "sun/zone.h"
 
 namespace relevo::session {
 
+namespace {
+
+/// A moment's words, read as far as they mean something without a place.
+struct ReadMoment {
+    std::optional<sun::Date> date;
+    std::optional<sun::EventTime> event;  ///< none: a time of day
+    std::optional<sun::Zone> zone;        ///< that is named
+    bool zone_by_place = false;           ///< one is needed, and is that of the place
+};
+
+ReadMoment read(const scene::Moment& moment) {
+    ReadMoment result;
+    const bool named = !sun::is_zone_by_place(moment.zone);
+    if (named) result.zone = sun::Zone::named(moment.zone);
+    if (!sun::is_event_time(moment.time)) {
+        if (!moment.date.empty())
+            bad_usage(
+                "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
+                "day is written 2026-06-21T18:30");
+        result.zone_by_place =
+            !named && (sun::is_wall_time(moment.time) || sun::is_solar_zone(moment.zone));
+        return result;
+    }
+    if (!moment.date.empty()) result.date = sun::parse_date(moment.date);
+    result.event = sun::parse_event_time(moment.time);
+    result.zone_by_place = !named;
+    // Says what is missing before anything is loaded; which day is one does not hang on the zone.
+    sun::day_of(*result.event, result.date, result.zone.value_or(sun::Zone()));
+    return result;
+}
+
+std::optional<geo::Geodetic> place_of_zone(const ReadMoment& moment,
+                                           const light::TerrainAccess& dem,
+                                           const std::optional<geo::PlaceText>& here) {
+    if (moment.event && moment.event->place) return moment.event->place->place;
+    if (here) return here->place;
+    if (dem.middle) return dem.middle();
+    return std::nullopt;
+}
+
+}  // namespace
+
+sun::ChosenZone zone_of(const std::string& words, const geo::Geodetic& place) {
+    sun::ChosenZone chosen = sun::choose_zone(words, place);
+    const std::string notice = chosen.assumption + "; --tz overrides it";
+    if (chosen.missing)
+        log::warning(notice);
+    else if (!chosen.assumption.empty())
+        log::info(notice);
+    return chosen;
+}
+
 bool needs_dem(const scene::Moment& moment) {
-    if (!sun::is_event_time(moment.time)) return false;
-    const sun::EventTime event = sun::parse_event_time(moment.time);
-    return !event.event || !event.place;
+    const ReadMoment words = read(moment);
+    if (words.event) return !words.event->event || !words.event->place;
+    return words.zone_by_place;
 }
 
 sun::ParsedTime parse(const scene::Moment& moment, const light::TerrainAccess& dem,
                       const std::optional<geo::PlaceText>& here) {
-    std::optional<sun::Zone> in_zone;
-    if (!moment.zone.empty()) in_zone = sun::Zone::named(moment.zone);
-    std::optional<sun::Date> on_date;
-    if (!moment.date.empty()) {
-        if (!sun::is_event_time(moment.time))
-            bad_usage(
-                "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
-                "day is written 2026-06-21T18:30");
-        on_date = sun::parse_date(moment.date);
+    ReadMoment words = read(moment);
+    std::string assumption;
+    if (const auto place = place_of_zone(words, dem, here); place && words.zone_by_place) {
+        sun::ChosenZone chosen = zone_of(moment.zone, *place);
+        words.zone = std::move(chosen.zone);
+        assumption = std::move(chosen.assumption);
     }
-    sun::ParsedTime parsed = light::parse_time(moment.time, on_date, in_zone, dem, here);
+    sun::ParsedTime parsed = light::parse_time(moment.time, words.date, words.zone, dem, here);
+    parsed.assumption = std::move(assumption);
     if (!parsed.note.empty()) log::info(parsed.note);
     return parsed;
 }

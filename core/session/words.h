@@ -9,15 +9,23 @@
 #include "scene/scene.h"
 #include "sun/position.h"
 #include "sun/refraction.h"
+#include "sun/zone_of_place.h"
 
 /// A scene's words as values.
 namespace relevo::session {
 
-/// First and last light hang on the terrain, and events without a place happen in its middle; all
-/// other times are known without it.
+/// The zone that the words of `--tz` mean at a place, as sun::choose_zone(); tells the user what is
+/// assumed of it.
+sun::ChosenZone zone_of(const std::string& words, const geo::Geodetic& place);
+
+/// First and last light hang on the terrain, events without a place happen in its middle, and a
+/// zone that is taken from a place is taken from there; all other times are known without it.
+/// @throws Error (Usage, BadInput) for words that no DEM makes a time of
 bool needs_dem(const scene::Moment& moment);
 
-/// Tells the user where a wall time was skipped or came twice.
+/// Tells the user where a wall time was skipped or came twice, and which zone was taken where a
+/// zone is needed and none is named: that of the event's own place, else of `here`, else of the
+/// DEM's middle.
 /// @param here  where events without a place happen
 /// @throws Error (Usage, BadInput)
 sun::ParsedTime parse(const scene::Moment& moment, const light::TerrainAccess& dem = {},

@@ -69,10 +69,22 @@ TEST(BadTime, EachHasItsMessage) {
         arguments.insert(arguments.end(), time.begin(), time.end());
         return arguments;
     };
-    expect_no_picture(
-        capture_at({"--time", "2026-06-21T18:30"}), 3,
-        "sun::parse_time: 2026-06-21T18:30: no time zone; write 2026-06-21T18:30Z for UTC or "
-        "2026-06-21T18:30+02:00, or pass --tz Europe/Zurich");
+    // Words are read before the DEM, also where it has to say which zone they are in.
+    const std::vector<std::string> no_dem{"capture", "/nowhere/alps.tif", "-o", out_png()};
+    const auto without_dem = [&](const std::vector<std::string>& time) {
+        std::vector<std::string> arguments = no_dem;
+        arguments.insert(arguments.end(), time.begin(), time.end());
+        return arguments;
+    };
+    expect_no_picture(without_dem({"--time", "2026-06-21T25:30"}), 3,
+                      "sun::parse_time: 2026-06-21T25:30: no such hour, expected hour 0 to 23 but "
+                      "got 25");
+    expect_no_picture(without_dem({"--time", "sunrise"}), 3,
+                      "sun::parse_event_time: sunrise: no date; write 2026-06-21 sunrise or pass "
+                      "--date");
+    expect_no_picture(without_dem({"--time", "2026-06-21T18:30", "--date", "2026-06-21"}), 2,
+                      "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
+                      "day is written 2026-06-21T18:30");
     expect_no_picture(capture_at({"--time", "2026-06-21T18:30", "--tz", "Europe/Zurick"}), 3,
                       "sun::Zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
     // Without --time they would be left out of account, and the picture be of another day.

@@ -127,6 +127,20 @@ TEST_F(SceneFile, MistakesNameTheirPlace) {
         "astronomical-dusk, first-light, last-light");
     EXPECT_EQ(error(with("\"time\": {\"at\": \"2026-06-21T12:00\", \"zone\": \"Europe/Zurch\"}")),
               "2: time.zone: Europe/Zurch: no such time zone; did you mean Europe/Zurich?");
+    // A zone of the place is not known yet, all the rest is.
+    for (const char* const zone : {"", ", \"zone\": \"auto\"", ", \"zone\": \"solar\""}) {
+        const auto at = [&](const std::string& time) {
+            return error(with("\"time\": {\"at\": \"" + time + "\"" + zone + "}"));
+        };
+        EXPECT_EQ(at("2026-06-21T12:61"),
+                  "2: time.at: 2026-06-21T12:61: no such minute, expected minute 0 to 59 but got "
+                  "61");
+        EXPECT_EQ(at("noon"), "2: time.at: noon: no date; write 2026-06-21 noon or pass --date");
+    }
+    EXPECT_EQ(error(with("\"time\": {\"at\": \"2026-06-21T12:00+01:00\", \"zone\": "
+                         "\"Europe/Zurich\"}")),
+              "2: time.at: 2026-06-21T12:00+01:00: offset +01:00 contradicts Europe/Zurich, "
+              "expected +02:00 (CEST); give only one of the two");
     EXPECT_EQ(error(with("\"time\": {\"at\": \"noon\",\n\"date\": \"June\"}")),
               "3: time.date: June: not a date, expected YYYY-MM-DD such as 2026-06-21");
     EXPECT_EQ(error(with("\"time\": {\"at\": \"2026-06-21T12:00Z\", \"date\": \"2026-06-21\"}")),
@@ -140,6 +154,21 @@ TEST_F(SceneFile, MistakesNameTheirPlace) {
               "1: dem.nodata: expected a number or \"none\" but got true");
     EXPECT_EQ(error("{\"format\": 1, \"dem\": {\"files\": [\"a\"], \"bounds\": [1, 2, 3]}}"),
               "1: dem.bounds: expected west, south, east, north in degrees but got a list");
+}
+
+TEST_F(SceneFile, ATimeMayLeaveItsZoneToThePlace) {
+    const auto moment_of = [&](const std::string& time) {
+        return read_scene(
+                   write(R"({"format": 1, "dem": {"files": ["a"]}, "time": {)" + time + "}}"))
+            .moment;
+    };
+    for (const std::string zone : {"", "auto", "solar"}) {
+        const std::string words = zone.empty() ? "" : ", \"zone\": \"" + zone + "\"";
+        EXPECT_EQ(moment_of("\"at\": \"2026-06-21T12:00\"" + words).zone, zone);
+        EXPECT_EQ(moment_of("\"at\": \"2026-06-21T12:00-05:00\"" + words).zone, zone);
+        EXPECT_EQ(moment_of("\"at\": \"2026-06-21 sunset\"" + words).zone, zone);
+        EXPECT_EQ(moment_of(R"("at": "sunset", "date": "2026-06-21")" + words).zone, zone);
+    }
 }
 
 TEST_F(SceneFile, TheDocumentsExampleIsOne) {

@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "session/session.h"
+#include "session/words.h"
 #include "sun/time.h"
 #include "support/support.h"
 
@@ -156,6 +157,73 @@ TEST(Session, TellsOfTheSunAsItsEyeSeesIt) {
     scene.view.eye = scene::Standpoint{geo::geodetic_deg(36.05, -84.05, 3000), false};
     session.look(scene.view);
     EXPECT_EQ(session.place_text(), "36.05000 N 84.05000 W (the eye)");
+}
+
+TEST(Words, NeedTheDemWhereItsPlaceMatters) {
+    struct Case {
+        scene::Moment moment;
+        bool needs_dem;
+    };
+    for (const Case& c : {Case{{"2026-06-21T18:30Z", "", ""}, false},
+                          {{"2026-06-21T18:30+02:00", "", "auto"}, false},
+                          {{"now", "", ""}, false},
+                          {{"2026-06-21T18:30", "", "Europe/Zurich"}, false},
+                          {{"2026-06-21T18:30", "", ""}, true},
+                          {{"2026-06-21T18:30", "", "auto"}, true},
+                          {{"2026-06-21T18:30Z", "", "solar"}, true},
+                          {{"sunrise", "2026-06-21", "UTC"}, true},
+                          {{"sunrise@46.55,8.56", "2026-06-21", ""}, false},
+                          {{"sunrise@46.55,8.56", "2026-06-21", "solar"}, false},
+                          {{"2026-06-21 first-light@46.55,8.56", "", "UTC"}, true}})
+        EXPECT_EQ(needs_dem(c.moment), c.needs_dem) << c.moment.time << ' ' << c.moment.zone;
+}
+
+TEST(Words, AreReadBeforeAnythingIsLoaded) {
+    const auto error = [](const scene::Moment& moment) {
+        return test::error_of([&] { needs_dem(moment); });
+    };
+    EXPECT_EQ(error({"2026-06-21T18:30", "", "Europe/Zurick"}),
+              "exit 3: sun::Zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
+    EXPECT_EQ(error({"2026-06-21T18", "", ""}),
+              "exit 3: sun::parse_time: 2026-06-21T18: not a time, expected YYYY-MM-DDThh:mm with "
+              "Z or an offset, such as 2026-06-21T18:30+02:00");
+    EXPECT_EQ(error({"sunrise", "", ""}),
+              "exit 3: sun::parse_event_time: sunrise: no date; write 2026-06-21 sunrise or pass "
+              "--date");
+    EXPECT_EQ(error({"2026-06-21 sunrise", "2026-06-22", ""}),
+              "exit 3: sun::parse_event_time: 2026-06-21 sunrise: contradicts --date 2026-06-22; "
+              "give only one of the two");
+    EXPECT_EQ(error({"2011-12-30 sunrise", "", "Pacific/Apia"}),
+              "exit 3: sun::Zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
+              "skipped it");
+}
+
+TEST(Words, TakeTheZoneOfTheNearestPlaceThatIsNamed) {
+    const light::TerrainAccess dem{.middle = [] { return geo::geodetic_deg(36.3, -84.2); }};
+    const geo::PlaceText here{geo::geodetic_deg(-45.031, 168.663)};
+    const auto zone = [&](const std::string& time, const light::TerrainAccess& access,
+                          const std::optional<geo::PlaceText>& at) {
+        const sun::ParsedTime parsed = parse({time, "", "auto"}, access, at);
+        EXPECT_EQ(parsed.assumption, "time zone " + parsed.zone.name() + ", by the place");
+        return parsed.zone.name();
+    };
+    EXPECT_EQ(zone("2026-06-21T18:30", dem, {}), "America/New_York");
+    EXPECT_EQ(zone("2026-06-21T18:30", dem, here), "Pacific/Auckland");
+    EXPECT_EQ(zone("2026-06-21 noon", dem, {}), "America/New_York");
+    EXPECT_EQ(zone("2026-06-21 noon@46.55,8.56", dem, here), "Europe/Zurich");
+    EXPECT_EQ(parse({"2026-06-21T18:30Z", "", "auto"}, dem, here).assumption, "");
+    // Pacific/Apia skipped that day, which is known only with the place.
+    EXPECT_EQ(test::error_of([] {
+                  parse({"noon@-13.83,-171.76", "2011-12-30", ""});
+              }),
+              "exit 3: sun::Zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
+              "skipped it");
+    // Where there is no place there is no zone.
+    EXPECT_EQ(test::error_of([] {
+                  parse({"2026-06-21T18:30", "", ""});
+              }),
+              "exit 3: sun::parse_time: 2026-06-21T18:30: no time zone; write 2026-06-21T18:30Z "
+              "for UTC or 2026-06-21T18:30+02:00, or pass --tz Europe/Zurich");
 }
 
 }  // namespace
