@@ -16,9 +16,7 @@ struct Arguments {
 void view(const Arguments& arguments) {
     scene::Scene scene = arguments.scene.scene();
     if (scene.dems.empty()) scene.dems.push_back((share_dir() / "data/dem/jacksboro.tif").string());
-    std::optional<sun::Zone> zone;
-    if (!scene.moment.zone.empty()) zone = sun::Zone::named(scene.moment.zone);
-    viewer::run(scene, arguments.device, zone);
+    viewer::run(scene, arguments.device);
 }
 
 }  // namespace

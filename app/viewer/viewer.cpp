@@ -21,6 +21,7 @@
 #include "geo/geodetic.h"
 #include "image/image.h"
 #include "session/session.h"
+#include "sun/zone_of_place.h"
 #include "viewer/file_dialog.h"
 #include "viewer/file_watch.h"
 #include "viewer/overlay.h"
@@ -81,8 +82,8 @@ std::string free_name(const std::string& ending) {
 /// The window's whole life.
 class Viewer {
   public:
-    Viewer(const scene::Scene& scene, std::string device, const std::optional<sun::Zone>& zone)
-        : device_(std::move(device)), zone_(zone) {
+    Viewer(const scene::Scene& scene, std::string device)
+        : device_(std::move(device)), zone_(scene.moment.zone) {
         state_.document.scene = scene;
         // The scene opens beside the window.
         scene_ = std::make_unique<SceneThread>(scene, device_, &Window::wake);
@@ -211,7 +212,7 @@ class Viewer {
         };
         state_.centre = session.ground().frame.origin();
         Document& document = state_.document;
-        document.zone = zone_ ? *zone_ : zone_at(state_.centre);
+        document.zone = sun::choose_zone(zone_, state_.centre).zone;
         document.pose = home_ = pose_of(session.camera(), state_.land);
         state_.day = {};
         state_.set_utc(was_open_ ? document.utc : session.moment());
@@ -225,11 +226,6 @@ class Viewer {
         effect_files_.watch(std::move(plugins));
         was_open_ = true;
         busy_frames_ = 3;
-    }
-
-    /// Whole hours by the longitude.
-    static sun::Zone zone_at(const geo::Geodetic& place) {
-        return sun::Zone::fixed(3600 * static_cast<int>(std::lround(degrees(place.lon_rad) / 15)));
     }
 
     // ---- the hand
@@ -812,7 +808,7 @@ class Viewer {
 
     std::unique_ptr<Window> window_;  // ends after the threads that wake it
     std::string device_;
-    std::optional<sun::Zone> zone_;
+    std::string zone_;  // as --tz takes it
     std::unique_ptr<SceneThread> scene_;
     const session::Session* session_ = nullptr;  // scene_'s, once it is open
     State state_;                                // its work refers to the session: ends before it
@@ -842,9 +838,8 @@ class Viewer {
 
 }  // namespace
 
-void run(const scene::Scene& scene, const std::string& device,
-         const std::optional<sun::Zone>& zone) {
-    Viewer(scene, device, zone).run();
+void run(const scene::Scene& scene, const std::string& device) {
+    Viewer(scene, device).run();
 }
 
 }  // namespace relevo::viewer
