@@ -27,6 +27,11 @@ TEST(Installation, TakesTheSamePictureFromWhereverItLies) {
     const image::Image8 installed = take(dir / "moved/bin/relevo", "installed.png");
     const image::Image8 built = take(build_dir() / "bin/relevo", "built.png");
     EXPECT_EQ(image::compare(installed, built).worst, 0);
+    // So does the map of time zones.
+    const Result zone = run(dir / "moved/bin/relevo", {"sun", "position", "--at", "46.95,7.44",
+                                                       "--time", "2026-06-21T12:00"});
+    EXPECT_EQ(zone.status, 0);
+    EXPECT_EQ(zone.err, "relevo: time zone Europe/Zurich, by the place; --tz overrides it\n");
     std::filesystem::remove_all(dir / "moved");  // 70 MB
 }
 
