@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -10,6 +12,8 @@ namespace {
 
 constexpr float kSun_px = 11, kReach_px = 26;
 constexpr double kFar_m = 1e9;
+/// From high up the horizon lies below the level one.
+constexpr double kLowest_deg = -4;
 
 /// Where a direction is in the window; none behind the camera.
 std::optional<ImVec2> at_window(const Picture& picture, glm::vec2 size_px,
@@ -38,7 +42,7 @@ void draw_way(const SunDay& day, const Picture& picture, glm::vec2 size_px, ImU3
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const std::vector<SunPoint>& points = day.points;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        if (points[i].elevation_deg < -1 && points[i + 1].elevation_deg < -1) continue;
+        if (std::max(points[i].elevation_deg, points[i + 1].elevation_deg) < kLowest_deg) continue;
         const auto a = at_window(picture, size_px, points[i].direction);
         const auto b = at_window(picture, size_px, points[i + 1].direction);
         if (!a || !b) continue;
@@ -53,12 +57,13 @@ void draw_hours(const SunDay& day, const sun::Zone& zone, const Picture& picture
     for (const SunPoint& point : day.points) {
         const int minute = DayMinute::of(point.utc, zone).minute;
         const auto at = at_window(picture, size_px, point.direction);
-        if (minute % 60 != 0 || point.elevation_deg < -1 || !at) continue;
+        if (minute % 60 != 0 || point.elevation_deg < kLowest_deg || !at) continue;
         const bool clear = is_sky(picture, size_px, *at);
         list.AddCircleFilled(*at, 3, IM_COL32(255, 230, 160, clear ? 255 : 90));
-        if (clear)
-            list.AddText({at->x + 5, at->y - 16}, IM_COL32(255, 235, 190, 230),
-                         fmt::format("{}", minute / 60).c_str());
+        if (!clear) continue;
+        const std::string hour = fmt::format("{}", minute / 60);
+        list.AddText({at->x + 7, at->y - 17}, IM_COL32(60, 40, 10, 230), hour.c_str());
+        list.AddText({at->x + 6, at->y - 18}, IM_COL32(255, 240, 200, 255), hour.c_str());
     }
 }
 
@@ -73,7 +78,7 @@ void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px
     draw_hours(state.day, state.document.zone, picture, size_px);
     const SunPoint now = sun_at(picture.utc, state.centre);
     const auto at = at_window(picture, size_px, now.direction);
-    if (!at || now.elevation_deg <= -1) return;
+    if (!at || now.elevation_deg < kLowest_deg) return;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const bool clear = is_sky(picture, size_px, *at);
     list.AddCircleFilled(*at, kSun_px, IM_COL32(255, 226, 130, clear ? 255 : 90));
@@ -86,7 +91,7 @@ std::optional<sun::Instant> moment_at(const State& state, const Picture& picture
     float least = kReach_px;
     const std::vector<SunPoint>& points = state.day.points;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-        if (points[i].elevation_deg < -1) continue;
+        if (points[i].elevation_deg < kLowest_deg) continue;
         const auto a = at_window(picture, size_px, points[i].direction);
         const auto b = at_window(picture, size_px, points[i + 1].direction);
         if (!a || !b) continue;
