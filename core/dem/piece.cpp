@@ -205,8 +205,9 @@ void settle_sparse(GDALDatasetH dataset, GDALRasterBandH band, Piece& piece) {
                            piece.grid.columns(), piece.grid.rows(), bytes));
 }
 
-std::vector<Level> levels_of(GDALRasterBandH band) {
-    std::vector<Level> levels{{-1, GDALGetRasterBandXSize(band), GDALGetRasterBandYSize(band)}};
+std::vector<Resolution> levels_of(GDALRasterBandH band) {
+    std::vector<Resolution> levels{
+        {-1, GDALGetRasterBandXSize(band), GDALGetRasterBandYSize(band)}};
     const int count = GDALGetOverviewCount(band);
     for (int i = 0; i < count; ++i)
         if (const GDALRasterBandH overview = GDALGetOverview(band, i))
@@ -421,7 +422,7 @@ double Piece::stored(void* dataset, int column, int row) const {
     return number;
 }
 
-void Piece::read(void* dataset, const Level& level, const Window& w, float* height_m) const {
+void Piece::read(void* dataset, const Resolution& level, const Window& w, float* height_m) const {
     const std::size_t n = static_cast<std::size_t>(w.columns) * static_cast<std::size_t>(w.rows);
     const auto band_of = [&](int number) {
         const GDALRasterBandH band = GDALGetRasterBand(dataset, number);

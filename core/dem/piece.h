@@ -22,7 +22,7 @@ struct BandScale {
 };
 
 /// One of a file's resolutions.
-struct Level {
+struct Resolution {
     int overview = -1;  ///< -1: the raster itself
     int columns = 0;
     int rows = 0;
@@ -50,7 +50,7 @@ struct Piece {
     bool knows_holes = true;   ///< overviews were made by who knew which numbers are heights
     int block_columns = 1;
     int block_rows = 1;
-    std::vector<Level> levels;        ///< the raster itself, then its overviews
+    std::vector<Resolution> levels;   ///< the raster itself, then its overviews
     std::optional<SparseMap> sparse;  ///< what of it the file does not store
     float unstored_m = 0;             ///< the height there, NaN for holes
     Description about;
@@ -60,7 +60,7 @@ struct Piece {
 
     /// Heights in metres of a window of a level, NaN for holes; row after row.
     /// @throws Error (BadInput) where they cannot all be read
-    void read(void* dataset, const Level& level, const Window& window, float* height_m) const;
+    void read(void* dataset, const Resolution& level, const Window& window, float* height_m) const;
 
     /// The number that the file stores for a post, which its height is made of.
     /// @throws Error (BadInput) where it cannot be read

@@ -128,9 +128,9 @@ void cut_to_earth(const Grid& grid, Array2d<float>& height_m) {
 }
 
 /// The coarsest level that still has a cell for every `columns_each` by `rows_each` posts.
-const Level& coarsest_level(const Piece& piece, double columns_each, double rows_each) {
-    const Level* best = &piece.levels.front();
-    for (const Level& level : piece.levels)
+const Resolution& coarsest_level(const Piece& piece, double columns_each, double rows_each) {
+    const Resolution* best = &piece.levels.front();
+    for (const Resolution& level : piece.levels)
         if (level.columns < best->columns && level.columns * columns_each >= piece.place.columns &&
             level.rows * rows_each >= piece.place.rows)
             best = &level;
@@ -255,7 +255,7 @@ void Source::Impl::add_means(const Piece& piece, const Window& window, int colum
                              Sums& sums, Progress* progress) const {
     const double columns_each = window.columns / double(columns);
     const double rows_each = window.rows / double(rows);
-    const Level& level = coarsest_level(piece, columns_each, rows_each);
+    const Resolution& level = coarsest_level(piece, columns_each, rows_each);
     // Cells of the level in one post.
     const double per_column = level.columns / double(piece.place.columns);
     const double per_row = level.rows / double(piece.place.rows);

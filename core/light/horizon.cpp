@@ -437,7 +437,7 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
     const glm::dvec2 here = map_point(place_);
     const glm::dvec2 northward = map_point(geo::destination(place_, 0, 1)) - here;
     true_north_on_map_rad_ = std::atan2(northward.x, northward.y);
-    if (options.ground == Ground::Ellipsoid) {
+    if (options.earth == EarthModel::Ellipsoid) {
         fan_ = std::make_unique<const Fan>(grid, place_, post_,
                                            longest_m(posts, place_, eye_m_, options.refraction));
     } else {
@@ -455,13 +455,13 @@ TerrainHorizon::~TerrainHorizon() = default;
 /// Calls `body` with the shape of the ground that way.
 template <typename Body>
 void TerrainHorizon::with_ground(double azimuth_rad, const Body& body) const {
-    switch (options_.ground) {
-        case Ground::Ellipsoid:
+    switch (options_.earth) {
+        case EarthModel::Ellipsoid:
             return body(
                 RoundGround{radius_m(place_.lat_rad, azimuth_rad), eye_m_, options_.refraction});
-        case Ground::MapOnSphere:
+        case EarthModel::MapOnSphere:
             return body(MapGround{kSphere_m, eye_m_, options_.refraction});
-        case Ground::MapOnPlane:
+        case EarthModel::MapOnPlane:
             return body(MapGround{kInfinity, eye_m_, 0});
     }
 }
@@ -715,16 +715,16 @@ Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
 
 std::string TerrainHorizon::description() const {
     std::string ground;
-    switch (options_.ground) {
-        case Ground::Ellipsoid:
+    switch (options_.earth) {
+        case EarthModel::Ellipsoid:
             ground = fmt::format("on the WGS 84 ellipsoid with terrestrial refraction k = {:.4g}",
                                  options_.refraction);
             break;
-        case Ground::MapOnSphere:
+        case EarthModel::MapOnSphere:
             ground = fmt::format("on the map, on a sphere with terrestrial refraction k = {:.4g}",
                                  options_.refraction);
             break;
-        case Ground::MapOnPlane:
+        case EarthModel::MapOnPlane:
             ground = "on the map, without curvature";
             break;
     }

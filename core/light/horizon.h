@@ -15,7 +15,7 @@
 namespace relevo::light {
 
 /// What distances and directions on the ground mean.
-enum class Ground {
+enum class EarthModel {
     /// The WGS 84 ellipsoid: lines of sight follow geodesics over the raster, azimuths are from
     /// true north, and the ground falls away with the curvature that the ellipsoid has that way.
     Ellipsoid,
@@ -33,7 +33,7 @@ struct HorizonOptions {
     /// Terrestrial refraction: the curvature of a line of sight in units of the Earth's. 0.13 is
     /// C. F. Gauss's mean, 0.25 and more is common over cold or wet ground.
     double refraction = 0.13;
-    Ground ground = Ground::Ellipsoid;
+    EarthModel earth = EarthModel::Ellipsoid;
     /// Beyond the DEM lies a smooth Earth at this height [m]; not given: at the DEM's lowest;
     /// minus infinity: nothing at all.
     std::optional<double> outside_height_m;

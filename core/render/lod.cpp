@@ -204,7 +204,7 @@ LodRanges TileTree::ranges(const LodView& view) {
     const std::size_t top = error_m_.size() - 1;
     ranges.levels.resize(top + 1);
     for (std::size_t k = 0; k <= top; ++k) {
-        LodRanges::Level& level = ranges.levels[k];
+        LodRanges::Range& level = ranges.levels[k];
         if (k == top || view.tolerance <= 0) {
             level = {kInfinity, kInfinity};
             continue;

@@ -74,11 +74,11 @@ struct TileDraw {
 
 /// Up to where each level is drawn [m].
 struct LodRanges {
-    struct Level {
+    struct Range {
         double range_m = 0;
         double morph_start_m = 0;  ///< from here to range_m vertices glide to the coarser level
     };
-    std::vector<Level> levels;
+    std::vector<Range> levels;
 };
 
 /// The tiles of a DEM as a quadtree in space.

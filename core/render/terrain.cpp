@@ -261,7 +261,7 @@ TileSelection Terrain::ready(const LodView& view, const std::vector<TileDraw>& d
     for (const TileDraw& draw : draws) {
         TileSelection::Tile tile{draw, static_cast<float>(heights_.slot(draw.key))};
         if (view.eye_m) {
-            const LodRanges::Level& level = ranges.levels[static_cast<std::size_t>(draw.key.level)];
+            const LodRanges::Range& level = ranges.levels[static_cast<std::size_t>(draw.key.level)];
             if (std::isfinite(level.range_m)) {
                 tile.morph_start_m = static_cast<float>(level.morph_start_m);
                 tile.per_morph_m = static_cast<float>(1 / (level.range_m - level.morph_start_m));

@@ -47,11 +47,11 @@ class Tables : public testing::Test {
 
     /// With Saemundsson's refraction in the standard air of the height, and a horizon that is
     /// nowhere below the level one, as the tables have it.
-    DirectLight& light(int column, int row, Ground ground) {
-        const auto key = std::tuple(column, row, ground);
+    DirectLight& light(int column, int row, EarthModel earth) {
+        const auto key = std::tuple(column, row, earth);
         if (const auto found = lights_.find(key); found != lights_.end()) return *found->second;
         HorizonOptions options;
-        options.ground = ground;
+        options.earth = earth;
         options.least_elevation_rad = 0;
         options.outside_height_m = -std::numeric_limits<double>::infinity();
         horizons_.push_back(
@@ -65,7 +65,7 @@ class Tables : public testing::Test {
     std::filesystem::path dir_;
     std::unique_ptr<dem::Heightfield> field_;
     std::vector<std::unique_ptr<TerrainHorizon>> horizons_;
-    std::map<std::tuple<int, int, Ground>, std::unique_ptr<DirectLight>> lights_;
+    std::map<std::tuple<int, int, EarthModel>, std::unique_ptr<DirectLight>> lights_;
 };
 
 Zone zone_of(const Table& t) {
@@ -77,14 +77,14 @@ TEST_F(Tables, SunHoursOfADay) {
     ASSERT_EQ(t.csv.rows.size(), 400U);
     const sun::EarthRotation rotation = rotation_of_the_tables();
     constexpr double kLimit_s = 10;
-    std::map<Ground, std::vector<double>> errors;
+    std::map<EarthModel, std::vector<double>> errors;
     std::vector<double> bearing;
     for (t.row = 0; t.row < t.csv.rows.size(); ++t.row) {
         const int column = static_cast<int>(t.number("col")),
                   row = static_cast<int>(t.number("row"));
         for (const auto& [ground, name] :
-             {std::pair{Ground::MapOnPlane, "sun_hours_crossings_flat_h"},
-              std::pair{Ground::MapOnSphere, "sun_hours_crossings_curved_h"}}) {
+             {std::pair{EarthModel::MapOnPlane, "sun_hours_crossings_flat_h"},
+              std::pair{EarthModel::MapOnSphere, "sun_hours_crossings_curved_h"}}) {
             const DirectLight& at = light(column, row, ground);
             const LightDay day =
                 at.day(sun::parse_date(t.text("date_local")), zone_of(t), rotation);
@@ -95,8 +95,9 @@ TEST_F(Tables, SunHoursOfADay) {
             EXPECT_EQ(at.horizon().place().height_m, t.number("elev_m"));
         }
     }
-    test::print_accuracy("sun hours of a day, flat", errors[Ground::MapOnPlane], "s", kLimit_s);
-    test::print_accuracy("sun hours of a day, curved", errors[Ground::MapOnSphere], "s", kLimit_s);
+    test::print_accuracy("sun hours of a day, flat", errors[EarthModel::MapOnPlane], "s", kLimit_s);
+    test::print_accuracy("sun hours of a day, curved", errors[EarthModel::MapOnSphere], "s",
+                         kLimit_s);
     EXPECT_LE(*std::max_element(bearing.begin(), bearing.end()), 2e-5);
 }
 
@@ -112,7 +113,7 @@ TEST_F(Tables, EveryIntervalOfADay) {
     for (const auto& [key, rows] : of_day) {
         t.row = rows.front();
         const LightDay day = light(static_cast<int>(t.number("col")),
-                                   static_cast<int>(t.number("row")), Ground::MapOnPlane)
+                                   static_cast<int>(t.number("row")), EarthModel::MapOnPlane)
                                  .day(sun::parse_date(t.text("date_local")), zone_of(t), rotation);
         ASSERT_EQ(day.lit.size(), rows.size()) << t.whole();
         for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -142,7 +143,7 @@ TEST_F(Tables, SunHoursOfAYear) {
     std::vector<double> years, months_s;
     for (t.row = 0; t.row < t.csv.rows.size(); ++t.row) {
         const DirectLight& at = light(static_cast<int>(t.number("col")),
-                                      static_cast<int>(t.number("row")), Ground::MapOnPlane);
+                                      static_cast<int>(t.number("row")), EarthModel::MapOnPlane);
         std::map<int, double> of_month_s;
         double year_s = 0;
         for (const LightDay& day :

@@ -56,7 +56,7 @@ TEST(TerrainHorizon, AgreesWithCrossingsComputedIndependently) {
     constexpr double kLimit_deg = 0.001;
     for (const bool flat : {true, false}) {
         HorizonOptions options;
-        options.ground = flat ? Ground::MapOnPlane : Ground::MapOnSphere;
+        options.earth = flat ? EarthModel::MapOnPlane : EarthModel::MapOnSphere;
         options.outside_height_m = -kInfinity;
         std::vector<double> errors_deg, distances_m;
         for (std::size_t i = 0; i < csv.rows.size(); ++i) {
@@ -271,7 +271,7 @@ TEST(TerrainHorizon, TakesGroundBetweenPostsAsLinearAlongTheGrid) {
     const dem::Heightfield field =
         plain([](int column, int row) { return column == 110 && row == 100 ? 140.0 : 100.0; });
     HorizonOptions options;
-    options.ground = Ground::MapOnPlane;
+    options.earth = EarthModel::MapOnPlane;
     const TerrainHorizon horizon(field, middle(field), options);
     for (const double beside : {0.0, 0.25, 0.5, 0.75, -0.3}) {
         const double bearing = std::atan2(10, beside);  // beside: rows to the north
@@ -285,7 +285,7 @@ TEST(TerrainHorizon, SeesOverGroundFromAHigherEye) {
     const dem::Heightfield field =
         plain([](int column, int) { return column == 140 ? 160.0 : 100.0; });
     HorizonOptions options;
-    options.ground = Ground::MapOnPlane;
+    options.earth = EarthModel::MapOnPlane;
     options.eye_height_m = 20;
     EXPECT_NEAR(std::tan(TerrainHorizon(field, middle(field), options).elevation_rad(radians(90))),
                 40.0 / 1200, 1e-5);
@@ -309,7 +309,7 @@ TEST(TerrainHorizon, PassesOverHolesAndSaysWhereTheyMatter) {
     };
     const dem::Heightfield field = plain(heights);
     HorizonOptions options;
-    options.ground = Ground::MapOnPlane;
+    options.earth = EarthModel::MapOnPlane;
     const TerrainHorizon horizon(field, middle(field), options);
     const HorizonPoint east = horizon.at(radians(90));
     EXPECT_TRUE(east.hole);
@@ -543,7 +543,7 @@ TEST(TerrainHorizon, ErrorsSayWhatIsWrong) {
               "exit 3: light::horizon: refraction 1.5: no air bends light so, expected -1 to 0.9 "
               "of the Earth's curvature; 0.13 is the mean");
     options = {};
-    options.ground = Ground::MapOnPlane;
+    options.earth = EarthModel::MapOnPlane;
     EXPECT_EQ(error_of([&] {
                   const dem::Heightfield degrees_field = bundled("jacksboro.tif");
                   TerrainHorizon(degrees_field, middle(degrees_field), options);
@@ -560,7 +560,7 @@ TEST(TerrainHorizon, SaysHowItWasMade) {
         "terrain horizon: highest crossing with the rows and columns of the DEM, on the WGS "
         "84 ellipsoid with terrestrial refraction k = 0.13; eye at ground level, on ground at "
         "100.0 m; beyond the DEM smooth ground at 100 m");
-    options.ground = Ground::MapOnPlane;
+    options.earth = EarthModel::MapOnPlane;
     options.eye_height_m = 1.6;
     options.least_elevation_rad = 0;
     EXPECT_EQ(TerrainHorizon(field, middle(field), options).description(),
