@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cassert>
 #include <csignal>
 #include <cstddef>
@@ -29,13 +28,17 @@ struct Running {
     std::string on_exit;
     Watchdog* watchdog = nullptr;
 };
-std::atomic<const Running*> running{nullptr};
+/// Of this thread: a signal comes to the thread whose code is wrong.
+thread_local constinit const Running* running = nullptr;
+
+/// Signals are handled by the whole process, so that one function runs at a time.
+std::mutex call_mutex;
 
 std::mutex modules_mutex;
 std::vector<const ModuleInProcess*> modules;  // that are loaded
 
 void on_signal(int signal) {
-    const Running* now = running.load();
+    const Running* now = running;
     for (std::size_t i = 0; now && i < kFatalSignals.size(); ++i)
         if (kFatalSignals[i].number == signal) end_program(now->on_signal[i].c_str());
     std::signal(signal, SIG_DFL);
@@ -44,7 +47,7 @@ void on_signal(int signal) {
 
 /// The program does not end by itself while a module is loaded: main() unloads them all.
 void on_exit_of_the_program() {
-    if (const Running* now = running.load()) end_program(now->on_exit.c_str());
+    if (const Running* now = running) end_program(now->on_exit.c_str());
     const std::lock_guard lock(modules_mutex);
     if (!modules.empty()) end_program(modules.back()->message("", "ended the program").c_str());
 }
@@ -71,7 +74,7 @@ void blame(const void* caller) {
     if (!base || !lock) return;
     for (const ModuleInProcess* module : modules) {
         if (module->base() != base) continue;
-        const Running* now = running.load();
+        const Running* now = running;
         end_program(now ? now->on_exit.c_str() : module->message("", "ended the program").c_str());
     }
 }
@@ -100,6 +103,7 @@ std::string ModuleInProcess::message(const std::string& function, const std::str
 }
 
 struct ModuleCall::Signals {
+    std::unique_lock<std::mutex> turn{call_mutex};
     Running texts;
     std::vector<std::byte> stack;
     stack_t old_stack{};
@@ -108,7 +112,7 @@ struct ModuleCall::Signals {
 
 ModuleCall::ModuleCall(ModuleInProcess& module, const std::string& function)
     : module_(module), signals_(std::make_unique<Signals>()) {
-    assert(!running.load());
+    assert(!running);
     Signals& signals = *signals_;
     for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
         signals.texts.on_signal[i] =
@@ -126,7 +130,7 @@ ModuleCall::ModuleCall(ModuleInProcess& module, const std::string& function)
     struct sigaction action {};
     action.sa_handler = on_signal;
     action.sa_flags = SA_ONSTACK;
-    running.store(&signals.texts);
+    running = &signals.texts;
     for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
         sigaction(kFatalSignals[i].number, &action, &signals.old_actions[i]);
     const std::chrono::milliseconds limit = patience();
@@ -140,11 +144,11 @@ ModuleCall::~ModuleCall() {
     for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
         sigaction(kFatalSignals[i].number, &signals_->old_actions[i], nullptr);
     sigaltstack(&signals_->old_stack, nullptr);
-    running.store(nullptr);
+    running = nullptr;
 }
 
 ModuleCall::Pause::Pause() {
-    const Running* now = running.load();
+    const Running* now = running;
     paused_ = now ? now->watchdog : nullptr;
     if (paused_) paused_->pause();
 }

@@ -38,11 +38,12 @@ class ModuleInProcess {
 
 /// While this lives, a module's function runs: a fatal signal, or patience() of its own time, ends
 /// the program with status 1 and the plugin's name. Before and after, signals are handled as they
-/// were.
+/// were. Functions of modules run one at a time, whatever thread calls them: this waits for its
+/// turn.
 class ModuleCall {
   public:
     /// @param function  as messages name it: "prepare()"
-    /// @pre no other lives
+    /// @pre no other lives on this thread
     ModuleCall(ModuleInProcess& module, const std::string& function);
     ~ModuleCall();
     ModuleCall(const ModuleCall&) = delete;

@@ -26,7 +26,7 @@ class Screen:
         self.folder = tempfile.TemporaryDirectory()
         reads, writes = os.pipe()
         self.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(writes), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", self.folder.name],
+            ["Xvfb", "-noreset", "-displayfd", str(writes), "-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", self.folder.name],
             pass_fds=(writes,), stderr=subprocess.DEVNULL)
         os.close(writes)
         with os.fdopen(reads) as number:

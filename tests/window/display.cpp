@@ -68,7 +68,7 @@ Display::Display(int width_px, int height_px)
     // It takes a number that is free, and says which when it is ready.
     server_ = start({"Xvfb", "-displayfd", std::to_string(tube[1]), "-screen", "0",
                      fmt::format("{}x{}x24", width_px, height_px), "-fbdir", folder_.string(),
-                     "-nolisten", "tcp"},
+                     "-nolisten", "tcp", "-noreset"},
                     {}, folder_ / "server.txt", {}, tube[1]);
     close(tube[1]);
     std::string number;
