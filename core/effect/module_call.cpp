@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
+#include <atomic>
 #include <csignal>
 #include <cstddef>
 #include <cstdlib>
 #include <mutex>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -27,9 +28,10 @@ struct Running {
     std::array<std::string, kFatalSignals.size()> on_signal;
     std::string on_exit;
     Watchdog* watchdog = nullptr;
+    std::thread::id thread{};  // that calls it
 };
-/// Of this thread: a signal comes to the thread whose code is wrong.
-thread_local constinit const Running* running = nullptr;
+/// Of the process, as a module may have threads of its own.
+std::atomic<const Running*> running{nullptr};
 
 /// Signals are handled by the whole process, so that one function runs at a time.
 std::mutex call_mutex;
@@ -38,7 +40,7 @@ std::mutex modules_mutex;
 std::vector<const ModuleInProcess*> modules;  // that are loaded
 
 void on_signal(int signal) {
-    const Running* now = running;
+    const Running* now = running.load();
     for (std::size_t i = 0; now && i < kFatalSignals.size(); ++i)
         if (kFatalSignals[i].number == signal) end_program(now->on_signal[i].c_str());
     std::signal(signal, SIG_DFL);
@@ -47,7 +49,7 @@ void on_signal(int signal) {
 
 /// The program does not end by itself while a module is loaded: main() unloads them all.
 void on_exit_of_the_program() {
-    if (const Running* now = running) end_program(now->on_exit.c_str());
+    if (const Running* now = running.load()) end_program(now->on_exit.c_str());
     const std::lock_guard lock(modules_mutex);
     if (!modules.empty()) end_program(modules.back()->message("", "ended the program").c_str());
 }
@@ -74,7 +76,7 @@ void blame(const void* caller) {
     if (!base || !lock) return;
     for (const ModuleInProcess* module : modules) {
         if (module->base() != base) continue;
-        const Running* now = running;
+        const Running* now = running.load();
         end_program(now ? now->on_exit.c_str() : module->message("", "ended the program").c_str());
     }
 }
@@ -112,13 +114,13 @@ struct ModuleCall::Signals {
 
 ModuleCall::ModuleCall(ModuleInProcess& module, const std::string& function)
     : module_(module), signals_(std::make_unique<Signals>()) {
-    assert(!running);
     Signals& signals = *signals_;
     for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
         signals.texts.on_signal[i] =
             module.message(function, fmt::format("ended in {}", kFatalSignals[i].name));
     signals.texts.on_exit = module.message(function, "ended the program");
     signals.texts.watchdog = &module.watchdog_;
+    signals.texts.thread = std::this_thread::get_id();
 
     // A stack of its own: what ran out may be the other one.
     constexpr std::size_t kStackBytes = 64 * 1024;
@@ -130,7 +132,7 @@ ModuleCall::ModuleCall(ModuleInProcess& module, const std::string& function)
     struct sigaction action {};
     action.sa_handler = on_signal;
     action.sa_flags = SA_ONSTACK;
-    running = &signals.texts;
+    running.store(&signals.texts);
     for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
         sigaction(kFatalSignals[i].number, &action, &signals.old_actions[i]);
     const std::chrono::milliseconds limit = patience();
@@ -144,12 +146,12 @@ ModuleCall::~ModuleCall() {
     for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
         sigaction(kFatalSignals[i].number, &signals_->old_actions[i], nullptr);
     sigaltstack(&signals_->old_stack, nullptr);
-    running = nullptr;
+    running.store(nullptr);
 }
 
 ModuleCall::Pause::Pause() {
-    const Running* now = running;
-    paused_ = now ? now->watchdog : nullptr;
+    const Running* now = running.load();
+    paused_ = now && now->thread == std::this_thread::get_id() ? now->watchdog : nullptr;
     if (paused_) paused_->pause();
 }
 
