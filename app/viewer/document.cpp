@@ -116,6 +116,14 @@ void History::add(const Document& document) {
     at_ = states_.size() - 1;
 }
 
+bool History::differs(const Document& document) const {
+    if (states_.empty()) return true;
+    const Document& now = states_[at_];
+    return now.utc != document.utc || now.pose.eye_m != document.pose.eye_m ||
+           now.pose.heading_deg != document.pose.heading_deg ||
+           now.pose.pitch_deg != document.pose.pitch_deg;
+}
+
 const Document& History::undo() {
     return states_[--at_];
 }

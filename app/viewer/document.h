@@ -31,6 +31,8 @@ class History {
   public:
     /// Remembers a state after it was changed; what had been undone is gone.
     void add(const Document& document);
+    /// Whether camera or moment are not those of the state at hand.
+    bool differs(const Document& document) const;
     bool can_undo() const { return at_ > 0; }
     bool can_redo() const { return at_ + 1 < states_.size(); }
     const Document& undo();  ///< the state before; only where can_undo()

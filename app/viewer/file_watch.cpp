@@ -9,6 +9,7 @@ namespace fs = std::filesystem;
 void FileWatch::watch(std::vector<fs::path> paths) {
     paths_ = std::move(paths);
     known_ = last_ = look();
+    first_count_ = known_.size();
 }
 
 FileWatch::Times FileWatch::look() const {

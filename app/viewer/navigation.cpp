@@ -130,9 +130,15 @@ Pose zoom(const Pose& pose, const Land& land, const glm::dvec3& point_m, double 
     const double now_m = length(offset);
     if (now_m <= 0) return pose;
     const double then_m = std::clamp(now_m * factor, std::min(now_m, kNearest_m), 1e9);
-    return above_ground(
-        looking(pose, land, point_m + offset * (then_m / now_m), camera_of(pose, land).forward),
-        land);
+    const glm::dvec3 eye_m = point_m + offset * (then_m / now_m);
+    Pose moved = looking(pose, land, eye_m, camera_of(pose, land).forward);
+    // Almost straight down a heading is only what it was.
+    constexpr double kSteep_deg = 80;
+    if (std::abs(pose.pitch_deg) > kSteep_deg) {
+        moved.heading_deg = pose.heading_deg;
+        moved.pitch_deg = pose.pitch_deg;
+    }
+    return above_ground(moved, land);
 }
 
 Pose look_around(const Pose& pose, double right_deg, double up_deg) {

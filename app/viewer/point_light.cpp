@@ -1,8 +1,8 @@
 #include "viewer/point_light.h"
 
 #include <algorithm>
+#include <exception>
 
-#include "base/error.h"
 #include "light/direct_light.h"
 #include "light/horizon.h"
 
@@ -23,7 +23,7 @@ PointLight work_out(const geo::Geodetic& place, sun::Date date, const sun::Zone&
             result.lit.push_back({interval.begin.utc, interval.end.utc});
         result.lit_s = day.lit_s;
         result.flat_s = day.flat.day_length_s;
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         result.error = error.what();
     }
     return result;

@@ -68,7 +68,7 @@ void point_panel(State& state) {
         ImGui::TextUnformatted(geo::utm_text(place).c_str());
         ImGui::Text("height %.1f m", place.height_m);
     }
-    if (state.point_in_work.valid())
+    if (state.point_in_work.valid() || state.point->date != state.day.date)
         ImGui::TextDisabled("looking at its horizon ...");
     else
         light_of(state, *state.point);

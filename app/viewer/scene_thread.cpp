@@ -8,6 +8,8 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <new>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
@@ -27,11 +29,16 @@ constexpr std::array<double, 5> kScales = {1, 0.8, 0.65, 0.5, 0.34};
 constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
 /// Shadows are this old at most while the sun is dragged.
 constexpr auto kShadowsAge = std::chrono::milliseconds(350);
-/// Where the camera alone moves they stay right, but are made for another view.
-constexpr auto kShadowsViewAge = std::chrono::milliseconds(2000);
 
 double milliseconds_since(Clock::time_point began) {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+std::string text_of(const std::exception& error) {
+    if (dynamic_cast<const std::bad_alloc*>(&error) ||
+        dynamic_cast<const std::length_error*>(&error))
+        return "out of memory; a smaller window, a smaller --memory or fewer effects may do";
+    return error.what();
 }
 
 }  // namespace
@@ -50,9 +57,12 @@ struct SceneThread::Impl {
     std::shared_ptr<const Picture> picture;
     std::optional<std::string> message;
     std::exception_ptr failure;
-    std::unique_ptr<session::Session> session;  // made and ended on the thread
+    std::shared_ptr<const Opened> opened;
+    std::uint64_t wants = 0;
 
     // The thread's own.
+    std::unique_ptr<session::Session> session;
+    glm::dvec3 shadows_eye_m{0};
     double ms_a_pixel = 0;
     Clock::time_point shadows_at;
     bool shadows_lag = false;
@@ -64,20 +74,18 @@ struct SceneThread::Impl {
             session::Options options;
             options.device = device;
             FilesInUse files;
-            auto opened = std::make_unique<session::Session>(scene, options, files);
+            session = std::make_unique<session::Session>(scene, options, files);
             const std::lock_guard lock(mutex);
-            session = std::move(opened);
+            session->resize(wanted.width_px, wanted.height_px);
+            opened = std::make_shared<Opened>(
+                Opened{session.get(), session->scene(), session->camera(), session->moment()});
         } catch (...) {
             const std::lock_guard lock(mutex);
             failure = std::current_exception();
         }
         on_change();
         if (!failure) draw_until_end();
-        std::unique_ptr<session::Session> last;
-        {
-            const std::lock_guard lock(mutex);
-            last = std::move(session);
-        }
+        session.reset();
     }
 
     void draw_until_end() {
@@ -91,17 +99,26 @@ struct SceneThread::Impl {
             const Wanted now = wanted;
             const auto new_effects = std::exchange(effects, std::nullopt);
             const auto new_values = std::exchange(values, {});
+            const std::uint64_t answers = wants;
             has_new_wants = false;
             lock.unlock();
-            try {
-                change(new_effects, new_values);
-                sharp = draw(now);
-            } catch (const Error& error) {
-                say(error.what());
-                sharp = true;  // the last good picture stays until something changes
-            }
+            // Where something fails the last good picture stays until something changes.
+            attempt([&] { change(new_effects, new_values); });
+            if (!attempt([&] { sharp = draw(now, answers); })) sharp = true;
             on_change();
             lock.lock();
+        }
+    }
+
+    /// @returns whether it worked; if not, there is a message
+    template <typename Do>
+    bool attempt(const Do& act) {
+        try {
+            act();
+            return true;
+        } catch (const std::exception& error) {
+            say(text_of(error));
+            return false;
         }
     }
 
@@ -128,7 +145,7 @@ struct SceneThread::Impl {
     }
 
     /// @returns whether there is nothing left to do for it
-    bool draw(const Wanted& now) {
+    bool draw(const Wanted& now, std::uint64_t answers) {
         const auto began = Clock::now();
         const double scale = scale_for(now);
         if (now.view) session->look(*now.view);
@@ -138,21 +155,23 @@ struct SceneThread::Impl {
         }
         session->resize(std::max(1, static_cast<int>(std::lround(now.width_px * scale))),
                         std::max(1, static_cast<int>(std::lround(now.height_px * scale))));
-        const auto age = Clock::now() - shadows_at;
-        const bool keep =
-            shadows_lag ? now.sun_moving && age < kShadowsAge : now.moving && age < kShadowsViewAge;
+        // From another eye they would lie elsewhere.
+        const bool keep = now.sun_moving && shadows_lag &&
+                          session->camera().eye_m == shadows_eye_m &&
+                          Clock::now() - shadows_at < kShadowsAge;
         session->keep_native(keep);
         const bool whole = session->draw_what_is_there();
         if (!keep) {
             shadows_at = Clock::now();
+            shadows_eye_m = session->camera().eye_m;
             shadows_lag = false;
         }
-        publish(began, whole && scale == 1 && !keep);
+        publish(began, answers, whole && scale == 1 && !keep);
         // What is coarse or lags is drawn anew when the hand has come to rest.
         return whole && (scale == 1 || now.moving || now.sun_moving);
     }
 
-    void publish(Clock::time_point began, bool sharp) {
+    void publish(Clock::time_point began, std::uint64_t answers, bool sharp) {
         auto made = std::make_shared<Picture>();
         const gl::Texture& texture = session->texture();
         made->width_px = texture.extent().width;
@@ -167,6 +186,7 @@ struct SceneThread::Impl {
         made->sun_text = session->sun_text();
         made->took_ms = milliseconds_since(began);
         made->sharp = sharp;
+        made->answers = answers;
         ms_a_pixel = made->took_ms / static_cast<double>(pixels);
         const std::lock_guard lock(mutex);
         made->number = picture ? picture->number + 1 : 1;
@@ -191,9 +211,9 @@ SceneThread::~SceneThread() {
     impl_->thread.join();
 }
 
-const session::Session* SceneThread::opened() const {
+std::shared_ptr<const Opened> SceneThread::opened() const {
     const std::lock_guard lock(impl_->mutex);
-    return impl_->session.get();
+    return impl_->opened;
 }
 
 void SceneThread::check() const {
@@ -206,6 +226,7 @@ void SceneThread::want(const Wanted& wanted) {
         const std::lock_guard lock(impl_->mutex);
         impl_->wanted = wanted;
         impl_->has_new_wants = true;
+        ++impl_->wants;
     }
     impl_->changed.notify_one();
 }
@@ -215,6 +236,7 @@ void SceneThread::want_effects(const scene::Effects& effects) {
         const std::lock_guard lock(impl_->mutex);
         impl_->effects = effects;
         impl_->values.clear();
+        ++impl_->wants;
     }
     impl_->changed.notify_one();
 }
@@ -223,8 +245,14 @@ void SceneThread::want_value(const std::string& address, const std::string& valu
     {
         const std::lock_guard lock(impl_->mutex);
         impl_->values[address] = value;
+        ++impl_->wants;
     }
     impl_->changed.notify_one();
+}
+
+std::uint64_t SceneThread::wants() const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->wants;
 }
 
 std::shared_ptr<const Picture> SceneThread::newer_than(std::uint64_t number) const {

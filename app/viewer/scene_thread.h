@@ -27,9 +27,19 @@ struct Wanted {
     bool sun_moving = false;          ///< likewise the sun: shadows may lag behind
 };
 
+/// A scene as it was opened.
+struct Opened {
+    /// For what does not change while it draws: heightfield(), source(), ground().
+    const session::Session* session = nullptr;
+    scene::Scene scene;
+    scene::Camera camera;
+    sun::Instant utc;
+};
+
 /// A frame as it was drawn, whatever has been asked for since.
 struct Picture {
     std::uint64_t number = 0;
+    std::uint64_t answers = 0;  ///< the last of SceneThread::wants() that is in it
     int width_px = 0, height_px = 0;
     std::vector<std::uint8_t> rgba;  ///< rows from below
     std::vector<float> depths_m;     ///< as session::Session::read_depths
@@ -51,8 +61,8 @@ class SceneThread {
     /// Waits for the frame in work.
     ~SceneThread();
 
-    /// Once the scene is open: what does not change, to be read on any thread; else null.
-    const session::Session* opened() const;
+    /// Once the scene is open; else null.
+    std::shared_ptr<const Opened> opened() const;
     /// Why it cannot be opened.
     /// @throws Error what opening threw
     void check() const;
@@ -62,6 +72,9 @@ class SceneThread {
     void want_effects(const scene::Effects& effects);
     /// A value of a parameter that is not static.
     void want_value(const std::string& address, const std::string& value);
+
+    /// How often something was wanted.
+    std::uint64_t wants() const;
 
     /// The newest picture, if it is newer than `number`.
     std::shared_ptr<const Picture> newer_than(std::uint64_t number) const;

@@ -48,13 +48,17 @@ struct State {
     // What panels have done in this frame.
     bool sun_moves = false;  ///< a widget of the sun is held
     bool step = false;       ///< a change is done, for undo
-    std::optional<scene::Effects> new_effects;
+    std::optional<scene::Effects> asked_effects;
+    std::optional<scene::Effects> new_effects;  ///< for the thread that draws
     std::vector<std::pair<std::string, std::string>> new_values;
 
     /// Moves the sun. Dates outside 1900-2100 leave it where it is.
     void set_utc(sun::Instant utc);
-    /// Other switches or values, of parameters that need another program too.
-    void set_effects(scene::Effects changed);
+    /// Other switches or values, of parameters that need another program too. Panels go on with the
+    /// effects that they show; take_effects() follows.
+    void set_effects(scene::Effects changed) { asked_effects = std::move(changed); }
+    /// Makes what was asked for the document's. @param is_step  for undo
+    void take_effects(bool is_step);
 };
 
 void sun_panel(State& state);

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <utility>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -41,12 +41,14 @@ void State::set_utc(sun::Instant utc) {
     day = SunDay::of(date, document.zone, centre);
 }
 
-void State::set_effects(scene::Effects changed) {
+void State::take_effects(bool is_step) {
+    if (!asked_effects) return;
+    const scene::Effects changed = *std::exchange(asked_effects, std::nullopt);
     try {
         effects = EffectsModel::of(changed);
         document.scene.effects = changed;
-        new_effects = std::move(changed);
-        step = true;
+        new_effects = changed;
+        step = step || is_step;
     } catch (const Error& error) {
         message = error.what();
     }
@@ -85,6 +87,7 @@ class Viewer {
     Viewer(const scene::Scene& scene, std::string device)
         : device_(std::move(device)), zone_(scene.moment.zone) {
         state_.document.scene = scene;
+        Window::check_display();
         // The scene opens beside the window.
         scene_ = std::make_unique<SceneThread>(scene, device_, &Window::wake);
         window_ = std::make_unique<Window>("Relevo");
@@ -112,12 +115,13 @@ class Viewer {
             watch_files();
             if (most_s >= kWatch_s && busy_frames_ == 0) continue;
             window_->draw([&] { panels(); });
+            state_.take_effects(/*is_step=*/true);
             if (is_open()) hand_over();
         }
     }
 
   private:
-    bool is_open() const { return session_ != nullptr; }
+    bool is_open() const { return opened_ != nullptr; }
 
     void open() {
         // What works on the ground before ends first.
@@ -126,8 +130,15 @@ class Viewer {
         state_.point.reset();
         state_.measured.clear();
         state_.profile.reset();
-        session_ = nullptr;
+        state_.cursor.reset();
+        opened_ = nullptr;
         picture_ = nullptr;
+        wanted_.reset();
+        dragging_.reset();
+        zoom_left_ = 0;
+        glide_deg_a_s_ = {};
+        walking_ = keys_held_ = false;
+        history_ = {};  // poses are of the other ground
         stop_comparing();
         scene_.reset();
         scene_ = std::make_unique<SceneThread>(state_.document.scene, device_, &Window::wake);
@@ -166,22 +177,22 @@ class Viewer {
     bool glides() const { return std::abs(zoom_left_) > 1e-3 || length(glide_deg_a_s_) > 0.5; }
 
     void read_thread() {
+        if (has_failed_) return;
         try {
             scene_->check();
-        } catch (const Error& error) {
-            if (!was_open_) throw;  // what the program was started for
-            state_.message = error.what();
-            state_.document.scene.dems = last_dems_;
-            open();
+        } catch (const std::exception& error) {
+            if (!last_good_) throw;  // what the program was started for
+            go_back(error.what());
             return;
         }
         if (!is_open())
-            if (const session::Session* opened = scene_->opened()) start(*opened);
+            if (auto opened = scene_->opened()) start(std::move(opened));
         if (const auto newer = scene_->newer_than(picture_ ? picture_->number : 0)) {
             picture_ = newer;
             window_->take(*newer);
             busy_frames_ = std::max(busy_frames_, 1);
         }
+        if (before_) watch_comparison();
         if (before_)
             if (const auto newer =
                     before_->newer_than(picture_before_ ? picture_before_->number : 0)) {
@@ -200,37 +211,63 @@ class Viewer {
         }
     }
 
+    void watch_comparison() {
+        try {
+            before_->check();
+            if (auto message = before_->take_message()) state_.message = std::move(*message);
+        } catch (const std::exception& error) {
+            state_.message = fmt::format("no comparison: {}", error.what());
+            stop_comparing();
+        }
+    }
+
+    /// To what was open before, once: it may be gone as well.
+    void go_back(std::string why) {
+        state_.message = std::move(why);
+        busy_frames_ = 3;
+        has_failed_ = has_gone_back_;
+        if (has_failed_) return;
+        has_gone_back_ = true;
+        state_.document.scene = *last_good_;
+        open();
+    }
+
     /// The scene has been opened: from here on it can be moved in.
-    void start(const session::Session& session) {
-        session_ = &session;
-        const scene::Scene& scene = session.scene();
+    void start(std::shared_ptr<const Opened> opened) {
+        opened_ = std::move(opened);
+        const session::Session& session = *opened_->session;
+        const scene::Scene& scene = opened_->scene;
         state_.land.frame = &session.ground().frame;
         state_.land.exaggeration = scene.exaggeration;
-        state_.land.height_m = [&field = session.heightfield()](const geo::Geodetic& at) {
-            const glm::dvec2 post = field.grid.post(at);
-            return field.height_at(post.x, post.y);
+        state_.land.height_m = [&session](const geo::Geodetic& at) {
+            return session.ground_height_m(at);
         };
         state_.centre = session.ground().frame.origin();
         Document& document = state_.document;
         document.zone = sun::choose_zone(zone_, state_.centre).zone;
-        document.pose = home_ = pose_of(session.camera(), state_.land);
+        document.pose = home_ = pose_of(opened_->camera, state_.land);
         state_.day = {};
-        state_.set_utc(was_open_ ? document.utc : session.moment());
+        state_.set_utc(last_good_ ? document.utc : opened_->utc);
         history_.add(document);
         window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
-        last_dems_ = scene.dems;
-        dem_files_.watch({scene.dems.begin(), scene.dems.end()});
+        last_good_ = document.scene;
+        has_gone_back_ = false;
+        std::vector<std::filesystem::path> dems;
+        std::error_code ignored;
+        for (const std::string& dem : scene.dems)
+            if (std::filesystem::is_regular_file(dem, ignored)) dems.emplace_back(dem);
+        dem_files_.watch(std::move(dems));
         std::vector<std::filesystem::path> plugins{share_dir() / "plugins"};
         plugins.insert(plugins.end(), scene.effects.plugin_path.begin(),
                        scene.effects.plugin_path.end());
         effect_files_.watch(std::move(plugins));
-        was_open_ = true;
         busy_frames_ = 3;
     }
 
     // ---- the hand
 
-    glm::vec2 size() const { return glm::vec2(window_->size_px()); }
+    /// Of the window, in the mouse's units.
+    glm::vec2 size() const { return window_->size(); }
     double aspect() const { return static_cast<double>(size().x) / size().y; }
 
     /// From the window's pixels to -1 to 1.
@@ -285,7 +322,7 @@ class Viewer {
 
     void navigate(double passed_s) {
         const ImGuiIO& io = ImGui::GetIO();
-        const glm::vec2 mouse = window_->mouse_px();
+        const glm::vec2 mouse = window_->mouse();
         Pose& pose = state_.document.pose;
         const Pose before = pose;
         if (!io.WantCaptureMouse) {
@@ -340,7 +377,6 @@ class Viewer {
         if (!io.MouseDown[0] && !io.MouseDown[1] && !io.MouseDown[2]) {
             const bool click = distance(mouse, pressed_px_) < kClick_px;
             if (click && *dragging_ == Drag::Pan) choose_point(mouse);
-            state_.step = state_.step || (!click && *dragging_ != Drag::Line);
             dragging_.reset();
             return;
         }
@@ -363,8 +399,7 @@ class Viewer {
                                    by.y * degrees(pose.fov_y_rad));
                 break;
             case Drag::Sun:
-                if (const auto utc = moment_at(state_, *picture_, size(), mouse))
-                    state_.set_utc(*utc);
+                drag_sun(mouse);
                 state_.sun_moves = true;
                 break;
             case Drag::Line:
@@ -373,11 +408,19 @@ class Viewer {
         }
     }
 
+    void drag_sun(glm::vec2 mouse) {
+        if (!picture_) return;
+        if (const auto utc = moment_at(state_, *picture_, size(), mouse)) state_.set_utc(*utc);
+    }
+
     void fly_by_keys(double passed_s) {
         const auto axis = [&](int plus, int minus) {
             return (window_->is_down(plus) ? 1.0 : 0.0) - (window_->is_down(minus) ? 1.0 : 0.0);
         };
-        if (ImGui::GetIO().KeyCtrl) return;
+        // Asked of the window: ImGui knows of Ctrl+S a frame later than of S.
+        keys_held_ = false;
+        if (window_->is_down(GLFW_KEY_LEFT_CONTROL) || window_->is_down(GLFW_KEY_RIGHT_CONTROL))
+            return;
         const glm::dvec3 by(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_W, GLFW_KEY_S),
                             axis(GLFW_KEY_E, GLFW_KEY_Q));
         const glm::dvec2 turn(axis(GLFW_KEY_LEFT, GLFW_KEY_RIGHT),
@@ -416,7 +459,7 @@ class Viewer {
 
     /// By central differences over a post spacing each way.
     void slope_at(Cursor& cursor) const {
-        const glm::dvec2 spacing_m = session_->heightfield().grid.post_spacing_m();
+        const glm::dvec2 spacing_m = opened_->session->heightfield().grid.post_spacing_m();
         const double reach_m = std::sqrt(spacing_m.x * spacing_m.y);
         const geo::Axes axes = state_.land.axes(cursor.point_m);
         const glm::dvec3 here_m = state_.land.frame->to_local(cursor.place);
@@ -447,8 +490,9 @@ class Viewer {
     void work_out_light(const geo::Geodetic& place) {
         const Document& document = state_.document;
         state_.point = PointLight{.place = place, .date = {}, .lit = {}, .error = {}};
-        state_.point_in_work = light_at(place, document.zone.local(document.utc).wall.date,
-                                        document.zone, document.scene, session_->heightfield());
+        state_.point_in_work =
+            light_at(place, document.zone.local(document.utc).wall.date, document.zone,
+                     document.scene, opened_->session->heightfield());
     }
 
     // ---- keys
@@ -468,6 +512,8 @@ class Viewer {
         if (press.key == GLFW_KEY_S) save_scene();
         if (press.key == GLFW_KEY_O) ask_for_dem();
         if (press.key == GLFW_KEY_Q) window_->close();
+        if (press.key == GLFW_KEY_Z && history_.differs(state_.document))
+            history_.add(state_.document);
         const bool redo = press.key == GLFW_KEY_Y || (press.key == GLFW_KEY_Z && press.shift);
         if (redo && history_.can_redo())
             go_to(history_.redo());
@@ -551,7 +597,7 @@ class Viewer {
         state_.set_utc(document.utc);
         if (other_effects) {
             state_.set_effects(document.scene.effects);
-            state_.step = false;
+            state_.take_effects(/*is_step=*/false);
         }
         moved();
     }
@@ -591,8 +637,14 @@ class Viewer {
         });
     }
 
+    /// Whether the picture is what was wanted last.
+    bool is_answered() const {
+        return picture_ && picture_->sharp && picture_->answers == scene_->wants() && wanted_ &&
+               same(*wanted_, wanted_now());
+    }
+
     void take_picture() {
-        if (!picture_ || !picture_->sharp) {
+        if (!is_answered()) {
             takes_when_sharp_ = true;
             return;
         }
@@ -627,7 +679,7 @@ class Viewer {
 
     void read_again() {
         state_.set_effects(state_.document.scene.effects);
-        state_.step = false;
+        state_.take_effects(/*is_step=*/false);
         busy_frames_ = 3;
     }
 
@@ -638,11 +690,11 @@ class Viewer {
             files = asked_files_->get();
             asked_files_.reset();
         }
-        if (files.empty() || !was_open_) return;
+        if (files.empty() || !last_good_) return;
         state_.document.scene.dems = std::move(files);
         state_.document.scene.view = {};
         state_.document.scene.dem = {};
-        history_ = {};
+        has_gone_back_ = has_failed_ = false;
         open();
     }
 
@@ -656,11 +708,12 @@ class Viewer {
 
     /// Effects are read again when their files are written, and the DEM when its are.
     void watch_files() {
-        if (!is_open() || seconds_since(watched_at_) < kWatch_s) return;
+        if ((!is_open() && !has_failed_) || seconds_since(watched_at_) < kWatch_s) return;
         watched_at_ = Clock::now();
-        if (effect_files_.changed()) read_again();
-        if (dem_files_.changed()) {
-            state_.document.scene.view = view_of(state_.document.pose, state_.land);
+        if (is_open() && effect_files_.changed()) read_again();
+        if (dem_files_.changed() && dem_files_.all_there()) {
+            if (is_open()) state_.document.scene.view = view_of(state_.document.pose, state_.land);
+            has_gone_back_ = has_failed_ = false;
             state_.message = "the DEM was written again, and read again";
             open();
         }
@@ -695,7 +748,10 @@ class Viewer {
         ImGui::SetNextWindowPos({20, 20});
         ImGui::Begin("##opening", nullptr,
                      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
-        ImGui::Text("opening %s ...", state_.document.scene.dems.front().c_str());
+        if (has_failed_)
+            ImGui::TextWrapped("%s", state_.message.c_str());
+        else
+            ImGui::Text("opening %s ...", state_.document.scene.dems.front().c_str());
         ImGui::End();
     }
 
@@ -751,6 +807,10 @@ class Viewer {
     void hand_over() {
         if (state_.sun_moves) moved();
         rested_ = seconds_since(moved_at_) > kRest_s;
+        // What the hand has moved is a step when it comes to rest.
+        if (rested_ && !dragging_ && !glides() && !keys_held_ && !state_.playing &&
+            history_.differs(state_.document))
+            state_.step = true;
         const Wanted wanted = wanted_now();
         if (!(wanted_ && same(*wanted_, wanted))) {
             scene_->want(wanted);
@@ -762,16 +822,16 @@ class Viewer {
             scene_->want_value(address, value);
         if (state_.step) {
             history_.add(state_.document);
-            follow_the_day();
             busy_frames_ = 2;
         }
+        if (!state_.sun_moves && !state_.playing) follow_the_day();
         if (busy_frames_ > 0) --busy_frames_;
         if (state_.compare_is_wanted && !before_) compare();
         if (!state_.compare_is_wanted && before_) stop_comparing();
         state_.step = state_.sun_moves = false;
         state_.new_effects.reset();
         state_.new_values.clear();
-        if (takes_when_sharp_ && picture_ && picture_->sharp) {
+        if (takes_when_sharp_ && is_answered()) {
             takes_when_sharp_ = false;
             take_picture();
         }
@@ -810,16 +870,16 @@ class Viewer {
     std::string device_;
     std::string zone_;  // as --tz takes it
     std::unique_ptr<SceneThread> scene_;
-    const session::Session* session_ = nullptr;  // scene_'s, once it is open
-    State state_;                                // its work refers to the session: ends before it
+    std::shared_ptr<const Opened> opened_;  // scene_'s
+    State state_;                           // its work refers to the session: ends before it
     History history_;
     Pose home_;
     std::shared_ptr<const Picture> picture_;
     std::unique_ptr<SceneThread> before_;  // of a comparison
     std::shared_ptr<const Picture> picture_before_;
     std::optional<Wanted> wanted_;
-    std::vector<std::string> last_dems_;
-    bool was_open_ = false;
+    std::optional<scene::Scene> last_good_;  // that was open
+    bool has_gone_back_ = false, has_failed_ = false;
     std::optional<std::future<std::vector<std::string>>> asked_files_;
     FileWatch effect_files_, dem_files_;
     Clock::time_point watched_at_ = Clock::now();

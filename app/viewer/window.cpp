@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -25,6 +26,25 @@ namespace {
 
 constexpr int kWidth = 1280, kHeight = 800;
 constexpr float kText_px = 16;
+
+[[noreturn]] void no_display() {
+    throw Error(ErrorCode::NoDevice,
+                "view: there is no display to open a window on; relevo capture takes a picture "
+                "without one");
+}
+
+/// The letter that is written on a key, whatever the keyboard's layout; else the key itself.
+int letter_of(int key, int scancode) {
+    const char* const name = glfwGetKeyName(key, scancode);
+    const bool is_letter = name && name[0] >= 'a' && name[0] <= 'z' && name[1] == '\0';
+    return is_letter ? GLFW_KEY_A + (name[0] - 'a') : key;
+}
+
+/// Keys that act again while they are held.
+bool repeats(int key) {
+    return key == GLFW_KEY_LEFT_BRACKET || key == GLFW_KEY_RIGHT_BRACKET || key == GLFW_KEY_Z ||
+           key == GLFW_KEY_Y;
+}
 
 /// What GLFW said last; it is told of in the Error.
 std::string& last_error() {
@@ -106,10 +126,7 @@ struct Window::Impl {
 
     explicit Impl(const std::string& title) {
         glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
-        if (!glfwInit())
-            throw Error(ErrorCode::NoDevice,
-                        "view: there is no display to open a window on; relevo capture takes a "
-                        "picture without one");
+        if (!glfwInit()) no_display();
         glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
@@ -136,12 +153,14 @@ struct Window::Impl {
         context.emplace(gl::Context::of_others([this] { glfwMakeContextCurrent(handle); }));
         glfwSwapInterval(1);
         glfwSetWindowUserPointer(handle, this);
-        glfwSetKeyCallback(handle, [](GLFWwindow* window, int key, int, int action, int mods) {
-            auto& self = *static_cast<Impl*>(glfwGetWindowUserPointer(window));
-            if (action != GLFW_RELEASE)
-                self.keys.push_back(
-                    {key, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
-        });
+        glfwSetKeyCallback(
+            handle, [](GLFWwindow* window, int code, int scancode, int action, int mods) {
+                auto& self = *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+                const int key = letter_of(code, scancode);
+                if (action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key)))
+                    self.keys.push_back(
+                        {key, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
+            });
         glfwSetDropCallback(handle, [](GLFWwindow* window, int count, const char** names) {
             auto& self = *static_cast<Impl*>(glfwGetWindowUserPointer(window));
             self.dropped.assign(names, names + count);
@@ -189,6 +208,14 @@ struct Window::Impl {
 
 Window::Window(const std::string& title) : impl_(std::make_unique<Impl>(title)) {}
 Window::~Window() = default;
+
+void Window::check_display() {
+    const auto is_set = [](const char* name) {
+        const char* const value = std::getenv(name);
+        return value && *value;
+    };
+    if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY")) no_display();
+}
 
 bool Window::should_close() const {
     return glfwWindowShouldClose(impl_->handle);
@@ -271,12 +298,16 @@ std::vector<std::string> Window::take_dropped_files() {
     return std::exchange(impl_->dropped, {});
 }
 
-glm::vec2 Window::mouse_px() const {
+glm::vec2 Window::mouse() const {
     glm::dvec2 at(0);
-    glm::ivec2 units(1);
     glfwGetCursorPos(impl_->handle, &at.x, &at.y);
-    glfwGetWindowSize(impl_->handle, &units.x, &units.y);
-    return glm::vec2(at * glm::dvec2(size_px()) / glm::dvec2(glm::max(units, glm::ivec2(1))));
+    return glm::vec2(at);
+}
+
+glm::vec2 Window::size() const {
+    glm::ivec2 size(1);
+    glfwGetWindowSize(impl_->handle, &size.x, &size.y);
+    return glm::vec2(glm::max(size, glm::ivec2(1)));
 }
 
 bool Window::is_down(int key) const {

@@ -28,10 +28,14 @@ class Window {
     Window& operator=(const Window&) = delete;
     ~Window();
 
+    /// @throws Error (NoDevice) where nothing tells of a display
+    static void check_display();
+
     bool should_close() const;
     void close();
     void set_title(const std::string& title);
     glm::ivec2 size_px() const;  ///< of what is drawn into
+    glm::vec2 size() const;      ///< in the units of the mouse and of panels
     /// Pixels that are drawn for one of the mouse's units, for text that can be read.
     float scale() const;
 
@@ -52,7 +56,8 @@ class Window {
 
     std::vector<KeyPress> take_keys();
     std::vector<std::string> take_dropped_files();
-    glm::vec2 mouse_px() const;          ///< from the window's upper left corner
+    /// From the window's upper left corner, in the units of size().
+    glm::vec2 mouse() const;
     bool is_down(int key) const;         ///< GLFW_KEY_...
     void copy(const std::string& text);  ///< to the clipboard
 

@@ -360,6 +360,10 @@ const dem::Heightfield& Session::heightfield() const {
     return impl_->loaded->field;
 }
 
+double Session::ground_height_m(const geo::Geodetic& at) const {
+    return impl_->ground_height_m(at);
+}
+
 const dem::Source& Session::source() const {
     return impl_->loaded->source;
 }

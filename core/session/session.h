@@ -88,6 +88,9 @@ class Session {
 
     const scene::Camera& camera() const;
     const dem::Heightfield& heightfield() const;
+    /// The height of the posts there [m], also where only means of them are in memory; NaN where
+    /// there is no ground. Safe beside a frame that is drawn.
+    double ground_height_m(const geo::Geodetic& at) const;
     const dem::Source& source() const;
     /// The DEM's ground; its local frame is the camera's.
     const render::Ground& ground() const;

@@ -26,6 +26,11 @@ TEST(History, GoesBackAndForth) {
     EXPECT_EQ(history.undo().pose.heading_deg, 1);
     EXPECT_FALSE(history.can_undo());
     EXPECT_EQ(history.redo().pose.heading_deg, 2);
+    EXPECT_TRUE(history.differs(document));  // its heading is 3
+    document.pose.heading_deg = 2;
+    EXPECT_FALSE(history.differs(document));
+    document.utc = document.utc + 1.0;
+    EXPECT_TRUE(history.differs(document));
     document.pose.heading_deg = 9;
     history.add(document);
     EXPECT_FALSE(history.can_redo());

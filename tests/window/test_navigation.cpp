@@ -126,6 +126,16 @@ TEST_F(Navigation, WalkingStaysAtEyeHeightAndFlyingAboveTheGround) {
     EXPECT_EQ(walk(pose_, land_, {0, 5}).eye_m, pose_.eye_m);
 }
 
+TEST_F(Navigation, ZoomingFromStraightAboveKeepsNorthUp) {
+    Pose above = from_above(pose_, land_, at(46.05, 8.05, 500), 4000);
+    const glm::dvec3 aside = at(46.05, 8.07, 500);
+    const glm::dvec2 before = seen(above, aside);
+    for (int i = 0; i < 5; ++i)
+        above = zoom(above, land_, aside, 0.8);
+    EXPECT_NEAR(above.heading_deg, 0, 1e-9);
+    EXPECT_LT(distance(seen(above, aside), before), 2e-3);
+}
+
 TEST_F(Navigation, FromAboveNorthIsUp) {
     const glm::dvec3 point = at(46.05, 8.05, 500);
     const Pose above = from_above(pose_, land_, point, 4000);

@@ -105,6 +105,10 @@ TEST_F(Viewer, TurnsPansZoomsAndGoesHome) {
     ASSERT_TRUE(changes([&] { act({"click", "--repeat", "6", "--delay", "60", "4"}); }));
     const auto nearer = camera();
     EXPECT_LT(nearer["eye"][2].get<double>(), 0.6 * turned["eye"][2].get<double>());
+    // A wheel's turn is a step as well.
+    ASSERT_TRUE(changes([&] { act({"key", "ctrl+z"}); }));
+    EXPECT_EQ(camera()["eye"], turned["eye"]);
+    ASSERT_TRUE(changes([&] { act({"key", "ctrl+y"}); }));
     ASSERT_TRUE(changes([&] { drag(1, 850, 450, -120, 80); }));
     const auto panned = camera();
     EXPECT_EQ(panned["heading"], nearer["heading"]);
@@ -190,6 +194,25 @@ TEST_F(Viewer, ReadsEffectsAgainWhenTheirFilesAreWritten) {
     EXPECT_TRUE(program_->is_running());
     EXPECT_LT(test::difference(display_.screen(), good), 0.05);  // but for the panel's message
     EXPECT_TRUE(changes([&] { write("radiance.g += 0.3;"); }));
+}
+
+TEST_F(Viewer, ReadsTheDemAgainWhenItIsWrittenAndStandsItsLoss) {
+    const auto dem = folder_ / "mine.tif";
+    std::filesystem::copy_file(dem_, dem);
+    open({dem.string(), "--only"});
+    act({"key", "Tab"});
+    ASSERT_TRUE(settles());
+    const image::Image8 whole = display_.screen();
+    // No DEM any more: it says so, and waits.
+    ASSERT_TRUE(changes([&] { std::ofstream(dem) << "no DEM"; }, 0.001));
+    EXPECT_TRUE(program_->is_running());
+    // Another one: the same ground, and seen from where it was.
+    std::filesystem::copy_file(dem_, dem, std::filesystem::copy_options::overwrite_existing);
+    EXPECT_TRUE(wait([&] { return test::difference(display_.screen(), whole) < 0.01; }));
+    std::filesystem::remove(dem);
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    EXPECT_TRUE(program_->is_running());
+    EXPECT_LT(test::difference(display_.screen(), whole), 0.01);
 }
 
 TEST_F(Viewer, ComparesWithWhatWas) {
