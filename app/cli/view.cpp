@@ -1,4 +1,5 @@
 #include <memory>
+#include <utility>
 
 #include "base/paths.h"
 #include "cli/commands.h"
@@ -13,8 +14,12 @@ struct Arguments {
     std::string device = "auto";
 };
 
-void view(const Arguments& arguments) {
+void view(Arguments arguments) {
+    // A window has a zone to show times in, whatever the time.
+    TimeArguments& time = arguments.scene.time;
+    const std::string zone = time.time.empty() ? std::exchange(time.zone, {}) : std::string();
     scene::Scene scene = arguments.scene.scene();
+    if (!zone.empty()) scene.moment.zone = zone;
     if (scene.dems.empty()) scene.dems.push_back((share_dir() / "data/dem/jacksboro.tif").string());
     viewer::run(scene, arguments.device);
 }

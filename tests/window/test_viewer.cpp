@@ -137,6 +137,11 @@ TEST_F(Viewer, MovesTheSunByKeysAndLetsTheDayPass) {
     EXPECT_NE(scene()["time"]["at"].get<std::string>().substr(13), ":00:00-06:00");
 }
 
+TEST_F(Viewer, ShowsTimesInTheZoneThatIsAskedFor) {
+    open({dem_, "--tz", "Asia/Tokyo"});
+    EXPECT_THAT(scene()["time"]["at"].get<std::string>(), testing::EndsWith("+09:00"));
+}
+
 TEST_F(Viewer, APictureIsWhatACaptureOfItsSceneIs) {
     open({dem_, "--time", "2026-06-21T20:00:00Z"});
     ASSERT_TRUE(changes([&] { drag(3, 800, 400, 90, 30); }));
