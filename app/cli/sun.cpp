@@ -12,6 +12,7 @@ void add_sun(CLI::App& app) {
     add_sun_horizon(verb);
     add_sun_carpet(verb);
     add_sun_when(verb);
+    add_sun_shadow(verb);
 }
 
 }  // namespace relevo::cli

@@ -3,11 +3,15 @@
 //   cmake -B build/bench -DCMAKE_BUILD_TYPE=Release -DRELEVO_TESTS=ON &&
 //   build/bench/bin/bench_light
 
+#include <cmath>
+
 #include <benchmark/benchmark.h>
 
 #include "base/units.h"
 #include "dem/load.h"
 #include "light/horizon.h"
+#include "light/shadows.h"
+#include "light/sweep.h"
 #include "support/support.h"
 
 namespace relevo::light {
@@ -49,6 +53,60 @@ void horizon_profile(benchmark::State& state) {
     state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 BENCHMARK(horizon_profile)->Arg(3600)->Arg(18000)->Unit(benchmark::kMillisecond);
+
+/// One sun over all posts; items are posts, each a cell-step.
+/// @param state  azimuth from the grid's north, lanes of vectors
+void sweep_moment(benchmark::State& state) {
+    const Array2d<float>& height_m = field().height_m;
+    const Sweep sweep(height_m.data(), height_m.width(), height_m.height(), height_m.width());
+    const glm::dvec2 spacing_m = field().grid.post_spacing_m();
+    const double azimuth_rad = radians(static_cast<double>(state.range(0)));
+    const SweepSun sun = sun_over_map(
+        {spacing_m.x, spacing_m.y}, {std::sin(azimuth_rad), -std::cos(azimuth_rad)}, radians(20),
+        {height_m.width() / 2.0, height_m.height() / 2.0}, 0.87 / 6371000);
+    Array2d<float> edge_m(height_m.width(), height_m.height());
+    for (auto _ : state)
+        sweep.shadow_edge(sun, {0, 0, edge_m.width(), edge_m.height()}, edge_m.data(),
+                          edge_m.width(), static_cast<int>(state.range(1)));
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(edge_m.size()));
+}
+BENCHMARK(sweep_moment)
+    ->ArgsProduct({{0, 135, 160, 250}, {4, 8, 16}})
+    ->ArgNames({"azimuth", "lanes"})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// Light and shade of a moment, each place with its own sun.
+void shadows_moment(benchmark::State& state) {
+    const dem::Posts posts(field());
+    const SunOverDem sun{radians(135), radians(20), radians(0.266)};
+    ShadowOptions options;
+    options.soft = state.range(0) != 0;
+    for (auto _ : state)
+        benchmark::DoNotOptimize(shadows(posts, sun, options).lit_posts);
+    state.SetItemsProcessed(state.iterations() *
+                            static_cast<std::int64_t>(field().height_m.size()));
+}
+BENCHMARK(shadows_moment)
+    ->Arg(0)
+    ->Arg(1)
+    ->ArgName("soft")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// The same by the exact horizon of each post: a few of them, for the ratio.
+void shadows_by_horizons(benchmark::State& state) {
+    const dem::Posts posts(field());
+    const dem::Grid& grid = posts.grid();
+    int i = 0;
+    for (auto _ : state) {
+        i = (i + 7919) % (grid.columns() * grid.rows());
+        const TerrainHorizon horizon(posts, grid.place(i % grid.columns(), i / grid.columns()));
+        benchmark::DoNotOptimize(horizon.elevation_rad(radians(135)));
+    }
+    state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(shadows_by_horizons)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace relevo::light

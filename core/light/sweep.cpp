@@ -1,0 +1,526 @@
+#include "light/sweep.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "base/parallel_for.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// Where nothing shades: low enough for any mean with a height to be nothing, too, and finite, so
+// that differences are numbers.
+constexpr float kNothing_m = -1e30F;
+constexpr float kLeast_m = -1e9F;
+
+constexpr int kNearRows = 4;          // whose ground a post's own ray is followed over
+constexpr std::size_t kLineSets = 2;  // lines from post to post
+constexpr double kSteepest = 1e4;     // tangent: 0.006 degrees from the zenith
+constexpr double kOnLine = 1e-6;      // of a post: a ray that meets a row there meets the post
+constexpr int kStripLines = 512;      // which a thread sweeps together: its rows stay in the cache
+constexpr int kTransposeBlock = 32;   // posts a side
+
+/// Ground under rays: height p[i] + part * (q[i] - p[i]) at the i-th line, and how far the line
+/// falls from there on: fall + ramp * i.
+struct Term {
+    std::ptrdiff_t p, q;  // of line 0, from the first post
+    float part, fall, ramp;
+    int begin, end;  // lines that have such ground
+};
+
+/// e[i] = max(e[i], term), for `count` lines from `line` on. NaN, a hole, changes nothing.
+/// Multiplications and additions are not contracted (CMakeLists.txt), so that the bits are the same
+/// for every V.
+template <typename V>
+[[gnu::always_inline]] inline void raise_by(float* e, const float* p, const float* q, int line,
+                                            int count, const Term& term) {
+    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float));
+    V lane{};
+    for (int k = 0; k < kWidth; ++k)
+        lane[k] = static_cast<float>(k);
+    int i = 0;
+    for (; i + kWidth <= count; i += kWidth) {
+        V a, b, before;
+        std::memcpy(&a, p + i, sizeof a);
+        std::memcpy(&b, q + i, sizeof b);
+        std::memcpy(&before, e + i, sizeof before);
+        const V fall = term.fall + term.ramp * (static_cast<float>(line + i) + lane);
+        const V height = (a + term.part * (b - a)) - fall;
+        const V after = height > before ? height : before;
+        std::memcpy(e + i, &after, sizeof after);
+    }
+    for (; i < count; ++i) {
+        const float fall = term.fall + term.ramp * static_cast<float>(line + i);
+        const float height = (p[i] + term.part * (q[i] - p[i])) - fall;
+        e[i] = height > e[i] ? height : e[i];
+    }
+}
+
+/// e[i] -= fall + ramp * i, likewise.
+template <typename V>
+[[gnu::always_inline]] inline void lower_by(float* e, int line, int count, float fall, float ramp) {
+    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float));
+    V lane{};
+    for (int k = 0; k < kWidth; ++k)
+        lane[k] = static_cast<float>(k);
+    int i = 0;
+    for (; i + kWidth <= count; i += kWidth) {
+        V before;
+        std::memcpy(&before, e + i, sizeof before);
+        const V after = before - (fall + ramp * (static_cast<float>(line + i) + lane));
+        std::memcpy(e + i, &after, sizeof after);
+    }
+    for (; i < count; ++i)
+        e[i] -= fall + ramp * static_cast<float>(line + i);
+}
+
+/// Both for vectors of some width.
+struct Kernel {
+    void (*raise)(float*, const float*, const float*, int, int, const Term&);
+    void (*lower)(float*, int, int, float, float);
+};
+
+#define RELEVO_SWEEP_KERNEL(lanes, ...)                                                           \
+    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float;                      \
+    __VA_ARGS__ void raise_##lanes(float* e, const float* p, const float* q, int line, int count, \
+                                   const Term& term) {                                            \
+        raise_by<Vector##lanes>(e, p, q, line, count, term);                                      \
+    }                                                                                             \
+    __VA_ARGS__ void lower_##lanes(float* e, int line, int count, float fall, float ramp) {       \
+        lower_by<Vector##lanes>(e, line, count, fall, ramp);                                      \
+    }
+
+RELEVO_SWEEP_KERNEL(4)
+#if defined(__x86_64__)
+RELEVO_SWEEP_KERNEL(8, [[gnu::target("avx2")]])
+RELEVO_SWEEP_KERNEL(16, [[gnu::target("avx512f")]])
+#endif
+#undef RELEVO_SWEEP_KERNEL
+
+/// With the widest vectors that this processor has and that are allowed.
+Kernel widest_kernel(int lanes) {
+#if defined(__x86_64__)
+    if (lanes >= 16 && __builtin_cpu_supports("avx512f")) return {raise_16, lower_16};
+    if (lanes >= 8 && __builtin_cpu_supports("avx2")) return {raise_8, lower_8};
+#endif
+    assert(lanes >= 4);
+    return {raise_4, lower_4};
+}
+
+/// A grid as the sweep goes over it: `row` 0 is the one nearest to the sun.
+struct Sheet {
+    const float* first;
+    std::ptrdiff_t stride;
+    int columns, rows;
+};
+
+/// Lines at a row. Line i is the ray through the reference, which is a post, moved by i columns.
+struct RowPlan {
+    double shift = 0;  // column of line 0
+    double fall = 0;   // of line 0, from the first row on
+    double ramp = 0;   // likewise, more for each line
+};
+
+/// The rows that matter to a window, and all that is the same for their posts.
+class Plan {
+  public:
+    Plan(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double relief_m)
+        : sheet_(sheet), sun_(sun) {
+        begin_ = find_begin(window, relief_m);
+        const int end_row = window.row + window.rows;
+        rows_.resize(static_cast<std::size_t>(end_row - begin_));
+        double before_m = 0, before_tangent = 0;
+        for (int row = begin_; row < end_row; ++row) {
+            RowPlan& at = rows_[static_cast<std::size_t>(row - begin_)];
+            const double s = sun.distance_m(row);
+            at.shift = sun.reference.column + sun.way(s).column;
+            const double tangent = sun.tangent_at(at.shift, row);
+            if (row > begin_) {
+                const RowPlan& last = rows_[static_cast<std::size_t>(row - begin_ - 1)];
+                const double step_m = before_m - s;
+                at.fall = last.fall + step_m * (before_tangent + tangent) / 2;
+                at.ramp = last.ramp + step_m * sun.tangent_a_post.column;
+            }
+            before_m = s;
+            before_tangent = tangent;
+        }
+    }
+
+    int begin() const { return begin_; }
+    const RowPlan& row(int row) const { return rows_[static_cast<std::size_t>(row - begin_)]; }
+
+    /// The ground of a row, for rays that are at `shift` there, and fall from there to `to`.
+    Term row_term(int at, double shift, const RowPlan& to) const {
+        const RowPlan& from = row(at);
+        double whole = std::floor(shift);
+        double part = shift - whole;
+        if (part > 1 - kOnLine) {
+            whole += 1;
+            part = 0;
+        } else if (part < kOnLine) {
+            part = 0;
+        }
+        const int column = static_cast<int>(whole);
+        Term term;
+        term.p = at * sheet_.stride + column;
+        term.q = term.p + (part > 0);  // at a post, what is beside it plays no part
+        term.part = static_cast<float>(part);
+        term.fall = static_cast<float>(to.fall - from.fall);
+        term.ramp = static_cast<float>(to.ramp - from.ramp);
+        term.begin = -column;
+        term.end = sheet_.columns - column - (part > 0);
+        return term;
+    }
+
+    /// Appends the ground of all columns that such rays cross between row `at - 1` and row `at`.
+    /// @param offset  of the rays from the lines, columns
+    template <typename Terms>
+    void add_column_terms(int at, double offset, const RowPlan& to, Terms& terms) const {
+        const RowPlan &a = row(at - 1), &b = row(at);
+        const double from = a.shift + offset, until = b.shift + offset;
+        const double low = std::min(from, until) + kOnLine, high = std::max(from, until) - kOnLine;
+        for (double column = std::ceil(low); column <= high; ++column) {
+            const double part = (column - from) / (until - from);
+            Term term;
+            term.p = (at - 1) * sheet_.stride + static_cast<int>(column);
+            term.q = term.p + sheet_.stride;
+            term.part = static_cast<float>(part);
+            term.fall = static_cast<float>(to.fall - (a.fall + part * (b.fall - a.fall)));
+            term.ramp = static_cast<float>(to.ramp - (a.ramp + part * (b.ramp - a.ramp)));
+            term.begin = -static_cast<int>(column);
+            term.end = sheet_.columns - static_cast<int>(column);
+            terms.push_back(term);
+        }
+    }
+
+  private:
+    /// The first row from which shade can reach the window.
+    int find_begin(const SweepWindow& window, double relief_m) const {
+        const GridPair& more = sun_.tangent_a_post;
+        const int right = window.column + window.columns - 1, end = window.row + window.rows - 1;
+        const double tangent = sun_.tangent_at(more.column > 0 ? window.column : right,
+                                               more.row > 0 ? window.row : end);
+        // Towards the sun it stands higher still.
+        const bool higher = more.column * sun_.towards.column + more.row * sun_.towards.row >= 0;
+        const double reach_m =
+            tangent > 0 && higher ? relief_m / tangent : std::numeric_limits<double>::infinity();
+        const double from_m = sun_.distance_m(window.row);
+        int begin = window.row;
+        while (begin > 0 && sun_.distance_m(begin) - from_m <= reach_m &&
+               !std::isnan(sun_.distance_m(begin - 1)))
+            --begin;
+        return begin;
+    }
+
+    const Sheet& sheet_;
+    const SweepSun& sun_;
+    int begin_ = 0;
+    std::vector<RowPlan> rows_;
+};
+
+/// All that a sweep does, row by row, the same for all strips.
+struct Steps {
+    struct Row {
+        std::array<std::size_t, kLineSets + 1> lines{};  // where terms begin, and of the posts
+        std::size_t end = 0;
+        int column = 0;            // of the post that belongs to line 0
+        float between = 0;         // how far on towards the next line each post stands
+        float fall = 0, ramp = 0;  // of lines, from the row before
+        float far_fall = 0;        // of posts' rays, from the last row that is not near
+        float far_ramp = 0;
+
+        std::size_t& posts() { return lines[kLineSets]; }
+        std::size_t posts() const { return lines[kLineSets]; }
+    };
+    std::vector<Term> terms;
+    std::vector<Row> rows;  // from `begin` on
+    int begin = 0;
+
+    const Row& row(int row) const { return rows[static_cast<std::size_t>(row - begin)]; }
+};
+
+Steps steps_of(const Plan& plan, int first_row, int end_row) {
+    Steps steps;
+    steps.begin = plan.begin();
+    for (int row = plan.begin(); row < end_row; ++row) {
+        Steps::Row step;
+        const RowPlan& here = plan.row(row);
+        for (std::size_t set = 0; set < kLineSets; ++set) {
+            const double offset = double(set) / kLineSets;
+            step.lines[set] = steps.terms.size();
+            steps.terms.push_back(plan.row_term(row, here.shift + offset, here));
+            if (row > plan.begin()) plan.add_column_terms(row, offset, here, steps.terms);
+            for (std::size_t k = step.lines[set]; k < steps.terms.size(); ++k)
+                steps.terms[k].fall += static_cast<float>(offset) * steps.terms[k].ramp;
+        }
+        if (row > plan.begin()) {
+            step.fall = static_cast<float>(here.fall - plan.row(row - 1).fall);
+            step.ramp = static_cast<float>(here.ramp - plan.row(row - 1).ramp);
+        }
+        step.posts() = steps.terms.size();
+        step.column = static_cast<int>(std::ceil(here.shift - kOnLine));
+        const double between = std::max(0.0, step.column - here.shift);
+        step.between = static_cast<float>(between < kOnLine ? 0 : between);
+        for (int at = row - 1; row >= first_row && at >= std::max(row - kNearRows, plan.begin());
+             --at) {
+            steps.terms.push_back(plan.row_term(at, plan.row(at).shift + between, here));
+            plan.add_column_terms(at + 1, between, here, steps.terms);
+        }
+        step.end = steps.terms.size();
+        for (std::size_t k = step.posts(); k < step.end; ++k)  // by the line that a post is on
+            steps.terms[k].fall += step.between * steps.terms[k].ramp;
+        if (const int at = row - kNearRows - 1; at >= plan.begin()) {
+            step.far_ramp = static_cast<float>(here.ramp - plan.row(at).ramp);
+            step.far_fall =
+                static_cast<float>(here.fall - plan.row(at).fall) + step.between * step.far_ramp;
+        }
+        steps.rows.push_back(step);
+    }
+    return steps;
+}
+
+/// Lines next to each other, from the sun to the end of the window.
+class Strip {
+  public:
+    /// @param line  the first one
+    Strip(const Sheet& sheet, const Steps& steps, Kernel kernel, int line)
+        : sheet_(sheet), steps_(steps), kernel_(kernel), line_(line) {
+        for (Lines& lines : height_m_)
+            lines.fill(kNothing_m);
+    }
+
+    /// To the next row, and the ground there.
+    void advance(int row) {
+        const Steps::Row& step = steps_.row(row);
+        for (std::size_t set = 0; set < kLineSets; ++set) {
+            float* const lines = height_m_[set].data();
+            const float offset = static_cast<float>(set) / kLineSets;
+            kernel_.lower(lines, line_, kLines, step.fall + offset * step.ramp, step.ramp);
+            for (std::size_t k = step.lines[set]; k < step.lines[set + 1]; ++k)
+                raise(lines, line_, line_ + kLines, steps_.terms[k]);
+        }
+    }
+
+    /// The edge at the posts of a row, the lines having been left kNearRows + 1 rows before.
+    /// @param first, end  of the columns that are wanted
+    /// @param edge_m      of column 0
+    void edge(int row, int first, int end, float* edge_m) {
+        const Steps::Row& step = steps_.row(row);
+        const int from = std::max(line_, first - step.column);
+        const int to = std::min(line_ + kStripLines, end - step.column);
+        if (from >= to) return;
+        float* const e = edge_m + step.column + from;
+        std::fill(e, e + (to - from), kNothing_m);
+        if (row - kNearRows - 1 >= steps_.begin) {
+            // The lines before and behind a post; the next one of the first set is one on.
+            const float at = step.between * kLineSets;
+            const auto set = static_cast<std::size_t>(at);
+            const float part = at - static_cast<float>(set);
+            const float* const p = height_m_[set].data() + (from - line_);
+            const float* const q = set + 1 < kLineSets ? height_m_[set + 1].data() + (from - line_)
+                                                       : height_m_[0].data() + (from - line_) + 1;
+            const Term term{0, 0, part, step.far_fall, step.far_ramp, from, to};
+            kernel_.raise(e, p, part > 0 ? q : p, from, to - from, term);
+        }
+        for (std::size_t k = step.posts(); k < step.end; ++k)
+            raise(e, from, to, steps_.terms[k]);
+        for (int i = 0; i < to - from; ++i)
+            e[i] = e[i] > kLeast_m ? e[i] : -kInfinity;
+    }
+
+  private:
+    static constexpr int kLines = kStripLines + 1;  // the posts of the last one lie before the next
+
+    void raise(float* e, int from, int to, const Term& term) {
+        const int begin = std::max(from, term.begin), end = std::min(to, term.end);
+        if (begin >= end) return;
+        kernel_.raise(e + (begin - from), sheet_.first + term.p + begin,
+                      sheet_.first + term.q + begin, begin, end - begin, term);
+    }
+
+    const Sheet& sheet_;
+    const Steps& steps_;
+    Kernel kernel_;
+    int line_;
+    using Lines = std::array<float, kLines>;
+    std::array<Lines, kLineSets> height_m_;
+};
+
+/// shadow_edge() of a sheet whose row 0 is nearest to the sun, and is farther from it than columns
+/// are apart.
+void sweep(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double relief_m,
+           int lanes, float* edge_m, std::ptrdiff_t stride) {
+    const int end_row = window.row + window.rows, end_column = window.column + window.columns;
+    const Steps steps = steps_of(Plan(sheet, sun, window, relief_m), window.row, end_row);
+    int first_line = std::numeric_limits<int>::max(), end_line = std::numeric_limits<int>::min();
+    for (int row = window.row; row < end_row; ++row) {
+        first_line = std::min(first_line, window.column - steps.row(row).column);
+        end_line = std::max(end_line, end_column - steps.row(row).column);
+    }
+    const Kernel kernel = widest_kernel(lanes);
+    const int strips = (end_line - first_line + kStripLines - 1) / kStripLines;
+    parallel_for(0, strips, 1, [&](int begin, int end) {
+        for (int k = begin; k < end; ++k) {
+            Strip strip(sheet, steps, kernel, first_line + k * kStripLines);
+            for (int row = steps.begin; row < end_row; ++row) {
+                if (const int at = row - kNearRows - 1; at >= steps.begin) strip.advance(at);
+                if (row >= window.row)
+                    strip.edge(row, window.column, end_column,
+                               edge_m + (row - window.row) * stride - window.column);
+            }
+        }
+    });
+}
+
+/// @param rows, columns  of `from`
+void transpose(const float* from, std::ptrdiff_t from_stride, int rows, int columns, float* to,
+               std::ptrdiff_t to_stride) {
+    const int blocks = (rows + kTransposeBlock - 1) / kTransposeBlock;
+    parallel_for(0, blocks, 8, [&](int first, int last) {
+        for (int r0 = first * kTransposeBlock; r0 < std::min(rows, last * kTransposeBlock);
+             r0 += kTransposeBlock)
+            for (int c0 = 0; c0 < columns; c0 += kTransposeBlock)
+                for (int r = r0; r < std::min(rows, r0 + kTransposeBlock); ++r)
+                    for (int c = c0; c < std::min(columns, c0 + kTransposeBlock); ++c)
+                        to[c * to_stride + r] = from[r * from_stride + c];
+    });
+}
+
+/// The same about the nearest post, so that one line goes through posts.
+SweepSun at_a_post(SweepSun sun) {
+    const GridPair post{std::round(sun.reference.column), std::round(sun.reference.row)};
+    sun.tangent = sun.tangent_at(post.column, post.row);
+    sun.reference = post;
+    return sun;
+}
+
+/// The same seen in a mirror: rows counted from the other end.
+SweepSun mirrored(SweepSun sun, int rows) {
+    sun.reference.row = rows - 1 - sun.reference.row;
+    for (GridPair* const pair : {&sun.towards, &sun.bend, &sun.twist, &sun.tangent_a_post})
+        pair->row = -pair->row;
+    return sun;
+}
+
+}  // namespace
+
+GridPair SweepSun::way(double distance_m) const {
+    const auto posts = [=](double first, double second, double third) {
+        return ((third / 6 * distance_m + second / 2) * distance_m + first) * distance_m;
+    };
+    return {posts(towards.column, bend.column, twist.column),
+            posts(towards.row, bend.row, twist.row)};
+}
+
+double SweepSun::distance_m(double row) const {
+    const double posts = row - reference.row;
+    double s = posts / towards.row;
+    if (bend.row == 0 && twist.row == 0) return s;
+    for (int step = 0; step < 8; ++step) {  // Newton's; two or three do
+        const double slope = (twist.row / 2 * s + bend.row) * s + towards.row;
+        if (!(slope * towards.row > 0)) return std::numeric_limits<double>::quiet_NaN();
+        s -= (way(s).row - posts) / slope;
+    }
+    return s;
+}
+
+SweepSun SweepSun::transposed() const {
+    SweepSun sun = *this;
+    for (GridPair* const pair :
+         {&sun.reference, &sun.towards, &sun.bend, &sun.twist, &sun.tangent_a_post})
+        std::swap(pair->column, pair->row);
+    return sun;
+}
+
+SweepSun sun_over_map(const GridPair& spacing_m, const GridPair& direction, double elevation_rad,
+                      const GridPair& reference, double curvature) {
+    SweepSun sun;
+    sun.reference = reference;
+    sun.towards = {direction.column / spacing_m.column, direction.row / spacing_m.row};
+    sun.tangent = std::tan(elevation_rad);
+    const double a_metre = curvature * (1 + sun.tangent * sun.tangent);
+    sun.tangent_a_post = {a_metre * direction.column * spacing_m.column,
+                          a_metre * direction.row * spacing_m.row};
+    return sun;
+}
+
+Sweep::Sweep(const float* height_m, int columns, int rows, std::ptrdiff_t stride)
+    : height_m_(height_m), columns_(columns), rows_(rows), stride_(stride) {
+    assert(columns > 0 && rows > 0);
+    struct Range {
+        float lowest = kInfinity, highest = -kInfinity;
+    };
+    std::vector<Range> of_rows(static_cast<std::size_t>(rows));
+    parallel_for(0, rows, 64, [&](int first, int last) {
+        for (int row = first; row < last; ++row) {
+            Range range;
+            for (int column = 0; column < columns; ++column) {
+                const float h = height_m[row * stride + column];
+                range.lowest = h < range.lowest ? h : range.lowest;
+                range.highest = h > range.highest ? h : range.highest;
+            }
+            of_rows[static_cast<std::size_t>(row)] = range;
+        }
+    });
+    lowest_m_ = kInfinity, highest_m_ = -kInfinity;
+    for (const Range& range : of_rows) {
+        lowest_m_ = std::min(lowest_m_, range.lowest);
+        highest_m_ = std::max(highest_m_, range.highest);
+    }
+}
+
+const float* Sweep::transposed() const {
+    std::call_once(once_, [&] {
+        transposed_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+        transpose(height_m_, stride_, rows_, columns_, transposed_.data(), rows_);
+    });
+    return transposed_.data();
+}
+
+void Sweep::shadow_edge(const SweepSun& given, const SweepWindow& window, float* edge_m,
+                        std::ptrdiff_t stride, int lanes) const {
+    assert(window.column >= 0 && window.row >= 0 && window.columns > 0 && window.rows > 0 &&
+           window.column + window.columns <= columns_ && window.row + window.rows <= rows_);
+    SweepSun sun = at_a_post(given);
+    if (!(std::abs(sun.tangent) < kSteepest)) {
+        sun.tangent = std::copysign(kSteepest, sun.tangent);
+        sun.tangent_a_post = {};
+    }
+    const bool along_rows = std::abs(sun.towards.row) < std::abs(sun.towards.column);
+    Sheet sheet{height_m_, stride_, columns_, rows_};
+    SweepWindow part = window;
+    if (along_rows) {
+        sheet = {transposed(), rows_, rows_, columns_};
+        part = {window.row, window.column, window.rows, window.columns};
+        sun = sun.transposed();
+    }
+    std::vector<float> turned;  // the window as the sheet has it
+    float* first = edge_m;
+    std::ptrdiff_t step = stride;
+    if (along_rows) {
+        turned.resize(static_cast<std::size_t>(part.columns) * static_cast<std::size_t>(part.rows));
+        first = turned.data();
+        step = part.columns;
+    }
+    float* const turned_first = first;
+    if (sun.towards.row > 0) {
+        sun = mirrored(sun, sheet.rows);
+        sheet.first += (sheet.rows - 1) * sheet.stride;
+        sheet.stride = -sheet.stride;
+        part.row = sheet.rows - part.row - part.rows;
+        first += (part.rows - 1) * step;
+        step = -step;
+    }
+    const double relief_m = highest_m_ > lowest_m_ ? double{highest_m_} - lowest_m_ : 0;
+    sweep(sheet, sun, part, relief_m, lanes, first, step);
+    if (along_rows) transpose(turned_first, part.columns, part.rows, part.columns, edge_m, stride);
+}
+
+}  // namespace relevo::light

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <vector>
+
+/// The shadows that ground casts, for every post of a grid at once. This file and its source need
+/// nothing else of the project but base/parallel_for.h.
+namespace relevo::light {
+
+/// A figure for each way over a grid: along a row, from column to column, and along a column.
+struct GridPair {
+    double column = 0, row = 0;
+};
+
+/// A sun over a part of a grid, about a point of that part.
+struct SweepSun {
+    GridPair reference;  ///< the point
+    /// Posts that a metre of ground leads towards the sun. Its length is what the spacing of the
+    /// posts is that way, which need not be the same along rows and columns.
+    GridPair towards;
+    /// Where the grid shows rays as bent: change of `towards` with each metre, and of that.
+    GridPair bend, twist;
+    /// Of the elevation, as seen: how a ray comes down at the point, and by how much more from post
+    /// to post. On a round Earth that is so much for each metre towards the sun as the ground turns
+    /// away from it, refraction of the air included.
+    double tangent = 0;
+    GridPair tangent_a_post;
+
+    /// From the reference to where the ray through it is after so many metres towards the sun.
+    GridPair way(double distance_m) const;
+    /// After how many metres it is at a row, from the reference on; less than 0 away from the sun.
+    /// NaN where it turns back before.
+    double distance_m(double row) const;
+    /// The same with rows for columns.
+    SweepSun transposed() const;
+    double tangent_at(double column, double row) const {
+        return tangent + tangent_a_post.column * (column - reference.column) +
+               tangent_a_post.row * (row - reference.row);
+    }
+};
+
+/// A sun over a map that is true to scale.
+/// @param spacing_m      from column to column and from row to row
+/// @param direction      horizontally to the sun, a unit vector of metres
+/// @param elevation_rad  as seen from `reference`
+/// @param curvature      of the ground under a line of sight [1/m]: (1 - k) / R; 0: a plane
+SweepSun sun_over_map(const GridPair& spacing_m, const GridPair& direction, double elevation_rad,
+                      const GridPair& reference = {}, double curvature = 0);
+
+/// Posts [column, column + columns) by [row, row + rows).
+struct SweepWindow {
+    int column = 0, row = 0, columns = 0, rows = 0;
+};
+
+/// Heights at the posts of a grid, and the shadows over them.
+///
+/// Rays of the sun are lines over the grid, half a post apart, all of one shape. A sweep goes away
+/// from the sun, row by row (or column by column, as the sun stands), and lets every line fall with
+/// the sun and rise to the ground under it: to all its crossings with the rows and columns of the
+/// grid, heights being linear from post to post there. A post lies between two lines, and has the
+/// mean of their heights by its distance from them; but for the ground of the nearest rows, which
+/// is where an error would be shade, its own ray is followed. A post costs the same however far
+/// shadows reach.
+///
+/// Accuracy: towards the eight directions of the compass rose on square posts exact, but for float:
+/// else what lies farther off than the nearest rows is met within a quarter of a post of the ray
+/// (tests/light/test_sweep.cpp has shares and figures). Every post gets the same bits whatever the
+/// number of threads and the width of the processor's vectors. Speed: bench_light.
+///
+/// Safe on several threads at once.
+class Sweep {
+  public:
+    /// @param height_m  the first post; NaN is a hole, which shades nothing. Outlives this
+    /// @param stride    from row to row
+    Sweep(const float* height_m, int columns, int rows, std::ptrdiff_t stride);
+
+    /// The height of the shadow's edge: how high the rays that pass over the ground before a post
+    /// are at the post. What is lower there is in the shade; the post itself is lit where it is as
+    /// high or higher, and its height less the edge is the margin. Minus infinity where nothing of
+    /// the grid lies towards the sun. Holes have one, too.
+    /// @param sun     its tangent may be of any sign and size; a ray that is bent must not
+    ///     turn back over the grid
+    /// @param window  of the grid, where it is wanted; ground outside of it shades all the same
+    /// @param edge_m  the window's first post
+    /// @param stride  of `edge_m`, from row to row
+    /// @param lanes   of the processor's vectors that are used at most, 4 to kMostLanes
+    void shadow_edge(const SweepSun& sun, const SweepWindow& window, float* edge_m,
+                     std::ptrdiff_t stride, int lanes = kMostLanes) const;
+
+    static constexpr int kMostLanes = 16;
+
+    float lowest_m() const { return lowest_m_; }    ///< infinity where there are only holes
+    float highest_m() const { return highest_m_; }  ///< minus infinity likewise
+
+  private:
+    const float* transposed() const;
+
+    const float* height_m_;
+    int columns_, rows_;
+    std::ptrdiff_t stride_;
+    float lowest_m_, highest_m_;
+    mutable std::once_flag once_;
+    mutable std::vector<float> transposed_;  // made for the first sun that needs it
+};
+
+}  // namespace relevo::light
