@@ -94,7 +94,8 @@ void TimeArguments::add_to(CLI::App& verb) {
         "event, sunset-30min or sunrise@46.55,8.56, together with --date");
     verb.add_option("--date", date, "Day of the event in --time: 2026-06-21");
     verb.add_option("--tz", zone,
-                    "Time zone: Europe/Zurich, +05:30, solar, or auto, that of the place (auto)");
+                    "Time zone: Europe/Zurich, +05:30, solar, or auto, that of the place (auto)")
+        ->check(zone_name());
 }
 
 bool TimeArguments::given() const {
@@ -197,6 +198,18 @@ CLI::Validator any_number() {
     return {[](const std::string& text) {
                 return parse_number(text) ? std::string()
                                           : fmt::format("expected a number but got {}", text);
+            },
+            ""};
+}
+
+CLI::Validator zone_name() {
+    return {[](const std::string& text) {
+                return trimmed(text).empty()
+                           ? fmt::format(
+                                 "expected a zone such as Europe/Zurich, +05:30, auto or "
+                                 "solar but got \"{}\"",
+                                 text)
+                           : std::string();
             },
             ""};
 }

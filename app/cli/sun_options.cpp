@@ -54,9 +54,10 @@ void DaysArguments::add_to(CLI::App& verb) {
 void DaysArguments::add_year_to(CLI::App& verb) {
     verb.add_option("--year", year, "All days of a year, 1900 to 2100")->check(year_number());
     verb.add_option(
-        "--tz", zone,
-        "Time zone that days are counted by: Europe/Zurich, +05:30, solar, or auto, that of "
-        "the place (auto)");
+            "--tz", zone,
+            "Time zone that days are counted by: Europe/Zurich, +05:30, solar, or auto, that of "
+            "the place (auto)")
+        ->check(zone_name());
 }
 
 DaysArguments::Days DaysArguments::parse(const geo::Geodetic& place) const {

@@ -61,6 +61,8 @@ using Clock = std::chrono::steady_clock;
 constexpr float kPanel_px = 360;
 /// After the last input the hand counts as moving for so long.
 constexpr double kRest_s = 0.15;
+/// What comes after so long is another step of undo.
+constexpr double kStep_s = 0.5;
 /// Files are looked at again so often.
 constexpr double kWatch_s = 1;
 constexpr float kLine_px = 8;    // beside the line of a comparison that take hold of it
@@ -113,6 +115,7 @@ class Viewer {
             }
             open_files();
             watch_files();
+            step_at_rest();
             if (most_s >= kWatch_s && busy_frames_ == 0) continue;
             window_->draw([&] { panels(); });
             state_.take_effects(/*is_step=*/true);
@@ -807,10 +810,6 @@ class Viewer {
     void hand_over() {
         if (state_.sun_moves) moved();
         rested_ = seconds_since(moved_at_) > kRest_s;
-        // What the hand has moved is a step when it comes to rest.
-        if (rested_ && !dragging_ && !glides() && !keys_held_ && !state_.playing &&
-            history_.differs(state_.document))
-            state_.step = true;
         const Wanted wanted = wanted_now();
         if (!(wanted_ && same(*wanted_, wanted))) {
             scene_->want(wanted);
@@ -835,6 +834,13 @@ class Viewer {
             takes_when_sharp_ = false;
             take_picture();
         }
+    }
+
+    /// What the hand has moved is a step of undo when it has come to rest.
+    void step_at_rest() {
+        if (is_open() && seconds_since(moved_at_) > kStep_s && !dragging_ && !keys_held_ &&
+            !state_.playing && history_.differs(state_.document))
+            history_.add(state_.document);
     }
 
     /// The chosen point's light is that of the day that is shown.
