@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <map>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/parallel_for.h"
 #include "maps.h"
 #include "material.h"
 #include "patches.h"
@@ -34,29 +35,41 @@ void run(const Options& options) {
     std::filesystem::create_directories(options.output / "noise");
     if (!options.png.empty()) std::filesystem::create_directories(options.png);
 
-    std::map<std::string, std::pair<image::TextureData, image::TextureData>> made;
     const std::vector<std::string> names = options.only.empty() ? material_names() : options.only;
-    for (const std::string& name : names) {
-        const Material material = make_material(name, options.size);
-        auto& [albedo, normal] = made[name] = {albedo_texture(material), normal_texture(material)};
-        write_ktx(options.output / "ground" / (name + "_albedo.ktx2"), albedo);
-        write_ktx(options.output / "ground" / (name + "_normal.ktx2"), normal);
-        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-        log::debug(fmt::format("{} done at {:.2f} s", name, taken.count()));
-    }
-    const image::TextureData volume = perlin_texture(options.volume_size);
-    write_ktx(options.output / "noise" / "perlin.ktx2", volume);
-    write_ktx(options.output / "noise" / "patches.ktx2", patches_texture(options.size));
-    write_ktx(options.output / "noise" / "regions.ktx2", regions_texture(options.size / 2));
+    struct Made {
+        image::TextureData albedo, normal;
+    };
+    std::vector<Made> made(names.size());
+    image::TextureData volume;
+    std::vector<std::function<void()>> works;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        works.emplace_back([&, i] {
+            const Material material = make_material(names[i], options.size);
+            made[i] = {albedo_texture(material), normal_texture(material)};
+            const std::string file = (options.output / "ground" / names[i]).string();
+            write_ktx(file + "_albedo.ktx2", made[i].albedo);
+            write_ktx(file + "_normal.ktx2", made[i].normal);
+        });
+    const std::filesystem::path noise = options.output / "noise";
+    works.emplace_back([&] {
+        volume = perlin_texture(options.volume_size);
+        write_ktx(noise / "perlin.ktx2", volume);
+    });
+    works.emplace_back([&] { write_ktx(noise / "patches.ktx2", patches_texture(options.size)); });
+    works.emplace_back(
+        [&] { write_ktx(noise / "regions.ktx2", regions_texture(options.size / 2)); });
+    parallel_for(0, static_cast<int>(works.size()), 1, [&](int first, int last) {
+        for (int i = first; i < last; ++i)
+            works[static_cast<std::size_t>(i)]();
+    });
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     log::debug(fmt::format("all done at {:.2f} s", taken.count()));
 
     if (options.png.empty()) return;
     std::vector<Ground> grounds;
-    for (const std::string& name : names) {
-        const auto& [albedo, normal] = made[name];
-        write_previews(options.png, name, albedo, normal);
-        grounds.push_back({&albedo, &normal});
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        write_previews(options.png, names[i], made[i].albedo, made[i].normal);
+        grounds.push_back({&made[i].albedo, &made[i].normal});
     }
     write_composite(options.png / "composite_near.png", grounds, 4, 45);
     write_composite(options.png / "composite_low.png", grounds, 4, 10);
