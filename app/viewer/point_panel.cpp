@@ -66,6 +66,7 @@ void point_panel(State& state) {
         const geo::Geodetic& place = state.point->place;
         ImGui::TextUnformatted(geo::degrees_text(place).c_str());
         ImGui::TextUnformatted(geo::utm_text(place).c_str());
+        ImGui::Text("MGRS %s", geo::mgrs_text(place).c_str());
         ImGui::Text("height %.1f m", place.height_m);
     }
     if (state.point_in_work.valid() || state.point->date != state.day.date)
