@@ -112,6 +112,7 @@ class Viewer {
                 keys();
                 navigate(std::min(passed_s, 0.1));
                 pass_time(std::min(passed_s, 0.5));
+                want_view();  // before the panels are drawn, which takes its time too
             }
             open_files();
             watch_files();
@@ -138,8 +139,7 @@ class Viewer {
         picture_ = nullptr;
         wanted_.reset();
         dragging_.reset();
-        zoom_left_ = 0;
-        glide_deg_a_s_ = {};
+        stop_gliding();
         walking_ = keys_held_ = false;
         history_ = {};  // poses are of the other ground
         stop_comparing();
@@ -175,6 +175,11 @@ class Viewer {
         if (busy_frames_ > 0 || state_.playing || glides() || keys_held_) return 0.008;
         if (!rested_) return 0.05;
         return kWatch_s;
+    }
+
+    void stop_gliding() {
+        zoom_left_ = 0;
+        glide_deg_a_s_ = {};
     }
 
     bool glides() const { return std::abs(zoom_left_) > 1e-3 || length(glide_deg_a_s_) > 0.5; }
@@ -369,8 +374,7 @@ class Viewer {
                 dragging_ = Drag::Sun;
             if (button == 0 && before_ && std::abs(mouse.x - window_->line() * size().x) < kLine_px)
                 dragging_ = Drag::Line;
-            glide_deg_a_s_ = {};
-            zoom_left_ = 0;
+            stop_gliding();
         }
     }
 
@@ -420,10 +424,6 @@ class Viewer {
         const auto axis = [&](int plus, int minus) {
             return (window_->is_down(plus) ? 1.0 : 0.0) - (window_->is_down(minus) ? 1.0 : 0.0);
         };
-        // Asked of the window: ImGui knows of Ctrl+S a frame later than of S.
-        keys_held_ = false;
-        if (window_->is_down(GLFW_KEY_LEFT_CONTROL) || window_->is_down(GLFW_KEY_RIGHT_CONTROL))
-            return;
         const glm::dvec3 by(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_W, GLFW_KEY_S),
                             axis(GLFW_KEY_E, GLFW_KEY_Q));
         const glm::dvec2 turn(axis(GLFW_KEY_LEFT, GLFW_KEY_RIGHT),
@@ -560,6 +560,9 @@ class Viewer {
         constexpr double kHour_s = 3600, kDay_s = 86400;
         const double step_s = press.shift ? kDay_s : kHour_s / 2;
         const glm::dvec3 middle = hold(0.5f * size());
+        // What the hand has done before is a step of its own.
+        if (history_.differs(state_.document)) history_.add(state_.document);
+        stop_gliding();
         if (press.key == GLFW_KEY_LEFT_BRACKET) {
             state_.set_utc(state_.document.utc - step_s);
         } else if (press.key == GLFW_KEY_RIGHT_BRACKET) {
@@ -594,6 +597,7 @@ class Viewer {
     }
 
     void go_to(const Document& document) {
+        stop_gliding();
         const bool other_effects = scene::scene_text(with_effects(document), "") !=
                                    scene::scene_text(with_effects(state_.document), "");
         state_.document = document;
@@ -807,7 +811,7 @@ class Viewer {
 
     // ---- to the thread that draws
 
-    void hand_over() {
+    void want_view() {
         if (state_.sun_moves) moved();
         rested_ = seconds_since(moved_at_) > kRest_s;
         const Wanted wanted = wanted_now();
@@ -816,6 +820,10 @@ class Viewer {
             if (before_) before_->want(wanted);
         }
         wanted_ = wanted;
+    }
+
+    void hand_over() {
+        want_view();
         if (state_.new_effects) scene_->want_effects(*state_.new_effects);
         for (const auto& [address, value] : state_.new_values)
             scene_->want_value(address, value);
@@ -827,6 +835,7 @@ class Viewer {
         if (busy_frames_ > 0) --busy_frames_;
         if (state_.compare_is_wanted && !before_) compare();
         if (!state_.compare_is_wanted && before_) stop_comparing();
+        sun_moved_ = state_.sun_moves;
         state_.step = state_.sun_moves = false;
         state_.new_effects.reset();
         state_.new_values.clear();
@@ -838,8 +847,8 @@ class Viewer {
 
     /// What the hand has moved is a step of undo when it has come to rest.
     void step_at_rest() {
-        if (is_open() && seconds_since(moved_at_) > kStep_s && !dragging_ && !keys_held_ &&
-            !state_.playing && history_.differs(state_.document))
+        if (is_open() && seconds_since(moved_at_) > kStep_s && !dragging_ && !glides() &&
+            !keys_held_ && !state_.playing && history_.differs(state_.document))
             history_.add(state_.document);
     }
 
@@ -858,7 +867,7 @@ class Viewer {
         wanted.width_px = size.x;
         wanted.height_px = size.y;
         wanted.moving = !rested_;
-        wanted.sun_moving = !rested_ && state_.sun_moves;
+        wanted.sun_moving = !rested_ && (state_.sun_moves || sun_moved_);
         return wanted;
     }
 
@@ -896,6 +905,7 @@ class Viewer {
     double zoom_left_ = 0;  // natural logarithm of what is still to be zoomed
     glm::dvec2 glide_deg_a_s_{0};
     bool walking_ = false, keys_held_ = false;
+    bool sun_moved_ = false;  // in the frame before
 
     Clock::time_point frame_at_ = Clock::now(), moved_at_ = Clock::now();
     bool rested_ = true, panels_ = true, sheet_ = false, takes_when_sharp_ = false;

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -122,6 +123,7 @@ struct Window::Impl {
     Shown shown, before;
     float line = 0.5f;
     std::vector<KeyPress> keys;
+    std::set<int> held;  // pressed without Ctrl, whichever of the two is let go first
     std::vector<std::string> dropped;
 
     explicit Impl(const std::string& title) {
@@ -156,10 +158,12 @@ struct Window::Impl {
         glfwSetKeyCallback(
             handle, [](GLFWwindow* window, int code, int scancode, int action, int mods) {
                 auto& self = *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+                const bool control = (mods & GLFW_MOD_CONTROL) != 0;
+                if (action == GLFW_PRESS && !control) self.held.insert(code);
+                if (action == GLFW_RELEASE) self.held.erase(code);
                 const int key = letter_of(code, scancode);
                 if (action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key)))
-                    self.keys.push_back(
-                        {key, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
+                    self.keys.push_back({key, control, (mods & GLFW_MOD_SHIFT) != 0});
             });
         glfwSetDropCallback(handle, [](GLFWwindow* window, int count, const char** names) {
             auto& self = *static_cast<Impl*>(glfwGetWindowUserPointer(window));
@@ -311,7 +315,7 @@ glm::vec2 Window::size() const {
 }
 
 bool Window::is_down(int key) const {
-    return !ImGui::GetIO().WantTextInput && glfwGetKey(impl_->handle, key) == GLFW_PRESS;
+    return !ImGui::GetIO().WantTextInput && impl_->held.contains(key);
 }
 
 void Window::copy(const std::string& text) {

@@ -58,7 +58,7 @@ class Window {
     std::vector<std::string> take_dropped_files();
     /// From the window's upper left corner, in the units of size().
     glm::vec2 mouse() const;
-    bool is_down(int key) const;         ///< GLFW_KEY_...
+    bool is_down(int key) const;         ///< GLFW_KEY_..., pressed without Ctrl
     void copy(const std::string& text);  ///< to the clipboard
 
   private:
