@@ -15,86 +15,104 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Where nothing shades: low enough for any mean with a height to be nothing, too, and finite, so
-// that differences are numbers.
-constexpr float kNothing_m = -1e30F;
-constexpr float kLeast_m = -1e9F;
+constexpr float kNothing_m = -kInfinity;  // where nothing shades
 
 constexpr int kNearRows = 4;          // whose ground a post's own ray is followed over
 constexpr std::size_t kLineSets = 2;  // lines from post to post
 constexpr double kSteepest = 1e4;     // tangent: 0.006 degrees from the zenith
 constexpr double kOnLine = 1e-6;      // of a post: a ray that meets a row there meets the post
 constexpr int kStripLines = 512;      // which a thread sweeps together: its rows stay in the cache
-constexpr int kTransposeBlock = 32;   // posts a side
 
-/// Ground under rays: height p[i] + part * (q[i] - p[i]) at the i-th line, and how far the line
-/// falls from there on: fall + ramp * i.
+/// How far lines fall: fall + ramp * line.
+struct Slope {
+    float fall = 0, ramp = 0;
+};
+
+/// Ground under rays: height p[i] + part * (q[i] - p[i]) at the i-th line, which falls from there
+/// on.
 struct Term {
     std::ptrdiff_t p, q;  // of line 0, from the first post
-    float part, fall, ramp;
+    float part;
+    Slope slope;
     int begin, end;  // lines that have such ground
 };
 
-/// e[i] = max(e[i], term), for `count` lines from `line` on. NaN, a hole, changes nothing.
-/// Multiplications and additions are not contracted (CMakeLists.txt), so that the bits are the same
-/// for every V.
-template <typename V>
-[[gnu::always_inline]] inline void raise_by(float* e, const float* p, const float* q, int line,
-                                            int count, const Term& term) {
-    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float));
-    V lane{};
-    for (int k = 0; k < kWidth; ++k)
-        lane[k] = static_cast<float>(k);
-    int i = 0;
-    for (; i + kWidth <= count; i += kWidth) {
-        V a, b, before;
-        std::memcpy(&a, p + i, sizeof a);
-        std::memcpy(&b, q + i, sizeof b);
-        std::memcpy(&before, e + i, sizeof before);
-        const V fall = term.fall + term.ramp * (static_cast<float>(line + i) + lane);
-        const V height = (a + term.part * (b - a)) - fall;
-        const V after = height > before ? height : before;
-        std::memcpy(e + i, &after, sizeof after);
-    }
-    for (; i < count; ++i) {
-        const float fall = term.fall + term.ramp * static_cast<float>(line + i);
-        const float height = (p[i] + term.part * (q[i] - p[i])) - fall;
-        e[i] = height > e[i] ? height : e[i];
-    }
-}
-
-/// e[i] -= fall + ramp * i, likewise.
-template <typename V>
-[[gnu::always_inline]] inline void lower_by(float* e, int line, int count, float fall, float ramp) {
-    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float));
-    V lane{};
-    for (int k = 0; k < kWidth; ++k)
-        lane[k] = static_cast<float>(k);
-    int i = 0;
-    for (; i + kWidth <= count; i += kWidth) {
-        V before;
-        std::memcpy(&before, e + i, sizeof before);
-        const V after = before - (fall + ramp * (static_cast<float>(line + i) + lane));
-        std::memcpy(e + i, &after, sizeof after);
-    }
-    for (; i < count; ++i)
-        e[i] -= fall + ramp * static_cast<float>(line + i);
-}
-
-/// Both for vectors of some width.
-struct Kernel {
-    void (*raise)(float*, const float*, const float*, int, int, const Term&);
-    void (*lower)(float*, int, int, float, float);
+/// The same from some line on.
+struct Ground {
+    const float *p = nullptr, *q = nullptr;
+    float part = 0;
+    Slope slope;
 };
 
-#define RELEVO_SWEEP_KERNEL(lanes, ...)                                                           \
-    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float;                      \
-    __VA_ARGS__ void raise_##lanes(float* e, const float* p, const float* q, int line, int count, \
-                                   const Term& term) {                                            \
-        raise_by<Vector##lanes>(e, p, q, line, count, term);                                      \
-    }                                                                                             \
-    __VA_ARGS__ void lower_##lanes(float* e, int line, int count, float fall, float ramp) {       \
-        lower_by<Vector##lanes>(e, line, count, fall, ramp);                                      \
+/// Loads that cross lines of the cache are what a sweep waits for: what is used twice is loaded
+/// once, whatever the compiler thinks of it.
+#if defined(__x86_64__)
+#define RELEVO_IN_REGISTER(v) asm("" : "+x"(v))
+#else
+#define RELEVO_IN_REGISTER(v)
+#endif
+
+/// Lines next to each other that rise to their ground: e[i] = max(before[i] - slope, all ground).
+struct Lift {
+    float* e;
+    const float* before;  // or null: of ground alone
+    int line;             // the number of the first
+    int lines;
+    Slope slope;
+    const Ground* ground;
+    int grounds;
+};
+
+/// kVectors vectors of lines, from the i-th on. NaN, a hole, changes nothing. Multiplications and
+/// additions are not contracted (CMakeLists.txt), so that the bits are the same for every V.
+template <typename V, int kVectors>
+[[gnu::always_inline]] inline void raise_some(const Lift& lift, int i, const V& lane) {
+    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float));
+    V line[kVectors], height[kVectors];
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k) {
+        line[k] = static_cast<float>(lift.line + i + k * kWidth) + lane;
+        height[k] = V{} + kNothing_m;
+        if (lift.before) std::memcpy(&height[k], lift.before + i + k * kWidth, sizeof(V));
+        height[k] -= lift.slope.fall + lift.slope.ramp * line[k];
+    }
+    for (const Ground* g = lift.ground; g < lift.ground + lift.grounds; ++g)
+#pragma GCC unroll 8
+        for (int k = 0; k < kVectors; ++k) {
+            V a, b;
+            std::memcpy(&a, g->p + i + k * kWidth, sizeof(V));
+            std::memcpy(&b, g->q + i + k * kWidth, sizeof(V));
+            RELEVO_IN_REGISTER(a);
+            const V h = (a + g->part * (b - a)) - (g->slope.fall + g->slope.ramp * line[k]);
+            height[k] = h > height[k] ? h : height[k];
+        }
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k)
+        std::memcpy(lift.e + i + k * kWidth, &height[k], sizeof(V));
+}
+
+template <typename V>
+[[gnu::always_inline]] inline void raise_all(const Lift& lift) {
+    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float)), kTogether = 4;
+    V lane{};
+    for (int k = 0; k < kWidth; ++k)
+        lane[k] = static_cast<float>(k);
+    int i = 0;
+    for (; i + kTogether * kWidth <= lift.lines; i += kTogether * kWidth)
+        raise_some<V, kTogether>(lift, i, lane);
+    for (; i + kWidth <= lift.lines; i += kWidth)
+        raise_some<V, 1>(lift, i, lane);
+    for (; i < lift.lines; ++i)
+        raise_some<float, 1>(lift, i, 0);
+}
+
+/// Raising by vectors of some width.
+using Kernel = void (*)(const Lift& lift);
+
+#define RELEVO_SWEEP_KERNEL(lanes, ...)                                      \
+    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float; \
+    __VA_ARGS__ void raise_##lanes(const Lift& lift) {                       \
+        raise_all<Vector##lanes>(lift);                                      \
     }
 
 RELEVO_SWEEP_KERNEL(4)
@@ -107,11 +125,11 @@ RELEVO_SWEEP_KERNEL(16, [[gnu::target("avx512f")]])
 /// With the widest vectors that this processor has and that are allowed.
 Kernel widest_kernel(int lanes) {
 #if defined(__x86_64__)
-    if (lanes >= 16 && __builtin_cpu_supports("avx512f")) return {raise_16, lower_16};
-    if (lanes >= 8 && __builtin_cpu_supports("avx2")) return {raise_8, lower_8};
+    if (lanes >= 16 && __builtin_cpu_supports("avx512f")) return raise_16;
+    if (lanes >= 8 && __builtin_cpu_supports("avx2")) return raise_8;
 #endif
     assert(lanes >= 4);
-    return {raise_4, lower_4};
+    return raise_4;
 }
 
 /// A grid as the sweep goes over it: `row` 0 is the one nearest to the sun.
@@ -172,8 +190,8 @@ class Plan {
         term.p = at * sheet_.stride + column;
         term.q = term.p + (part > 0);  // at a post, what is beside it plays no part
         term.part = static_cast<float>(part);
-        term.fall = static_cast<float>(to.fall - from.fall);
-        term.ramp = static_cast<float>(to.ramp - from.ramp);
+        term.slope = {static_cast<float>(to.fall - from.fall),
+                      static_cast<float>(to.ramp - from.ramp)};
         term.begin = -column;
         term.end = sheet_.columns - column - (part > 0);
         return term;
@@ -192,8 +210,8 @@ class Plan {
             term.p = (at - 1) * sheet_.stride + static_cast<int>(column);
             term.q = term.p + sheet_.stride;
             term.part = static_cast<float>(part);
-            term.fall = static_cast<float>(to.fall - (a.fall + part * (b.fall - a.fall)));
-            term.ramp = static_cast<float>(to.ramp - (a.ramp + part * (b.ramp - a.ramp)));
+            term.slope = {static_cast<float>(to.fall - (a.fall + part * (b.fall - a.fall))),
+                          static_cast<float>(to.ramp - (a.ramp + part * (b.ramp - a.ramp)))};
             term.begin = -static_cast<int>(column);
             term.end = sheet_.columns - static_cast<int>(column);
             terms.push_back(term);
@@ -230,11 +248,10 @@ struct Steps {
     struct Row {
         std::array<std::size_t, kLineSets + 1> lines{};  // where terms begin, and of the posts
         std::size_t end = 0;
-        int column = 0;            // of the post that belongs to line 0
-        float between = 0;         // how far on towards the next line each post stands
-        float fall = 0, ramp = 0;  // of lines, from the row before
-        float far_fall = 0;        // of posts' rays, from the last row that is not near
-        float far_ramp = 0;
+        int column = 0;     // of the post that belongs to line 0
+        float between = 0;  // how far on towards the next line each post stands
+        Slope slope;        // of lines, from the row before
+        Slope far_slope;    // of posts' rays, from the last row that is not near
 
         std::size_t& posts() { return lines[kLineSets]; }
         std::size_t posts() const { return lines[kLineSets]; }
@@ -258,11 +275,11 @@ Steps steps_of(const Plan& plan, int first_row, int end_row) {
             steps.terms.push_back(plan.row_term(row, here.shift + offset, here));
             if (row > plan.begin()) plan.add_column_terms(row, offset, here, steps.terms);
             for (std::size_t k = step.lines[set]; k < steps.terms.size(); ++k)
-                steps.terms[k].fall += static_cast<float>(offset) * steps.terms[k].ramp;
+                steps.terms[k].slope.fall += static_cast<float>(offset) * steps.terms[k].slope.ramp;
         }
         if (row > plan.begin()) {
-            step.fall = static_cast<float>(here.fall - plan.row(row - 1).fall);
-            step.ramp = static_cast<float>(here.ramp - plan.row(row - 1).ramp);
+            step.slope = {static_cast<float>(here.fall - plan.row(row - 1).fall),
+                          static_cast<float>(here.ramp - plan.row(row - 1).ramp)};
         }
         step.posts() = steps.terms.size();
         step.column = static_cast<int>(std::ceil(here.shift - kOnLine));
@@ -275,11 +292,11 @@ Steps steps_of(const Plan& plan, int first_row, int end_row) {
         }
         step.end = steps.terms.size();
         for (std::size_t k = step.posts(); k < step.end; ++k)  // by the line that a post is on
-            steps.terms[k].fall += step.between * steps.terms[k].ramp;
+            steps.terms[k].slope.fall += step.between * steps.terms[k].slope.ramp;
         if (const int at = row - kNearRows - 1; at >= plan.begin()) {
-            step.far_ramp = static_cast<float>(here.ramp - plan.row(at).ramp);
-            step.far_fall =
-                static_cast<float>(here.fall - plan.row(at).fall) + step.between * step.far_ramp;
+            const float ramp = static_cast<float>(here.ramp - plan.row(at).ramp);
+            step.far_slope = {
+                static_cast<float>(here.fall - plan.row(at).fall) + step.between * ramp, ramp};
         }
         steps.rows.push_back(step);
     }
@@ -302,47 +319,74 @@ class Strip {
         for (std::size_t set = 0; set < kLineSets; ++set) {
             float* const lines = height_m_[set].data();
             const float offset = static_cast<float>(set) / kLineSets;
-            kernel_.lower(lines, line_, kLines, step.fall + offset * step.ramp, step.ramp);
-            for (std::size_t k = step.lines[set]; k < step.lines[set + 1]; ++k)
-                raise(lines, line_, line_ + kLines, steps_.terms[k]);
+            raise({.e = lines,
+                   .before = lines,
+                   .line = line_,
+                   .lines = kLines,
+                   .slope = {step.slope.fall + offset * step.slope.ramp, step.slope.ramp}},
+                  nullptr, step.lines[set], step.lines[set + 1]);
         }
     }
 
     /// The edge at the posts of a row, the lines having been left kNearRows + 1 rows before.
     /// @param first, end  of the columns that are wanted
-    /// @param edge_m      of column 0
-    void edge(int row, int first, int end, float* edge_m) {
+    /// @param use         takes the row, the first column, how many there are, and their edges
+    template <typename Use>
+    void edge(int row, int first, int end, const Use& use) {
         const Steps::Row& step = steps_.row(row);
         const int from = std::max(line_, first - step.column);
         const int to = std::min(line_ + kStripLines, end - step.column);
         if (from >= to) return;
-        float* const e = edge_m + step.column + from;
-        std::fill(e, e + (to - from), kNothing_m);
+        Ground far;
         if (row - kNearRows - 1 >= steps_.begin) {
             // The lines before and behind a post; the next one of the first set is one on.
             const float at = step.between * kLineSets;
             const auto set = static_cast<std::size_t>(at);
-            const float part = at - static_cast<float>(set);
-            const float* const p = height_m_[set].data() + (from - line_);
-            const float* const q = set + 1 < kLineSets ? height_m_[set + 1].data() + (from - line_)
-                                                       : height_m_[0].data() + (from - line_) + 1;
-            const Term term{0, 0, part, step.far_fall, step.far_ramp, from, to};
-            kernel_.raise(e, p, part > 0 ? q : p, from, to - from, term);
+            far.part = at - static_cast<float>(set);
+            far.p = height_m_[set].data() + (from - line_);
+            far.q = set + 1 < kLineSets ? height_m_[set + 1].data() + (from - line_)
+                                        : height_m_[0].data() + (from - line_) + 1;
+            if (far.part == 0) far.q = far.p;
+            far.slope = step.far_slope;
         }
-        for (std::size_t k = step.posts(); k < step.end; ++k)
-            raise(e, from, to, steps_.terms[k]);
-        for (int i = 0; i < to - from; ++i)
-            e[i] = e[i] > kLeast_m ? e[i] : -kInfinity;
+        float* const e = edge_m_.data();
+        raise({.e = e, .before = nullptr, .line = from, .lines = to - from}, far.p ? &far : nullptr,
+              step.posts(), step.end);
+        use(row, step.column + from, to - from, e);
     }
 
   private:
     static constexpr int kLines = kStripLines + 1;  // the posts of the last one lie before the next
 
-    void raise(float* e, int from, int to, const Term& term) {
-        const int begin = std::max(from, term.begin), end = std::min(to, term.end);
-        if (begin >= end) return;
-        kernel_.raise(e + (begin - from), sheet_.first + term.p + begin,
-                      sheet_.first + term.q + begin, begin, end - begin, term);
+    /// Lines fall, and rise to terms [begin, end).
+    void raise(Lift lift, const Ground* far, std::size_t begin, std::size_t end) const {
+        const int first = lift.line, last = lift.line + lift.lines;
+        std::array<Ground, 16> ground;  // of which the first `count` are set
+        std::size_t count = 0;
+        if (far) ground[count++] = *far;
+        lift.ground = ground.data();
+        const auto settle = [&] {
+            lift.grounds = static_cast<int>(std::exchange(count, 0));
+            kernel_(lift);
+            lift.before = lift.e;
+            lift.slope = {};
+        };
+        for (std::size_t k = begin; k < end; ++k) {
+            const Term& term = steps_.terms[k];
+            const int from = std::max(first, term.begin), to = std::min(last, term.end);
+            if (from >= to) continue;
+            const bool whole = from == first && to == last;
+            if (!whole || count == ground.size()) settle();
+            ground[count] = {sheet_.first + term.p + from, sheet_.first + term.q + from, term.part,
+                             term.slope};
+            if (whole) {
+                ++count;
+                continue;
+            }
+            float* const e = lift.e + (from - first);
+            kernel_({e, e, from, to - from, {}, ground.data(), 1});
+        }
+        settle();
     }
 
     const Sheet& sheet_;
@@ -351,12 +395,15 @@ class Strip {
     int line_;
     using Lines = std::array<float, kLines>;
     std::array<Lines, kLineSets> height_m_;
+    std::array<float, kStripLines> edge_m_;
 };
 
-/// shadow_edge() of a sheet whose row 0 is nearest to the sun, and is farther from it than columns
-/// are apart.
+/// A sheet whose row 0 is nearest to the sun, and is farther from it than columns are apart, has
+/// the edges of a window found, in pieces of rows.
+/// @param use  takes a row, the first column of a piece, how long it is, and the edges there
+template <typename Use>
 void sweep(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double relief_m,
-           int lanes, float* edge_m, std::ptrdiff_t stride) {
+           int lanes, const Use& use) {
     const int end_row = window.row + window.rows, end_column = window.column + window.columns;
     const Steps steps = steps_of(Plan(sheet, sun, window, relief_m), window.row, end_row);
     int first_line = std::numeric_limits<int>::max(), end_line = std::numeric_limits<int>::min();
@@ -371,25 +418,52 @@ void sweep(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, d
             Strip strip(sheet, steps, kernel, first_line + k * kStripLines);
             for (int row = steps.begin; row < end_row; ++row) {
                 if (const int at = row - kNearRows - 1; at >= steps.begin) strip.advance(at);
-                if (row >= window.row)
-                    strip.edge(row, window.column, end_column,
-                               edge_m + (row - window.row) * stride - window.column);
+                if (row >= window.row) strip.edge(row, window.column, end_column, use);
             }
         }
     });
 }
 
+constexpr int kTransposeBlock = 4;  // posts a side
+
+/// Four rows of four numbers.
+[[gnu::always_inline]] inline void transpose_block(const float* from, std::ptrdiff_t from_stride,
+                                                   float* to, std::ptrdiff_t to_stride) {
+    std::array<Vector4, kTransposeBlock> r;
+    for (std::size_t i = 0; i < r.size(); ++i)
+        std::memcpy(&r[i], from + static_cast<std::ptrdiff_t>(i) * from_stride, sizeof r[i]);
+    const Vector4 a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5),
+                  b = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5),
+                  c = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7),
+                  d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
+    r = {__builtin_shufflevector(a, b, 0, 1, 4, 5), __builtin_shufflevector(a, b, 2, 3, 6, 7),
+         __builtin_shufflevector(c, d, 0, 1, 4, 5), __builtin_shufflevector(c, d, 2, 3, 6, 7)};
+    for (std::size_t i = 0; i < r.size(); ++i)
+        std::memcpy(to + static_cast<std::ptrdiff_t>(i) * to_stride, &r[i], sizeof r[i]);
+}
+
 /// @param rows, columns  of `from`
 void transpose(const float* from, std::ptrdiff_t from_stride, int rows, int columns, float* to,
                std::ptrdiff_t to_stride) {
-    const int blocks = (rows + kTransposeBlock - 1) / kTransposeBlock;
-    parallel_for(0, blocks, 8, [&](int first, int last) {
-        for (int r0 = first * kTransposeBlock; r0 < std::min(rows, last * kTransposeBlock);
-             r0 += kTransposeBlock)
-            for (int c0 = 0; c0 < columns; c0 += kTransposeBlock)
-                for (int r = r0; r < std::min(rows, r0 + kTransposeBlock); ++r)
-                    for (int c = c0; c < std::min(columns, c0 + kTransposeBlock); ++c)
-                        to[c * to_stride + r] = from[r * from_stride + c];
+    constexpr int kBand =
+        64;  // rows whose columns are next to each other: whole lines of the cache
+    parallel_for(0, (rows + kBand - 1) / kBand, 4, [&](int first, int last) {
+        for (int band = first; band < last; ++band) {
+            const int begin = band * kBand, end = std::min(rows, begin + kBand);
+            int c = 0;
+            for (; c + kTransposeBlock <= columns; c += kTransposeBlock) {
+                int r = begin;
+                for (; r + kTransposeBlock <= end; r += kTransposeBlock)
+                    transpose_block(from + r * from_stride + c, from_stride, to + c * to_stride + r,
+                                    to_stride);
+                for (; r < end; ++r)
+                    for (int k = c; k < c + kTransposeBlock; ++k)
+                        to[k * to_stride + r] = from[r * from_stride + k];
+            }
+            for (; c < columns; ++c)
+                for (int r = begin; r < end; ++r)
+                    to[c * to_stride + r] = from[r * from_stride + c];
+        }
     });
 }
 
@@ -484,8 +558,8 @@ const float* Sweep::transposed() const {
     return transposed_.data();
 }
 
-void Sweep::shadow_edge(const SweepSun& given, const SweepWindow& window, float* edge_m,
-                        std::ptrdiff_t stride, int lanes) const {
+void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Use& use,
+                      int lanes) const {
     assert(window.column >= 0 && window.row >= 0 && window.columns > 0 && window.rows > 0 &&
            window.column + window.columns <= columns_ && window.row + window.rows <= rows_);
     SweepSun sun = at_a_post(given);
@@ -493,34 +567,52 @@ void Sweep::shadow_edge(const SweepSun& given, const SweepWindow& window, float*
         sun.tangent = std::copysign(kSteepest, sun.tangent);
         sun.tangent_a_post = {};
     }
-    const bool along_rows = std::abs(sun.towards.row) < std::abs(sun.towards.column);
+    const bool along_columns = sun.along_columns();
     Sheet sheet{height_m_, stride_, columns_, rows_};
     SweepWindow part = window;
-    if (along_rows) {
+    if (along_columns) {
         sheet = {transposed(), rows_, rows_, columns_};
         part = {window.row, window.column, window.rows, window.columns};
         sun = sun.transposed();
     }
-    std::vector<float> turned;  // the window as the sheet has it
-    float* first = edge_m;
-    std::ptrdiff_t step = stride;
-    if (along_rows) {
-        turned.resize(static_cast<std::size_t>(part.columns) * static_cast<std::size_t>(part.rows));
-        first = turned.data();
-        step = part.columns;
-    }
-    float* const turned_first = first;
-    if (sun.towards.row > 0) {
+    const float* const first = sheet.first;
+    const std::ptrdiff_t stride = sheet.stride;
+    const bool mirror = sun.towards.row > 0;
+    if (mirror) {
         sun = mirrored(sun, sheet.rows);
         sheet.first += (sheet.rows - 1) * sheet.stride;
         sheet.stride = -sheet.stride;
         part.row = sheet.rows - part.row - part.rows;
-        first += (part.rows - 1) * step;
-        step = -step;
     }
     const double relief_m = highest_m_ > lowest_m_ ? double{highest_m_} - lowest_m_ : 0;
-    sweep(sheet, sun, part, relief_m, lanes, first, step);
-    if (along_rows) transpose(turned_first, part.columns, part.rows, part.columns, edge_m, stride);
+    sweep(sheet, sun, part, relief_m, lanes,
+          [&](int row, int column, int count, const float* edge_m) {
+              const int line = mirror ? sheet.rows - 1 - row : row;
+              use({along_columns, line, column, count, first + line * stride + column, edge_m});
+          });
+}
+
+void Sweep::shadow_edge(const SweepSun& sun, const SweepWindow& window, float* edge_m,
+                        std::ptrdiff_t stride, int lanes) const {
+    if (!sun.along_columns())
+        return each_edge(
+            sun, window,
+            [&](const SweepRun& run) {
+                std::copy_n(run.edge_m, run.count,
+                            edge_m + (run.line - window.row) * stride + run.first - window.column);
+            },
+            lanes);
+    std::vector<float> turned(static_cast<std::size_t>(window.columns) *
+                              static_cast<std::size_t>(window.rows));
+    each_edge(
+        sun, window,
+        [&](const SweepRun& run) {
+            std::copy_n(run.edge_m, run.count,
+                        turned.data() + std::ptrdiff_t{run.line - window.column} * window.rows +
+                            run.first - window.row);
+        },
+        lanes);
+    transpose(turned.data(), window.rows, window.columns, window.rows, edge_m, stride);
 }
 
 }  // namespace relevo::light

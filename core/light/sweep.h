@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <vector>
 
@@ -34,6 +36,8 @@ struct SweepSun {
     double distance_m(double row) const;
     /// The same with rows for columns.
     SweepSun transposed() const;
+    /// Whether a sweep goes from column to column, along rows, and not from row to row.
+    bool along_columns() const { return std::abs(towards.row) < std::abs(towards.column); }
     double tangent_at(double column, double row) const {
         return tangent + tangent_a_post.column * (column - reference.column) +
                tangent_a_post.row * (row - reference.row);
@@ -51,6 +55,16 @@ SweepSun sun_over_map(const GridPair& spacing_m, const GridPair& direction, doub
 /// Posts [column, column + columns) by [row, row + rows).
 struct SweepWindow {
     int column = 0, row = 0, columns = 0, rows = 0;
+};
+
+/// Posts next to each other, as a sweep comes to them: along a row, or along a column.
+struct SweepRun {
+    bool along_column;
+    int line;   ///< the row or the column
+    int first;  ///< the first post on it
+    int count;
+    const float* height_m;  ///< `count` of them
+    const float* edge_m;    ///< likewise
 };
 
 /// Heights at the posts of a grid, and the shadows over them.
@@ -87,6 +101,13 @@ class Sweep {
     /// @param lanes   of the processor's vectors that are used at most, 4 to kMostLanes
     void shadow_edge(const SweepSun& sun, const SweepWindow& window, float* edge_m,
                      std::ptrdiff_t stride, int lanes = kMostLanes) const;
+
+    using Use = std::function<void(const SweepRun&)>;
+    /// The same without an array for them: calls `use` on several threads, once for each post of
+    /// the window. All runs are along rows or all along columns, as SweepSun::along_columns() has
+    /// it.
+    void each_edge(const SweepSun& sun, const SweepWindow& window, const Use& use,
+                   int lanes = kMostLanes) const;
 
     static constexpr int kMostLanes = 16;
 
