@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "base/parallel_for.h"
@@ -106,13 +107,69 @@ template <typename V>
         raise_some<float, 1>(lift, i, 0);
 }
 
-/// Raising by vectors of some width.
-using Kernel = void (*)(const Lift& lift);
+/// Ground before posts next to each other, as their own rays meet it.
+struct Sight {
+    float* tangent;  // max(tangent, that of all ground)
+    const float* height_m;
+    int posts;
+    const Ground* ground;  // its slope is 1 / distance, and what the ground has sunk by there
+    int grounds;
+};
+
+/// kVectors vectors of posts, likewise.
+template <typename V, int kVectors>
+[[gnu::always_inline]] inline void look_some(const Sight& sight, int i) {
+    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float));
+    V height[kVectors], tangent[kVectors];
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k) {
+        std::memcpy(&height[k], sight.height_m + i + k * kWidth, sizeof(V));
+        tangent[k] = V{} + kNothing_m;
+    }
+    for (const Ground* g = sight.ground; g < sight.ground + sight.grounds; ++g)
+#pragma GCC unroll 8
+        for (int k = 0; k < kVectors; ++k) {
+            V a, b;
+            std::memcpy(&a, g->p + i + k * kWidth, sizeof(V));
+            std::memcpy(&b, g->q + i + k * kWidth, sizeof(V));
+            RELEVO_IN_REGISTER(a);
+            const V t = ((a + g->part * (b - a)) - height[k]) * g->slope.fall - g->slope.ramp;
+            tangent[k] = t > tangent[k] ? t : tangent[k];
+        }
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k) {
+        V before;
+        std::memcpy(&before, sight.tangent + i + k * kWidth, sizeof(V));
+        before = tangent[k] > before ? tangent[k] : before;
+        std::memcpy(sight.tangent + i + k * kWidth, &before, sizeof(V));
+    }
+}
+
+template <typename V>
+[[gnu::always_inline]] inline void look_all(const Sight& sight) {
+    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float)), kTogether = 4;
+    int i = 0;
+    for (; i + kTogether * kWidth <= sight.posts; i += kTogether * kWidth)
+        look_some<V, kTogether>(sight, i);
+    for (; i + kWidth <= sight.posts; i += kWidth)
+        look_some<V, 1>(sight, i);
+    for (; i < sight.posts; ++i)
+        look_some<float, 1>(sight, i);
+}
+
+/// Both by vectors of some width.
+struct Kernel {
+    void (*raise)(const Lift& lift);
+    void (*look)(const Sight& sight);
+};
 
 #define RELEVO_SWEEP_KERNEL(lanes, ...)                                      \
     using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float; \
     __VA_ARGS__ void raise_##lanes(const Lift& lift) {                       \
         raise_all<Vector##lanes>(lift);                                      \
+    }                                                                        \
+    __VA_ARGS__ void look_##lanes(const Sight& sight) {                      \
+        look_all<Vector##lanes>(sight);                                      \
     }
 
 RELEVO_SWEEP_KERNEL(4)
@@ -125,11 +182,11 @@ RELEVO_SWEEP_KERNEL(16, [[gnu::target("avx512f")]])
 /// With the widest vectors that this processor has and that are allowed.
 Kernel widest_kernel(int lanes) {
 #if defined(__x86_64__)
-    if (lanes >= 16 && __builtin_cpu_supports("avx512f")) return raise_16;
-    if (lanes >= 8 && __builtin_cpu_supports("avx2")) return raise_8;
+    if (lanes >= 16 && __builtin_cpu_supports("avx512f")) return {raise_16, look_16};
+    if (lanes >= 8 && __builtin_cpu_supports("avx2")) return {raise_8, look_8};
 #endif
     assert(lanes >= 4);
-    return raise_4;
+    return {raise_4, look_4};
 }
 
 /// A grid as the sweep goes over it: `row` 0 is the one nearest to the sun.
@@ -251,6 +308,7 @@ struct Steps {
         int column = 0;     // of the post that belongs to line 0
         float between = 0;  // how far on towards the next line each post stands
         Slope slope;        // of lines, from the row before
+        double fallen = 0;  // line 0 from the first row on
         Slope far_slope;    // of posts' rays, from the last row that is not near
 
         std::size_t& posts() { return lines[kLineSets]; }
@@ -261,6 +319,8 @@ struct Steps {
     int begin = 0;
 
     const Row& row(int row) const { return rows[static_cast<std::size_t>(row - begin)]; }
+    /// How far line 0 has come from the first row on, where tangents are 1.
+    double distance_m(int at) const { return row(at).fallen; }
 };
 
 Steps steps_of(const Plan& plan, int first_row, int end_row) {
@@ -269,11 +329,16 @@ Steps steps_of(const Plan& plan, int first_row, int end_row) {
     for (int row = plan.begin(); row < end_row; ++row) {
         Steps::Row step;
         const RowPlan& here = plan.row(row);
+        step.fallen = here.fall;
         for (std::size_t set = 0; set < kLineSets; ++set) {
             const double offset = double(set) / kLineSets;
             step.lines[set] = steps.terms.size();
             steps.terms.push_back(plan.row_term(row, here.shift + offset, here));
             if (row > plan.begin()) plan.add_column_terms(row, offset, here, steps.terms);
+            // In the order in which rays meet them: columns, and the row itself.
+            std::sort(steps.terms.begin() + static_cast<std::ptrdiff_t>(step.lines[set]),
+                      steps.terms.end(),
+                      [&](const Term& a, const Term& b) { return a.slope.fall > b.slope.fall; });
             for (std::size_t k = step.lines[set]; k < steps.terms.size(); ++k)
                 steps.terms[k].slope.fall += static_cast<float>(offset) * steps.terms[k].slope.ramp;
         }
@@ -330,7 +395,7 @@ class Strip {
 
     /// The edge at the posts of a row, the lines having been left kNearRows + 1 rows before.
     /// @param first, end  of the columns that are wanted
-    /// @param use         takes the row, the first column, how many there are, and their edges
+    /// @param use         takes the first column, how many there are, and their edges
     template <typename Use>
     void edge(int row, int first, int end, const Use& use) {
         const Steps::Row& step = steps_.row(row);
@@ -352,7 +417,7 @@ class Strip {
         float* const e = edge_m_.data();
         raise({.e = e, .before = nullptr, .line = from, .lines = to - from}, far.p ? &far : nullptr,
               step.posts(), step.end);
-        use(row, step.column + from, to - from, e);
+        use(step.column + from, to - from, e);
     }
 
   private:
@@ -367,7 +432,7 @@ class Strip {
         lift.ground = ground.data();
         const auto settle = [&] {
             lift.grounds = static_cast<int>(std::exchange(count, 0));
-            kernel_(lift);
+            kernel_.raise(lift);
             lift.before = lift.e;
             lift.slope = {};
         };
@@ -384,7 +449,7 @@ class Strip {
                 continue;
             }
             float* const e = lift.e + (from - first);
-            kernel_({e, e, from, to - from, {}, ground.data(), 1});
+            kernel_.raise({e, e, from, to - from, {}, ground.data(), 1});
         }
         settle();
     }
@@ -398,27 +463,162 @@ class Strip {
     std::array<float, kStripLines> edge_m_;
 };
 
-/// A sheet whose row 0 is nearest to the sun, and is farther from it than columns are apart, has
-/// the edges of a window found, in pieces of rows.
-/// @param use  takes a row, the first column of a piece, how long it is, and the edges there
-template <typename Use>
-void sweep(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double relief_m,
-           int lanes, const Use& use) {
-    const int end_row = window.row + window.rows, end_column = window.column + window.columns;
-    const Steps steps = steps_of(Plan(sheet, sun, window, relief_m), window.row, end_row);
-    int first_line = std::numeric_limits<int>::max(), end_line = std::numeric_limits<int>::min();
-    for (int row = window.row; row < end_row; ++row) {
-        first_line = std::min(first_line, window.column - steps.row(row).column);
-        end_line = std::max(end_line, end_column - steps.row(row).column);
+/// The upper convex hull of the ground under a line, from the sun on. Heights are less what the
+/// ground has sunk by below the tangent plane of the reference.
+class Hull {
+  public:
+    struct Point {
+        float distance_m, height_m;  // away from the sun, over the plane
+    };
+
+    /// @param first  where its points are put, with room for as many as there will be
+    explicit Hull(Point* first = nullptr) : first_(first) {}
+
+    void add(const Point& point) {
+        // The last one but for this goes where it lies under the line to the one before.
+        while (count_ >= 2 && !is_over(first_[count_ - 1], first_[count_ - 2], point))
+            --count_;
+        first_[count_++] = point;
     }
-    const Kernel kernel = widest_kernel(lanes);
-    const int strips = (end_line - first_line + kStripLines - 1) / kStripLines;
+
+    /// The tangent at which the hull is seen, for an eye that is farther from the sun than it.
+    float tangent(const Point& eye) const {
+        float best = kNothing_m;
+        for (int k = count_ - 1; k >= 0; --k) {
+            const float seen =
+                (first_[k].height_m - eye.height_m) / (eye.distance_m - first_[k].distance_m);
+            if (!(seen > best)) break;
+            best = seen;
+        }
+        return best;
+    }
+
+  private:
+    static bool is_over(const Point& middle, const Point& before, const Point& after) {
+        return (middle.height_m - before.height_m) * (after.distance_m - before.distance_m) >
+               (after.height_m - before.height_m) * (middle.distance_m - before.distance_m);
+    }
+
+    Point* first_;
+    int count_ = 0;
+};
+
+/// Lines next to each other, with the hulls of the ground under them.
+class HullStrip {
+  public:
+    static constexpr int kLines = 128;
+
+    /// @param steps      for a tangent of 1 everywhere: what lines fall by is how far they go
+    /// @param line       the first one
+    /// @param curvature  [1/m]
+    HullStrip(const Sheet& sheet, const Steps& steps, const Kernel& kernel, double curvature,
+              int line)
+        : sheet_(sheet), steps_(steps), kernel_(kernel), curvature_(curvature), line_(line) {
+        const std::size_t most = 2 * steps.rows.size() + 2;
+        points_ = std::make_unique_for_overwrite<Hull::Point[]>(kLineSets * (kLines + 1) * most);
+        for (std::size_t i = 0; i < kLineSets * (kLines + 1); ++i)
+            hulls_[i / (kLines + 1)][i % (kLines + 1)] = Hull(points_.get() + i * most);
+    }
+
+    /// The ground of the next row, and of the columns before it.
+    void advance(int row) {
+        const Steps::Row& step = steps_.row(row);
+        for (std::size_t set = 0; set < kLineSets; ++set)
+            for (std::size_t k = step.lines[set]; k < step.lines[set + 1]; ++k)
+                add(set, steps_.terms[k], steps_.distance_m(row));
+    }
+
+    template <typename Use>
+    void look(int row, int first, int end, const Use& use) {
+        const Steps::Row& step = steps_.row(row);
+        const int from = std::max(line_, first - step.column);
+        const int to = std::min(line_ + kLines, end - step.column);
+        if (from >= to) return;
+        const float* const height = sheet_.first + row * sheet_.stride + step.column + from;
+        std::array<float, kLines> tangent;
+        const double s = steps_.distance_m(row);
+        const float sunk_m = static_cast<float>(curvature_ * s * s / 2),
+                    tilt = static_cast<float>(curvature_ * s);
+        // The line nearest to a post.
+        const int half = static_cast<int>(step.between * 2 * kLineSets + 1) / 2;
+        const auto& hulls = hulls_[static_cast<std::size_t>(half) % kLineSets];
+        const int on = half / static_cast<int>(kLineSets) - line_;
+        for (int i = from; i < to; ++i)
+            tangent[static_cast<std::size_t>(i - from)] =
+                hulls[static_cast<std::size_t>(i + on)].tangent(
+                    {static_cast<float>(s), height[i - from] - sunk_m}) -
+                tilt;
+        look_near(step, from, to, height, tangent.data());
+        use(step.column + from, to - from, tangent.data());
+    }
+
+  private:
+    void add(std::size_t set, const Term& term, double row_m) {
+        const double s = row_m - term.slope.fall;
+        const float distance_m = static_cast<float>(s),
+                    sunk_m = static_cast<float>(curvature_ * s * s / 2);
+        const int from = std::max(line_, term.begin), to = std::min(line_ + kLines + 1, term.end);
+        const float *const p = sheet_.first + term.p, *const q = sheet_.first + term.q;
+        for (int i = from; i < to; ++i) {
+            const float height_m = p[i] + term.part * (q[i] - p[i]);
+            if (!std::isnan(height_m))
+                hulls_[set][static_cast<std::size_t>(i - line_)].add(
+                    {distance_m, height_m - sunk_m});
+        }
+    }
+
+    void look_near(const Steps::Row& step, int from, int to, const float* height_m,
+                   float* tangent) const {
+        for (std::size_t k = step.posts(); k < step.end; ++k) {
+            const Term& term = steps_.terms[k];
+            const int first = std::max(from, term.begin), last = std::min(to, term.end);
+            if (first >= last) continue;
+            const double d = term.slope.fall;
+            const Ground ground{
+                sheet_.first + term.p + first,
+                sheet_.first + term.q + first,
+                term.part,
+                {static_cast<float>(1 / d), static_cast<float>(curvature_ * d / 2)}};
+            kernel_.look(
+                {tangent + (first - from), height_m + (first - from), last - first, &ground, 1});
+        }
+    }
+
+    const Sheet& sheet_;
+    const Steps& steps_;
+    const Kernel& kernel_;
+    double curvature_;
+    int line_;
+    std::unique_ptr<Hull::Point[]> points_;
+    std::array<std::array<Hull, kLines + 1>, kLineSets> hulls_;
+};
+
+/// What lies where on a sheet for a sweep.
+struct Extent {
+    int first_line = std::numeric_limits<int>::max(), end_line = std::numeric_limits<int>::min();
+
+    Extent(const Steps& steps, const SweepWindow& window) {
+        for (int row = window.row; row < window.row + window.rows; ++row) {
+            first_line = std::min(first_line, window.column - steps.row(row).column);
+            end_line = std::max(end_line, window.column + window.columns - steps.row(row).column);
+        }
+    }
+};
+
+/// Has strips of lines over a window go from its first row to the last.
+/// @param make  a strip from its first line
+/// @param look  at a row of the window with a strip
+template <typename Make, typename Look>
+void sweep_strips(const Steps& steps, const SweepWindow& window, int lines, const Make& make,
+                  const Look& look) {
+    const Extent extent(steps, window);
+    const int strips = (extent.end_line - extent.first_line + lines - 1) / lines;
     parallel_for(0, strips, 1, [&](int begin, int end) {
         for (int k = begin; k < end; ++k) {
-            Strip strip(sheet, steps, kernel, first_line + k * kStripLines);
-            for (int row = steps.begin; row < end_row; ++row) {
-                if (const int at = row - kNearRows - 1; at >= steps.begin) strip.advance(at);
-                if (row >= window.row) strip.edge(row, window.column, end_column, use);
+            auto strip = make(extent.first_line + k * lines);
+            for (int row = steps.begin; row < window.row + window.rows; ++row) {
+                if (const int at = row - kNearRows - 1; at >= steps.begin) strip->advance(at);
+                if (row >= window.row) look(*strip, row);
             }
         }
     });
@@ -442,7 +642,24 @@ constexpr int kTransposeBlock = 4;  // posts a side
         std::memcpy(to + static_cast<std::ptrdiff_t>(i) * to_stride, &r[i], sizeof r[i]);
 }
 
-/// @param rows, columns  of `from`
+/// The same about the nearest post, so that one line goes through posts.
+SweepSun at_a_post(SweepSun sun) {
+    const GridPair post{std::round(sun.reference.column), std::round(sun.reference.row)};
+    sun.tangent = sun.tangent_at(post.column, post.row);
+    sun.reference = post;
+    return sun;
+}
+
+/// The same seen in a mirror: rows counted from the other end.
+SweepSun mirrored(SweepSun sun, int rows) {
+    sun.reference.row = rows - 1 - sun.reference.row;
+    for (GridPair* const pair : {&sun.towards, &sun.bend, &sun.twist, &sun.tangent_a_post})
+        pair->row = -pair->row;
+    return sun;
+}
+
+}  // namespace
+
 void transpose(const float* from, std::ptrdiff_t from_stride, int rows, int columns, float* to,
                std::ptrdiff_t to_stride) {
     constexpr int kBand =
@@ -466,24 +683,6 @@ void transpose(const float* from, std::ptrdiff_t from_stride, int rows, int colu
         }
     });
 }
-
-/// The same about the nearest post, so that one line goes through posts.
-SweepSun at_a_post(SweepSun sun) {
-    const GridPair post{std::round(sun.reference.column), std::round(sun.reference.row)};
-    sun.tangent = sun.tangent_at(post.column, post.row);
-    sun.reference = post;
-    return sun;
-}
-
-/// The same seen in a mirror: rows counted from the other end.
-SweepSun mirrored(SweepSun sun, int rows) {
-    sun.reference.row = rows - 1 - sun.reference.row;
-    for (GridPair* const pair : {&sun.towards, &sun.bend, &sun.twist, &sun.tangent_a_post})
-        pair->row = -pair->row;
-    return sun;
-}
-
-}  // namespace
 
 GridPair SweepSun::way(double distance_m) const {
     const auto posts = [=](double first, double second, double third) {
@@ -558,38 +757,84 @@ const float* Sweep::transposed() const {
     return transposed_.data();
 }
 
-void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Use& use,
-                      int lanes) const {
+/// The grid as a sweep goes over it.
+struct Sweep::View {
+    Sheet sheet;
+    SweepSun sun;
+    SweepWindow window;
+    bool along_columns, mirrored;
+
+    /// A piece of a row of the sheet, as it is on the grid.
+    SweepRun run(int row, int column, int count, const float* found) const {
+        const int line = mirrored ? sheet.rows - 1 - row : row;
+        return {along_columns, line, column, count, sheet.first + row * sheet.stride + column,
+                found};
+    }
+};
+
+Sweep::View Sweep::view(const SweepSun& given, const SweepWindow& window) const {
     assert(window.column >= 0 && window.row >= 0 && window.columns > 0 && window.rows > 0 &&
            window.column + window.columns <= columns_ && window.row + window.rows <= rows_);
-    SweepSun sun = at_a_post(given);
+    View view{{height_m_, stride_, columns_, rows_}, at_a_post(given), window, false, false};
+    view.along_columns = given.along_columns();
+    if (view.along_columns) {
+        view.sheet = {transposed(), rows_, rows_, columns_};
+        view.window = {window.row, window.column, window.rows, window.columns};
+        view.sun = view.sun.transposed();
+    }
+    Sheet& sheet = view.sheet;
+    view.mirrored = view.sun.towards.row > 0;
+    if (view.mirrored) {
+        view.sun = mirrored(view.sun, sheet.rows);
+        sheet.first += (sheet.rows - 1) * sheet.stride;
+        sheet.stride = -sheet.stride;
+        view.window.row = sheet.rows - view.window.row - view.window.rows;
+    }
+    return view;
+}
+
+void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Use& use,
+                      int lanes) const {
+    View view = this->view(given, window);
+    SweepSun& sun = view.sun;
     if (!(std::abs(sun.tangent) < kSteepest)) {
         sun.tangent = std::copysign(kSteepest, sun.tangent);
         sun.tangent_a_post = {};
     }
-    const bool along_columns = sun.along_columns();
-    Sheet sheet{height_m_, stride_, columns_, rows_};
-    SweepWindow part = window;
-    if (along_columns) {
-        sheet = {transposed(), rows_, rows_, columns_};
-        part = {window.row, window.column, window.rows, window.columns};
-        sun = sun.transposed();
-    }
-    const float* const first = sheet.first;
-    const std::ptrdiff_t stride = sheet.stride;
-    const bool mirror = sun.towards.row > 0;
-    if (mirror) {
-        sun = mirrored(sun, sheet.rows);
-        sheet.first += (sheet.rows - 1) * sheet.stride;
-        sheet.stride = -sheet.stride;
-        part.row = sheet.rows - part.row - part.rows;
-    }
+    const SweepWindow& w = view.window;
     const double relief_m = highest_m_ > lowest_m_ ? double{highest_m_} - lowest_m_ : 0;
-    sweep(sheet, sun, part, relief_m, lanes,
-          [&](int row, int column, int count, const float* edge_m) {
-              const int line = mirror ? sheet.rows - 1 - row : row;
-              use({along_columns, line, column, count, first + line * stride + column, edge_m});
-          });
+    const Steps steps = steps_of(Plan(view.sheet, sun, w, relief_m), w.row, w.row + w.rows);
+    const Kernel kernel = widest_kernel(lanes);
+    sweep_strips(
+        steps, w, kStripLines,
+        [&](int line) { return std::make_unique<Strip>(view.sheet, steps, kernel, line); },
+        [&](Strip& strip, int row) {
+            strip.edge(row, w.column, w.column + w.columns,
+                       [&](int column, int count, const float* edge_m) {
+                           use(view.run(row, column, count, edge_m));
+                       });
+        });
+}
+
+void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
+                         const SweepWindow& window, const Use& use, int lanes) const {
+    View view = this->view(way, window);
+    view.sun.tangent = 1;
+    view.sun.tangent_a_post = {};
+    const SweepWindow& w = view.window;
+    const Steps steps = steps_of(Plan(view.sheet, view.sun, w, reach_m), w.row, w.row + w.rows);
+    const Kernel kernel = widest_kernel(lanes);
+    sweep_strips(
+        steps, w, HullStrip::kLines,
+        [&](int line) {
+            return std::make_unique<HullStrip>(view.sheet, steps, kernel, curvature, line);
+        },
+        [&](HullStrip& strip, int row) {
+            strip.look(row, w.column, w.column + w.columns,
+                       [&](int column, int count, const float* tangent) {
+                           use(view.run(row, column, count, tangent));
+                       });
+        });
 }
 
 void Sweep::shadow_edge(const SweepSun& sun, const SweepWindow& window, float* edge_m,
@@ -598,7 +843,7 @@ void Sweep::shadow_edge(const SweepSun& sun, const SweepWindow& window, float* e
         return each_edge(
             sun, window,
             [&](const SweepRun& run) {
-                std::copy_n(run.edge_m, run.count,
+                std::copy_n(run.found, run.count,
                             edge_m + (run.line - window.row) * stride + run.first - window.column);
             },
             lanes);
@@ -607,7 +852,7 @@ void Sweep::shadow_edge(const SweepSun& sun, const SweepWindow& window, float* e
     each_edge(
         sun, window,
         [&](const SweepRun& run) {
-            std::copy_n(run.edge_m, run.count,
+            std::copy_n(run.found, run.count,
                         turned.data() + std::ptrdiff_t{run.line - window.column} * window.rows +
                             run.first - window.row);
         },

@@ -64,7 +64,7 @@ struct SweepRun {
     int first;  ///< the first post on it
     int count;
     const float* height_m;  ///< `count` of them
-    const float* edge_m;    ///< likewise
+    const float* found;     ///< likewise: heights of the shadow's edge, or tangents of the horizon
 };
 
 /// Heights at the posts of a grid, and the shadows over them.
@@ -109,12 +109,25 @@ class Sweep {
     void each_edge(const SweepSun& sun, const SweepWindow& window, const Use& use,
                    int lanes = kMostLanes) const;
 
+    /// The tangent of the horizon's elevation for all posts of a window, each as seen from the
+    /// ground there: minus infinity where nothing of the grid lies that way. Called on several
+    /// threads, once for each post. For each line there is the convex hull of the ground that it
+    /// came over, so that a post costs nearly the same however far it sees; the ground of the
+    /// nearest rows is looked at along the post's own ray, as for edges.
+    /// @param way        its tangents mean nothing
+    /// @param curvature  of the ground under a line of sight [1/m]
+    /// @param reach_m    how far the ground is looked at
+    void each_horizon(const SweepSun& way, double curvature, double reach_m,
+                      const SweepWindow& window, const Use& use, int lanes = kMostLanes) const;
+
     static constexpr int kMostLanes = 16;
 
     float lowest_m() const { return lowest_m_; }    ///< infinity where there are only holes
     float highest_m() const { return highest_m_; }  ///< minus infinity likewise
 
   private:
+    struct View;
+    View view(const SweepSun& sun, const SweepWindow& window) const;
     const float* transposed() const;
 
     const float* height_m_;
@@ -124,5 +137,11 @@ class Sweep {
     mutable std::once_flag once_;
     mutable std::vector<float> transposed_;  // made for the first sun that needs it
 };
+
+/// Rows for columns.
+/// @param rows, columns          of `from`
+/// @param from_stride, to_stride from row to row
+void transpose(const float* from, std::ptrdiff_t from_stride, int rows, int columns, float* to,
+               std::ptrdiff_t to_stride);
 
 }  // namespace relevo::light

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "dem/posts.h"
+#include "light/sky.h"
+
+namespace relevo::light {
+
+/// How the ground rises towards the east and the north [m/m] at all posts of a window, so small
+/// that it has one north. Next to holes and the DEM's edge the ground goes on as it comes.
+/// @param east, north  along rows
+/// Source: Horn, Proc. IEEE 69 (1981) 14.
+void ground_slope(const dem::Grid& grid, const dem::Posts::View& heights, const SweepWindow& window,
+                  TileValues& east, TileValues& north);
+
+}  // namespace relevo::light

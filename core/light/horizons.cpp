@@ -1,0 +1,160 @@
+#include "light/horizons.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "base/units.h"
+#include "light/ground_slope.h"
+#include "light/quick_math.h"
+#include "light/sky.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr double kHorizonTolerance_rad = radians(0.1);  // of a direction
+constexpr double kSkyTolerance_rad = radians(0.5);      // directions that are summed up
+constexpr int kLeastDirections = 4, kMostDirections = 3600;
+
+/// What all rasters of directions begin with.
+struct Ground {
+    dem::Posts::View heights;
+    DemSky dem;
+    Sweep sweep;
+
+    Ground(const dem::Posts& posts, double refraction)
+        : heights(view_in_memory(posts)),
+          dem(posts, {.refraction = refraction}),
+          sweep(heights.first_m, posts.grid().columns(), posts.grid().rows(), heights.stride) {}
+
+    std::vector<SunSky> skies(const std::vector<double>& azimuth_rad) const {
+        std::vector<SunSky> skies;
+        for (const double azimuth : azimuth_rad)
+            skies.emplace_back(dem, azimuth);
+        return skies;
+    }
+    /// Windows over which any direction is one.
+    std::vector<SweepWindow> windows(double tolerance_rad) const {
+        std::vector<double> all;
+        for (int i = 0; i < 12; ++i)
+            all.push_back(kPi * (i + 0.5) / 12);
+        return divide(skies(all), tolerance_rad);
+    }
+};
+
+/// Calls `body` with each window, on several threads.
+void each_window(const std::vector<SweepWindow>& windows,
+                 const std::function<void(const SweepWindow&)>& body) {
+    parallel_for(0, static_cast<int>(windows.size()), 1, [&](int first, int last) {
+        for (int i = first; i < last; ++i)
+            body(windows[static_cast<std::size_t>(i)]);
+    });
+}
+
+std::string surroundings(const dem::Posts& posts, double refraction) {
+    return fmt::format(
+        "ground of the DEM alone, on the WGS 84 ellipsoid with terrestrial refraction k = {:.4g}; "
+        "beyond the DEM smooth ground at {:.0f} m",
+        refraction, double{posts.lowest_m()});
+}
+
+/// What a direction adds to the sky-view factors of posts next to each other.
+/// @param along  the rise of the ground in that direction; nullptr: none
+void add_sky(const SweepRun& run, const float* east, const float* north, float sin_azimuth,
+             float cos_azimuth, float* sum) {
+    for (int i = 0; i < run.count; ++i) {
+        // H of the source is the angle between zenith and horizon, t its cotangent.
+        const float t = std::max(run.found[i], 0.0F);
+        const float sin2 = 1 / (1 + t * t);
+        const float rise = east[i] * sin_azimuth + north[i] * cos_azimuth;
+        const float width = kHalfPi - quick_atan(t) - t * sin2;
+        const float slope = 1 / std::sqrt(1 + east[i] * east[i] + north[i] * north[i]);
+        sum[i] += std::max(0.0F, slope * (sin2 - rise * width));
+    }
+}
+
+}  // namespace
+
+Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, double refraction) {
+    const Ground ground(posts, refraction);
+    const dem::Grid& grid = posts.grid();
+    Horizons result;
+    result.azimuth_rad = std::move(azimuth_rad);
+    for (std::size_t k = 0; k < result.azimuth_rad.size(); ++k)
+        result.elevation_rad.emplace_back(grid.columns(), grid.rows());
+    const std::vector<SunSky> skies = ground.skies(result.azimuth_rad);
+    each_window(ground.windows(kHorizonTolerance_rad), [&](const SweepWindow& window) {
+        for (std::size_t k = 0; k < skies.size(); ++k) {
+            const SunTile tile = *skies[k].tile(window);
+            TileValues values(window, 0);
+            values.turn(tile.path.along_columns());
+            each_horizon(skies[k], ground.sweep, tile, [&](const SweepRun& run) {
+                float* const out = values.of(run);
+                for (int i = 0; i < run.count; ++i)
+                    out[i] =
+                        std::isnan(run.height_m[i]) ? run.height_m[i] : std::atan(run.found[i]);
+            });
+            values.put(result.elevation_rad[k]);
+        }
+    });
+    if (!result.elevation_rad.empty())
+        for (const float elevation : result.elevation_rad.front())
+            result.holes += std::isnan(elevation);
+    result.definition =
+        "elevation of the horizon as seen from the ground; " + surroundings(posts, refraction);
+    return result;
+}
+
+SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
+    if (options.directions < kLeastDirections || options.directions > kMostDirections)
+        bad_input(fmt::format("light::sky_view: {} directions: expected {} to {}",
+                              options.directions, kLeastDirections, kMostDirections));
+    const Ground ground(posts, options.refraction);
+    std::vector<double> azimuth_rad;
+    for (int i = 0; i < options.directions; ++i)
+        azimuth_rad.push_back(2 * kPi * i / options.directions);
+    const std::vector<SunSky> skies = ground.skies(azimuth_rad);
+    SkyView result;
+    result.share = Array2d<float>(posts.grid().columns(), posts.grid().rows());
+    each_window(ground.windows(kSkyTolerance_rad), [&](const SweepWindow& window) {
+        TileValues sum(window, 0), east(window, 0), north(window, 0);
+        if (!options.level) ground_slope(posts.grid(), ground.heights, window, east, north);
+        for (std::size_t k = 0; k < skies.size(); ++k) {
+            const SunTile tile = *skies[k].tile(window);
+            for (TileValues* const each : {&sum, &east, &north})
+                each->turn(tile.path.along_columns());
+            const auto sin_azimuth = static_cast<float>(std::sin(azimuth_rad[k]));
+            const auto cos_azimuth = static_cast<float>(std::cos(azimuth_rad[k]));
+            each_horizon(skies[k], ground.sweep, tile, [&](const SweepRun& run) {
+                add_sky(run, east.of(run), north.of(run), sin_azimuth, cos_azimuth, sum.of(run));
+            });
+        }
+        sum.put(result.share);
+    });
+    std::int64_t seen = 0;
+    for (int row = 0; row < result.share.height(); ++row)
+        for (int column = 0; column < result.share.width(); ++column) {
+            float& share = result.share.at(column, row);
+            const float height_m = *ground.heights.at(column, row);
+            share =
+                std::isnan(height_m) ? height_m : share / static_cast<float>(options.directions);
+            if (std::isnan(share)) continue;
+            result.mean += double{share};
+            ++seen;
+        }
+    result.mean /= static_cast<double>(seen);
+    result.holes = static_cast<std::int64_t>(result.share.size()) - seen;
+    result.definition = fmt::format(
+        "share of a uniform sky's light that falls on {}, of {} directions (Dozier and Frew 1990); "
+        "{}",
+        options.level ? "a level plane" : "the ground as it is inclined", options.directions,
+        surroundings(posts, options.refraction));
+    return result;
+}
+
+}  // namespace relevo::light

@@ -1,0 +1,382 @@
+#include "light/sky.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/mat3x2.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "geo/ellipsoid.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr double kAirTolerance_rad = radians(0.01);
+constexpr int kLeastTile = 2;               // posts a side
+constexpr double kNight_rad = radians(-4);  // no ground of the Earth sees the sun so low
+
+/// The wider of the two spacings of posts.
+double grid_spacing_m(const dem::Grid& grid) {
+    const glm::dvec2 spacing_m = grid.post_spacing_m();
+    return std::max(spacing_m.x, spacing_m.y);
+}
+
+glm::dvec2 moved(const dem::Grid& grid, const geo::Geodetic& from, double azimuth_rad,
+                 double distance_m) {
+    return grid.post(geo::destination(from, azimuth_rad, distance_m));
+}
+
+[[noreturn]] void no_tile(const dem::Grid& grid) {
+    bad_input(
+        fmt::format("light::divide: {}: the sun's direction on this grid changes by more than 0.05 "
+                    "degrees within {} posts; "
+                    "expected a map on which it does not, such as UTM: gdalwarp -t_srs",
+                    grid.crs().name(), kLeastTile));
+}
+
+constexpr int kRun = 512;  // posts whose edges are looked at together
+
+/// The smooth Earth around the DEM hides a sun that is lower than level.
+void add_earth(const SweepSun& sun, const SweepRun& run, double lowest_m, double curvature,
+               float* edge_m) {
+    const auto tangent = [&](int i) {
+        const double at = run.first + i;
+        return run.along_column ? sun.tangent_at(run.line, at) : sun.tangent_at(at, run.line);
+    };
+    if (tangent(0) >= 0 && tangent(run.count - 1) >= 0) return;
+    for (int i = 0; i < run.count; ++i) {
+        const double t = std::min(tangent(i), 0.0);
+        if (t < 0)
+            edge_m[i] = std::max(edge_m[i], static_cast<float>(lowest_m + t * t / (2 * curvature)));
+    }
+}
+
+/// Edges between those for the air of the lowest post and of the highest one, by a post's height.
+void mix(const SweepRun& run, const float* low_edge_m, double low_m, double span_m, float* edge_m) {
+    for (int i = 0; i < run.count; ++i) {
+        const float low = low_edge_m[i], high = edge_m[i];
+        const double part = (run.height_m[i] - low_m) / span_m;
+        const bool both = low > -kInfinity && high > -kInfinity;
+        edge_m[i] = both ? low + static_cast<float>(part * (double{high} - low)) : low;
+    }
+}
+
+/// How far off the suns of a window are at most [rad].
+double error_rad(const std::vector<SunSky>& suns, const SweepWindow& window) {
+    double worst = 0;
+    for (const SunSky& sun : suns) {
+        const std::optional<SunTile> tile = sun.tile(window);
+        worst = std::max(worst, tile ? sun.error_rad(*tile) : kPi);
+    }
+    return worst;
+}
+
+/// Both halves of a window.
+std::array<SweepWindow, 2> halves(const SweepWindow& window, bool of_columns) {
+    std::array<SweepWindow, 2> halves{window, window};
+    if (of_columns) {
+        halves[0].columns = window.columns / 2;
+        halves[1].column += halves[0].columns;
+        halves[1].columns -= halves[0].columns;
+    } else {
+        halves[0].rows = window.rows / 2;
+        halves[1].row += halves[0].rows;
+        halves[1].rows -= halves[0].rows;
+    }
+    return halves;
+}
+
+void divide(const std::vector<SunSky>& suns, double tolerance_rad, const SweepWindow& window,
+            std::vector<SweepWindow>& windows) {
+    if (error_rad(suns, window) <= tolerance_rad) return windows.push_back(window);
+    const bool wide = window.columns > kLeastTile, high = window.rows > kLeastTile;
+    if (!wide && !high) no_tile(suns.front().dem().grid());
+    // Across that way across which the sun differs more.
+    const bool by_columns = wide && (!high || error_rad(suns, halves(window, true)[0]) <=
+                                                  error_rad(suns, halves(window, false)[0]));
+    for (const SweepWindow& half : halves(window, by_columns))
+        divide(suns, tolerance_rad, half, windows);
+}
+
+}  // namespace
+
+dem::Posts::View view_in_memory(const dem::Posts& posts) {
+    const dem::Grid& grid = posts.grid();
+    if (!posts.in_memory())
+        bad_input(fmt::format("{}: {} x {} posts are more than --memory allows; pass --memory {}",
+                              posts.about().path, grid.columns(), grid.rows(),
+                              ((std::int64_t{grid.columns()} * grid.rows()) >> 18) + 1));
+    std::vector<float> unused;
+    return posts.view({0, 0, grid.columns(), grid.rows()}, unused);
+}
+
+DemSky::DemSky(const dem::Posts& posts, const ShadowOptions& options)
+    : posts_(posts),
+      frame_(posts.grid().center()),
+      curvature_((1 - options.refraction) / geo::kEquatorialRadius_m),
+      relief_m_(double{posts.highest_m()} - posts.lowest_m()) {
+    if (!(options.refraction >= -1 && options.refraction <= 0.9))
+        bad_input(fmt::format(
+            "light::DemSky: refraction {:.10g}: no air bends light so, expected -1 to 0.9 of the "
+            "Earth's curvature; 0.13 is the mean",
+            options.refraction));
+    if (!options.air) return;
+    for (const float height_m : {posts.lowest_m(), posts.highest_m()}) {
+        geo::Geodetic place = grid().center();
+        place.height_m = height_m;
+        airs_.push_back(options.air(place));
+    }
+}
+
+std::size_t DemSky::levels(double elevation_rad) const {
+    const bool differ = !airs_.empty() &&
+                        std::abs(apparent_rad(elevation_rad, 1) - apparent_rad(elevation_rad, 0)) >
+                            kAirTolerance_rad;
+    return differ ? 2 : 1;
+}
+
+double DemSky::level_height_m(std::size_t level) const {
+    return level == 0 ? posts_.lowest_m() : posts_.highest_m();
+}
+
+double DemSky::apparent_rad(double elevation_rad, std::size_t level) const {
+    return airs_.empty() ? elevation_rad : airs_[level].apparent_rad(elevation_rad);
+}
+
+SunSky::SunSky(const DemSky& dem, const SunOverDem& sun)
+    : dem_(dem), levels_(dem.levels(sun.elevation_rad)) {
+    const double c = std::cos(sun.elevation_rad);
+    direction_ = {c * std::sin(sun.azimuth_rad), c * std::cos(sun.azimuth_rad),
+                  std::sin(sun.elevation_rad)};
+}
+
+SunSky::SunSky(const DemSky& dem, double azimuth_rad)
+    : dem_(dem), levels_(1), azimuth_rad_(azimuth_rad) {}
+
+SunSky::Local SunSky::at(const geo::Geodetic& place) const {
+    if (azimuth_rad_) return {*azimuth_rad_, place.lat_rad * 0};  // no number where there is none
+    const geo::Axes axes = dem_.frame().axes(place.lat_rad, place.lon_rad);
+    const double east = glm::dot(direction_, axes.east), north = glm::dot(direction_, axes.north);
+    return {std::atan2(east, north),
+            std::atan2(glm::dot(direction_, axes.up), std::hypot(east, north))};
+}
+
+double SunSky::reach_m(double apparent_rad) const {
+    const double t = std::tan(std::min(apparent_rad, radians(89.9)));
+    const double risen_m =
+        (std::sqrt(t * t + 2 * dem_.curvature() * dem_.relief_m()) - t) / dem_.curvature();
+    const dem::Grid& grid = dem_.grid();
+    const glm::dvec2 side_m = grid.post_spacing_m() * glm::dvec2(grid.columns(), grid.rows());
+    return std::max(4 * grid_spacing_m(grid), std::min(risen_m, glm::length(side_m)));
+}
+
+bool SunSky::is_night() const {
+    const dem::Grid& grid = dem_.grid();
+    for (int i = 0; i < 9; ++i) {
+        const Local sun =
+            at((grid.columns() - 1) * (i % 3) / 2.0, (grid.rows() - 1) * (i / 3) / 2.0);
+        if (!(sun.elevation_rad < kNight_rad)) return false;
+    }
+    return true;
+}
+
+SweepSun SunSky::sun(const SunTile& tile, std::size_t level, double offset_rad) const {
+    const GridPair& p = tile.path.reference;
+    const auto tangent = [&](double column, double row) {
+        const double e = at(p.column + column, p.row + row).elevation_rad + offset_rad;
+        return std::tan(std::min(dem_.apparent_rad(e, level), radians(89.99)));
+    };
+    const double across = std::max(0.5, tile.window.columns / 2.0);
+    const double down = std::max(0.5, tile.window.rows / 2.0);
+    SweepSun sun = tile.path;
+    sun.tangent = tangent(0, 0);
+    sun.tangent_a_post = {(tangent(across, 0) - tangent(-across, 0)) / (2 * across),
+                          (tangent(0, down) - tangent(0, -down)) / (2 * down)};
+    return sun;
+}
+
+std::optional<SunTile> SunSky::tile(const SweepWindow& window) const {
+    const dem::Grid& grid = dem_.grid();
+    const glm::dvec2 middle(window.column + (window.columns - 1) / 2.0,
+                            window.row + (window.rows - 1) / 2.0);
+    const geo::Geodetic place = grid.place(middle.x, middle.y);
+    if (!std::isfinite(place.lat_rad)) return std::nullopt;
+    const Local sun = at(place);
+    // A cubic through where the ray is before the window, and behind it for as far as that goes.
+    const glm::dvec2 size_m = grid.post_spacing_m() * glm::dvec2(window.columns, window.rows);
+    const double behind_m = std::max(4 * grid_spacing_m(grid), glm::length(size_m) / 2);
+    double far_m = std::max(reach_m(dem_.apparent_rad(sun.elevation_rad, 0)), behind_m);
+    for (int tries = 0; tries < 8; ++tries, far_m /= 2) {
+        const double back_m = -std::min(behind_m, far_m);
+        const glm::dvec3 s(back_m / far_m, 0.5, 1);
+        glm::dmat3 powers;
+        for (int k = 0; k < 3; ++k)
+            powers[k] = {s[k], s[k] * s[k], s[k] * s[k] * s[k]};
+        const glm::dmat3 inverse = glm::inverse(powers);  // of columns (s, s^2, s^3)
+        glm::dmat3x2 there;
+        for (int k = 0; k < 3; ++k)
+            there[k] = moved(grid, place, sun.azimuth_rad, s[k] * far_m) - middle;
+        const glm::dmat3x2 terms = there * inverse;
+        if (!std::isfinite(terms[0].x + terms[0].y + terms[1].x + terms[1].y + terms[2].x +
+                           terms[2].y))
+            continue;
+        const auto pair = [](const glm::dvec2& v) { return GridPair{v.x, v.y}; };
+        SunTile tile{window, {}};
+        tile.path.reference = pair(middle);
+        tile.path.towards = pair(terms[0] / far_m);
+        tile.path.bend = pair(2.0 * terms[1] / (far_m * far_m));
+        tile.path.twist = pair(6.0 * terms[2] / (far_m * far_m * far_m));
+        return tile;
+    }
+    return std::nullopt;
+}
+
+/// The largest angle between the rays that shade a post and the tile's lines.
+double SunSky::path_error_rad(const SunTile& tile, const glm::dvec2& post, const Local& sun) const {
+    const dem::Grid& grid = dem_.grid();
+    // As Sweep goes: from row to row or from column to column, all lines being moved along the
+    // other.
+    const bool by_rows = std::abs(tile.path.towards.row) >= std::abs(tile.path.towards.column);
+    const SweepSun path = by_rows ? tile.path : tile.path.transposed();
+    const int step = by_rows ? 1 : 0, across = 1 - step;
+    const geo::Geodetic place = grid.place(post.x, post.y);
+    const double apparent = dem_.apparent_rad(sun.elevation_rad, 0);
+    const double reach = reach_m(apparent), least_m = 2 * grid_spacing_m(grid);
+    const double s0 = path.distance_m(post[step]);
+    const double moved_by = post[across] - path.way(s0).column;
+    const double across_m = grid.post_spacing_m()[across];
+    double worst = 0;
+    for (const double share : {0.02, 0.1, 0.3, 0.6, 1.0}) {
+        // Nearer than some posts an angle is of no account, and PROJ's millimetre would be one.
+        const double s = std::max(share * reach, least_m);
+        const glm::dvec2 at = moved(grid, place, sun.azimuth_rad, s);
+        if (!(at.x > -1 && at.y > -1 && at.x < grid.columns() && at.y < grid.rows())) continue;
+        const double s1 = path.distance_m(at[step]);
+        if (std::isnan(s1)) return kPi;
+        const double aside_m = (path.way(s1).column + moved_by - at[across]) * across_m;
+        const double longer = (s1 - s0 - s) / s;
+        worst = std::max(worst, std::abs(aside_m) / s * std::cos(apparent));
+        worst = std::max(worst, std::abs(longer * std::sin(2 * apparent) / 2));
+    }
+    return worst;
+}
+
+double SunSky::error_rad(const SunTile& tile) const {
+    double worst = 0;
+    const SweepWindow& w = tile.window;
+    for (std::size_t level = 0; level < levels_; ++level) {
+        const SweepSun model = sun(tile, level, 0);
+        for (int i = 0; i < 9; ++i) {
+            const glm::dvec2 post(w.column + (w.columns - 1) * (i % 3) / 2.0,
+                                  w.row + (w.rows - 1) * (i / 3) / 2.0);
+            const Local local = at(post.x, post.y);
+            const double tangent = model.tangent_at(post.x, post.y);
+            const double seen =
+                std::min(dem_.apparent_rad(local.elevation_rad, level), radians(89.99));
+            worst = std::max(worst, std::abs(std::atan(tangent) - seen));
+            if (level == 0) worst = std::max(worst, path_error_rad(tile, post, local));
+            if (std::isnan(worst + local.elevation_rad)) return kPi;
+        }
+    }
+    return worst;
+}
+
+std::vector<SweepWindow> divide(const std::vector<SunSky>& suns, double tolerance_rad) {
+    const dem::Grid& grid = suns.front().dem().grid();
+    std::vector<SweepWindow> windows;
+    divide(suns, tolerance_rad, {0, 0, grid.columns(), grid.rows()}, windows);
+    return windows;
+}
+
+void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
+               const Sweep::Use& use) {
+    const DemSky& dem = sky.dem();
+    const bool two = sky.levels() == 2;
+    TileValues low(two ? tile.window : SweepWindow{}, 0);
+    low.turn(tile.path.along_columns());
+    if (two)
+        sweep.each_edge(sky.sun(tile, 0, offset_rad), tile.window, [&](const SweepRun& run) {
+            std::copy_n(run.found, run.count, low.of(run));
+        });
+    const SweepSun lower = sky.sun(tile, 0, offset_rad);
+    const SweepSun sun = two ? sky.sun(tile, 1, offset_rad) : lower;
+    const double low_m = dem.level_height_m(0), span_m = dem.level_height_m(1) - low_m;
+    sweep.each_edge(sun, tile.window, [&](const SweepRun& run) {
+        std::array<float, kRun> edge;
+        for (int done = 0; done < run.count; done += kRun) {
+            SweepRun part = run;
+            part.first += done;
+            part.count = std::min(run.count - done, kRun);
+            part.height_m += done;
+            std::copy_n(run.found + done, part.count, edge.begin());
+            part.found = edge.data();
+            add_earth(sun, part, sweep.lowest_m(), dem.curvature(), edge.data());
+            if (two) {
+                std::array<float, kRun> other;
+                std::copy_n(low.of(part), part.count, other.begin());
+                add_earth(lower, part, sweep.lowest_m(), dem.curvature(), other.data());
+                mix(part, other.data(), low_m, span_m, edge.data());
+            }
+            use(part);
+        }
+    });
+}
+
+void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& tile,
+                  const Sweep::Use& use) {
+    const DemSky& dem = direction.dem();
+    const auto curvature = static_cast<float>(dem.curvature());
+    const float lowest_m = sweep.lowest_m();
+    sweep.each_horizon(
+        tile.path, dem.curvature(), direction.reach_m(0), tile.window, [&](const SweepRun& run) {
+            std::array<float, kRun> tangent;
+            for (int done = 0; done < run.count; done += kRun) {
+                SweepRun part = run;
+                part.first += done;
+                part.count = std::min(run.count - done, kRun);
+                part.height_m += done;
+                for (int i = 0; i < part.count; ++i) {
+                    const float dip =
+                        -std::sqrt(2 * curvature * std::max(0.0F, part.height_m[i] - lowest_m));
+                    tangent[static_cast<std::size_t>(i)] = std::max(run.found[done + i], dip);
+                }
+                part.found = tangent.data();
+                use(part);
+            }
+        });
+}
+
+TileValues::TileValues(const SweepWindow& window, float value)
+    : window_(window),
+      values_(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows),
+              value) {}
+
+void TileValues::turn(bool along_columns) {
+    if (along_columns == along_columns_) return;
+    const int rows = along_columns_ ? window_.columns : window_.rows;
+    const int columns = along_columns_ ? window_.rows : window_.columns;
+    std::vector<float> turned(values_.size());
+    transpose(values_.data(), columns, rows, columns, turned.data(), rows);
+    values_ = std::move(turned);
+    along_columns_ = along_columns;
+}
+
+void TileValues::put(Array2d<float>& whole) const {
+    float* const to = &whole.at(window_.column, window_.row);
+    if (along_columns_)
+        return transpose(values_.data(), window_.rows, window_.columns, window_.rows, to,
+                         whole.width());
+    for (int row = 0; row < window_.rows; ++row)
+        std::copy_n(values_.data() + std::ptrdiff_t{row} * window_.columns, window_.columns,
+                    to + std::ptrdiff_t{row} * whole.width());
+}
+
+}  // namespace relevo::light

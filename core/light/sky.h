@@ -1,0 +1,136 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "base/array2d.h"
+#include "base/units.h"
+#include "dem/posts.h"
+#include "geo/local_frame.h"
+#include "light/shadows.h"
+#include "light/sweep.h"
+#include "sun/refraction.h"
+
+/// The sun over the grid of a DEM, as sweeps need it; shared by what makes rasters.
+namespace relevo::light {
+
+/// All heights of a DEM that is in memory.
+/// @throws Error (BadInput) for one that is not
+dem::Posts::View view_in_memory(const dem::Posts& posts);
+
+/// A part of a DEM, and the sun over it but for its height.
+struct SunTile {
+    SweepWindow window;
+    SweepSun path;  ///< its tangents are not set
+};
+
+/// What is the same of a DEM for all suns.
+class DemSky {
+  public:
+    /// @param posts, air  outlive this
+    /// @throws Error (BadInput) for a refraction that no air has
+    DemSky(const dem::Posts& posts, const ShadowOptions& options);
+
+    const dem::Posts& posts() const { return posts_; }
+    const dem::Grid& grid() const { return posts_.grid(); }
+    const geo::LocalFrame& frame() const { return frame_; }
+    double curvature() const { return curvature_; }  ///< of lines of sight over the ground [1/m]
+    double relief_m() const { return relief_m_; }
+    /// How many levels of air matter to a sun: its lowest post's, and its highest one's where the
+    /// two see it otherwise.
+    std::size_t levels(double elevation_rad) const;
+    double level_height_m(std::size_t level) const;
+    double apparent_rad(double elevation_rad, std::size_t level) const;
+
+  private:
+    const dem::Posts& posts_;
+    geo::LocalFrame frame_;
+    double curvature_, relief_m_;
+    std::vector<sun::Refraction> airs_;  // over the lowest post and the highest one, or none
+};
+
+/// A sun over the grid of a DEM.
+class SunSky {
+  public:
+    SunSky(const DemSky& dem, const SunOverDem& sun);
+    /// A direction that is the same at every place, from true north there, and level.
+    SunSky(const DemSky& dem, double azimuth_rad);
+
+    const DemSky& dem() const { return dem_; }
+    std::size_t levels() const { return levels_; }
+
+    /// The sun is under the horizon of every post.
+    bool is_night() const;
+
+    /// The ray through the middle of a window, as a cubic over the grid.
+    std::optional<SunTile> tile(const SweepWindow& window) const;
+
+    /// The tile's sun with the heights of a part of the disc.
+    /// @param offset_rad  of that part over the centre
+    SweepSun sun(const SunTile& tile, std::size_t level, double offset_rad) const;
+
+    /// As far as ground can shade: where a ray has risen over all relief of a round Earth.
+    double reach_m(double apparent_rad) const;
+
+    /// How far off a tile's sun is anywhere on it [rad].
+    double error_rad(const SunTile& tile) const;
+
+  private:
+    struct Local {
+        double azimuth_rad, elevation_rad;  // without air
+    };
+    Local at(const geo::Geodetic& place) const;
+    Local at(double column, double row) const { return at(dem_.grid().place(column, row)); }
+    double path_error_rad(const SunTile& tile, const glm::dvec2& post, const Local& sun) const;
+
+    const DemSky& dem_;
+    glm::dvec3 direction_{0};
+    std::size_t levels_;
+    std::optional<double> azimuth_rad_;  // instead of `direction_`
+};
+
+/// How far a tile's sun may be off where it is looked at; 0.05 degrees anywhere.
+constexpr double kSunTolerance_rad = radians(0.04);
+
+/// The windows of a DEM over each of which a sun is one, for all suns given.
+/// @throws Error (BadInput) where a grid is so coarse or so near to a pole that there are none
+std::vector<SweepWindow> divide(const std::vector<SunSky>& suns,
+                                double tolerance_rad = kSunTolerance_rad);
+
+/// Calls `use` with all posts of a tile and the edge of the shadow over each, the post's own air
+/// and the smooth Earth around the DEM considered, on several threads.
+/// @param offset_rad  of the part of the disc over its centre
+void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
+               const Sweep::Use& use);
+
+/// Likewise with the tangent of the horizon's elevation from the ground at each post, the smooth
+/// Earth around the DEM being seen where nothing of it is higher.
+void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& tile,
+                  const Sweep::Use& use);
+
+/// A figure for each post of a window, in the order in which sweeps come to them.
+class TileValues {
+  public:
+    TileValues(const SweepWindow& window, float value);
+
+    /// Along columns, or along rows, which is how they begin.
+    void turn(bool along_columns);
+    float* of(const SweepRun& run) {
+        const int line = run.line - (run.along_column ? window_.column : window_.row);
+        const int first = run.first - (run.along_column ? window_.row : window_.column);
+        return values_.data() +
+               std::ptrdiff_t{line} * (run.along_column ? window_.rows : window_.columns) + first;
+    }
+    /// Puts them where the window is.
+    void put(Array2d<float>& whole) const;
+
+  private:
+    SweepWindow window_;
+    bool along_columns_ = false;
+    std::vector<float> values_;
+};
+
+}  // namespace relevo::light

@@ -1,0 +1,314 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+
+#include "base/parallel_for.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "dem/gdal_support.h"
+#include "light/fields.h"
+#include "light/horizon.h"
+#include "light/horizons.h"
+#include "light/quick_math.h"
+#include "light/sweep.h"
+#include "support/support.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr double kSphere_m = 6'371'000;
+constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+
+double number(const test::Csv& csv, std::size_t row, std::string_view column) {
+    return *parse_number(csv.rows[row][csv.column(column)]);
+}
+
+/// A direction over a map that is true to scale, by its azimuth from the top of the grid. Exact for
+/// the compass rose.
+SweepSun way_over(const GridPair& spacing_m, double azimuth_deg, const GridPair& reference) {
+    const auto part = [](double deg) {
+        const double turned = std::remainder(deg, 360);
+        return std::abs(turned) == 90 ? 0.0 : std::cos(radians(turned));
+    };
+    return sun_over_map(spacing_m, {part(azimuth_deg - 90), -part(azimuth_deg)}, 0.1, reference);
+}
+
+/// Elevations of the horizon of a window [degrees].
+Array2d<float> horizon_deg(const Array2d<float>& height_m, const GridPair& spacing_m,
+                           double azimuth_deg, double curvature, const SweepWindow& window,
+                           int lanes = Sweep::kMostLanes) {
+    Array2d<float> out(window.columns, window.rows, kHole);
+    const Sweep sweep(height_m.data(), height_m.width(), height_m.height(), height_m.width());
+    const SweepSun way =
+        way_over(spacing_m, azimuth_deg, {double(window.column), double(window.row)});
+    sweep.each_horizon(
+        way, curvature, 1e9, window,
+        [&](const SweepRun& run) {
+            for (int i = 0; i < run.count; ++i) {
+                const int column = run.along_column ? run.line : run.first + i;
+                const int row = run.along_column ? run.first + i : run.line;
+                out.at(column - window.column, row - window.row) =
+                    static_cast<float>(degrees(std::atan(double{run.found[i]})));
+            }
+        },
+        lanes);
+    return out;
+}
+Array2d<float> horizon_deg(const Array2d<float>& height_m, const GridPair& spacing_m,
+                           double azimuth_deg, int lanes = Sweep::kMostLanes) {
+    return horizon_deg(height_m, spacing_m, azimuth_deg, 0,
+                       {0, 0, height_m.width(), height_m.height()}, lanes);
+}
+
+/// The largest of a share of numbers.
+double quantile(std::vector<double> numbers, double share) {
+    std::sort(numbers.begin(), numbers.end());
+    return numbers[static_cast<std::size_t>(share * double(numbers.size() - 1))];
+}
+
+TEST(Horizons, AgreeWithCrossingsComputedIndependently) {
+    SKIP_WITHOUT_TEST_DATA(dir);
+    const dem::Heightfield field =
+        dem::load((dir / "dem" / "srtm_bigtujunga30m_utm11.tif").string());
+    const test::Csv csv = test::read_csv(dir / "sun" / "terrain_horizon.csv");
+    ASSERT_EQ(csv.rows.size(), 720U);
+    const glm::dvec2 spacing = field.grid.post_spacing_m();
+    const double cell = std::abs(field.grid.affine().x_column);
+    EXPECT_NEAR(spacing.x, cell, 0.02);
+    for (const bool flat : {true, false}) {
+        std::vector<double> errors;
+        for (std::size_t i = 0; i < csv.rows.size(); ++i) {
+            const int column = static_cast<int>(number(csv, i, "col")),
+                      row = static_cast<int>(number(csv, i, "row"));
+            const Array2d<float> found =
+                horizon_deg(field.height_m, {cell, cell}, number(csv, i, "grid_azimuth_deg"),
+                            flat ? 0 : 0.87 / kSphere_m, {column, row, 1, 1});
+            errors.push_back(
+                std::abs(found.at(0, 0) - number(csv, i,
+                                                 flat ? "horizon_crossings_flat_deg"
+                                                      : "horizon_crossings_curved_k013_deg")));
+        }
+        test::print_accuracy(flat ? "horizons against crossings, flat Earth"
+                                  : "horizons against crossings, round Earth",
+                             errors, "deg", 1);
+        EXPECT_LE(quantile(errors, 0.5), 0.001);
+        EXPECT_LE(quantile(errors, 0.95), 0.1);
+        EXPECT_LE(quantile(errors, 0.99), 0.5);
+    }
+}
+
+/// A raster of the outside world.
+Array2d<float> read_band(const std::filesystem::path& path, int band) {
+    dem::prepare_gdal();
+    const std::unique_ptr<GDALDataset> dataset(
+        GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+    Array2d<float> values(dataset->GetRasterXSize(), dataset->GetRasterYSize());
+    EXPECT_EQ(dataset->GetRasterBand(band)->RasterIO(GF_Read, 0, 0, values.width(), values.height(),
+                                                     values.data(), values.width(), values.height(),
+                                                     GDT_Float32, 0, 0, nullptr),
+              CE_None);
+    return values;
+}
+
+TEST(Horizons, AgreeWithTopocalcWhereItIsExact) {
+    SKIP_WITHOUT_TEST_DATA(dir);
+    const std::filesystem::path outside = dir / "sun" / "outside";
+    const dem::Heightfield lakes = dem::load((outside / "topocalc_lakes_dem.tif").string());
+    double worst = 0;
+    std::vector<double> others;
+    double bias = 0;
+    for (int k = 0; k < 72; ++k) {
+        const Array2d<float> theirs = read_band(outside / "topocalc_lakes_horizon.tif", k + 1);
+        const Array2d<float> ours = horizon_deg(lakes.height_m, {50, 50}, 5.0 * k);
+        ASSERT_EQ(ours.size(), theirs.size());
+        for (std::size_t i = 0; i < ours.size(); ++i) {
+            const double difference = double{theirs.data()[i]} - std::max(0.0F, ours.data()[i]);
+            if (k % 9 == 0) {
+                worst = std::max(worst, std::abs(difference));
+            } else {
+                others.push_back(std::abs(difference));
+                bias += difference;
+            }
+        }
+    }
+    bias /= double(others.size());
+    fmt::print(
+        "[ accuracy ] topocalc, 26208 posts: at eight azimuths of the compass rose all within "
+        "{:.6f} degrees (limit 0.0001); at the 64 others, where it takes the nearest post, median "
+        "{:.3f} (limit 0.2), bias {:.2f} (0.3 to 0.9)\n",
+        worst, quantile(others, 0.5), bias);
+    EXPECT_LE(worst, 1e-4);
+    EXPECT_LE(quantile(others, 0.5), 0.2);
+    EXPECT_GE(bias, 0.3);
+    EXPECT_LE(bias, 0.9);
+}
+
+TEST(Horizons, AreThoseOfARoundWall) {
+    SKIP_WITHOUT_TEST_DATA(dir);
+    const test::Csv csv = test::read_csv(dir / "sun" / "outside" / "grass_rhorizon_circle.csv");
+    // Posts of the region that is N 228500 S 215000 W 630000 E 645000, every 10 m.
+    Array2d<float> height_m(1500, 1350);
+    for (int row = 0; row < height_m.height(); ++row)
+        for (int column = 0; column < height_m.width(); ++column)
+            height_m.at(column, row) =
+                std::hypot(630005 + 10.0 * column - 637505, 228495 - 10.0 * row - 221755) >= 5000
+                    ? 1000.0F
+                    : 0.0F;
+    const SweepWindow eye{750, 674, 1, 1};
+    double least = 1, most = -1;
+    for (std::size_t i = 0; i < csv.rows.size(); ++i) {
+        const double off = horizon_deg(height_m, {10, 10}, number(csv, i, "azimuth_cw_north_deg"),
+                                       1 / kSphere_m, eye)
+                               .at(0, 0) -
+                           number(csv, i, "exact_circle_deg");
+        least = std::min(least, off);
+        most = std::max(most, off);
+    }
+    fmt::print(
+        "[ accuracy ] a round wall, {} azimuths: {:+.4f} to {:+.4f} degrees (limits -0.03, 0.001; "
+        "r.horizon -0.0214 to -0.0001)\n",
+        csv.rows.size(), least, most);
+    EXPECT_GE(csv.rows.size(), 18U);
+    EXPECT_GE(least, -0.03);
+    EXPECT_LE(most, 0.001);
+}
+
+void compare_with_places(const std::string& name, const dem::Heightfield& field, int count,
+                         double median_deg, double most_deg) {
+    const dem::Posts posts(field);
+    const std::vector<double> azimuths{0.1, 0.8, 2.5, 3.0, 3.9, 4.8, 6.2};
+    const Horizons all = horizons(posts, azimuths);
+    std::mt19937 lot(20260102);
+    std::vector<glm::ivec2> where;
+    while (static_cast<int>(where.size()) < count) {
+        const glm::ivec2 post(lot() % static_cast<unsigned>(field.grid.columns()),
+                              lot() % static_cast<unsigned>(field.grid.rows()));
+        if (!std::isnan(field.height_m.at(post.x, post.y))) where.push_back(post);
+    }
+    std::vector<double> errors(where.size() * azimuths.size());
+    parallel_for(0, count, 1, [&](int first, int last) {
+        for (int i = first; i < last; ++i) {
+            const glm::ivec2 post = where[static_cast<std::size_t>(i)];
+            const TerrainHorizon horizon(posts, field.grid.place(post.x, post.y));
+            for (std::size_t k = 0; k < azimuths.size(); ++k)
+                errors[static_cast<std::size_t>(i) * azimuths.size() + k] = std::abs(degrees(
+                    all.elevation_rad[k].at(post.x, post.y) - horizon.elevation_rad(azimuths[k])));
+        }
+    });
+    test::print_accuracy(name + ", horizons against those of places", errors, "deg", 1);
+    EXPECT_LE(quantile(errors, 0.5), median_deg) << name;
+    EXPECT_LE(quantile(errors, 0.99), most_deg) << name;
+}
+
+TEST(Horizons, AgreeWithTheExactOnesOfPlaces) {
+    for (const char* const name : {"jacksboro.tif", "vancouver-island.tif"})
+        compare_with_places(name, test::bundled(name), 300, 0.05, 1);
+    SKIP_WITHOUT_TEST_DATA(data);
+    for (const char* const name :
+         {"srtm_bigtujunga30m_utm11.tif", "hawaii_rotated20.tif", "mt_rainier_90m.tif"})
+        compare_with_places(name, dem::load((data / "dem" / name).string()), 300, 0.05, 1);
+}
+
+TEST(Horizons, HaveTheSameBitsForAnyWidthOfVectorsAndAnyWindow) {
+    const Array2d<float> height_m = test::bundled("jacksboro.tif").height_m;
+    for (const double azimuth_deg : {3.0, 77.0, 200.0, 283.0}) {
+        const Array2d<float> all = horizon_deg(height_m, {75, 92}, azimuth_deg);
+        for (const int lanes : {4, 8})
+            EXPECT_EQ(horizon_deg(height_m, {75, 92}, azimuth_deg, lanes), all);
+        // Lines are counted from the window's first post, here as there a post.
+        const SweepWindow window{0, 0, 150, 90};
+        const Array2d<float> part = horizon_deg(height_m, {75, 92}, azimuth_deg, 0, window);
+        for (int row = 0; row < window.rows; ++row)
+            for (int column = 0; column < window.columns; ++column)
+                ASSERT_EQ(part.at(column, row), all.at(column, row)) << column << " " << row;
+    }
+}
+
+TEST(Horizons, HolesHideNothingAndHaveNone) {
+    // A wall with a gap, seen from the west of it.
+    const dem::Heightfield field =
+        test::field_of(61, 61, {500000, 10, 0, 0, 0, -10}, "EPSG:32631", [](int column, int row) {
+            if (column == 40) return row == 30 ? double{kHole} : 50.0;
+            return 0.0;
+        });
+    const Horizons east = horizons(dem::Posts(field), {kPi / 2});
+    EXPECT_EQ(east.holes, 1);
+    EXPECT_TRUE(std::isnan(east.elevation_rad[0].at(40, 30)));
+    EXPECT_NEAR(degrees(east.elevation_rad[0].at(30, 20)), degrees(std::atan(0.5)), 0.1);
+    EXPECT_NEAR(degrees(east.elevation_rad[0].at(30, 30)), 0, 0.1);
+    EXPECT_EQ(east.definition,
+              "elevation of the horizon as seen from the ground; ground of the DEM alone, on the "
+              "WGS 84 ellipsoid with terrestrial refraction k = 0.13; beyond the DEM smooth ground "
+              "at 0 m");
+}
+
+TEST(SkyView, AgreesWithTopocalc) {
+    SKIP_WITHOUT_TEST_DATA(dir);
+    const std::filesystem::path outside = dir / "sun" / "outside";
+    const dem::Heightfield lakes = dem::load((outside / "topocalc_lakes_dem.tif").string());
+    const SkyView ours = sky_view(dem::Posts(lakes), {.directions = 72});
+    const Array2d<float> theirs = read_band(outside / "topocalc_lakes_skyview.tif", 1);
+    std::vector<double> errors;
+    // At its borders topocalc takes another slope.
+    for (int row = 1; row + 1 < theirs.height(); ++row)
+        for (int column = 1; column + 1 < theirs.width(); ++column)
+            errors.push_back(std::abs(double{ours.share.at(column, row)} - theirs.at(column, row)));
+    double mean = 0;
+    for (const double error : errors)
+        mean += error / double(errors.size());
+    fmt::print("[ accuracy ] sky view against topocalc: mean {:.4f} (limit 0.005)\n", mean);
+    test::print_accuracy("sky view against topocalc", errors, "", 0.1);
+    EXPECT_LE(mean, 0.005);
+}
+
+TEST(SkyView, OfAnInclinedPlaneIsHalfOfOneAndItsCosine) {
+    for (const double slope_deg : {0.0, 20.0, 45.0}) {
+        const double a_post = 10 * std::tan(radians(slope_deg));
+        // Inclined to the north-west; in the middle no edge is near.
+        const dem::Heightfield plane = test::field_of(
+            401, 401, {500000, 10, 0, 0, 0, -10}, "EPSG:32631",
+            [&](int column, int row) { return 5000 + a_post * (column + row) / std::sqrt(2.0); });
+        const dem::Posts posts(plane);
+        const SkyView inclined = sky_view(posts, {.directions = 180});
+        EXPECT_NEAR(inclined.share.at(200, 200), (1 + std::cos(radians(slope_deg))) / 2, 0.002)
+            << slope_deg;
+        // Of a level plane there: half the horizon is that of the slope.
+        double level = 0;
+        for (int i = 0; i < 720; ++i) {
+            const double rise =
+                std::max(0.0, std::tan(radians(slope_deg)) * std::cos(radians(0.5 * i)));
+            level += 1 / (1 + rise * rise) / 720;
+        }
+        EXPECT_NEAR(sky_view(posts, {.directions = 180, .level = true}).share.at(200, 200), level,
+                    0.002)
+            << slope_deg;
+    }
+}
+
+TEST(SkyView, FewerDirectionsAreNotFarOff) {
+    const dem::Heightfield field = test::bundled("jacksboro.tif");
+    const dem::Posts posts(field);
+    const SkyView many = sky_view(posts, {.directions = 360}), usual = sky_view(posts);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < many.share.size(); ++i)
+        errors.push_back(std::abs(double{many.share.data()[i]} - usual.share.data()[i]));
+    test::print_accuracy("sky view of 36 directions against 360", errors, "", 0.02);
+    EXPECT_LE(quantile(errors, 0.99), 0.01);
+    EXPECT_EQ(test::error_of([&] { sky_view(posts, {.directions = 3}); }),
+              "exit 3: light::sky_view: 3 directions: expected 4 to 3600");
+}
+
+TEST(QuickMath, ArcTangent) {
+    double worst = 0;
+    for (double t = 0; t < 200; t = t * 1.01 + 1e-4)
+        worst =
+            std::max(worst, std::abs(double{quick_atan(float(t))} - std::atan(double{float(t)})));
+    EXPECT_LE(worst, 2e-7);
+}
+
+}  // namespace
+}  // namespace relevo::light
