@@ -21,6 +21,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kAirTolerance_rad = radians(0.01);
 constexpr int kLeastTile = 2;               // posts a side
+constexpr int kLarge = 64;                  // likewise
 constexpr double kNight_rad = radians(-4);  // no ground of the Earth sees the sun so low
 
 /// The wider of the two spacings of posts.
@@ -99,9 +100,14 @@ void divide(const std::vector<SunSky>& suns, double tolerance_rad, const SweepWi
     if (error_rad(suns, window) <= tolerance_rad) return windows.push_back(window);
     const bool wide = window.columns > kLeastTile, high = window.rows > kLeastTile;
     if (!wide && !high) no_tile(suns.front().dem().grid());
-    // Across that way across which the sun differs more.
-    const bool by_columns = wide && (!high || error_rad(suns, halves(window, true)[0]) <=
-                                                  error_rad(suns, halves(window, false)[0]));
+    // A large window across that way across which the sun differs more, a small one across its
+    // length.
+    const glm::dvec2 size_m =
+        suns.front().dem().grid().post_spacing_m() * glm::dvec2(window.columns, window.rows);
+    const bool large = window.columns > kLarge && window.rows > kLarge;
+    const bool by_columns = large ? error_rad(suns, halves(window, true)[0]) <=
+                                        error_rad(suns, halves(window, false)[0])
+                                  : wide && (!high || size_m.x > size_m.y);
     for (const SweepWindow& half : halves(window, by_columns))
         divide(suns, tolerance_rad, half, windows);
 }
@@ -215,8 +221,9 @@ std::optional<SunTile> SunSky::tile(const SweepWindow& window) const {
     const double behind_m = std::max(4 * grid_spacing_m(grid), glm::length(size_m) / 2);
     double far_m = std::max(reach_m(dem_.apparent_rad(sun.elevation_rad, 0)), behind_m);
     for (int tries = 0; tries < 8; ++tries, far_m /= 2) {
-        const double back_m = -std::min(behind_m, far_m);
-        const glm::dvec3 s(back_m / far_m, 0.5, 1);
+        const glm::dvec3 s = behind_m < far_m / 3
+                                 ? glm::dvec3(1 / 3.0, 2 / 3.0, 1)
+                                 : glm::dvec3(-std::min(1.0, behind_m / far_m), 0.5, 1);
         glm::dmat3 powers;
         for (int k = 0; k < 3; ++k)
             powers[k] = {s[k], s[k] * s[k], s[k] * s[k] * s[k]};
