@@ -157,11 +157,14 @@ double DemSky::apparent_rad(double elevation_rad, std::size_t level) const {
     return airs_.empty() ? elevation_rad : airs_[level].apparent_rad(elevation_rad);
 }
 
-SunSky::SunSky(const DemSky& dem, const SunOverDem& sun)
+SunSky::SunSky(const DemSky& dem, const SunOverDem& sun) : SunSky(dem, dem.grid().center(), sun) {}
+
+SunSky::SunSky(const DemSky& dem, const geo::Geodetic& place, const SunOverDem& sun)
     : dem_(dem), levels_(dem.levels(sun.elevation_rad)) {
+    const geo::Axes axes = dem.frame().axes(place.lat_rad, place.lon_rad);
     const double c = std::cos(sun.elevation_rad);
-    direction_ = {c * std::sin(sun.azimuth_rad), c * std::cos(sun.azimuth_rad),
-                  std::sin(sun.elevation_rad)};
+    direction_ = c * std::sin(sun.azimuth_rad) * axes.east +
+                 c * std::cos(sun.azimuth_rad) * axes.north + std::sin(sun.elevation_rad) * axes.up;
 }
 
 SunSky::SunSky(const DemSky& dem, double azimuth_rad)
@@ -268,10 +271,14 @@ double SunSky::path_error_rad(const SunTile& tile, const glm::dvec2& post, const
         if (!(at.x > -1 && at.y > -1 && at.x < grid.columns() && at.y < grid.rows())) continue;
         const double s1 = path.distance_m(at[step]);
         if (std::isnan(s1)) return kPi;
+        // A tenth of a post is less than lines are apart, whatever the angle.
+        const auto angle_rad = [&](double off_m) {
+            return std::abs(off_m) < across_m / 10 ? 0 : std::abs(off_m) / s;
+        };
         const double aside_m = (path.way(s1).column + moved_by - at[across]) * across_m;
-        const double longer = (s1 - s0 - s) / s;
-        worst = std::max(worst, std::abs(aside_m) / s * std::cos(apparent));
-        worst = std::max(worst, std::abs(longer * std::sin(2 * apparent) / 2));
+        const double longer_m = s1 - s0 - s;
+        worst = std::max(worst, angle_rad(aside_m) * std::cos(apparent));
+        worst = std::max(worst, angle_rad(longer_m) * std::sin(2 * apparent) / 2);
     }
     return worst;
 }

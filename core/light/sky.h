@@ -39,6 +39,7 @@ class DemSky {
     const geo::LocalFrame& frame() const { return frame_; }
     double curvature() const { return curvature_; }  ///< of lines of sight over the ground [1/m]
     double relief_m() const { return relief_m_; }
+    bool has_air() const { return !airs_.empty(); }
     /// How many levels of air matter to a sun: its lowest post's, and its highest one's where the
     /// two see it otherwise.
     std::size_t levels(double elevation_rad) const;
@@ -56,6 +57,8 @@ class DemSky {
 class SunSky {
   public:
     SunSky(const DemSky& dem, const SunOverDem& sun);
+    /// A sun that stands so over a place.
+    SunSky(const DemSky& dem, const geo::Geodetic& place, const SunOverDem& sun);
     /// A direction that is the same at every place, from true north there, and level.
     SunSky(const DemSky& dem, double azimuth_rad);
 
@@ -92,7 +95,8 @@ class SunSky {
     std::optional<double> azimuth_rad_;  // instead of `direction_`
 };
 
-/// How far a tile's sun may be off where it is looked at; 0.05 degrees anywhere.
+/// How far a tile's sun may be off where it is looked at, unless it is so high that no shadow is
+/// moved by a tenth of a post for it; 0.05 degrees anywhere.
 constexpr double kSunTolerance_rad = radians(0.04);
 
 /// The windows of a DEM over each of which a sun is one, for all suns given.

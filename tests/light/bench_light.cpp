@@ -10,8 +10,11 @@
 #include "base/units.h"
 #include "dem/load.h"
 #include "light/horizon.h"
+#include "light/horizons.h"
 #include "light/shadows.h"
+#include "light/sun_hours.h"
 #include "light/sweep.h"
+#include "sun/zone.h"
 #include "support/support.h"
 
 namespace relevo::light {
@@ -93,6 +96,42 @@ BENCHMARK(shadows_moment)
     ->ArgName("soft")
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+
+/// Hours of a day from suns 3 minutes apart; items are posts.
+void hours_of_a_day(benchmark::State& state) {
+    const dem::Posts posts(field());
+    const sun::Instant begin = sun::parse_time("2026-06-21T08:00Z", {}).utc;
+    SunHoursOptions options;
+    options.air = [](const geo::Geodetic& place) { return sun::Refraction::standard(place); };
+    for (auto _ : state)
+        benchmark::DoNotOptimize(sun_hours(posts, begin, begin + 86400.0, options).mean_hours);
+}
+BENCHMARK(hours_of_a_day)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void hours_of_a_year(benchmark::State& state) {
+    const dem::Posts posts(field());
+    const sun::Instant begin = sun::parse_time("2026-01-01T08:00Z", {}).utc;
+    for (auto _ : state)
+        benchmark::DoNotOptimize(sun_hours(posts, begin, begin + 365 * 86400.0).mean_hours);
+}
+BENCHMARK(hours_of_a_year)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void horizons_36(benchmark::State& state) {
+    const dem::Posts posts(field());
+    std::vector<double> azimuths;
+    for (int i = 0; i < 36; ++i)
+        azimuths.push_back(radians(10.0 * i));
+    for (auto _ : state)
+        benchmark::DoNotOptimize(horizons(posts, azimuths).holes);
+}
+BENCHMARK(horizons_36)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void sky_view_36(benchmark::State& state) {
+    const dem::Posts posts(field());
+    for (auto _ : state)
+        benchmark::DoNotOptimize(sky_view(posts).mean);
+}
+BENCHMARK(sky_view_36)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// The same by the exact horizon of each post: a few of them, for the ratio.
 void shadows_by_horizons(benchmark::State& state) {

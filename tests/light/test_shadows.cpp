@@ -124,7 +124,7 @@ TEST(Shadows, SunOfEachPlaceIsItsOwn) {
         321, 201, {10, 0.0125, 0, 62, 0, -0.0125}, "EPSG:4326", [](int column, int row) {
             return 1000 * std::sin(0.9 * column + 0.4 * std::sin(0.7 * row)) * std::sin(0.8 * row);
         });
-    compare_all("bumps", bumps, 400, 0.003, {3, 20, 35});
+    compare_all("bumps", bumps, 400, 0.005, {3, 20, 35});
 }
 
 TEST(Shadows, AirIsThatOfEachHeight) {

@@ -1,0 +1,445 @@
+#include "light/sun_hours.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "base/units.h"
+#include "light/quick_math.h"
+#include "light/sky.h"
+#include "sun/position.h"
+#include "sun/position_table.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr double kDay_s = 86400, kHour_s = 3600;
+constexpr float kOpen_m = 1e6F;           // margin where nothing of the DEM lies towards the sun
+constexpr double kLow_rad = radians(-4);  // sun without air under which all is night
+constexpr int kFiner = 6;
+constexpr double kPeriodTolerance_rad = radians(0.1);  // of suns that are put together anyway
+
+/// Moments of a time, each with the sun.
+struct Moments {
+    std::vector<double> at_s;  // from the beginning
+    std::vector<SunOverDem> suns;
+};
+
+SunOverDem sun_over(const sun::PositionTable& table, sun::Instant utc,
+                    const sun::Observer& observer) {
+    const glm::dvec3 direction = table.direction(utc, observer);
+    return {sun::azimuth_of(direction), sun::elevation_of(direction), 0};
+}
+
+/// @param finer  of a step, where the sun is near the horizon of a plain: how far off what hides it
+///     lies changes there with every minute, and margins are not linear
+Moments moments(const geo::Geodetic& place, sun::Instant begin, double length_s, double step_s,
+                int finer) {
+    const sun::PositionTable table(begin, begin + length_s);
+    const sun::Observer observer(place);
+    const auto sun_at = [&](double at_s) { return sun_over(table, begin + at_s, observer); };
+    const auto is_low = [](const SunOverDem& sun) {
+        return sun.elevation_rad > kLow_rad && sun.elevation_rad < -kLow_rad / 2;
+    };
+    Moments moments{{0}, {sun_at(0)}};
+    const auto steps = static_cast<int>(std::ceil(length_s / step_s - 1e-9));
+    for (int k = 1; k <= steps; ++k) {
+        const double from_s = moments.at_s.back(), to_s = std::min(k * step_s, length_s);
+        const int parts = is_low(moments.suns.back()) || is_low(sun_at(to_s)) ? finer : 1;
+        for (int part = 1; part <= parts; ++part) {
+            moments.at_s.push_back(part == parts ? to_s : from_s + (to_s - from_s) * part / parts);
+            moments.suns.push_back(sun_at(moments.at_s.back()));
+        }
+    }
+    return moments;
+}
+
+// --- A few days: a sweep for every sun
+
+/// What is known of each post of a window so far.
+struct WindowLight {
+    TileValues margin_m, lit_h, first_h, last_h, spells;
+
+    WindowLight(const SweepWindow& window, bool with_spells)
+        : margin_m(window, -1),
+          lit_h(window, 0),
+          first_h(with_spells ? window : SweepWindow{}, kNaN),
+          last_h(with_spells ? window : SweepWindow{}, kNaN),
+          spells(with_spells ? window : SweepWindow{}, 0) {}
+
+    void turn(bool along_columns) {
+        for (TileValues* const each : {&margin_m, &lit_h, &first_h, &last_h, &spells})
+            each->turn(along_columns);
+    }
+};
+
+/// From one moment to the next.
+struct Step {
+    double from_h, hours;
+};
+
+/// Margins now; a hole has none.
+void measure(const SweepRun& run, float* margin_m) {
+    for (int i = 0; i < run.count; ++i)
+        margin_m[i] = std::min(run.height_m[i] - run.found[i], kOpen_m);
+}
+
+/// The light since the moment before. Both ways have the same light: a share of the step, margins
+/// being linear.
+void add_light(const SweepRun& run, float hours, float* margin_m, float* lit_h) {
+    for (int i = 0; i < run.count; ++i) {
+        const float before = margin_m[i];
+        const float now = std::min(run.height_m[i] - run.found[i], kOpen_m);
+        const float all = std::abs(before) + std::abs(now);
+        const float over = std::max(before, 0.0F) + std::max(now, 0.0F);
+        lit_h[i] += hours * (all > 0 ? over / all : 1);
+        margin_m[i] = now;
+    }
+}
+
+/// Where light comes or goes between two moments. Call before add_light().
+void add_spells(const SweepRun& run, const Step& step, WindowLight& posts) {
+    const float* const margin_m = posts.margin_m.of(run);
+    float *const first_h = posts.first_h.of(run), *const last_h = posts.last_h.of(run),
+                 *const spells = posts.spells.of(run);
+    for (int i = 0; i < run.count; ++i) {
+        const float before = margin_m[i];
+        const float now = std::min(run.height_m[i] - run.found[i], kOpen_m);
+        if ((before >= 0) == (now >= 0)) continue;
+        const auto when =
+            static_cast<float>(step.from_h + step.hours * before / (double{before} - now));
+        if (now >= 0) {
+            if (std::isnan(first_h[i])) first_h[i] = when;
+            ++spells[i];
+        } else {
+            last_h[i] = when;
+        }
+    }
+}
+
+/// The first moment, or the last one: posts that are lit then.
+void add_end(const SweepRun& run, double at_h, bool is_first, WindowLight& posts) {
+    const float* const margin_m = posts.margin_m.of(run);
+    float* const at = (is_first ? posts.first_h : posts.last_h).of(run);
+    float* const spells = posts.spells.of(run);
+    for (int i = 0; i < run.count; ++i) {
+        if (!(margin_m[i] >= 0)) continue;
+        at[i] = static_cast<float>(at_h);
+        spells[i] += is_first;
+    }
+}
+
+class FewDays {
+  public:
+    FewDays(const DemSky& dem, const Sweep& sweep, const Moments& moments, bool spells)
+        : dem_(dem), sweep_(sweep), moments_(moments), spells_(spells) {
+        for (const SunOverDem& sun : moments.suns)
+            skies_.emplace_back(dem, sun);
+        for (const SunSky& sky : skies_)
+            night_.push_back(sky.is_night());
+    }
+
+    std::vector<SweepWindow> windows() const {
+        constexpr std::size_t kLooks = 12;
+        std::vector<SunSky> suns;
+        for (std::size_t k = 0; k < skies_.size(); ++k)
+            if (!night_[k]) suns.push_back(skies_[k]);
+        std::vector<SunSky> some;
+        for (std::size_t i = 0; i < std::min(kLooks, suns.size()); ++i)
+            some.push_back(suns[i * (suns.size() - 1) /
+                                std::max<std::size_t>(1, std::min(kLooks, suns.size()) - 1)]);
+        if (some.empty()) return {{0, 0, dem_.grid().columns(), dem_.grid().rows()}};
+        return divide(some);
+    }
+
+    void light(const SweepWindow& window, SunHours& result) const {
+        WindowLight posts(window, spells_);
+        for (std::size_t k = 0; k < skies_.size(); ++k)
+            if (!night_[k]) add(window, k, posts);
+        posts.lit_h.put(result.hours);
+        if (!spells_) return;
+        posts.first_h.put(result.first_h);
+        posts.last_h.put(result.last_h);
+        posts.spells.put(result.spells);
+    }
+
+  private:
+    void add(const SweepWindow& window, std::size_t k, WindowLight& posts) const {
+        const SunTile tile = *skies_[k].tile(window);
+        posts.turn(tile.path.along_columns());
+        // A night leaves all posts in the shade.
+        const bool is_first = k == 0 || night_[k - 1], is_last = k + 1 == skies_.size();
+        const Step step{k == 0 ? 0 : moments_.at_s[k - 1] / kHour_s,
+                        k == 0 ? 0 : (moments_.at_s[k] - moments_.at_s[k - 1]) / kHour_s};
+        each_edge(skies_[k], sweep_, tile, 0, [&](const SweepRun& run) {
+            if (is_first) {
+                measure(run, posts.margin_m.of(run));
+                if (spells_ && k == 0) add_end(run, 0, true, posts);
+            } else {
+                if (spells_) add_spells(run, step, posts);
+                add_light(run, static_cast<float>(step.hours), posts.margin_m.of(run),
+                          posts.lit_h.of(run));
+            }
+            if (spells_ && is_last) add_end(run, moments_.at_s[k] / kHour_s, false, posts);
+        });
+    }
+
+    const DemSky& dem_;
+    const Sweep& sweep_;
+    const Moments& moments_;
+    bool spells_;
+    std::vector<SunSky> skies_;
+    std::vector<bool> night_;
+};
+
+// --- Many days: a horizon for every direction, and how long the sun stood over what height there
+
+/// How long the sun stood higher than an elevation, while its azimuth was within some degrees.
+class Direction {
+  public:
+    static constexpr int kEntries = 4096;
+    static constexpr double kLowest_rad = radians(-6);
+    static constexpr double kStep_rad = radians(96) / (kEntries - 1);
+
+    /// @param elevation_rad  as seen
+    void add(double azimuth_rad, double elevation_rad, double hours) {
+        if (hours_.empty()) hours_.resize(kEntries, 0);
+        azimuth_sum_rad_ += azimuth_rad * hours;
+        sum_h_ += hours;
+        // An entry between two: to each its share.
+        const double at =
+            std::clamp((elevation_rad - kLowest_rad) / kStep_rad, 0.0, double{kEntries} - 1.001);
+        const auto entry = static_cast<std::size_t>(at);
+        const double part = at - static_cast<double>(entry);
+        hours_[entry] += hours * (1 - part);
+        hours_[entry + 1] += hours * part;
+    }
+
+    bool empty() const { return hours_.empty(); }
+    double azimuth_rad() const { return azimuth_sum_rad_ / sum_h_; }
+
+    /// To be called once all is added.
+    void sum_up() {
+        // Half of what stands at an entry is over it.
+        double above = 0;
+        over_.resize(hours_.size());
+        for (std::size_t k = hours_.size(); k-- > 0;) {
+            over_[k] = static_cast<float>(above + hours_[k] / 2);
+            above += hours_[k];
+        }
+    }
+    const float* over() const { return over_.data(); }
+
+  private:
+    double azimuth_sum_rad_ = 0, sum_h_ = 0;
+    std::vector<double> hours_;
+    std::vector<float> over_;
+};
+
+class ManyDays {
+  public:
+    ManyDays(const DemSky& dem, const Sweep& sweep, sun::Instant begin, double length_s)
+        : dem_(dem),
+          sweep_(sweep),
+          begin_(begin),
+          length_s_(length_s),
+          table_(begin, begin + length_s) {}
+
+    std::vector<SweepWindow> windows() const {
+        std::vector<SunSky> suns;
+        for (int i = 0; i < 12; ++i)
+            suns.emplace_back(dem_, SunOverDem{kPi * (i + 0.5) / 12, 0, 0});
+        return divide(suns, kPeriodTolerance_rad);
+    }
+
+    void light(const SweepWindow& window, SunHours& result) const {
+        const geo::Geodetic middle = dem_.grid().place(window.column + (window.columns - 1) / 2.0,
+                                                       window.row + (window.rows - 1) / 2.0);
+        Directions directions = directions_over(middle);
+        TileValues lit_h(window, 0);
+        for (std::size_t k = 0; k < kDirections; ++k) {
+            Direction& low = directions[0][k];
+            if (low.empty()) continue;
+            low.sum_up();
+            directions[1][k].sum_up();
+            add(window, middle, low, directions[1][k], lit_h);
+        }
+        lit_h.put(result.hours);
+    }
+
+  private:
+    static constexpr std::size_t kDirections = 180;
+    /// For the air of the lowest post, and of the highest one.
+    using Directions = std::array<std::array<Direction, kDirections>, 2>;
+
+    Directions directions_over(const geo::Geodetic& middle) const {
+        Directions directions;
+        const sun::Observer observer(middle);
+        const double step_s = length_s_ > 40 * kDay_s ? 120 : 60;
+        const auto steps = static_cast<std::int64_t>(std::ceil(length_s_ / step_s - 1e-9));
+        for (std::int64_t i = 0; i < steps; ++i) {
+            const double from_s = static_cast<double>(i) * step_s;
+            const double until_s = std::min(from_s + step_s, length_s_);
+            const SunOverDem sun = sun_over(table_, begin_ + (from_s + until_s) / 2, observer);
+            if (sun.elevation_rad < Direction::kLowest_rad) continue;
+            const auto k =
+                std::min(kDirections - 1,
+                         static_cast<std::size_t>(sun.azimuth_rad / (2 * kPi) * kDirections));
+            for (std::size_t level = 0; level < 2; ++level)
+                directions[level][k].add(sun.azimuth_rad,
+                                         dem_.apparent_rad(sun.elevation_rad, level),
+                                         (until_s - from_s) / kHour_s);
+        }
+        return directions;
+    }
+
+    void add(const SweepWindow& window, const geo::Geodetic& middle, const Direction& low,
+             const Direction& high, TileValues& lit_h) const {
+        const SunSky sky(dem_, middle, {low.azimuth_rad(), 0, 0});
+        const SunTile tile = *sky.tile(window);
+        lit_h.turn(tile.path.along_columns());
+        // The sun is as much higher at a post than in the middle as the ground turns towards it.
+        const SweepSun level = sky.sun(tile, 0, 0);
+        const double low_m = dem_.level_height_m(0);
+        const double span_m = std::max(1.0, dem_.level_height_m(1) - low_m);
+        each_horizon(sky, sweep_, tile, [&](const SweepRun& run) {
+            const double first = run.first, line = run.line;
+            const double lift =
+                run.along_column ? level.tangent_at(line, first) : level.tangent_at(first, line);
+            const double more =
+                run.along_column ? level.tangent_a_post.row : level.tangent_a_post.column;
+            look_up(run, lift - level.tangent, more, low.over(), high.over(), low_m, span_m,
+                    lit_h.of(run));
+        });
+    }
+
+    /// @param lift, lift_a_post  of the sun over where it stands in the middle [rad]
+    static void look_up(const SweepRun& run, double lift, double lift_a_post, const float* low,
+                        const float* high, double low_m, double span_m, float* lit_h) {
+        constexpr auto kScale = static_cast<float>(1 / Direction::kStep_rad);
+        const auto a_post = static_cast<float>(lift_a_post);
+        const auto base = static_cast<float>(lift + Direction::kLowest_rad);
+        const auto bottom_m = static_cast<float>(low_m), scale_m = static_cast<float>(1 / span_m);
+        for (int i = 0; i < run.count; ++i) {
+            const float t = run.found[i];
+            const float elevation = std::copysign(quick_atan(std::abs(t)), t);
+            const float at =
+                std::clamp((elevation - base - a_post * static_cast<float>(i)) * kScale, 0.0F,
+                           Direction::kEntries - 1.001F);
+            const auto entry = static_cast<int>(at);
+            const float part = at - static_cast<float>(entry);
+            const float in_low = low[entry] + part * (low[entry + 1] - low[entry]);
+            const float in_high = high[entry] + part * (high[entry + 1] - high[entry]);
+            lit_h[i] += in_low + (run.height_m[i] - bottom_m) * scale_m * (in_high - in_low);
+        }
+    }
+
+    const DemSky& dem_;
+    const Sweep& sweep_;
+    sun::Instant begin_;
+    double length_s_;
+    sun::PositionTable table_;
+};
+
+double level_hours(const DemSky& dem, const Moments& moments) {
+    double hours = 0;
+    for (std::size_t k = 1; k < moments.suns.size(); ++k) {
+        const double before = dem.apparent_rad(moments.suns[k - 1].elevation_rad, 0);
+        const double now = dem.apparent_rad(moments.suns[k].elevation_rad, 0);
+        const double over = std::max(before, 0.0) + std::max(now, 0.0);
+        const double all = std::abs(before) + std::abs(now);
+        if (over > 0) hours += (moments.at_s[k] - moments.at_s[k - 1]) / kHour_s * over / all;
+    }
+    return hours;
+}
+
+void check(sun::Instant begin, sun::Instant end, const SunHoursOptions& options) {
+    if (!(end > begin))
+        bad_input(
+            fmt::format("light::sun_hours: from {} to {}: expected an end after the beginning",
+                        sun::to_iso(begin), sun::to_iso(end)));
+    if (!(options.step_s >= 1 && options.step_s <= kHour_s))
+        bad_input(fmt::format("light::sun_hours: step {:.10g} s: expected 1 s to an hour",
+                              options.step_s));
+    if (options.spells && end - begin > SunHoursOptions::kMostDays * kDay_s)
+        bad_input(fmt::format(
+            "light::sun_hours: {:.1f} days: first and last light are known of {} days at most",
+            (end - begin) / kDay_s, SunHoursOptions::kMostDays));
+    sun::check_year(begin);
+    sun::check_year(end);
+}
+
+template <typename Days>
+void light_all(const Days& days, const std::vector<SweepWindow>& windows, SunHours& result) {
+    result.windows = static_cast<int>(windows.size());
+    parallel_for(0, result.windows, 1, [&](int first, int last) {
+        for (int i = first; i < last; ++i)
+            days.light(windows[static_cast<std::size_t>(i)], result);
+    });
+}
+
+/// Holes, and the mean of the others.
+void sum_up(const dem::Posts::View& heights, SunHours& result) {
+    std::int64_t posts = 0;
+    for (int row = 0; row < result.hours.height(); ++row)
+        for (int column = 0; column < result.hours.width(); ++column) {
+            float& hours = result.hours.at(column, row);
+            if (std::isnan(*heights.at(column, row))) {
+                hours = kNaN;
+                if (result.spells.size() > 0) result.spells.at(column, row) = kNaN;
+                ++result.holes;
+                continue;
+            }
+            result.mean_hours += double{hours};
+            ++posts;
+        }
+    result.mean_hours /= static_cast<double>(posts);
+}
+
+}  // namespace
+
+SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end,
+                   const SunHoursOptions& options) {
+    check(begin, end, options);
+    const dem::Posts::View heights = view_in_memory(posts);
+    const dem::Grid& grid = posts.grid();
+    const DemSky dem(posts, {.refraction = options.refraction, .air = options.air});
+    const Sweep sweep(heights.first_m, grid.columns(), grid.rows(), heights.stride);
+    const double length_s = end - begin;
+    const bool few = length_s <= SunHoursOptions::kMostDays * kDay_s;
+    const Moments times =
+        moments(grid.center(), begin, length_s, few ? options.step_s : 600, few ? kFiner : 1);
+    SunHours result;
+    result.hours = Array2d<float>(grid.columns(), grid.rows(), 0);
+    if (options.spells)
+        for (Array2d<float>* const each : {&result.first_h, &result.last_h, &result.spells})
+            *each = Array2d<float>(grid.columns(), grid.rows(), kNaN);
+    if (few) {
+        const FewDays days(dem, sweep, times, options.spells);
+        light_all(days, days.windows(), result);
+    } else {
+        const ManyDays days(dem, sweep, begin, length_s);
+        light_all(days, days.windows(), result);
+    }
+    sum_up(heights, result);
+    result.level_hours = level_hours(dem, times);
+    result.definition = fmt::format(
+        "hours that the centre of the sun stands over the terrain, at the height of the ground, "
+        "{}; "
+        "ground of the DEM alone shades, on the WGS 84 ellipsoid with terrestrial refraction k = "
+        "{:.4g}; beyond the DEM smooth ground at {:.0f} m; no clouds",
+        few ? fmt::format("from suns {:.10g} s apart, {:.10g} s near the horizon", options.step_s,
+                          options.step_s / kFiner)
+            : "from horizons in directions 2 degrees apart",
+        options.refraction, double{posts.lowest_m()});
+    return result;
+}
+
+}  // namespace relevo::light

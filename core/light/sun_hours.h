@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/array2d.h"
+#include "dem/posts.h"
+#include "light/shadows.h"
+#include "sun/time.h"
+
+namespace relevo::light {
+
+struct SunHoursOptions {
+    /// Terrestrial refraction, as in HorizonOptions.
+    double refraction = 0.13;
+    /// The air over a place at its height; none: the sun is where it is without air.
+    std::function<sun::Refraction(const geo::Geodetic&)> air;
+    /// Of a time of at most kMostDays: from one position of the sun to the next. Between two,
+    /// margins are linear.
+    double step_s = 180;
+    /// Of such a time: when each post is lit first and last, and how often, too.
+    bool spells = false;
+
+    /// Beyond this time, every post's horizon is found in directions that are 2 degrees apart, at a
+    /// cost that does not grow with the time.
+    static constexpr double kMostDays = 4;
+};
+
+/// For how long each post of a DEM lies in the sun.
+struct SunHours {
+    Array2d<float> hours;  ///< that the centre of the disc is over the terrain; NaN in holes
+    /// With SunHoursOptions::spells, else empty: hours from the beginning to the first and to the
+    /// last light, NaN where there is none.
+    Array2d<float> first_h, last_h;
+    /// With SunHoursOptions::spells: how often light comes, or is there from the beginning.
+    Array2d<float> spells;
+    double mean_hours = 0;
+    double level_hours = 0;  ///< that it is over a level horizon in the middle of the DEM
+    std::int64_t holes = 0;
+    int windows = 0;         ///< into which the DEM was divided, each with suns of its own
+    std::string definition;  ///< a sentence, to be printed with results
+};
+
+/// What shades is what shades in shadows(), for every sun from `begin` to `end`.
+///
+/// Accuracy, speed: tests/light/test_sun_hours.cpp, bench_light.
+/// @throws Error (BadInput) as shadows(), for an end that is not after the beginning, for a step
+///     that is not from 1 s to an hour, for times outside 1900-2100
+SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end,
+                   const SunHoursOptions& options = {});
+
+}  // namespace relevo::light

@@ -1,0 +1,240 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "base/parallel_for.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "light/direct_light.h"
+#include "light/fields.h"
+#include "light/horizon.h"
+#include "light/sun_hours.h"
+#include "sun/zone.h"
+#include "support/support.h"
+
+namespace relevo::light {
+namespace {
+
+using sun::Instant;
+
+Instant utc(const std::string& text) {
+    return sun::parse_time(text, {}).utc;
+}
+
+double number(const test::Csv& csv, std::size_t row, std::string_view column) {
+    return *parse_number(csv.rows[row][csv.column(column)]);
+}
+
+double quantile(std::vector<double> numbers, double share) {
+    std::sort(numbers.begin(), numbers.end());
+    return numbers[static_cast<std::size_t>(share * double(numbers.size() - 1))];
+}
+double mean(const std::vector<double>& numbers) {
+    double sum = 0;
+    for (const double number : numbers)
+        sum += number;
+    return sum / double(numbers.size());
+}
+
+/// As the tables have it.
+sun::Refraction saemundsson(const geo::Geodetic& place) {
+    return sun::Refraction::saemundsson(sun::standard_air(place.height_m));
+}
+
+TEST(SunHours, OfDaysAgreeWithTheTables) {
+    SKIP_WITHOUT_TEST_DATA(dir);
+    const dem::Heightfield field =
+        dem::load((dir / "dem" / "srtm_bigtujunga30m_utm11.tif").string());
+    const dem::Posts posts(field);
+    const test::Csv csv = test::read_csv(dir / "sun" / "terrain_sunhours.csv");
+    std::map<std::string, SunHours> of_days;
+    std::vector<double> minutes;
+    for (std::size_t i = 0; i < csv.rows.size(); ++i) {
+        const std::string date = csv.rows[i][csv.column("date_local")];
+        if (!of_days.contains(date)) {
+            // The tables have the sun over the level horizon alone.
+            const Instant midnight = utc(date + "T00:00-08:00");
+            std::vector<Instant> up;
+            for (int s = 0; s < 86400; s += 15)
+                if (saemundsson(field.grid.center())
+                        .apparent_rad(
+                            sun::position(midnight + s, field.grid.center()).elevation_rad) > 0)
+                    up.push_back(midnight + s);
+            of_days[date] = sun_hours(posts, up.front(), up.back(), {.air = saemundsson});
+        }
+        const int column = static_cast<int>(number(csv, i, "col")),
+                  row = static_cast<int>(number(csv, i, "row"));
+        minutes.push_back(60 * std::abs(of_days[date].hours.at(column, row) -
+                                        number(csv, i, "sun_hours_crossings_curved_h")));
+    }
+    EXPECT_EQ(of_days.size(), 4U);
+    fmt::print(
+        "[ accuracy ] a day from suns 3 minutes apart, {} cell-days: mean {:.2f} min (limit 1.5; "
+        "r.sun 14.6 to 22.6, SAGA 13.3 to 15.7), 99 % within {:.2f} (limit 5), worst {:.1f}\n",
+        minutes.size(), mean(minutes), quantile(minutes, 0.99), quantile(minutes, 1));
+    EXPECT_LE(mean(minutes), 1.5);
+    EXPECT_LE(quantile(minutes, 0.99), 5);
+}
+
+TEST(SunHours, OfAYearAgreeWithTheTables) {
+    SKIP_WITHOUT_TEST_DATA(dir);
+    const dem::Heightfield field =
+        dem::load((dir / "dem" / "srtm_bigtujunga30m_utm11.tif").string());
+    const test::Csv csv = test::read_csv(dir / "sun" / "terrain_year.csv");
+    const SunHours year = sun_hours(dem::Posts(field), utc("2023-01-01T00:00-08:00"),
+                                    utc("2024-01-01T00:00-08:00"), {.air = saemundsson});
+    std::vector<double> percent;
+    for (std::size_t i = 0; i < csv.rows.size(); ++i) {
+        const double wanted = number(csv, i, "sun_hours_crossings_flat_h");
+        percent.push_back(100 * std::abs(year.hours.at(static_cast<int>(number(csv, i, "col")),
+                                                       static_cast<int>(number(csv, i, "row"))) /
+                                             wanted -
+                                         1));
+    }
+    test::print_accuracy("sun hours of a year", percent, "%", 2);
+    EXPECT_EQ(percent.size(), 40U);
+    EXPECT_LE(quantile(percent, 0.5), 0.3);
+    EXPECT_LE(quantile(percent, 1), 2);
+}
+
+/// A day of a DEM against the exact light of posts drawn by lot.
+void compare_with_places(const std::string& name, const dem::Heightfield& field,
+                         const std::string& date, int count) {
+    const dem::Posts posts(field);
+    const Instant begin = utc(date + "T00:00Z");
+    const auto air = [](const geo::Geodetic& place) { return sun::Refraction::standard(place); };
+    const SunHours day = sun_hours(posts, begin, begin + 86400.0, {.air = air});
+    std::mt19937 lot(20260103);
+    std::vector<double> minutes(static_cast<std::size_t>(count));
+    std::vector<glm::ivec2> where;
+    while (static_cast<int>(where.size()) < count) {
+        const glm::ivec2 post(lot() % static_cast<unsigned>(field.grid.columns()),
+                              lot() % static_cast<unsigned>(field.grid.rows()));
+        if (!std::isnan(field.height_m.at(post.x, post.y))) where.push_back(post);
+    }
+    parallel_for(0, count, 1, [&](int first, int last) {
+        for (int i = first; i < last; ++i) {
+            const glm::ivec2 post = where[static_cast<std::size_t>(i)];
+            const TerrainHorizon horizon(posts, field.grid.place(post.x, post.y));
+            LightOptions options;
+            options.refraction = air(horizon.place());
+            const LightDay exact =
+                DirectLight(horizon, options).day(sun::parse_date(date), sun::Zone::fixed(0));
+            minutes[static_cast<std::size_t>(i)] =
+                60 * std::abs(day.hours.at(post.x, post.y) - exact.lit_s / 3600);
+        }
+    });
+    fmt::print(
+        "[ accuracy ] {}, {}: sun hours of {} posts against exact ones: mean {:.2f} min "
+        "(limit 1.5), 99 % within {:.1f} (limit 6); {} windows\n",
+        name, date, count, mean(minutes), quantile(minutes, 0.99), day.windows);
+    EXPECT_LE(mean(minutes), 1.5) << name;
+    EXPECT_LE(quantile(minutes, 0.99), 6) << name;
+}
+
+TEST(SunHours, OfDaysAgreeWithTheLightOfPlaces) {
+    compare_with_places("jacksboro", test::bundled("jacksboro.tif"), "2026-12-21", 40);
+    SKIP_WITHOUT_TEST_DATA(data);
+    for (const char* const name : {"hawaii_rotated20.tif", "mt_rainier_90m.tif"})
+        compare_with_places(name, dem::load((data / "dem" / name).string()), "2026-03-20", 40);
+}
+
+/// A plain of 61 x 61 posts with a wall 100 m high along column 40, at the equator in UTM.
+dem::Heightfield walled(double low_m = 0) {
+    return test::field_of(61, 61, {500000, 10, 0, 300, 0, -10}, "EPSG:32631",
+                          [=](int column, int) { return column == 40 ? low_m + 100.0 : low_m; });
+}
+
+TEST(SunHours, SpellsBeginAndEndWhereTheWallHasThem) {
+    const dem::Heightfield field = walled();
+    const dem::Posts posts(field);
+    const Instant begin = utc("2026-03-20T00:00Z");
+    const SunHours day = sun_hours(posts, begin, begin + 86400.0, {.step_s = 60, .spells = true});
+    // At the equinox the sun goes over the equator from east to west at a quarter of a degree a
+    // minute. 50 m behind the wall in the west of it, it comes over it at atan(100 / 50).
+    const auto at = [&](const Array2d<float>& figures, int column) {
+        return double{figures.at(column, 30)};
+    };
+    const double rises_h = at(day.first_h, 60), sets_h = at(day.last_h, 0);
+    EXPECT_NEAR(sets_h - rises_h, 12, 0.02);
+    const double over_h = degrees(std::atan(2.0)) / 15;
+    EXPECT_NEAR(at(day.first_h, 35) - rises_h, over_h, 0.02);
+    EXPECT_NEAR(at(day.hours, 35), 12 - over_h, 0.03);
+    EXPECT_NEAR(sets_h - at(day.last_h, 45), over_h, 0.02);
+    EXPECT_NEAR(at(day.hours, 45), 12 - over_h, 0.03);
+    for (const int column : {0, 35, 40, 45, 60})
+        EXPECT_EQ(at(day.spells, column), 1) << column;
+    EXPECT_NEAR(day.level_hours, 12, 0.02);
+    // Of an afternoon alone, that is lit when it begins and when it ends.
+    const SunHours part =
+        sun_hours(posts, begin + 12 * 3600.0, begin + 13 * 3600.0, {.spells = true});
+    EXPECT_EQ(at(part.first_h, 35), 0);
+    EXPECT_NEAR(at(part.last_h, 35), 1, 1e-6);
+    EXPECT_NEAR(at(part.hours, 35), 1, 1e-6);
+    // And a night.
+    const SunHours night = sun_hours(posts, begin, begin + 3600.0, {.spells = true});
+    EXPECT_EQ(at(night.hours, 35), 0);
+    EXPECT_EQ(at(night.spells, 35), 0);
+    EXPECT_TRUE(std::isnan(night.first_h.at(35, 30)));
+}
+
+TEST(SunHours, ManyDaysAreAsLongAsTheirDays) {
+    const dem::Heightfield field = test::bundled("jacksboro.tif");
+    const dem::Posts posts(field);
+    const auto air = [](const geo::Geodetic& place) { return sun::Refraction::standard(place); };
+    const Instant begin = utc("2026-11-01T05:00Z");
+    const SunHours all = sun_hours(posts, begin, begin + 6 * 86400.0, {.air = air});
+    Array2d<float> sum(all.hours.width(), all.hours.height(), 0);
+    for (int day = 0; day < 6; day += 3) {
+        const SunHours days =
+            sun_hours(posts, begin + day * 86400.0, begin + (day + 3) * 86400.0, {.air = air});
+        for (std::size_t i = 0; i < sum.size(); ++i)
+            sum.data()[i] += days.hours.data()[i];
+    }
+    std::vector<double> minutes;
+    for (std::size_t i = 0; i < sum.size(); ++i)
+        minutes.push_back(60.0 * std::abs(sum.data()[i] - all.hours.data()[i]) / 6);
+    fmt::print(
+        "[ accuracy ] six days by horizons against six by suns, {} posts: mean {:.2f} min a "
+        "day, 99 % within {:.1f}\n",
+        minutes.size(), mean(minutes), quantile(minutes, 0.99));
+    EXPECT_LE(mean(minutes), 1);
+    EXPECT_LE(quantile(minutes, 0.99), 10);
+}
+
+TEST(SunHours, HolesHaveNone) {
+    dem::Heightfield field = walled();
+    field.height_m.at(20, 20) = std::numeric_limits<float>::quiet_NaN();
+    field.about.statistics = dem::statistics(field.height_m);
+    const dem::Posts posts(field);
+    const Instant begin = utc("2026-03-20T00:00Z");
+    for (const double days : {1.0, 10.0}) {
+        const SunHours found = sun_hours(posts, begin, begin + days * 86400, {});
+        EXPECT_EQ(found.holes, 1);
+        EXPECT_TRUE(std::isnan(found.hours.at(20, 20)));
+        EXPECT_FALSE(std::isnan(found.hours.at(21, 20)));
+        EXPECT_GT(found.mean_hours, 9 * days);
+        EXPECT_LT(found.mean_hours, 11 * days);
+    }
+}
+
+TEST(SunHours, WhatItCannotDoIsRefused) {
+    const dem::Heightfield field = walled();
+    const dem::Posts posts(field);
+    const Instant begin = utc("2026-03-20T00:00Z");
+    EXPECT_EQ(test::error_of([&] { sun_hours(posts, begin, begin); }),
+              "exit 3: light::sun_hours: from 2026-03-20T00:00:00Z to 2026-03-20T00:00:00Z: "
+              "expected an end after the beginning");
+    EXPECT_EQ(test::error_of([&] { sun_hours(posts, begin, begin + 60.0, {.step_s = 0}); }),
+              "exit 3: light::sun_hours: step 0 s: expected 1 s to an hour");
+    EXPECT_EQ(
+        test::error_of([&] { sun_hours(posts, begin, begin + 5 * 86400.0, {.spells = true}); }),
+        "exit 3: light::sun_hours: 5.0 days: first and last light are known of 4 days at most");
+}
+
+}  // namespace
+}  // namespace relevo::light
