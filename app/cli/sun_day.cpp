@@ -375,6 +375,7 @@ light::DirectLight add_lit_days(const Arguments& arguments, const light::Terrain
 }
 
 void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
+    arguments.days.parse({}, false);  // what is wrong with them is said before any work
     const auto points = arguments.points.read(files, arguments.output);
     std::optional<dem::Posts> posts;
     if (arguments.terrain.given()) posts.emplace(arguments.terrain.load());

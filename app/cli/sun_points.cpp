@@ -39,21 +39,23 @@ struct Record {
 /// The records of a file of points, in its order, to all who want them.
 class Writer {
   public:
-    Writer(const PointsJob& job, const OutputArguments& output, OutputFile* file) : file_(file) {
+    Writer(const PointsJob& job, const OutputArguments& output, OutputFile* file)
+        : job_(job), file_(file) {
         file_json_ = file && output.ending() == "json";
         file_csv_ = file && !file_json_;
         out_json_ = output.json;
         out_csv_ = output.csv || (!file && !output.json);
-        write_csv(csv_remarks(job.remarks) + "name,at_lat_deg,at_lon_deg," + job.columns +
-                  ",error\n");
-        write_json("[");
     }
     bool csv() const { return file_csv_ || out_csv_; }
     bool json() const { return file_json_ || out_json_; }
 
     void add(const Record& record) {
+        // Not before the first record is there: what is wrong with an option is said instead.
+        if (first_)
+            write_csv(csv_remarks(job_.remarks) + "name,at_lat_deg,at_lon_deg," + job_.columns +
+                      ",error\n");
         write_csv(record.csv);
-        write_json((first_ ? "\n  " : ",\n  ") + record.json);
+        write_json((first_ ? "[\n  " : ",\n  ") + record.json);
         first_ = false;
     }
     void finish() {
@@ -71,6 +73,7 @@ class Writer {
         if (out_json_) fmt::print("{}", text);
     }
 
+    const PointsJob& job_;
     OutputFile* file_;
     bool file_csv_ = false, file_json_ = false, out_csv_ = false, out_json_ = false;
     bool first_ = true;
@@ -147,7 +150,7 @@ std::vector<dem::NamedPlace> PointsArguments::read(FilesInUse& files,
     if (output.is_drawing())
         bad_usage(
             "--points: a drawing is of one place; pass -o with a name that ends in csv, json");
-    files.add_input(path, "the points");
+    files.add_input(path, "the file of points");
     return dem::read_points(path, "--points", crs);
 }
 
@@ -158,7 +161,7 @@ void deliver_points(const PointsArguments& arguments, const std::vector<dem::Nam
     const auto name_of = [&](std::size_t i) {
         return points[i].name.empty() ? std::to_string(i + 1) : points[i].name;
     };
-    Writer writer(job, output, file);
+    Writer writer(job, output, file);  // of one point at least
     std::optional<Progress> progress;
     if (isatty(STDERR_FILENO) != 0)
         progress.emplace(arguments.path, static_cast<double>(points.size()), kPatience_s);

@@ -100,6 +100,7 @@ void check_height(const geo::PlaceText& at) {
 void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
     const auto points = arguments.points.read(files, arguments.output);
     const scene::Moment moment = arguments.time.moment();
+    session::needs_dem(moment);  // what is wrong with its words is said before any work
     const bool zone_by_place = sun::is_zone_by_place(moment.zone) &&
                                !sun::is_solar_zone(moment.zone) &&
                                (sun::is_event_time(moment.time) || sun::is_wall_time(moment.time));

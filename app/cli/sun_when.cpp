@@ -147,6 +147,7 @@ bool through_hole(const light::Alignments& found) {
 }
 
 void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
+    arguments.days.parse({}, false);  // what is wrong with them is said before any work
     const auto points = arguments.points.read(files, arguments.output);
     const dem::Posts posts = arguments.terrain.load();
     const geo::Geodetic target = target_of(arguments, posts);

@@ -91,6 +91,7 @@ using VisitGeometry = std::function<void(OGRGeometryH)>;
 
 /// The parts of a kind that a geometry has, down through its collections.
 void parts(OGRGeometryH geometry, OGRwkbGeometryType kind, const VisitGeometry& visit) {
+    if (!geometry) return;
     const OGRwkbGeometryType type = OGR_GT_Flatten(OGR_G_GetGeometryType(geometry));
     if (type == kind) return visit(geometry);
     if (!OGR_GT_IsSubClassOf(type, wkbGeometryCollection)) return;
@@ -130,15 +131,23 @@ struct VectorFile::Impl {
         return GDALDatasetGetLayerByName(dataset.get(), name);
     }
 
-    /// Calls `visit` with every feature that has a geometry.
+    /// Calls `visit` with every feature and its geometry, which may be null.
     void features(OGRLayerH layer, const std::function<void(OGRFeatureH, OGRGeometryH)>& visit) {
         if (!layer) return;
         OGR_L_ResetReading(layer);
         while (const Feature feature{OGR_L_GetNextFeature(layer)}) {
             const auto handle = static_cast<OGRFeatureH>(feature.get());
-            if (const OGRGeometryH geometry = OGR_F_GetGeometryRef(handle)) visit(handle, geometry);
+            visit(handle, OGR_F_GetGeometryRef(handle));
         }
         if (messages.any_failure()) refuse_damaged();
+    }
+
+    /// What GDAL cannot read as coordinates it leaves without a geometry.
+    static VectorPoint gpx_point(OGRGeometryH at) {
+        VectorPoint point;
+        point.lat_deg = at ? OGR_G_GetY(at, 0) : std::nan("");
+        point.lon_deg = at ? OGR_G_GetX(at, 0) : std::nan("");
+        return point;
     }
 
     /// Points of tracks or of routes. @param kind  "track" or "route"
@@ -190,7 +199,13 @@ void VectorFile::points(const std::function<void(VectorPoint&&)>& visit) {
             });
         });
     };
-    if (impl_->gpx) return of_layer(impl_->layer("waypoints"));
+    if (impl_->gpx)
+        return impl_->features(impl_->layer("waypoints"),
+                               [&](OGRFeatureH feature, OGRGeometryH at) {
+                                   VectorPoint point = Impl::gpx_point(at);
+                                   point.name = name_of(feature);
+                                   visit(std::move(point));
+                               });
     for (int i = 0; i < GDALDatasetGetLayerCount(impl_->dataset.get()); ++i)
         of_layer(GDALDatasetGetLayer(impl_->dataset.get(), i));
 }

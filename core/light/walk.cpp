@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <utility>
 
@@ -252,6 +253,12 @@ class OpenDirections {
     std::map<int, OpenSector> sectors_;
 };
 
+/// The horizon of the place that was looked from last: who rests looks from there again.
+struct LatestHorizon {
+    geo::Geodetic place;
+    std::unique_ptr<const TerrainHorizon> horizon;
+};
+
 /// What light there is at a moment of a walk.
 class Looker {
   public:
@@ -259,7 +266,7 @@ class Looker {
            const sun::PositionTable& table, double highest_m)
         : posts_(posts), options_(options), airs_(airs), table_(table), highest_m_(highest_m) {}
 
-    WalkLight light(const WalkMoment& moment, OpenDirections& open) const {
+    WalkLight light(const WalkMoment& moment, OpenDirections& open, LatestHorizon& latest) const {
         const glm::dvec2 last(posts_.grid().columns() - 1, posts_.grid().rows() - 1);
         const glm::dvec2 post = glm::clamp(posts_.grid().post(moment.place), glm::dvec2(0), last);
         geo::Geodetic ground = moment.place;
@@ -271,11 +278,13 @@ class Looker {
         const WalkLight without = apparent_rad > 0 ? WalkLight::Terrain : WalkLight::Night;
         if (true_rad < kLowestHorizon_rad) return without;
         if (std::isnan(height_m)) return apparent_rad > 0 ? WalkLight::NotKnown : without;
-        const TerrainHorizon horizon(posts_, moment.place, options_.horizon);
-        const HorizonPoint point = horizon.at(sun::azimuth_of(sun));
+        if (!latest.horizon || latest.place != moment.place)
+            latest = {moment.place, std::make_unique<const TerrainHorizon>(posts_, moment.place,
+                                                                           options_.horizon)};
+        const HorizonPoint point = latest.horizon->at(sun::azimuth_of(sun));
         if (apparent_rad <= point.elevation_rad) return without;
         if (point.hole && apparent_rad <= point.hole_rad) return WalkLight::NotKnown;
-        if (const auto sector = horizon.open_beyond(point, highest_m_, apparent_rad))
+        if (const auto sector = latest.horizon->open_beyond(point, highest_m_, apparent_rad))
             open.add(*sector);
         return WalkLight::Sun;
     }
@@ -297,6 +306,7 @@ struct Change {
 std::vector<Change> changes_between(const Way& way, const Looker& looker, OpenDirections& open,
                                     double from, WalkLight before, double to, WalkLight after) {
     std::vector<Change> changes;
+    LatestHorizon latest;
     while (before != after) {
         double low = from, high = to;
         WalkLight next = after;
@@ -304,7 +314,7 @@ std::vector<Change> changes_between(const Way& way, const Looker& looker, OpenDi
             const WalkMoment a = way.at(low), b = way.at(high);
             if (b.utc - a.utc <= kSharp_s && b.distance_m - a.distance_m <= kSharp_m) break;
             const double middle = (low + high) / 2;
-            const WalkLight there = looker.light(way.at(middle), open);
+            const WalkLight there = looker.light(way.at(middle), open, latest);
             (there == before ? low : high) = middle;
             if (there != before) next = there;
         }
@@ -383,9 +393,10 @@ void look_along(const Looks& looks, const Looker& looker, LightAlong& result) {
     OpenDirections open;
     std::vector<WalkLight> lights(looks.moments.size());
     parallel_for(0, looks.count + 1, 8, [&](int first, int last) {
+        LatestHorizon latest;
         for (int i = first; i < last; ++i) {
             const auto k = static_cast<std::size_t>(i);
-            lights[k] = looker.light(looks.moments[k], open);
+            lights[k] = looker.light(looks.moments[k], open, latest);
         }
     });
     std::vector<std::vector<Change>> changes(static_cast<std::size_t>(looks.count));

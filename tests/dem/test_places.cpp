@@ -60,8 +60,8 @@ TEST(Places, CsvColumnsAreFoundByTheirNames) {
 }
 
 TEST(Places, APlaceHasTheBitsThatTheCommandLineGivesIt) {
-    const auto places = read_points(file("a.csv", "lat,lon\n47.2692,371.4041\n"), "t");
-    EXPECT_EQ(places[0].at.place, geo::parse_place("47.2692, 371.4041", "t").place);
+    const auto places = read_points(file("a.csv", "lat,lon\n47.2692,191.4041\n"), "t");
+    EXPECT_EQ(places[0].at.place, geo::parse_place("47.2692, 191.4041", "t").place);
     const auto gpx = read_points(
         file("a.gpx",
              "<gpx version=\"1.1\" creator=\"t\"><wpt lat=\"47.2692\" lon=\"11.4041\"/></gpx>"),
@@ -71,8 +71,9 @@ TEST(Places, APlaceHasTheBitsThatTheCommandLineGivesIt) {
 
 TEST(Places, XAndYAreInTheCrsThatIsGiven) {
     const std::string path = file("utm.csv", "id,X,Y\nA,500000,5200000\n");
-    // 500 km east in UTM is the central meridian, 9 degrees east in zone 32.
-    EXPECT_EQ(text_of(read_points(path, "t", "EPSG:32632")), "[A|46.9524|9|]");
+    // 500 km east in UTM is the central meridian, 9 degrees east in zone 32; the meridian's arc
+    // from the equator is 5200 km / 0.9996.
+    EXPECT_EQ(text_of(read_points(path, "t", "EPSG:32632")), "[A|46.9535|9|]");
     EXPECT_EQ(error_of([&] { read_points(path, "t"); }),
               fmt::format("exit 3: t: {}: columns x and y without a coordinate reference system; "
                           "pass --points-crs EPSG:n, or columns lat and lon in degrees",
@@ -116,7 +117,7 @@ TEST(Places, GeoJsonHasPointsAndLines) {
     const std::string utm = file("utm.json", R"({"type":"FeatureCollection",
 "crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32632"}},"features":[{"type":
 "Feature","properties":{},"geometry":{"type":"Point","coordinates":[500000,5200000]}}]})");
-    EXPECT_EQ(text_of(read_points(utm, "t")), "[|46.9524|9|]");
+    EXPECT_EQ(text_of(read_points(utm, "t")), "[|46.9535|9|]");
 }
 
 TEST(Places, OneOfSeveralLinesIsNamedByItsNumber) {
