@@ -4,8 +4,8 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -21,6 +21,9 @@
 
 namespace relevo::dem {
 namespace {
+
+/// GDAL holds a GeoJSON in memory some 16 times over.
+constexpr std::uint64_t kMostJsonBytes = std::uint64_t{64} << 20;
 
 /// What errors of a file are said with.
 struct Asked {
@@ -92,6 +95,9 @@ char beginning_of(const Asked& asked) {
     if (text.empty()) asked.refuse("an empty file, expected a CSV, a GPX or a GeoJSON file");
     if (text.find('\0') != text.npos)
         asked.refuse("not a text, expected a CSV, a GPX or a GeoJSON file");
+    if (text.front() == '{' && file.size() > kMostJsonBytes)
+        asked.refuse(fmt::format("a GeoJSON file of {} MiB, expected at most {}; make a CSV of it",
+                                 file.size() >> 20, kMostJsonBytes >> 20));
     return text.front();
 }
 
@@ -258,19 +264,20 @@ NamedLine read_line(const std::string& path, std::string_view who, const std::st
     const char beginning = beginning_of(asked);
     const int wanted = std::max(number, 1);
     NamedLine line;
-    int lines = 0;
+    int lines = 1;
     if (beginning == '<' || beginning == '{') {
-        VectorFile file(path, who, beginning == '<');
-        lines = file.lines([&](int index, VectorPoint&& point) {
-            if (index != wanted) return;
-            if (line.places.size() >= kMostPlaces) refuse_many(asked);
-            line.name = std::move(point.name);
-            point.name.clear();
-            line.places.push_back(place_of(asked, line.places.size() + 1, std::move(point)));
-        });
+        std::size_t count = 0;
+        const std::vector<std::string> names =
+            VectorFile(path, who, beginning == '<').lines([&](int index, VectorPoint&& point) {
+                if (++count > kMostPlaces) refuse_many(asked);
+                if (index == wanted)
+                    line.places.push_back(
+                        place_of(asked, line.places.size() + 1, std::move(point)));
+            });
+        lines = static_cast<int>(names.size());
+        if (wanted <= lines) line.name = names[static_cast<std::size_t>(wanted) - 1];
     } else {
         line.places = read_csv(asked, crs);
-        lines = 1;
     }
     if (lines == 0)
         asked.refuse(beginning == '<' ? "no line in it, expected a track or a route"

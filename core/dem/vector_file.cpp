@@ -1,9 +1,9 @@
 #include "dem/vector_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -99,26 +99,12 @@ void parts(OGRGeometryH geometry, OGRwkbGeometryType kind, const VisitGeometry& 
         parts(OGR_G_GetGeometryRef(geometry, i), kind, visit);
 }
 
-/// One GeoJSON object of 64 MiB has room for a line of a million points; more would be held in
-/// memory several times over.
-constexpr const char* kLargestObject_mib = "64";
-constexpr const char* kLargestObject = "OGR_GEOJSON_MAX_OBJ_SIZE";
-
-/// That limit, for this thread, while it lives.
-struct ObjectLimit {
-    ObjectLimit() { CPLSetThreadLocalConfigOption(kLargestObject, kLargestObject_mib); }
-    ~ObjectLimit() { CPLSetThreadLocalConfigOption(kLargestObject, nullptr); }
-    ObjectLimit(const ObjectLimit&) = delete;
-    ObjectLimit& operator=(const ObjectLimit&) = delete;
-};
-
 }  // namespace
 
 struct VectorFile::Impl {
     std::string path, who;
     bool gpx = false;
     GdalMessages messages;
-    ObjectLimit limit;
     Dataset dataset;
 
     [[noreturn]] void refuse_damaged() const {
@@ -127,8 +113,8 @@ struct VectorFile::Impl {
                               messages.any_failure() ? ", " : "", messages.failure(path)));
     }
 
-    OGRLayerH layer(const char* name) const {
-        return GDALDatasetGetLayerByName(dataset.get(), name);
+    OGRLayerH layer(const std::string& name) const {
+        return GDALDatasetGetLayerByName(dataset.get(), name.c_str());
     }
 
     /// Calls `visit` with every feature and its geometry, which may be null.
@@ -150,21 +136,26 @@ struct VectorFile::Impl {
         return point;
     }
 
-    /// Points of tracks or of routes. @param kind  "track" or "route"
-    int gpx_lines(const std::string& kind, const std::function<void(int, VectorPoint&&)>& visit) {
-        std::map<int, std::string> names;
-        features(layer((kind + "s").c_str()), [&](OGRFeatureH feature, OGRGeometryH) {
-            names[static_cast<int>(OGR_F_GetFID(feature))] = name_of(feature);
-        });
+    /// Points of tracks or of routes, and their names. @param kind  "track" or "route"
+    std::vector<std::string> gpx_lines(const std::string& kind,
+                                       const std::function<void(int, VectorPoint&&)>& visit) {
         const std::string number = kind + "_fid";
-        int last = 0;
-        features(layer((kind + "_points").c_str()), [&](OGRFeatureH feature, OGRGeometryH at) {
+        int count = 0;
+        features(layer(kind + "_points"), [&](OGRFeatureH feature, OGRGeometryH at) {
             const int line =
                 OGR_F_GetFieldAsInteger(feature, OGR_F_GetFieldIndex(feature, number.c_str()));
-            last = std::max(last, line + 1);
-            visit(line + 1, {OGR_G_GetY(at, 0), OGR_G_GetX(at, 0), names[line], time_of(feature)});
+            count = std::max(count, line + 1);
+            VectorPoint point = gpx_point(at);
+            point.time = time_of(feature);
+            visit(line + 1, std::move(point));
         });
-        return last;
+        // After the points, of which there may be too many: GDAL makes lines of them for this.
+        std::vector<std::string> names(static_cast<std::size_t>(count));
+        features(layer(kind + "s"), [&](OGRFeatureH feature, OGRGeometryH) {
+            const auto line = static_cast<std::size_t>(OGR_F_GetFID(feature));
+            if (line < names.size()) names[line] = name_of(feature);
+        });
+        return names;
     }
 };
 
@@ -210,29 +201,28 @@ void VectorFile::points(const std::function<void(VectorPoint&&)>& visit) {
         of_layer(GDALDatasetGetLayer(impl_->dataset.get(), i));
 }
 
-int VectorFile::lines(const std::function<void(int, VectorPoint&&)>& visit) {
+std::vector<std::string> VectorFile::lines(const std::function<void(int, VectorPoint&&)>& visit) {
     if (impl_->gpx) {
-        const int tracks = impl_->gpx_lines("track", visit);
-        return tracks > 0 ? tracks : impl_->gpx_lines("route", visit);
+        std::vector<std::string> tracks = impl_->gpx_lines("track", visit);
+        return tracks.empty() ? impl_->gpx_lines("route", visit) : tracks;
     }
-    int count = 0;
+    std::vector<std::string> names;
     for (int i = 0; i < GDALDatasetGetLayerCount(impl_->dataset.get()); ++i) {
         const OGRLayerH layer = GDALDatasetGetLayer(impl_->dataset.get(), i);
         const ToDegrees to_degrees(layer, impl_->who);
         impl_->features(layer, [&](OGRFeatureH feature, OGRGeometryH geometry) {
             bool is_line = false;
             parts(geometry, wkbLineString, [&](OGRGeometryH part) {
-                if (!std::exchange(is_line, true)) ++count;
+                if (!std::exchange(is_line, true)) names.push_back(name_of(feature));
                 for (int k = 0; k < OGR_G_GetPointCount(part); ++k) {
                     VectorPoint point;
                     to_degrees.set(OGR_G_GetX(part, k), OGR_G_GetY(part, k), point);
-                    point.name = name_of(feature);
-                    visit(count, std::move(point));
+                    visit(static_cast<int>(names.size()), std::move(point));
                 }
             });
         });
     }
-    return count;
+    return names;
 }
 
 }  // namespace relevo::dem

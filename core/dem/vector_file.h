@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 // GPX and GeoJSON by GDAL. Inside of the layer only.
 
@@ -12,7 +13,7 @@ namespace relevo::dem {
 /// A vertex as a file has it, not checked: NaN and 1e9 may be among them.
 struct VectorPoint {
     double lat_deg = 0, lon_deg = 0;
-    std::string name;  ///< of the point, or of the line that it belongs to
+    std::string name;  ///< of a point that is none of a line
     std::string time;  ///< UTC as ISO 8601; empty where the file has none
 };
 
@@ -33,9 +34,9 @@ class VectorFile {
 
     /// Vertices of tracks, where there are none of routes, or of line features, in their order.
     /// @param visit  gets the line's number, from 1
-    /// @returns how many lines there are
+    /// @returns the names of all lines, empty where the file has none
     /// @throws Error (BadInput) for a damaged file
-    int lines(const std::function<void(int, VectorPoint&&)>& visit);
+    std::vector<std::string> lines(const std::function<void(int, VectorPoint&&)>& visit);
 
   private:
     struct Impl;
