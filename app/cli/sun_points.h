@@ -48,8 +48,8 @@ struct PointsJob {
 };
 
 /// One record for each point, in the order of the file: an array of JSON, or CSV whose rows begin
-/// with `name,at_lat_deg,at_lon_deg` and end with `error`; on all processors, written as it comes. CSV on
-/// standard output where no form is asked for.
+/// with `name,at_lat_deg,at_lon_deg` and end with `error`; on all processors, written as it comes.
+/// CSV on standard output where no form is asked for.
 /// @param zone_by_place  days or times are counted by the clocks of each point, which is said
 /// @throws Error (BadInput) once all is written, where points have no figures
 void deliver_points(const PointsArguments& arguments, const std::vector<dem::NamedPlace>& points,
