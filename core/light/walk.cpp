@@ -264,7 +264,13 @@ class Looker {
   public:
     Looker(const dem::Posts& posts, const WalkOptions& options, const Airs& airs,
            const sun::PositionTable& table, double highest_m)
-        : posts_(posts), options_(options), airs_(airs), table_(table), highest_m_(highest_m) {}
+        : posts_(posts),
+          horizon_(options.horizon),
+          airs_(airs),
+          table_(table),
+          highest_m_(highest_m) {
+        horizon_.few_directions = true;
+    }
 
     WalkLight light(const WalkMoment& moment, OpenDirections& open, LatestHorizon& latest) const {
         const glm::dvec2 last(posts_.grid().columns() - 1, posts_.grid().rows() - 1);
@@ -279,8 +285,8 @@ class Looker {
         if (true_rad < kLowestHorizon_rad) return without;
         if (std::isnan(height_m)) return apparent_rad > 0 ? WalkLight::NotKnown : without;
         if (!latest.horizon || latest.place != moment.place)
-            latest = {moment.place, std::make_unique<const TerrainHorizon>(posts_, moment.place,
-                                                                           options_.horizon)};
+            latest = {moment.place,
+                      std::make_unique<const TerrainHorizon>(posts_, moment.place, horizon_)};
         const HorizonPoint point = latest.horizon->at(sun::azimuth_of(sun));
         if (apparent_rad <= point.elevation_rad) return without;
         if (point.hole && apparent_rad <= point.hole_rad) return WalkLight::NotKnown;
@@ -291,7 +297,7 @@ class Looker {
 
   private:
     const dem::Posts& posts_;
-    const WalkOptions& options_;
+    HorizonOptions horizon_;
     const Airs& airs_;
     const sun::PositionTable& table_;
     double highest_m_;

@@ -101,8 +101,7 @@ struct LightAlong {
 /// be missed. The sun is refracted by the air over the ground there, between levels 100 m apart.
 ///
 /// Accuracy: for one who stands, the edges of DirectLight to 0.2 s (tests/light/test_walk.cpp).
-/// Speed: 0.7 ms a place that is looked from, one thread (tests/light/bench_light.cpp,
-/// horizon_viewpoint).
+/// Speed: 34 us a look, one thread (tests/light/bench_light.cpp, horizon_of_one_direction).
 /// @throws Error (BadInput) where a part of the walk is outside of the DEM, with which and how far,
 ///     for a walk of more than a million points to look at, a year that is not computed, and as
 ///     TerrainHorizon
