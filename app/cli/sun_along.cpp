@@ -171,7 +171,12 @@ std::vector<sun::Instant> times_of(const dem::NamedLine& line, const std::string
                 fmt::format("sun along: {}: point {} has no time, where others have one; "
                             "pass --start and --speed",
                             path, times.size() + 1));
-        times.push_back(sun::parse_time(place.time, zone).utc);
+        try {
+            times.push_back(sun::parse_time(place.time, zone).utc);
+        } catch (const Error& error) {
+            bad_input(
+                fmt::format("sun along: {}: point {}: {}", path, times.size() + 1, error.what()));
+        }
     }
     return times;
 }

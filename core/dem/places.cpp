@@ -96,8 +96,8 @@ char beginning_of(const Asked& asked) {
     if (text.find('\0') != text.npos)
         asked.refuse("not a text, expected a CSV, a GPX or a GeoJSON file");
     if (text.front() == '{' && file.size() > kMostJsonBytes)
-        asked.refuse(fmt::format("a GeoJSON file of {} MiB, expected at most {}; make a CSV of it",
-                                 file.size() >> 20, kMostJsonBytes >> 20));
+        asked.refuse(fmt::format("a GeoJSON file of more than {} MiB; make a CSV of it",
+                                 kMostJsonBytes >> 20));
     return text.front();
 }
 

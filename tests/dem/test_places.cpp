@@ -183,6 +183,15 @@ TEST(Places, WhatCannotBeUsedIsNamedByItsLine) {
                     wide));
 }
 
+TEST(Places, AGeoJsonBeyondWhatMemoryHasRoomForIsRefused) {
+    const std::string path =
+        file("large.json", "{\"type\":\"Point\",\"coordinates\":[1,2]}" + std::string(600, ' '));
+    std::filesystem::resize_file(path, (64 << 20) + 1);
+    EXPECT_EQ(
+        error_of([&] { read_points(path, "t"); }),
+        fmt::format("exit 3: t: {}: a GeoJSON file of more than 64 MiB; make a CSV of it", path));
+}
+
 TEST(Places, ALineThatIsNoneIsSaid) {
     struct Case {
         const char *name, *text, *message;
