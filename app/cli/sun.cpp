@@ -13,6 +13,7 @@ void add_sun(CLI::App& app) {
     add_sun_carpet(verb);
     add_sun_when(verb);
     add_sun_shadow(verb);
+    add_sun_along(verb);
 }
 
 }  // namespace relevo::cli

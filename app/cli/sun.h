@@ -11,5 +11,6 @@ void add_sun_horizon(CLI::App& sun_verb);
 void add_sun_carpet(CLI::App& sun_verb);
 void add_sun_when(CLI::App& sun_verb);
 void add_sun_shadow(CLI::App& sun_verb);
+void add_sun_along(CLI::App& sun_verb);
 
 }  // namespace relevo::cli

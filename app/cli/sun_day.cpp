@@ -10,6 +10,7 @@
 #include "chart/sun_path_diagram.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
+#include "cli/sun_points.h"
 #include "geo/format.h"
 #include "sun/position.h"
 #include "sun/seasons.h"
@@ -33,6 +34,7 @@ constexpr const char* kTwilights =
 struct Arguments {
     TerrainArguments terrain;
     PlaceArguments place;
+    PointsArguments points;
     DaysArguments days;
     LightArguments light;
     OutputArguments output;
@@ -136,6 +138,68 @@ std::string holes_text(const Result& result) {
         sectors_text(result.doubt.holes));
 }
 
+/// The columns of a day. @param light  of the terrain @param holes  what is not known for holes
+std::string columns_of(bool light, bool holes) {
+    std::string text = "date,polar";
+    for (const EventKind kind : kKinds)
+        text += fmt::format(",{}", sun::name_of(kind));
+    text += ",day_length_h,golden_hour,blue_hour";
+    if (light) text += ",direct_sun,direct_sun_h";
+    if (holes) text += ",not_known,not_known_h";
+    return text;
+}
+
+/// "begin/end;begin/end".
+template <typename List, typename Begin, typename End>
+std::string spans_of(const List& list, const sun::Zone& zone, const Begin& begin, const End& end) {
+    std::string joined;
+    for (const auto& span : list)
+        joined += fmt::format("{}{}/{}", joined.empty() ? "" : ";", sun::to_iso(begin(span), zone),
+                              sun::to_iso(end(span), zone));
+    return joined;
+}
+
+std::string spans_of(const std::vector<sun::TimeSpan>& list, const sun::Zone& zone) {
+    return spans_of(
+        list, zone, [](const sun::TimeSpan& s) { return s.begin; },
+        [](const sun::TimeSpan& s) { return s.end; });
+}
+
+std::string row_of(const Result& result, std::size_t i, bool holes) {
+    const sun::Zone& zone = result.asked.zone;
+    const sun::Day& day = result.days[i];
+    const char* polar = polar_of(day);
+    std::string text = sun::to_string(day.date) + "," + (polar ? polar : "");
+    for (const EventKind kind : kKinds) {
+        std::string times;
+        for (const sun::Instant utc : day.all(kind))
+            times += (times.empty() ? "" : ";") + sun::to_iso(utc, zone);
+        text += "," + times;
+    }
+    text += fmt::format(",{:.4f},{},{}", day.day_length_s / 3600, spans_of(day.golden_hour, zone),
+                        spans_of(day.blue_hour, zone));
+    if (!result.light.empty())
+        text += fmt::format(
+            ",{},{:.4f}",
+            spans_of(
+                result.light[i].lit, zone, [](const light::LitInterval& s) { return s.begin.utc; },
+                [](const light::LitInterval& s) { return s.end.utc; }),
+            result.light[i].lit_s / 3600);
+    if (!holes) return text;
+    std::vector<sun::TimeSpan> not_known;
+    for (const light::LitInterval& interval : result.light[i].lit)
+        not_known.insert(not_known.end(), interval.not_known.begin(), interval.not_known.end());
+    return text +
+           fmt::format(",{},{:.4f}", spans_of(not_known, zone), result.light[i].not_known_s / 3600);
+}
+
+std::vector<std::string> rows_of(const Result& result, bool holes) {
+    std::vector<std::string> rows;
+    for (std::size_t i = 0; i < result.days.size(); ++i)
+        rows.push_back(row_of(result, i, holes));
+    return rows;
+}
+
 std::string csv_of(const Result& result) {
     std::vector<std::string> remarks{result.definition, kTwilights};
     if (!result.light.empty()) {
@@ -144,55 +208,9 @@ std::string csv_of(const Result& result) {
     }
     const bool holes = !result.doubt.holes.empty();
     if (holes) remarks.push_back(holes_text(result));
-    std::string text = csv_remarks(remarks) + "date,polar";
-    for (const EventKind kind : kKinds)
-        text += fmt::format(",{}", sun::name_of(kind));
-    text += ",day_length_h,golden_hour,blue_hour";
-    if (!result.light.empty()) text += ",direct_sun,direct_sun_h";
-    if (holes) text += ",not_known,not_known_h";
-    text += '\n';
-    const sun::Zone& zone = result.asked.zone;
-    const auto spans = [&](const auto& list, const auto& begin, const auto& end) {
-        std::string joined;
-        for (const auto& span : list)
-            joined += fmt::format("{}{}/{}", joined.empty() ? "" : ";",
-                                  sun::to_iso(begin(span), zone), sun::to_iso(end(span), zone));
-        return joined;
-    };
-    const auto of_spans = [&](const std::vector<sun::TimeSpan>& list) {
-        return spans(
-            list, [](const sun::TimeSpan& s) { return s.begin; },
-            [](const sun::TimeSpan& s) { return s.end; });
-    };
-    for (std::size_t i = 0; i < result.days.size(); ++i) {
-        const sun::Day& day = result.days[i];
-        const char* polar = polar_of(day);
-        text += sun::to_string(day.date) + "," + (polar ? polar : "");
-        for (const EventKind kind : kKinds) {
-            std::string times;
-            for (const sun::Instant utc : day.all(kind))
-                times += (times.empty() ? "" : ";") + sun::to_iso(utc, zone);
-            text += "," + times;
-        }
-        text += fmt::format(",{:.4f},{},{}", day.day_length_s / 3600, of_spans(day.golden_hour),
-                            of_spans(day.blue_hour));
-        if (!result.light.empty())
-            text += fmt::format(
-                ",{},{:.4f}",
-                spans(
-                    result.light[i].lit, [](const light::LitInterval& s) { return s.begin.utc; },
-                    [](const light::LitInterval& s) { return s.end.utc; }),
-                result.light[i].lit_s / 3600);
-        if (holes) {
-            std::vector<sun::TimeSpan> not_known;
-            for (const light::LitInterval& interval : result.light[i].lit)
-                not_known.insert(not_known.end(), interval.not_known.begin(),
-                                 interval.not_known.end());
-            text +=
-                fmt::format(",{},{:.4f}", of_spans(not_known), result.light[i].not_known_s / 3600);
-        }
-        text += '\n';
-    }
+    std::string text = csv_remarks(remarks) + columns_of(!result.light.empty(), holes) + "\n";
+    for (const std::string& row : rows_of(result, holes))
+        text += row + "\n";
     return text;
 }
 
@@ -327,39 +345,77 @@ void print_days(const Result& result) {
     print_definitions(result);
 }
 
+/// The days of a place without terrain.
+void add_days(const Arguments& arguments, const geo::PlaceText& at, Result& result) {
+    if (at.above_ground)
+        bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
+    result.place = at.place;
+    sun::DayOptions options;
+    options.rule = arguments.light.rule(at.place, arguments.place.eye_height_m);
+    result.days = sun::day_events(result.asked.first, result.asked.last, result.asked.zone,
+                                  at.place, options);
+    result.definition = options.rule.description();
+}
+
+/// Those of a place with a horizon. @returns what its diagram is drawn from
+light::DirectLight add_lit_days(const Arguments& arguments, const light::TerrainHorizon& horizon,
+                                Result& result) {
+    const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
+    result.place = horizon.place();
+    light::DirectLight direct(horizon, arguments.light.light(result.place, eye_height_m));
+    result.light = direct.days(result.asked.first, result.asked.last, result.asked.zone);
+    result.doubt = light::doubt_of(direct, result.light, horizon.profile(kDoubtDirections),
+                                   arguments.terrain.highest_m);
+    for (const light::LightDay& day : result.light)
+        result.days.push_back(day.flat);
+    result.light_definition = direct.definition();
+    result.horizon_definition = horizon.description();
+    result.definition = arguments.light.rule(result.place, eye_height_m).description();
+    return direct;
+}
+
+void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
+    arguments.days.parse({}, false);  // what is wrong with them is said before any work
+    const auto points = arguments.points.read(files, arguments.output);
+    std::optional<dem::Posts> posts;
+    if (arguments.terrain.given()) posts.emplace(arguments.terrain.load());
+    const auto forms = [&](const geo::PlaceText& at) {
+        const auto result = std::make_shared<Result>();
+        result->asked = arguments.days.parse(at.place, false);
+        if (posts)
+            add_lit_days(
+                arguments,
+                light::TerrainHorizon(*posts, at.place,
+                                      arguments.terrain.horizon(at, arguments.place.eye_height_m)),
+                *result);
+        else
+            add_days(arguments, at, *result);
+        return PointForms{
+            .rows = [=, terrain = posts.has_value()] { return rows_of(*result, terrain); },
+            .json = [=] { return json_of(*result); },
+            .doubt = result->doubt};
+    };
+    deliver_points(arguments.points, points,
+                   {columns_of(posts.has_value(), posts.has_value()), {kTwilights}, forms},
+                   arguments.output, file, sun::is_zone_by_place(arguments.days.zone));
+}
+
 void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
     FilesInUse files;
     OutputFile* const file = output.open(files, arguments.terrain.dem);
+    if (arguments.points.given()) return run_points(arguments, files, file);
     Result result;
     result.asked = arguments.days.parse(arguments.place.parse().place);
-    const std::optional<double>& eye_height_m = arguments.place.eye_height_m;
     std::unique_ptr<TerrainView> view;
     std::optional<light::DirectLight> direct;
     if (arguments.terrain.given()) {
         view = arguments.terrain.view_from(arguments.place);
-        const light::TerrainHorizon& horizon = view->horizon;
-        result.place = horizon.place();
-        direct.emplace(horizon, arguments.light.light(result.place, eye_height_m));
-        result.light = direct->days(result.asked.first, result.asked.last, result.asked.zone);
-        result.doubt = light::doubt_of(*direct, result.light, horizon.profile(kDoubtDirections),
-                                       arguments.terrain.highest_m);
+        direct.emplace(add_lit_days(arguments, view->horizon, result));
         warn_of(result.doubt);
-        for (const light::LightDay& day : result.light)
-            result.days.push_back(day.flat);
-        result.light_definition = direct->definition();
-        result.horizon_definition = horizon.description();
     } else {
-        const geo::PlaceText at = arguments.place.parse();
-        if (at.above_ground)
-            bad_usage("--at: a height above the ground needs a DEM; give one above sea level");
-        result.place = at.place;
-        sun::DayOptions options;
-        options.rule = arguments.light.rule(at.place, eye_height_m);
-        result.days = sun::day_events(result.asked.first, result.asked.last, result.asked.zone,
-                                      at.place, options);
+        add_days(arguments, arguments.place.parse(), result);
     }
-    result.definition = arguments.light.rule(result.place, eye_height_m).description();
 
     const auto draw = [&] {
         chart::SunPathDiagram diagram;
@@ -394,6 +450,7 @@ void add_sun_day(CLI::App& sun_verb) {
     arguments->terrain.add_to(verb);
     verb.get_option("DEM")->required(false);
     arguments->place.add_to(verb);
+    arguments->points.add_to(verb);
     arguments->days.add_to(verb);
     arguments->light.add_to(verb);
     arguments->light.add_dip_to(verb);

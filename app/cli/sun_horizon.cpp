@@ -9,7 +9,9 @@
 #include "chart/panorama.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
+#include "cli/sun_points.h"
 #include "geo/format.h"
+#include "light/horizon_files.h"
 
 namespace relevo::cli {
 namespace {
@@ -19,10 +21,12 @@ using nlohmann::ordered_json;
 struct Arguments {
     TerrainArguments terrain;
     PlaceArguments place;
+    PointsArguments points;
     DaysArguments days;
     LightArguments light;
     OutputArguments output;
-    double step_deg = 0.1;
+    std::string format;
+    std::optional<double> step_deg;
 };
 
 ordered_json number_or_null(double value) {
@@ -66,23 +70,34 @@ std::string holes_text(const light::Doubt& doubt) {
         sectors_text(doubt.holes));
 }
 
+constexpr const char* kColumns = "azimuth_deg,horizon_deg,distance_m,lat_deg,lon_deg,height_m";
+
+std::vector<std::string> rows_of(const light::TerrainHorizon& horizon,
+                                 const std::vector<light::HorizonPoint>& profile) {
+    std::vector<std::string> rows;
+    for (const light::HorizonPoint& p : profile) {
+        std::string row =
+            fmt::format("{:.6g},{:.5f}", degrees(p.azimuth_rad), degrees(p.elevation_rad));
+        const geo::Geodetic at = horizon.place_of(p);
+        if (std::isnan(p.distance_m))
+            row += ",,,,";
+        else
+            row += fmt::format(",{:.1f},{:.6f},{:.6f},{:.1f}", p.distance_m, degrees(at.lat_rad),
+                               degrees(at.lon_rad), p.height_m);
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
 std::string csv_of(const light::TerrainHorizon& horizon,
                    const std::vector<light::HorizonPoint>& profile, const light::Doubt& doubt) {
     std::vector<std::string> remarks{
         fmt::format("eye at {}, {:.2f} m", geo::degrees_text(horizon.place()), horizon.eye_m()),
         horizon.description()};
     if (!doubt.holes.empty()) remarks.push_back(holes_text(doubt));
-    std::string text =
-        csv_remarks(remarks) + "azimuth_deg,horizon_deg,distance_m,lat_deg,lon_deg,height_m\n";
-    for (const light::HorizonPoint& p : profile) {
-        text += fmt::format("{:.6g},{:.5f}", degrees(p.azimuth_rad), degrees(p.elevation_rad));
-        const geo::Geodetic at = horizon.place_of(p);
-        if (std::isnan(p.distance_m))
-            text += ",,,,\n";
-        else
-            text += fmt::format(",{:.1f},{:.6f},{:.6f},{:.1f}\n", p.distance_m, degrees(at.lat_rad),
-                                degrees(at.lon_rad), p.height_m);
-    }
+    std::string text = csv_remarks(remarks) + kColumns + "\n";
+    for (const std::string& row : rows_of(horizon, profile))
+        text += row + "\n";
     return text;
 }
 
@@ -135,37 +150,110 @@ chart::Drawing draw(const Arguments& arguments, const std::optional<DaysArgument
     return panorama.draw();
 }
 
-void run(const Arguments& arguments) {
-    const OutputArguments& output = arguments.output;
-    FilesInUse files;
-    OutputFile* const file = output.open(files, arguments.terrain.dem);
-    std::optional<DaysArguments::Days> asked;
-    if (arguments.days.given()) {
-        asked = arguments.days.parse(arguments.place.parse().place);
-        if (!asked->single && !arguments.days.year)
-            bad_usage(
-                "--from and --to: a panorama shows one day or one year; pass --date or "
-                "--year");
-        if (!output.is_drawing())
-            bad_usage(
-                "--date and --year: only a panorama shows the sun; pass -o with a name that "
-                "ends in svg, png");
-    }
-    const double directions = 360 / arguments.step_deg;
+/// The form of the table: as --format says, else by the name's ending.
+std::string format_of(const Arguments& arguments) {
+    if (!arguments.format.empty()) return arguments.format;
+    const std::string ending = arguments.output.ending();
+    return ending == "hor" ? "pvsyst" : ending == "txt" ? "pvgis" : "csv";
+}
+
+/// How many directions are looked at. @throws Error (Usage) for a step that is no part of a turn
+int directions_of(const Arguments& arguments, const std::string& format) {
+    const double step_deg = arguments.step_deg.value_or(format == "csv"      ? 0.1
+                                                        : format == "pvsyst" ? 3
+                                                                             : 1);
+    const double directions = 360 / step_deg;
     if (std::abs(directions - std::round(directions)) > 1e-6)
         bad_usage(
             fmt::format("--step: {:.10g} degrees: no even part of a turn, expected one such "
                         "as 0.1, 0.5 or 1",
-                        arguments.step_deg));
+                        step_deg));
+    return static_cast<int>(std::lround(directions));
+}
+
+void check_format(const Arguments& arguments, const std::string& format) {
+    const OutputArguments& output = arguments.output;
+    if (!arguments.format.empty() &&
+        (output.json || output.is_drawing() || output.ending() == "json"))
+        bad_usage(
+            "--format: goes with a table; pass -o with a name that ends in csv, hor, txt, or "
+            "none for standard output");
+    if (format != "csv" && !arguments.points.path.empty())
+        bad_usage(fmt::format("--points: a file for {} is of one place; pass --at", format));
+}
+
+[[noreturn]] void refuse_days() {
+    bad_usage(
+        "--date and --year: only a panorama shows the sun; pass -o with a name that "
+        "ends in svg, png");
+}
+
+/// The day or the year whose sun a panorama shows.
+std::optional<DaysArguments::Days> asked_of(const Arguments& arguments) {
+    if (!arguments.days.given()) return std::nullopt;
+    const DaysArguments::Days asked = arguments.days.parse(arguments.place.parse().place);
+    if (!asked.single && !arguments.days.year)
+        bad_usage(
+            "--from and --to: a panorama shows one day or one year; pass --date or "
+            "--year");
+    if (!arguments.output.is_drawing()) refuse_days();
+    return asked;
+}
+
+void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
+    if (arguments.days.given()) refuse_days();
+    const auto points = arguments.points.read(files, arguments.output);
+    const int directions = directions_of(arguments, "csv");
+    const dem::Posts posts = arguments.terrain.load();
+    struct Result {
+        std::unique_ptr<const light::TerrainHorizon> horizon;
+        std::vector<light::HorizonPoint> profile;
+        light::Doubt doubt;
+    };
+    const auto forms = [&](const geo::PlaceText& at) {
+        const auto result = std::make_shared<Result>();
+        result->horizon = std::make_unique<light::TerrainHorizon>(
+            posts, at.place, arguments.terrain.horizon(at, arguments.place.eye_height_m));
+        result->profile = result->horizon->profile(directions);
+        result->doubt =
+            light::doubt_of(*result->horizon, result->profile, arguments.terrain.highest_m);
+        return PointForms{
+            .rows = [=] { return rows_of(*result->horizon, result->profile); },
+            .json = [=] { return json_of(*result->horizon, result->profile, result->doubt); },
+            .doubt = result->doubt};
+    };
+    deliver_points(arguments.points, points,
+                   {kColumns,
+                    {"terrain horizon: apparent elevations; --json has the definition of "
+                     "each point"},
+                    forms},
+                   arguments.output, file, false);
+}
+
+void run(const Arguments& arguments) {
+    OutputArguments output = arguments.output;
+    const std::string format = format_of(arguments);
+    check_format(arguments, format);
+    if (!arguments.format.empty() && output.path.empty()) output.csv = true;
+    FilesInUse files;
+    OutputFile* const file = output.open(files, arguments.terrain.dem);
+    if (arguments.points.given()) return run_points(arguments, files, file);
+    const std::optional<DaysArguments::Days> asked = asked_of(arguments);
+    const int directions = directions_of(arguments, format);
     const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
     const light::TerrainHorizon& horizon = view->horizon;
-    const std::vector<light::HorizonPoint> profile =
-        horizon.profile(static_cast<int>(std::lround(directions)));
+    const std::vector<light::HorizonPoint> profile = horizon.profile(directions);
     const light::Doubt doubt = light::doubt_of(horizon, profile, arguments.terrain.highest_m);
     warn_of(doubt);
 
+    const auto table = [&] {
+        return format == "pvlib"    ? light::pvlib_text(profile)
+               : format == "pvgis"  ? light::pvgis_text(profile)
+               : format == "pvsyst" ? light::pvsyst_text(profile, horizon.place())
+                                    : csv_of(horizon, profile, doubt);
+    };
     output.deliver({.drawing = [&] { return draw(arguments, asked, horizon, profile); },
-                    .csv = [&] { return csv_of(horizon, profile, doubt); },
+                    .csv = table,
                     .json = [&] { return json_of(horizon, profile, doubt); },
                     .print = [&] { print_text(horizon, profile, doubt); }},
                    file);
@@ -179,12 +267,19 @@ void add_sun_horizon(CLI::App& sun_verb) {
         "horizon", "The terrain horizon of a point; as a panorama also the sun's paths over it");
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
-    verb.add_option("--step", arguments->step_deg, "Degrees from direction to direction (0.1)")
+    arguments->points.add_to(verb);
+    verb.add_option("--step", arguments->step_deg,
+                    "Degrees from direction to direction (0.1; for pvlib and pvgis 1, for pvsyst "
+                    "3)")
         ->check(in_range(0.01, 90.0));
+    verb.add_option("--format", arguments->format,
+                    "Of the table: csv, or a horizon file of pvlib, pvgis or pvsyst, each with its "
+                    "own azimuths")
+        ->check(CLI::IsMember({"csv", "pvlib", "pvgis", "pvsyst"}));
     arguments->days.add_to(verb);
     arguments->light.add_to(verb);
     arguments->light.add_dip_to(verb);
-    arguments->output.add_to(verb, {"csv", "json", "svg", "png"});
+    arguments->output.add_to(verb, {"csv", "json", "svg", "png", "hor", "txt"});
     verb.callback([arguments] { run(*arguments); });
 }
 

@@ -60,7 +60,7 @@ void DaysArguments::add_year_to(CLI::App& verb) {
         ->check(zone_name());
 }
 
-DaysArguments::Days DaysArguments::parse(const geo::Geodetic& place) const {
+DaysArguments::Days DaysArguments::parse(const geo::Geodetic& place, bool tell) const {
     const int ways = !date.empty() + (!from.empty() || !to.empty()) + year.has_value();
     if (ways == 0)
         bad_usage("--date: missing; pass --date 2026-06-21, --from and --to, or --year 2026");
@@ -87,7 +87,7 @@ DaysArguments::Days DaysArguments::parse(const geo::Geodetic& place) const {
                             "day first",
                             from, to));
     }
-    sun::ChosenZone chosen = session::zone_of(zone, place);
+    sun::ChosenZone chosen = tell ? session::zone_of(zone, place) : sun::choose_zone(zone, place);
     days.zone = std::move(chosen.zone);
     days.assumption = std::move(chosen.assumption);
     if (days.single) days.zone.day(days.first);  // says so where the zone skipped it
@@ -148,16 +148,21 @@ void TerrainArguments::add_to(CLI::App& verb) {
         ->group("Horizon");
 }
 
-std::unique_ptr<TerrainView> TerrainArguments::view_from(const PlaceArguments& place) const {
-    const geo::PlaceText at = place.parse();
-    if (at.has_height && place.eye_height_m)
+light::HorizonOptions TerrainArguments::horizon(const geo::PlaceText& at,
+                                                const std::optional<double>& eye_height_m) const {
+    if (at.has_height && eye_height_m)
         bad_usage("--eye-height and a height in --at exclude each other; give one of them");
     light::HorizonOptions options;
     options.refraction = refraction;
-    options.eye_height_m = at.has_height ? at.place.height_m : place.eye_height_m.value_or(0);
+    options.eye_height_m = at.has_height ? at.place.height_m : eye_height_m.value_or(0);
     options.eye_above_ground = at.above_ground || !at.has_height;
-    return std::make_unique<TerrainView>(dem::Posts::load(dem.paths, dem.options), at.place,
-                                         options);
+    return options;
+}
+
+std::unique_ptr<TerrainView> TerrainArguments::view_from(const PlaceArguments& place) const {
+    const geo::PlaceText at = place.parse();
+    const light::HorizonOptions options = horizon(at, place.eye_height_m);
+    return std::make_unique<TerrainView>(load(), at.place, options);
 }
 
 namespace {
@@ -296,9 +301,9 @@ void OutputArguments::deliver(const Forms& forms, OutputFile* file) const {
                           {"Title", drawing.title()},
                           {"Description", drawing.description()}});
         } else {
-            file->write(form == "svg"   ? chart::to_svg(forms.drawing())
-                        : form == "csv" ? forms.csv()
-                                        : json_text(forms.json()));
+            file->write(form == "svg"    ? chart::to_svg(forms.drawing())
+                        : form == "json" ? json_text(forms.json())
+                                         : forms.csv());
             file->finish();
         }
     }

@@ -46,10 +46,11 @@ struct DaysArguments {
         std::string assumption;  ///< of the zone; empty where none was made
         bool single = false;     ///< --date
     };
-    /// @param place  whose zone is taken where --tz names none, which the user is told
+    /// @param place  whose zone is taken where --tz names none
+    /// @param tell   the user which zone that is
     /// @throws Error (Usage) for no date or too many, (BadInput) for a day that is none, dates
     ///     backwards, a year that is not computed, and as session::zone_of
-    Days parse(const geo::Geodetic& place) const;
+    Days parse(const geo::Geodetic& place, bool tell = true) const;
 };
 
 /// --limb, --refraction, --dip: what rising and shining mean.
@@ -87,6 +88,13 @@ struct TerrainArguments {
 
     void add_to(CLI::App& verb);
     bool given() const { return !dem.paths.empty(); }
+    /// @throws Error as dem::load
+    dem::Posts load() const { return dem::Posts::load(dem.paths, dem.options); }
+    /// How the horizon of a place is looked at.
+    /// @param eye_height_m  --eye-height
+    /// @throws Error (Usage) where the place has a height too
+    light::HorizonOptions horizon(const geo::PlaceText& at,
+                                  const std::optional<double>& eye_height_m) const;
     /// Loads the DEM. @throws Error as dem::load and light::TerrainHorizon
     std::unique_ptr<TerrainView> view_from(const PlaceArguments& place) const;
 };

@@ -9,6 +9,7 @@
 #include "base/units.h"
 #include "cli/sun.h"
 #include "cli/sun_options.h"
+#include "cli/sun_points.h"
 #include "geo/format.h"
 #include "light/alignment.h"
 #include "light/doubt.h"
@@ -21,6 +22,7 @@ using nlohmann::ordered_json;
 struct Arguments {
     TerrainArguments terrain;
     PlaceArguments place;
+    PointsArguments points;
     std::string over;
     DaysArguments days;
     RefractionArguments refraction;
@@ -60,16 +62,32 @@ ordered_json json_of(const light::Alignments& found, const light::TerrainHorizon
     return json;
 }
 
-std::string csv_of(const light::Alignments& found, const sun::Zone& zone) {
-    std::string text = csv_remarks(
-        {fmt::format("target {}, {:.1f} m", geo::degrees_text(found.target), found.target.height_m),
-         found.definition});
-    text +=
-        "time,separation_deg,right_deg,above_deg,azimuth_deg,apparent_elevation_deg,sun_visible\n";
+constexpr const char* kColumns =
+    "time,separation_deg,right_deg,above_deg,azimuth_deg,apparent_elevation_deg,sun_visible";
+
+constexpr const char* kDirections =
+    "right_deg and above_deg: of the sun's centre from the summit; --json has the summit, the line "
+    "of sight and the definition of each point";
+
+std::string target_text(const light::Alignments& found) {
+    return fmt::format("target {}, {:.1f} m", geo::degrees_text(found.target),
+                       found.target.height_m);
+}
+
+std::vector<std::string> rows_of(const light::Alignments& found, const sun::Zone& zone) {
+    std::vector<std::string> rows;
     for (const light::Alignment& p : found.passages)
-        text += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{}\n", sun::to_iso(p.utc, zone),
-                            degrees(p.separation_rad), degrees(p.right_rad), degrees(p.above_rad),
-                            degrees(p.azimuth_rad), degrees(p.elevation_rad), p.sun_visible);
+        rows.push_back(
+            fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{}", sun::to_iso(p.utc, zone),
+                        degrees(p.separation_rad), degrees(p.right_rad), degrees(p.above_rad),
+                        degrees(p.azimuth_rad), degrees(p.elevation_rad), p.sun_visible));
+    return rows;
+}
+
+std::string csv_of(const light::Alignments& found, const sun::Zone& zone) {
+    std::string text = csv_remarks({target_text(found), found.definition}) + kColumns + "\n";
+    for (const std::string& row : rows_of(found, zone))
+        text += row + "\n";
     return text;
 }
 
@@ -105,28 +123,70 @@ void print_text(const light::Alignments& found, const light::TerrainHorizon& hor
     fmt::print("\n{}\n{}\n", found.definition, horizon.description());
 }
 
+/// The point that --over means.
+geo::Geodetic target_of(const Arguments& arguments, const dem::Posts& posts) {
+    const geo::PlaceText over = geo::parse_place(arguments.over, "--over");
+    if (over.has_height && !over.above_ground) return over.place;
+    geo::Geodetic target =
+        light::summit_near(posts, over.place, over.has_height ? 0 : arguments.summit_radius_m);
+    target.height_m += over.place.height_m;
+    return target;
+}
+
+light::Alignments find(const Arguments& arguments, const light::TerrainHorizon& horizon,
+                       const geo::Geodetic& target, const DaysArguments::Days& asked) {
+    light::AlignmentOptions options;
+    options.tolerance_rad = radians(arguments.tolerance_deg);
+    options.refraction = arguments.refraction.at(horizon.place());
+    return light::alignments(horizon, target, asked.first, asked.last, asked.zone, options);
+}
+
+bool through_hole(const light::Alignments& found) {
+    return found.sight.hole || std::any_of(found.passages.begin(), found.passages.end(),
+                                           [](const light::Alignment& p) { return p.hole; });
+}
+
+void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {
+    arguments.days.parse({}, false);  // what is wrong with them is said before any work
+    const auto points = arguments.points.read(files, arguments.output);
+    const dem::Posts posts = arguments.terrain.load();
+    const geo::Geodetic target = target_of(arguments, posts);
+    struct Result {
+        std::unique_ptr<const light::TerrainHorizon> horizon;
+        light::Alignments found;
+        DaysArguments::Days asked;
+    };
+    const auto forms = [&](const geo::PlaceText& at) {
+        const auto result = std::make_shared<Result>();
+        result->asked = arguments.days.parse(at.place, false);
+        result->horizon = std::make_unique<light::TerrainHorizon>(
+            posts, at.place, arguments.terrain.horizon(at, arguments.place.eye_height_m));
+        result->found = find(arguments, *result->horizon, target, result->asked);
+        light::Doubt doubt =
+            light::doubt_of(*result->horizon, result->found, arguments.terrain.highest_m);
+        if (through_hole(result->found)) doubt.holes.emplace_back();
+        return PointForms{
+            .rows = [=] { return rows_of(result->found, result->asked.zone); },
+            .json = [=] { return json_of(result->found, *result->horizon, result->asked); },
+            .doubt = doubt};
+    };
+    deliver_points(arguments.points, points, {kColumns, {kDirections}, forms}, arguments.output,
+                   file, sun::is_zone_by_place(arguments.days.zone));
+}
+
 void run(const Arguments& arguments) {
     const OutputArguments& output = arguments.output;
     FilesInUse files;
     OutputFile* const file = output.open(files, arguments.terrain.dem);
+    if (arguments.points.given()) return run_points(arguments, files, file);
     const DaysArguments::Days asked = arguments.days.parse(arguments.place.parse().place);
-    const geo::PlaceText over = geo::parse_place(arguments.over, "--over");
+    geo::parse_place(arguments.over, "--over");  // what is wrong with it is said before any work
     const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
     const light::TerrainHorizon& horizon = view->horizon;
-    geo::Geodetic target = over.place;
-    if (!over.has_height || over.above_ground) {
-        target = light::summit_near(view->dem, over.place,
-                                    over.has_height ? 0 : arguments.summit_radius_m);
-        target.height_m += over.place.height_m;
-    }
-    light::AlignmentOptions options;
-    options.tolerance_rad = radians(arguments.tolerance_deg);
-    options.refraction = arguments.refraction.at(horizon.place());
     const light::Alignments found =
-        light::alignments(horizon, target, asked.first, asked.last, asked.zone, options);
+        find(arguments, horizon, target_of(arguments, view->dem), asked);
 
-    if (found.sight.hole || std::any_of(found.passages.begin(), found.passages.end(),
-                                        [](const light::Alignment& p) { return p.hole; }))
+    if (through_hole(found))
         log::warning(
             "the DEM has holes in the way: ground in them could hide the summit or the sun over "
             "it; a DEM without them settles it");
@@ -148,6 +208,7 @@ void add_sun_when(CLI::App& sun_verb) {
         *sun_verb.add_subcommand("when", "When the sun stands over a summit, as seen from a place");
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
+    arguments->points.add_to(verb);
     verb.add_option("--over", arguments->over,
                     "Summit: LAT,LON; the highest post nearby is taken. With a height: that point")
         ->required();

@@ -50,10 +50,15 @@ glm::dvec2 interpolated(const std::vector<glm::dvec2>& samples, int before,
 }  // namespace
 
 Fan::Fan(const dem::Grid& grid, const geo::Geodetic& place, const glm::dvec2& start,
-         double longest_m)
-    : grid_(grid), place_(place), start_(start), spacing_m_(grid.post_spacing_m()) {
+         double longest_m, bool few)
+    : grid_(grid),
+      place_(place),
+      start_(start),
+      spacing_m_(grid.post_spacing_m()),
+      longest_m_(longest_m) {
     if (grid.crs().is_geographic() && grid.affine().x_column != 0)
         turn_columns_ = 2 * kPi / grid.crs().unit_si() / std::abs(grid.affine().x_column);
+    if (few) return;
     Ring first{0, true, std::vector<glm::dvec2>(kDirections, start_)};
     Ring last = ring(longest_m);
     rings_.push_back(first);
@@ -84,13 +89,16 @@ Fan::Ring Fan::ring(double distance_m) const {
     return ring;
 }
 
+bool Fan::is_off(const glm::dvec2& apart, double distance_m) const {
+    return glm::length(apart * spacing_m_) > kStraight * distance_m &&
+           glm::length(apart) > kStraight_cells;
+}
+
 bool Fan::straight(const Ring& from, const Ring& middle, const Ring& to) const {
     for (std::size_t i = 0; i < kDirections; ++i) {
         const glm::dvec2 apart = (from.posts[i] + to.posts[i]) / 2.0 - middle.posts[i];
         if (!finite(apart)) continue;  // the line ends before
-        if (glm::length(apart * spacing_m_) > kStraight * middle.distance_m &&
-            glm::length(apart) > kStraight_cells)
-            return false;
+        if (is_off(apart, middle.distance_m)) return false;
     }
     return true;
 }
@@ -106,7 +114,27 @@ void Fan::refine(const Ring& from, const Ring& to, int depth) {
     }
 }
 
+/// Adds the line from one point on it to another, as refine() adds rings; as far as the CRS has it.
+void Fan::follow(double azimuth_rad, const TracePoint& from, const TracePoint& to, int depth,
+                 std::vector<TracePoint>& line) const {
+    const double distance_m = (from.distance_m + to.distance_m) / 2;
+    const TracePoint middle{post(azimuth_rad, distance_m), distance_m};
+    const glm::dvec2 apart = (from.post + to.post) / 2.0 - middle.post;
+    if (depth < kDeepest && (depth < 2 || !finite(apart) || is_off(apart, distance_m))) {
+        follow(azimuth_rad, from, middle, depth + 1, line);
+        if (finite(middle.post)) follow(azimuth_rad, middle, to, depth + 1, line);
+    } else if (finite(to.post)) {
+        line.push_back(to);
+    }
+}
+
 void Fan::trace(double azimuth_rad, std::vector<TracePoint>& line) const {
+    if (rings_.empty()) {
+        const TracePoint start{start_, 0}, end{post(azimuth_rad, longest_m_), longest_m_};
+        line.assign({start});
+        follow(azimuth_rad, start, end, 0, line);
+        return;
+    }
     const double turns = azimuth_rad / (2 * kPi);
     const double direction = (turns - std::floor(turns)) * kDirections;
     const int before = std::min(static_cast<int>(direction), kDirections - 1);

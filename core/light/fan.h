@@ -27,8 +27,10 @@ class Fan {
   public:
     /// @param start      the place's column and row
     /// @param longest_m  of the lines; rings end there
+    /// @param few        lines will be asked for: there are no rings, each line is followed by
+    ///     itself, which costs as much as a thirtieth of the rings
     Fan(const dem::Grid& grid, const geo::Geodetic& place, const glm::dvec2& start,
-        double longest_m);
+        double longest_m, bool few = false);
 
     /// The line that leaves in a direction, from the place on outwards; it ends early where the
     /// grid's CRS cannot express the next point.
@@ -46,15 +48,19 @@ class Fan {
         std::vector<glm::dvec2> posts;
     };
     Ring ring(double distance_m) const;
+    bool is_off(const glm::dvec2& apart, double distance_m) const;
     bool straight(const Ring& from, const Ring& middle, const Ring& to) const;
     void refine(const Ring& from, const Ring& to, int depth);
+    void follow(double azimuth_rad, const TracePoint& from, const TracePoint& to, int depth,
+                std::vector<TracePoint>& line) const;
 
     const dem::Grid& grid_;
     geo::Geodetic place_;
     glm::dvec2 start_;
     double turn_columns_ = 0;  // in a turn of longitude; 0: a map without one
     glm::dvec2 spacing_m_;
-    std::vector<Ring> rings_;
+    double longest_m_;
+    std::vector<Ring> rings_;  // none: lines are followed one by one
 };
 
 }  // namespace relevo::light

@@ -197,16 +197,12 @@ std::pair<glm::dvec2, double> ground_at(const dem::Posts& posts, const geo::Geod
     return {post, height_m};
 }
 
-/// The farthest that a line of sight can matter: to the DEM's farthest edge, or to where terrain as
-/// high as its highest post sinks under the horizon of a smooth Earth as high as its lowest.
-double longest_m(const dem::Posts& posts, const geo::Geodetic& place, double eye_m,
-                 double refraction) {
-    const dem::Grid& grid = posts.grid();
+/// How far the DEM's edge is at most, by `steps` points along each of its sides.
+double farthest_edge_m(const dem::Grid& grid, const geo::Geodetic& place, int steps) {
     double edge_m = 0;
-    constexpr int kSteps = 32;
-    for (int i = 0; i <= kSteps; ++i) {
-        const double column = (grid.columns() - 1) * i / double{kSteps};
-        const double row = (grid.rows() - 1) * i / double{kSteps};
+    for (int i = 0; i <= steps; ++i) {
+        const double column = double(grid.columns() - 1) * i / steps;
+        const double row = double(grid.rows() - 1) * i / steps;
         for (const glm::dvec2& post : {glm::dvec2(column, 0), glm::dvec2(column, grid.rows() - 1),
                                        glm::dvec2(0, row), glm::dvec2(grid.columns() - 1, row)}) {
             const geo::Geodetic p = grid.place(post.x, post.y);
@@ -214,7 +210,18 @@ double longest_m(const dem::Posts& posts, const geo::Geodetic& place, double eye
                 edge_m = std::max(edge_m, geo::geodesic(place, p).distance_m);
         }
     }
-    const double radius = geo::kEquatorialRadius_m / (1 - refraction);
+    return edge_m;
+}
+
+/// The farthest that a line of sight can matter: to the DEM's farthest edge, or to where terrain as
+/// high as its highest post sinks under the horizon of a smooth Earth as high as its lowest.
+double longest_m(const dem::Posts& posts, const geo::Geodetic& place, double eye_m,
+                 const HorizonOptions& options) {
+    constexpr int kSteps = 32;
+    constexpr double kSmall_m = 5e5;  // up to there a corner of a map is what is farthest
+    double edge_m = options.few_directions ? 1.1 * farthest_edge_m(posts.grid(), place, 2) : 0;
+    if (!(edge_m > 0 && edge_m < kSmall_m)) edge_m = farthest_edge_m(posts.grid(), place, kSteps);
+    const double radius = geo::kEquatorialRadius_m / (1 - options.refraction);
     const double low_m = posts.lowest_m();
     const double sight_m = std::sqrt(2 * radius * std::max(0.0, eye_m - low_m)) +
                            std::sqrt(2 * radius * (posts.highest_m() - low_m));
@@ -438,8 +445,8 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
     const glm::dvec2 northward = map_point(geo::destination(place_, 0, 1)) - here;
     true_north_on_map_rad_ = std::atan2(northward.x, northward.y);
     if (options.earth == EarthModel::Ellipsoid) {
-        fan_ = std::make_unique<const Fan>(grid, place_, post_,
-                                           longest_m(posts, place_, eye_m_, options.refraction));
+        fan_ = std::make_unique<const Fan>(
+            grid, place_, post_, longest_m(posts, place_, eye_m_, options), options.few_directions);
     } else {
         if (grid.crs().is_geographic())
             bad_input(

@@ -1,5 +1,6 @@
 #include "session/words.h"
 
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -70,19 +71,37 @@ bool needs_dem(const scene::Moment& moment) {
     return words.zone_by_place;
 }
 
-sun::ParsedTime parse(const scene::Moment& moment, const light::TerrainAccess& dem,
-                      const std::optional<geo::PlaceText>& here) {
+namespace {
+
+using ChooseZone = std::function<sun::ChosenZone(const std::string&, const geo::Geodetic&)>;
+
+sun::ParsedTime parse_with(const ChooseZone& choose, const scene::Moment& moment,
+                           const light::TerrainAccess& dem,
+                           const std::optional<geo::PlaceText>& here) {
     ReadMoment words = read(moment);
     std::string assumption;
     if (const auto place = place_of_zone(words, dem, here); place && words.zone_by_place) {
-        sun::ChosenZone chosen = zone_of(moment.zone, *place);
+        sun::ChosenZone chosen = choose(moment.zone, *place);
         words.zone = std::move(chosen.zone);
         assumption = std::move(chosen.assumption);
     }
     sun::ParsedTime parsed = light::parse_time(moment.time, words.date, words.zone, dem, here);
     parsed.assumption = std::move(assumption);
+    return parsed;
+}
+
+}  // namespace
+
+sun::ParsedTime parse(const scene::Moment& moment, const light::TerrainAccess& dem,
+                      const std::optional<geo::PlaceText>& here) {
+    sun::ParsedTime parsed = parse_with(zone_of, moment, dem, here);
     if (!parsed.note.empty()) log::info(parsed.note);
     return parsed;
+}
+
+sun::ParsedTime parse_quietly(const scene::Moment& moment, const light::TerrainAccess& dem,
+                              const std::optional<geo::PlaceText>& here) {
+    return parse_with(sun::choose_zone, moment, dem, here);
 }
 
 sun::ParsedTime parse_over(const scene::Moment& moment, const dem::Source& source,

@@ -31,6 +31,10 @@ bool needs_dem(const scene::Moment& moment);
 sun::ParsedTime parse(const scene::Moment& moment, const light::TerrainAccess& dem = {},
                       const std::optional<geo::PlaceText>& here = {});
 
+/// The same without a word to the user, for many places at once.
+sun::ParsedTime parse_quietly(const scene::Moment& moment, const light::TerrainAccess& dem = {},
+                              const std::optional<geo::PlaceText>& here = {});
+
 /// Events without a place happen in the middle of the DEM; first and last light are those of its
 /// posts.
 /// @param loaded  of the source, all its posts or means of them

@@ -22,7 +22,8 @@ TEST(Help, OfAllListsEveryOptionOfEveryVerb) {
                                                {"sun", "day"},
                                                {"sun", "horizon"},
                                                {"sun", "carpet"},
-                                               {"sun", "when"}}) {
+                                               {"sun", "when"},
+                                               {"sun", "along"}}) {
         std::vector<std::string> arguments = verb;
         arguments.emplace_back("--help");
         std::string name = verb.front();

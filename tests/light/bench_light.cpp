@@ -49,6 +49,18 @@ void horizon_direction(benchmark::State& state) {
 }
 BENCHMARK(horizon_direction)->Unit(benchmark::kMicrosecond);
 
+/// A viewpoint and one direction, as walks ask for them: of a fan, and followed by itself.
+void horizon_of_one_direction(benchmark::State& state) {
+    const dem::Posts posts(field());
+    HorizonOptions options;
+    options.few_directions = state.range(0) != 0;
+    double azimuth_rad = 0;
+    for (auto _ : state)
+        benchmark::DoNotOptimize(
+            TerrainHorizon(posts, middle(), options).elevation_rad(azimuth_rad += 0.01));
+}
+BENCHMARK(horizon_of_one_direction)->Arg(0)->Arg(1)->ArgName("few")->Unit(benchmark::kMicrosecond);
+
 void horizon_profile(benchmark::State& state) {
     const TerrainHorizon horizon(field(), middle());
     for (auto _ : state)

@@ -85,9 +85,11 @@ TEST(TerrainHorizon, AgreesWithCrossingsComputedIndependently) {
 /// Looks at every post of a DEM by straight geometry, which knows nothing of rays, grids, rings,
 /// blocks or radii of curvature: none may stand over the horizon, and the blocking points must
 /// stand where the horizon says.
+/// @param few  by lines that are followed one by one
 void expect_true_horizon(const dem::Heightfield& field, const geo::Geodetic& place,
-                         const std::string& name, int every = 1) {
+                         const std::string& name, int every, bool few) {
     HorizonOptions options;
+    options.few_directions = few;
     options.refraction = 0;
     options.eye_height_m = 1.5;
     options.outside_height_m = -kInfinity;
@@ -122,6 +124,12 @@ void expect_true_horizon(const dem::Heightfield& field, const geo::Geodetic& pla
         EXPECT_LE(*std::max_element(errors.begin(), errors.end()), limit) << name;
     test::print_accuracy(name + ": azimuth of the blocking point", azimuth_deg, "deg", 0.001);
     test::print_accuracy(name + ": its elevation", elevation_deg, "deg", 0.0005);
+}
+
+void expect_true_horizon(const dem::Heightfield& field, const geo::Geodetic& place,
+                         const std::string& name, int every = 1) {
+    expect_true_horizon(field, place, name, every, false);
+    expect_true_horizon(field, place, name + ", followed", 5 * every, true);
 }
 
 TEST(TerrainHorizon, NoPostStandsOverItInDegrees) {

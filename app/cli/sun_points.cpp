@@ -1,0 +1,204 @@
+#include "cli/sun_points.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/parallel_for.h"
+#include "base/progress.h"
+#include "base/text.h"
+
+namespace relevo::cli {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kChunk = 16;  // points a thread between two writes, so that memory has room for them
+constexpr double kPatience_s = 3;  // of who watches a terminal
+
+/// A field of a CSV: in quotes where it needs them (RFC 4180).
+std::string csv_field(const std::string& text) {
+    const std::string line = printable(text);
+    if (line.find_first_of(",;\"") == line.npos) return line;
+    std::string quoted = "\"";
+    for (const char c : line)
+        quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+/// What is written of one point.
+struct Record {
+    std::string csv, json, error;
+    bool open = false, holes = false;
+};
+
+/// The records of a file of points, in its order, to all who want them.
+class Writer {
+  public:
+    Writer(const PointsJob& job, const OutputArguments& output, OutputFile* file)
+        : job_(job), file_(file) {
+        file_json_ = file && output.ending() == "json";
+        file_csv_ = file && !file_json_;
+        out_json_ = output.json;
+        out_csv_ = output.csv || (!file && !output.json);
+    }
+    bool csv() const { return file_csv_ || out_csv_; }
+    bool json() const { return file_json_ || out_json_; }
+
+    void add(const Record& record) {
+        // Not before the first record is there: what is wrong with an option is said instead.
+        if (first_)
+            write_csv(csv_remarks(job_.remarks) + "name,at_lat_deg,at_lon_deg," + job_.columns +
+                      ",error\n");
+        write_csv(record.csv);
+        write_json((first_ ? "[\n  " : ",\n  ") + record.json);
+        first_ = false;
+    }
+    void finish() {
+        write_json("\n]\n");
+        if (file_) file_->finish();
+    }
+
+  private:
+    void write_csv(const std::string& text) {
+        if (file_csv_) file_->write(text);
+        if (out_csv_) fmt::print("{}", text);
+    }
+    void write_json(const std::string& text) {
+        if (file_json_) file_->write(text);
+        if (out_json_) fmt::print("{}", text);
+    }
+
+    const PointsJob& job_;
+    OutputFile* file_;
+    bool file_csv_ = false, file_json_ = false, out_csv_ = false, out_json_ = false;
+    bool first_ = true;
+};
+
+Record record_of(const PointsJob& job, const dem::NamedPlace& point, const std::string& name,
+                 const Writer& writer) {
+    Record record;
+    const std::string lat = fmt::format("{}", angle_deg(point.at.place.lat_rad));
+    const std::string lon = fmt::format("{}", angle_deg(point.at.place.lon_rad));
+    const std::string head = fmt::format("{},{},{}", csv_field(name), lat, lon);
+    ordered_json json{{"name", name},
+                      {"lat_deg", angle_deg(point.at.place.lat_rad)},
+                      {"lon_deg", angle_deg(point.at.place.lon_rad)}};
+    try {
+        const PointForms forms = job.forms(point.at);
+        record.open = !forms.doubt.open.empty();
+        record.holes = !forms.doubt.holes.empty();
+        if (writer.csv())
+            for (const std::string& row : forms.rows())
+                record.csv += head + "," + row + ",\n";
+        if (writer.json()) json.update(forms.json());
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        record.error = error.what();
+        const auto columns = std::count(job.columns.begin(), job.columns.end(), ',') + 1;
+        record.csv = head + "," + std::string(static_cast<std::size_t>(columns), ',') +
+                     csv_field(record.error) + "\n";
+        json["error"] = record.error;
+    }
+    if (!writer.json()) return record;
+    for (const char c : json_text(json))
+        record.json += c == '\n' ? std::string("\n  ") : std::string(1, c);
+    record.json.erase(record.json.find_last_not_of(" \n") + 1);
+    return record;
+}
+
+/// What warn_of() says of one place, in one word for many.
+void warn_of_points(std::size_t open, std::size_t holes, std::size_t all) {
+    if (open > 0)
+        log::warning(fmt::format(
+            "{} of {} points: the blocking ridge may lie beyond the DEM; --at with one of them "
+            "says where, and --highest how high terrain is there at most",
+            open, all));
+    if (holes > 0)
+        log::warning(
+            fmt::format("{} of {} points: the DEM has holes in the way, in which ground "
+                        "could stand; a DEM without them settles it",
+                        holes, all));
+}
+
+}  // namespace
+
+void PointsArguments::add_to(CLI::App& verb) {
+    CLI::Option* const at = verb.get_option("--at");
+    at->required(false);
+    at_ = at;
+    verb.add_option("--points", path,
+                    "Instead of --at: a CSV (columns lat, lon, name), GPX or GeoJSON of places; "
+                    "one record for each, as CSV or JSON")
+        ->excludes(at);
+    verb.add_option("--points-crs", crs, "Of columns x and y in that CSV: EPSG:n");
+}
+
+bool PointsArguments::given() const {
+    if (path.empty() && at_->count() == 0)
+        bad_usage("--at: missing; pass --at 46.55,8.56, or --points FILE for many places");
+    if (path.empty() && !crs.empty()) bad_usage("--points-crs: goes with --points");
+    return !path.empty();
+}
+
+std::vector<dem::NamedPlace> PointsArguments::read(FilesInUse& files,
+                                                   const OutputArguments& output) const {
+    if (output.is_drawing())
+        bad_usage(
+            "--points: a drawing is of one place; pass -o with a name that ends in csv, json");
+    files.add_input(path, "the file of points");
+    return dem::read_points(path, "--points", crs);
+}
+
+void deliver_points(const PointsArguments& arguments, const std::vector<dem::NamedPlace>& points,
+                    const PointsJob& job, const OutputArguments& output, OutputFile* file,
+                    bool zone_by_place) {
+    if (zone_by_place) log::info("each point by the clocks of its own place; --tz names others");
+    const auto name_of = [&](std::size_t i) {
+        return points[i].name.empty() ? std::to_string(i + 1) : points[i].name;
+    };
+    Writer writer(job, output, file);  // of one point at least
+    std::optional<Progress> progress;
+    if (isatty(STDERR_FILENO) != 0)
+        progress.emplace(arguments.path, static_cast<double>(points.size()), kPatience_s);
+    std::size_t failed = 0, open = 0, holes = 0;
+    std::string first_error;
+    const std::size_t chunk =
+        static_cast<std::size_t>(kChunk) * static_cast<std::size_t>(thread_count());
+    for (std::size_t begin = 0; begin < points.size(); begin += chunk) {
+        std::vector<Record> records(std::min(chunk, points.size() - begin));
+        parallel_for(0, static_cast<int>(records.size()), 1, [&](int first, int last) {
+            for (int k = first; k < last; ++k) {
+                const std::size_t i = begin + static_cast<std::size_t>(k);
+                records[static_cast<std::size_t>(k)] =
+                    record_of(job, points[i], name_of(i), writer);
+                if (progress) progress->add(1);
+            }
+        });
+        for (std::size_t k = 0; k < records.size(); ++k) {
+            const Record& record = records[k];
+            writer.add(record);
+            open += record.open;
+            holes += record.holes;
+            if (!record.error.empty() && failed++ == 0)
+                first_error = fmt::format("\"{}\": {}", name_of(begin + k), record.error);
+        }
+    }
+    writer.finish();
+    warn_of_points(open, holes, points.size());
+    if (failed > 0)
+        bad_input(fmt::format("--points: {}: {} of {} points have no figures; the first, {}",
+                              arguments.path, failed, points.size(), first_error));
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines = split(text, '\n');
+    if (!lines.empty() && lines.back().empty()) lines.pop_back();
+    return lines;
+}
+
+}  // namespace relevo::cli

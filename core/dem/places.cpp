@@ -1,0 +1,297 @@
+#include "dem/places.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "base/error.h"
+#include "base/input_file.h"
+#include "base/text.h"
+#include "dem/vector_file.h"
+#include "geo/crs.h"
+
+namespace relevo::dem {
+namespace {
+
+/// GDAL holds a GeoJSON in memory some 16 times over.
+constexpr std::uint64_t kMostJsonBytes = std::uint64_t{64} << 20;
+
+/// What errors of a file are said with.
+struct Asked {
+    const std::string& path;
+    std::string_view who;
+
+    [[noreturn]] void refuse(const std::string& what) const {
+        bad_input(fmt::format("{}: {}: {}", who, path, what));
+    }
+};
+
+/// A text file line by line, of any length, in bounded memory.
+class Lines {
+  public:
+    explicit Lines(const Asked& asked) : asked_(asked), file_(asked.path, asked.who) {}
+
+    /// The next line, without its end; nothing after the last. Valid until the next call.
+    std::optional<std::string_view> next() {
+        for (;;) {
+            const std::size_t end = text_.find('\n', at_);
+            if (end != text_.npos || (ended_ && at_ < text_.size())) {
+                const std::size_t length = std::min(end, text_.size()) - at_;
+                std::string_view line = std::string_view(text_).substr(at_, length);
+                at_ += length + 1;
+                if (number_++ == 0 && line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
+                if (line.ends_with('\r')) line.remove_suffix(1);
+                return line;
+            }
+            if (ended_) return std::nullopt;
+            more();
+        }
+    }
+    std::size_t number() const { return number_; }  ///< of the last line, from 1
+
+  private:
+    static constexpr std::size_t kBlockBytes = 1 << 16;
+
+    void more() {
+        text_.erase(0, at_);
+        at_ = 0;
+        if (text_.size() > kBlockBytes)
+            asked_.refuse(
+                fmt::format("line {} has more than {} bytes, expected a CSV, a GPX or a "
+                            "GeoJSON file",
+                            number_ + 1, kBlockBytes));
+        const std::size_t before = text_.size();
+        text_.resize(before + kBlockBytes);
+        const ssize_t count = read(file_.descriptor(), text_.data() + before, kBlockBytes);
+        if (count < 0) asked_.refuse(fmt::format("cannot be read, {}", std::strerror(errno)));
+        text_.resize(before + static_cast<std::size_t>(count));
+        ended_ = count == 0;
+    }
+
+    Asked asked_;
+    InputFile file_;
+    std::string text_;
+    std::size_t at_ = 0, number_ = 0;
+    bool ended_ = false;
+};
+
+/// Whether a file begins as XML or JSON do, and with which of them: '<', '{', or another byte.
+char beginning_of(const Asked& asked) {
+    const InputFile file(asked.path, asked.who);
+    std::array<char, 512> head{};
+    const ssize_t count = read(file.descriptor(), head.data(), head.size());
+    std::string_view text(head.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    text = trimmed(text);
+    if (text.empty()) asked.refuse("an empty file, expected a CSV, a GPX or a GeoJSON file");
+    if (text.find('\0') != text.npos)
+        asked.refuse("not a text, expected a CSV, a GPX or a GeoJSON file");
+    if (text.front() == '{' && file.size() > kMostJsonBytes)
+        asked.refuse(fmt::format("a GeoJSON file of more than {} MiB; make a CSV of it",
+                                 kMostJsonBytes >> 20));
+    return text.front();
+}
+
+/// The fields of a line; those in quotes without them.
+std::vector<std::string> fields_of(std::string_view line, char separator) {
+    std::vector<std::string> fields(1);
+    bool quoted = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char c = line[i];
+        if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+            fields.back() += line[++i];
+        else if (c == '"')
+            quoted = !quoted;
+        else if (c == separator && !quoted)
+            fields.emplace_back();
+        else
+            fields.back() += c;
+    }
+    for (std::string& field : fields)
+        field = std::string(trimmed(field));
+    return fields;
+}
+
+/// The columns of a CSV, by their names.
+class Columns {
+  public:
+    Columns(std::string_view header, const std::string& crs, const Asked& asked) : asked_(asked) {
+        for (const char candidate : {',', ';', '\t'})
+            if (std::count(header.begin(), header.end(), candidate) >
+                std::count(header.begin(), header.end(), separator_))
+                separator_ = candidate;
+        names_ = fields_of(header, separator_);
+        lat_ = find({"lat", "latitude", "lat_deg"});
+        lon_ = find({"lon", "longitude", "lng", "long", "lon_deg"});
+        name_ = find({"name", "id", "title"});
+        height_ = find({"height", "height_m"});
+        time_ = find({"time"});
+        if (lat_ && lon_) return;
+        lon_ = find({"x", "easting"});
+        lat_ = find({"y", "northing"});
+        if (!lat_ || !lon_)
+            asked_.refuse(
+                fmt::format("no columns lat and lon, expected a first line that names "
+                            "them but got \"{}\"",
+                            header.substr(0, 80)));
+        if (crs.empty())
+            asked_.refuse(
+                "columns x and y without a coordinate reference system; pass --points-crs EPSG:n, "
+                "or columns lat and lon in degrees");
+        crs_ = geo::Crs::parse(crs, "--points-crs");
+    }
+
+    NamedPlace read(std::string_view line, std::size_t number) const {
+        const std::vector<std::string> fields = fields_of(line, separator_);
+        const auto field = [&](const std::optional<std::size_t>& column) {
+            return column && *column < fields.size() ? fields[*column] : std::string();
+        };
+        const std::string who = fmt::format("{}: {}: line {}", asked_.who, asked_.path, number);
+        const std::string height = field(height_);
+        NamedPlace place{field(name_), {}, field(time_)};
+        std::string text = field(lat_) + "," + field(lon_);
+        if (crs_) text = "0,0";
+        if (!height.empty()) text += "," + height;
+        try {
+            place.at = geo::parse_place(text, who);
+        } catch (const Error& error) {
+            bad_input(error.what());  // of a file, not of the command line
+        }
+        if (crs_) set_projected(field(lon_), field(lat_), who, place.at.place);
+        return place;
+    }
+
+  private:
+    std::optional<std::size_t> find(std::initializer_list<std::string_view> words) const {
+        for (const std::string_view word : words)
+            for (std::size_t i = 0; i < names_.size(); ++i)
+                if (equal_ignoring_case(names_[i], word)) return i;
+        return std::nullopt;
+    }
+
+    void set_projected(const std::string& x_text, const std::string& y_text, const std::string& who,
+                       geo::Geodetic& place) const {
+        const std::optional<double> x = parse_number(x_text), y = parse_number(y_text);
+        if (!x || !y)
+            bad_input(fmt::format("{}: x and y, expected numbers but got \"{}\" and \"{}\"", who,
+                                  x_text, y_text));
+        const geo::Geodetic found = crs_->to_geodetic(*x, *y);
+        if (!std::isfinite(found.lat_rad) || !std::isfinite(found.lon_rad))
+            bad_input(fmt::format("{}: {:.10g},{:.10g}: no place on Earth in {}", who, *x, *y,
+                                  crs_->name()));
+        place.lat_rad = found.lat_rad;
+        place.lon_rad = found.lon_rad;
+    }
+
+    Asked asked_;
+    char separator_ = ',';
+    std::vector<std::string> names_;
+    std::optional<std::size_t> lat_, lon_, name_, height_, time_;
+    std::optional<geo::Crs> crs_;
+};
+
+[[noreturn]] void refuse_many(const Asked& asked) {
+    asked.refuse(
+        fmt::format("more than {} places; leave out some, or cut the file up", kMostPlaces));
+}
+
+std::vector<NamedPlace> read_csv(const Asked& asked, const std::string& crs) {
+    Lines lines(asked);
+    std::optional<Columns> columns;
+    std::vector<NamedPlace> places;
+    while (const std::optional<std::string_view> line = lines.next()) {
+        if (trimmed(*line).empty() || line->starts_with('#')) continue;
+        if (!columns) {
+            columns.emplace(*line, crs, asked);
+        } else {
+            if (places.size() >= kMostPlaces) refuse_many(asked);
+            places.push_back(columns->read(*line, lines.number()));
+        }
+    }
+    return places;
+}
+
+/// A place from degrees that a program has read. @param number  which of the file, from 1
+geo::PlaceText checked(const Asked& asked, std::size_t number, double lat_deg, double lon_deg) {
+    if (!(std::abs(lat_deg) <= 90) || !(lon_deg >= -180 && lon_deg <= 360))
+        asked.refuse(
+            fmt::format("point {}: latitude {:.10g}, longitude {:.10g}: no place on Earth, "
+                        "expected -90 to 90 and -180 to 360 degrees",
+                        number, lat_deg, lon_deg));
+    return {.place = geo::geodetic_deg(lat_deg, lon_deg)};
+}
+
+NamedPlace place_of(const Asked& asked, std::size_t number, VectorPoint&& point) {
+    return {std::move(point.name), checked(asked, number, point.lat_deg, point.lon_deg),
+            std::move(point.time)};
+}
+
+}  // namespace
+
+std::vector<NamedPlace> read_points(const std::string& path, std::string_view who,
+                                    const std::string& crs) {
+    const Asked asked{path, who};
+    const char beginning = beginning_of(asked);
+    std::vector<NamedPlace> places;
+    if (beginning != '<' && beginning != '{') {
+        places = read_csv(asked, crs);
+        if (places.empty()) asked.refuse("no points, expected a line for each below the columns");
+        return places;
+    }
+    VectorFile file(path, who, beginning == '<');
+    file.points([&](VectorPoint&& point) {
+        if (places.size() >= kMostPlaces) refuse_many(asked);
+        places.push_back(place_of(asked, places.size() + 1, std::move(point)));
+    });
+    if (places.empty())
+        asked.refuse(beginning == '<' ? "no waypoints (wpt); tracks and routes are for sun along"
+                                      : "no points, expected features with Point geometries");
+    return places;
+}
+
+NamedLine read_line(const std::string& path, std::string_view who, const std::string& crs,
+                    int number) {
+    const Asked asked{path, who};
+    const char beginning = beginning_of(asked);
+    const int wanted = std::max(number, 1);
+    NamedLine line;
+    int lines = 1;
+    if (beginning == '<' || beginning == '{') {
+        std::size_t count = 0;
+        const std::vector<std::string> names =
+            VectorFile(path, who, beginning == '<').lines([&](int index, VectorPoint&& point) {
+                if (++count > kMostPlaces) refuse_many(asked);
+                if (index == wanted)
+                    line.places.push_back(
+                        place_of(asked, line.places.size() + 1, std::move(point)));
+            });
+        lines = static_cast<int>(names.size());
+        if (wanted <= lines) line.name = names[static_cast<std::size_t>(wanted) - 1];
+    } else {
+        line.places = read_csv(asked, crs);
+    }
+    if (lines == 0)
+        asked.refuse(beginning == '<' ? "no line in it, expected a track or a route"
+                                      : "no line in it, expected a LineString");
+    if (number == 0 && lines > 1)
+        asked.refuse(fmt::format("{} lines in it; pass --track 1 to {} for the one that is meant",
+                                 lines, lines));
+    if (number > lines)
+        asked.refuse(
+            fmt::format("--track {}, expected 1 to {}: so many lines are in it", number, lines));
+    if (line.places.size() < 2)
+        asked.refuse(fmt::format("a line of {} point{}, expected two or more", line.places.size(),
+                                 line.places.size() == 1 ? "" : "s"));
+    return line;
+}
+
+}  // namespace relevo::dem
