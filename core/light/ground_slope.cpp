@@ -1,9 +1,11 @@
 #include "light/ground_slope.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/mat2x2.hpp>
 
+#include "base/parallel_for.h"
 #include "geo/local_frame.h"
 
 namespace relevo::light {
@@ -26,7 +28,15 @@ class Around {
     Around(const dem::Grid& grid, const dem::Posts::View& heights, int column, int row)
         : grid_(grid), heights_(heights), column_(column), row_(row), here_m_(stored_m(0, 0)) {}
 
-    float here_m() const { return here_m_; }
+    /// From post to post along rows and along columns; of a hole none.
+    glm::dvec2 rise() const {
+        if (std::isnan(here_m_)) return {0, 0};
+        const auto over = [&](int c, int r) { return at_m(c, r) - at_m(-c, -r); };
+        const double diagonal = over(1, 1), other = over(1, -1);
+        return {(diagonal + 2 * over(1, 0) + other) / 8, (diagonal + 2 * over(0, 1) - other) / 8};
+    }
+
+  private:
     /// Beyond the last post the ground goes on as it came.
     double at_m(int columns, int rows) const {
         const float there_m = stored_m(columns, rows);
@@ -35,7 +45,6 @@ class Around {
         return std::isnan(opposite_m) ? here_m_ : 2 * double{here_m_} - opposite_m;
     }
 
-  private:
     float stored_m(int columns, int rows) const {
         const int c = column_ + columns, r = row_ + rows;
         const bool inside = c >= 0 && r >= 0 && c < grid_.columns() && r < grid_.rows();
@@ -48,33 +57,33 @@ class Around {
     float here_m_;
 };
 
+/// From rises a post to rises a metre; north is that of a post.
+glm::dmat2 from_posts(const dem::Grid& grid, double column, double row) {
+    return glm::inverse(glm::transpose(metres_a_post(grid, column, row)));
+}
+
 }  // namespace
 
-void ground_slope(const dem::Grid& grid, const dem::Posts::View& heights, const SweepWindow& window,
-                  TileValues& east, TileValues& north) {
-    const glm::dmat2 metres = metres_a_post(grid, window.column + (window.columns - 1) / 2.0,
-                                            window.row + (window.rows - 1) / 2.0);
-    const glm::dmat2 from_posts = glm::inverse(glm::transpose(metres));
-    for (int row = window.row; row < window.row + window.rows; ++row) {
-        const SweepRun run{.along_column = false,
-                           .line = row,
-                           .first = window.column,
-                           .count = window.columns,
-                           .height_m = nullptr,
-                           .found = nullptr};
-        float *const to_east = east.of(run), *const to_north = north.of(run);
-        for (int i = 0; i < window.columns; ++i) {
-            const Around post(grid, heights, window.column + i, row);
-            if (std::isnan(post.here_m())) continue;
-            const auto rise = [&](int c, int r) { return post.at_m(c, r) - post.at_m(-c, -r); };
-            const double diagonal = rise(1, 1), other = rise(1, -1);
-            const glm::dvec2 a_post((diagonal + 2 * rise(1, 0) + other) / 8,
-                                    (diagonal + 2 * rise(0, 1) - other) / 8);
-            const glm::dvec2 slope = from_posts * a_post;
-            to_east[i] = static_cast<float>(slope.x);
-            to_north[i] = static_cast<float>(slope.y);
-        }
-    }
+void ground_slope(const dem::Grid& grid, const dem::Posts::View& heights, TileValues& east,
+                  TileValues& north) {
+    // Posts next to each other have one north.
+    constexpr int kTogether = 32;
+    parallel_for(0, (grid.rows() + kTogether - 1) / kTogether, 1, [&](int first, int last) {
+        for (int row = first * kTogether; row < std::min(grid.rows(), last * kTogether); ++row)
+            for (int column = 0; column < grid.columns(); column += kTogether) {
+                const int count = std::min(kTogether, grid.columns() - column);
+                const glm::dmat2 to_metres = from_posts(
+                    grid, column + count / 2, std::min(grid.rows() - 1, row | (kTogether / 2)));
+                const SweepRun run{false, row, column, count, nullptr, nullptr};
+                float *const to_east = east.of(run), *const to_north = north.of(run);
+                for (int i = 0; i < count; ++i) {
+                    const glm::dvec2 slope =
+                        to_metres * Around(grid, heights, column + i, row).rise();
+                    to_east[i] = static_cast<float>(slope.x);
+                    to_north[i] = static_cast<float>(slope.y);
+                }
+            }
+    });
 }
 
 }  // namespace relevo::light

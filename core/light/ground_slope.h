@@ -5,11 +5,11 @@
 
 namespace relevo::light {
 
-/// How the ground rises towards the east and the north [m/m] at all posts of a window, so small
-/// that it has one north. Next to holes and the DEM's edge the ground goes on as it comes.
-/// @param east, north  along rows
+/// How the ground rises towards the east and the north [m/m] at all posts of a DEM. Next to holes
+/// and the DEM's edge the ground goes on as it comes.
+/// @param east, north  of the whole grid, along rows
 /// Source: Horn, Proc. IEEE 69 (1981) 14.
-void ground_slope(const dem::Grid& grid, const dem::Posts::View& heights, const SweepWindow& window,
-                  TileValues& east, TileValues& north);
+void ground_slope(const dem::Grid& grid, const dem::Posts::View& heights, TileValues& east,
+                  TileValues& north);
 
 }  // namespace relevo::light

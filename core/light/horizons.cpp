@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/parallel_for.h"
 #include "base/units.h"
 #include "light/ground_slope.h"
 #include "light/quick_math.h"
@@ -32,29 +31,14 @@ struct Ground {
           dem(posts, {.refraction = refraction}),
           sweep(heights.first_m, posts.grid().columns(), posts.grid().rows(), heights.stride) {}
 
-    std::vector<SunSky> skies(const std::vector<double>& azimuth_rad) const {
-        std::vector<SunSky> skies;
-        for (const double azimuth : azimuth_rad)
-            skies.emplace_back(dem, azimuth);
-        return skies;
-    }
-    /// Windows over which any direction is one.
-    std::vector<SweepWindow> windows(double tolerance_rad) const {
-        std::vector<double> all;
-        for (int i = 0; i < 12; ++i)
-            all.push_back(kPi * (i + 0.5) / 12);
-        return divide(skies(all), tolerance_rad);
+    /// Calls `use` with all posts and the tangents of their horizons in a direction.
+    void each_horizon(const SunSky& sky, double tolerance_rad, const Sweep::Use& use) const {
+        each_window(divide({sky}, whole(dem.grid()), tolerance_rad),
+                    [&](const SweepWindow& window) {
+                        light::each_horizon(sky, sweep, *sky.tile(window), use);
+                    });
     }
 };
-
-/// Calls `body` with each window, on several threads.
-void each_window(const std::vector<SweepWindow>& windows,
-                 const std::function<void(const SweepWindow&)>& body) {
-    parallel_for(0, static_cast<int>(windows.size()), 1, [&](int first, int last) {
-        for (int i = first; i < last; ++i)
-            body(windows[static_cast<std::size_t>(i)]);
-    });
-}
 
 std::string surroundings(const dem::Posts& posts, double refraction) {
     return fmt::format(
@@ -64,7 +48,7 @@ std::string surroundings(const dem::Posts& posts, double refraction) {
 }
 
 /// What a direction adds to the sky-view factors of posts next to each other.
-/// @param along  the rise of the ground in that direction; nullptr: none
+/// @param east, north  the rise of the ground
 void add_sky(const SweepRun& run, const float* east, const float* north, float sin_azimuth,
              float cos_azimuth, float* sum) {
     for (int i = 0; i < run.count; ++i) {
@@ -85,23 +69,17 @@ Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, doub
     const dem::Grid& grid = posts.grid();
     Horizons result;
     result.azimuth_rad = std::move(azimuth_rad);
-    for (std::size_t k = 0; k < result.azimuth_rad.size(); ++k)
-        result.elevation_rad.emplace_back(grid.columns(), grid.rows());
-    const std::vector<SunSky> skies = ground.skies(result.azimuth_rad);
-    each_window(ground.windows(kHorizonTolerance_rad), [&](const SweepWindow& window) {
-        for (std::size_t k = 0; k < skies.size(); ++k) {
-            const SunTile tile = *skies[k].tile(window);
-            TileValues values(window, 0);
-            values.turn(tile.path.along_columns());
-            each_horizon(skies[k], ground.sweep, tile, [&](const SweepRun& run) {
-                float* const out = values.of(run);
-                for (int i = 0; i < run.count; ++i)
-                    out[i] =
-                        std::isnan(run.height_m[i]) ? run.height_m[i] : std::atan(run.found[i]);
-            });
-            values.put(result.elevation_rad[k]);
-        }
-    });
+    for (const double azimuth : result.azimuth_rad) {
+        const SunSky sky(ground.dem, azimuth);
+        TileValues values(whole(grid), 0);
+        values.turn(sky.along_columns());
+        ground.each_horizon(sky, kHorizonTolerance_rad, [&](const SweepRun& run) {
+            float* const out = values.of(run);
+            for (int i = 0; i < run.count; ++i)
+                out[i] = std::isnan(run.height_m[i]) ? run.height_m[i] : std::atan(run.found[i]);
+        });
+        values.put(result.elevation_rad.emplace_back(grid.columns(), grid.rows()));
+    }
     if (!result.elevation_rad.empty())
         for (const float elevation : result.elevation_rad.front())
             result.holes += std::isnan(elevation);
@@ -115,27 +93,23 @@ SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
         bad_input(fmt::format("light::sky_view: {} directions: expected {} to {}",
                               options.directions, kLeastDirections, kMostDirections));
     const Ground ground(posts, options.refraction);
-    std::vector<double> azimuth_rad;
-    for (int i = 0; i < options.directions; ++i)
-        azimuth_rad.push_back(2 * kPi * i / options.directions);
-    const std::vector<SunSky> skies = ground.skies(azimuth_rad);
+    const dem::Grid& grid = posts.grid();
     SkyView result;
-    result.share = Array2d<float>(posts.grid().columns(), posts.grid().rows());
-    each_window(ground.windows(kSkyTolerance_rad), [&](const SweepWindow& window) {
-        TileValues sum(window, 0), east(window, 0), north(window, 0);
-        if (!options.level) ground_slope(posts.grid(), ground.heights, window, east, north);
-        for (std::size_t k = 0; k < skies.size(); ++k) {
-            const SunTile tile = *skies[k].tile(window);
-            for (TileValues* const each : {&sum, &east, &north})
-                each->turn(tile.path.along_columns());
-            const auto sin_azimuth = static_cast<float>(std::sin(azimuth_rad[k]));
-            const auto cos_azimuth = static_cast<float>(std::cos(azimuth_rad[k]));
-            each_horizon(skies[k], ground.sweep, tile, [&](const SweepRun& run) {
-                add_sky(run, east.of(run), north.of(run), sin_azimuth, cos_azimuth, sum.of(run));
-            });
-        }
-        sum.put(result.share);
-    });
+    result.share = Array2d<float>(grid.columns(), grid.rows());
+    TileValues sum(whole(grid), 0), east(whole(grid), 0), north(whole(grid), 0);
+    if (!options.level) ground_slope(grid, ground.heights, east, north);
+    for (int k = 0; k < options.directions; ++k) {
+        const double azimuth_rad = 2 * kPi * k / options.directions;
+        const SunSky sky(ground.dem, azimuth_rad);
+        for (TileValues* const each : {&sum, &east, &north})
+            each->turn(sky.along_columns());
+        const auto sin_azimuth = static_cast<float>(std::sin(azimuth_rad));
+        const auto cos_azimuth = static_cast<float>(std::cos(azimuth_rad));
+        ground.each_horizon(sky, kSkyTolerance_rad, [&](const SweepRun& run) {
+            add_sky(run, east.of(run), north.of(run), sin_azimuth, cos_azimuth, sum.of(run));
+        });
+    }
+    sum.put(result.share);
     std::int64_t seen = 0;
     for (int row = 0; row < result.share.height(); ++row)
         for (int column = 0; column < result.share.width(); ++column) {

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/parallel_for.h"
 #include "base/units.h"
 #include "light/sky.h"
 #include "light/sweep.h"
@@ -78,12 +77,11 @@ Shadows shadows(const dem::Posts& posts, const SunOverDem& sun, const ShadowOpti
                 result.lit.at(column, row) = std::isnan(h) ? h : 0;
             }
     } else {
-        const std::vector<SweepWindow> windows = divide({sky});
-        const Sweep sweep(heights.at(0, 0), grid.columns(), grid.rows(), heights.stride);
-        parallel_for(0, static_cast<int>(windows.size()), 1, [&](int first, int last) {
-            for (int i = first; i < last; ++i)
-                light_tile(sky, sweep, *sky.tile(windows[static_cast<std::size_t>(i)]),
-                           options.soft ? sun.semidiameter_rad : 0, result.lit);
+        const Sweep sweep(heights.first_m, grid.columns(), grid.rows(), heights.stride);
+        const std::vector<SweepWindow> windows = divide({sky}, whole(grid));
+        each_window(windows, [&](const SweepWindow& window) {
+            light_tile(sky, sweep, *sky.tile(window), options.soft ? sun.semidiameter_rad : 0,
+                       result.lit);
         });
         result.tiles = static_cast<int>(windows.size());
     }

@@ -12,6 +12,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "base/units.h"
 #include "geo/ellipsoid.h"
 
@@ -100,11 +101,10 @@ void divide(const std::vector<SunSky>& suns, double tolerance_rad, const SweepWi
     if (error_rad(suns, window) <= tolerance_rad) return windows.push_back(window);
     const bool wide = window.columns > kLeastTile, high = window.rows > kLeastTile;
     if (!wide && !high) no_tile(suns.front().dem().grid());
-    // A large window across that way across which the sun differs more, a small one across its
-    // length.
+    // Across that way across which the sun differs more; a small one across its length.
     const glm::dvec2 size_m =
         suns.front().dem().grid().post_spacing_m() * glm::dvec2(window.columns, window.rows);
-    const bool large = window.columns > kLarge && window.rows > kLarge;
+    const bool large = wide && high && (window.columns > kLarge || window.rows > kLarge);
     const bool by_columns = large ? error_rad(suns, halves(window, true)[0]) <=
                                         error_rad(suns, halves(window, false)[0])
                                   : wide && (!high || size_m.x > size_m.y);
@@ -165,10 +165,22 @@ SunSky::SunSky(const DemSky& dem, const geo::Geodetic& place, const SunOverDem& 
     const double c = std::cos(sun.elevation_rad);
     direction_ = c * std::sin(sun.azimuth_rad) * axes.east +
                  c * std::cos(sun.azimuth_rad) * axes.north + std::sin(sun.elevation_rad) * axes.up;
+    along_columns_ = goes_along_columns();
 }
 
 SunSky::SunSky(const DemSky& dem, double azimuth_rad)
-    : dem_(dem), levels_(1), azimuth_rad_(azimuth_rad) {}
+    : dem_(dem), levels_(1), azimuth_rad_(azimuth_rad) {
+    along_columns_ = goes_along_columns();
+}
+
+bool SunSky::goes_along_columns() const {
+    const dem::Grid& grid = dem_.grid();
+    const glm::dvec2 middle((grid.columns() - 1) / 2.0, (grid.rows() - 1) / 2.0);
+    const geo::Geodetic place = grid.place(middle.x, middle.y);
+    const glm::dvec2 step =
+        moved(grid, place, at(place).azimuth_rad, 4 * grid_spacing_m(grid)) - middle;
+    return std::abs(step.y) < std::abs(step.x);
+}
 
 SunSky::Local SunSky::at(const geo::Geodetic& place) const {
     if (azimuth_rad_) return {*azimuth_rad_, place.lat_rad * 0};  // no number where there is none
@@ -240,6 +252,7 @@ std::optional<SunTile> SunSky::tile(const SweepWindow& window) const {
             continue;
         const auto pair = [](const glm::dvec2& v) { return GridPair{v.x, v.y}; };
         SunTile tile{window, {}};
+        tile.path.columns_set = along_columns_;
         tile.path.reference = pair(middle);
         tile.path.towards = pair(terms[0] / far_m);
         tile.path.bend = pair(2.0 * terms[1] / (far_m * far_m));
@@ -254,7 +267,7 @@ double SunSky::path_error_rad(const SunTile& tile, const glm::dvec2& post, const
     const dem::Grid& grid = dem_.grid();
     // As Sweep goes: from row to row or from column to column, all lines being moved along the
     // other.
-    const bool by_rows = std::abs(tile.path.towards.row) >= std::abs(tile.path.towards.column);
+    const bool by_rows = !along_columns_;
     const SweepSun path = by_rows ? tile.path : tile.path.transposed();
     const int step = by_rows ? 1 : 0, across = 1 - step;
     const geo::Geodetic place = grid.place(post.x, post.y);
@@ -264,7 +277,7 @@ double SunSky::path_error_rad(const SunTile& tile, const glm::dvec2& post, const
     const double moved_by = post[across] - path.way(s0).column;
     const double across_m = grid.post_spacing_m()[across];
     double worst = 0;
-    for (const double share : {0.02, 0.1, 0.3, 0.6, 1.0}) {
+    for (const double share : {0.02, 0.2, 0.6, 1.0}) {
         // Nearer than some posts an angle is of no account, and PROJ's millimetre would be one.
         const double s = std::max(share * reach, least_m);
         const glm::dvec2 at = moved(grid, place, sun.azimuth_rad, s);
@@ -303,11 +316,19 @@ double SunSky::error_rad(const SunTile& tile) const {
     return worst;
 }
 
-std::vector<SweepWindow> divide(const std::vector<SunSky>& suns, double tolerance_rad) {
-    const dem::Grid& grid = suns.front().dem().grid();
+std::vector<SweepWindow> divide(const std::vector<SunSky>& suns, const SweepWindow& window,
+                                double tolerance_rad) {
     std::vector<SweepWindow> windows;
-    divide(suns, tolerance_rad, {0, 0, grid.columns(), grid.rows()}, windows);
+    divide(suns, tolerance_rad, window, windows);
     return windows;
+}
+
+void each_window(const std::vector<SweepWindow>& windows,
+                 const std::function<void(const SweepWindow&)>& body) {
+    parallel_for(0, static_cast<int>(windows.size()), 1, [&](int first, int last) {
+        for (int i = first; i < last; ++i)
+            body(windows[static_cast<std::size_t>(i)]);
+    });
 }
 
 void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,

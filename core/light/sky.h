@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -64,9 +65,14 @@ class SunSky {
 
     const DemSky& dem() const { return dem_; }
     std::size_t levels() const { return levels_; }
+    /// How sweeps of all its tiles go, so that their posts come in one order.
+    bool along_columns() const { return along_columns_; }
 
     /// The sun is under the horizon of every post.
     bool is_night() const;
+
+    /// Of the sun without air at a post.
+    double elevation_rad(double column, double row) const { return at(column, row).elevation_rad; }
 
     /// The ray through the middle of a window, as a cubic over the grid.
     std::optional<SunTile> tile(const SweepWindow& window) const;
@@ -87,22 +93,33 @@ class SunSky {
     };
     Local at(const geo::Geodetic& place) const;
     Local at(double column, double row) const { return at(dem_.grid().place(column, row)); }
+    bool goes_along_columns() const;
     double path_error_rad(const SunTile& tile, const glm::dvec2& post, const Local& sun) const;
 
     const DemSky& dem_;
     glm::dvec3 direction_{0};
     std::size_t levels_;
     std::optional<double> azimuth_rad_;  // instead of `direction_`
+    bool along_columns_ = false;
 };
 
 /// How far a tile's sun may be off where it is looked at, unless it is so high that no shadow is
 /// moved by a tenth of a post for it; 0.05 degrees anywhere.
 constexpr double kSunTolerance_rad = radians(0.04);
 
-/// The windows of a DEM over each of which a sun is one, for all suns given.
+/// The parts of a window over each of which a sun is one, for all suns given. They are long towards
+/// suns that stand alike, so that little is swept twice.
 /// @throws Error (BadInput) where a grid is so coarse or so near to a pole that there are none
-std::vector<SweepWindow> divide(const std::vector<SunSky>& suns,
+std::vector<SweepWindow> divide(const std::vector<SunSky>& suns, const SweepWindow& window,
                                 double tolerance_rad = kSunTolerance_rad);
+
+/// Calls `body` with each of them, on several threads.
+void each_window(const std::vector<SweepWindow>& windows,
+                 const std::function<void(const SweepWindow&)>& body);
+
+inline SweepWindow whole(const dem::Grid& grid) {
+    return {0, 0, grid.columns(), grid.rows()};
+}
 
 /// Calls `use` with all posts of a tile and the edge of the shadow over each, the post's own air
 /// and the smooth Earth around the DEM considered, on several threads.

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/parallel_for.h"
 #include "base/units.h"
 #include "light/quick_math.h"
 #include "light/sky.h"
@@ -63,11 +62,11 @@ Moments moments(const geo::Geodetic& place, sun::Instant begin, double length_s,
 
 // --- A few days: a sweep for every sun
 
-/// What is known of each post of a window so far.
-struct WindowLight {
+/// What is known of each post so far.
+struct PostLight {
     TileValues margin_m, lit_h, first_h, last_h, spells;
 
-    WindowLight(const SweepWindow& window, bool with_spells)
+    PostLight(const SweepWindow& window, bool with_spells)
         : margin_m(window, -1),
           lit_h(window, 0),
           first_h(with_spells ? window : SweepWindow{}, kNaN),
@@ -105,7 +104,7 @@ void add_light(const SweepRun& run, float hours, float* margin_m, float* lit_h) 
 }
 
 /// Where light comes or goes between two moments. Call before add_light().
-void add_spells(const SweepRun& run, const Step& step, WindowLight& posts) {
+void add_spells(const SweepRun& run, const Step& step, PostLight& posts) {
     const float* const margin_m = posts.margin_m.of(run);
     float *const first_h = posts.first_h.of(run), *const last_h = posts.last_h.of(run),
                  *const spells = posts.spells.of(run);
@@ -125,7 +124,7 @@ void add_spells(const SweepRun& run, const Step& step, WindowLight& posts) {
 }
 
 /// The first moment, or the last one: posts that are lit then.
-void add_end(const SweepRun& run, double at_h, bool is_first, WindowLight& posts) {
+void add_end(const SweepRun& run, double at_h, bool is_first, PostLight& posts) {
     const float* const margin_m = posts.margin_m.of(run);
     float* const at = (is_first ? posts.first_h : posts.last_h).of(run);
     float* const spells = posts.spells.of(run);
@@ -146,23 +145,16 @@ class FewDays {
             night_.push_back(sky.is_night());
     }
 
-    std::vector<SweepWindow> windows() const {
-        constexpr std::size_t kLooks = 12;
-        std::vector<SunSky> suns;
-        for (std::size_t k = 0; k < skies_.size(); ++k)
-            if (!night_[k]) suns.push_back(skies_[k]);
-        std::vector<SunSky> some;
-        for (std::size_t i = 0; i < std::min(kLooks, suns.size()); ++i)
-            some.push_back(suns[i * (suns.size() - 1) /
-                                std::max<std::size_t>(1, std::min(kLooks, suns.size()) - 1)]);
-        if (some.empty()) return {{0, 0, dem_.grid().columns(), dem_.grid().rows()}};
-        return divide(some);
-    }
-
-    void light(const SweepWindow& window, SunHours& result) const {
-        WindowLight posts(window, spells_);
-        for (std::size_t k = 0; k < skies_.size(); ++k)
-            if (!night_[k]) add(window, k, posts);
+    void light(SunHours& result) const {
+        PostLight posts(whole(dem_.grid()), spells_);
+        std::vector<SweepWindow> windows;
+        for (std::size_t k = 0; k < skies_.size(); ++k) {
+            if (night_[k]) continue;
+            if (windows.empty() || k % kTogether == 0) windows = windows_from(k);
+            result.windows = std::max(result.windows, static_cast<int>(windows.size()));
+            posts.turn(skies_[k].along_columns());
+            each_window(windows, [&](const SweepWindow& window) { add(window, k, posts); });
+        }
         posts.lit_h.put(result.hours);
         if (!spells_) return;
         posts.first_h.put(result.first_h);
@@ -171,9 +163,19 @@ class FewDays {
     }
 
   private:
-    void add(const SweepWindow& window, std::size_t k, WindowLight& posts) const {
+    static constexpr std::size_t kTogether = 8;  // suns for which the DEM is divided alike
+
+    std::vector<SweepWindow> windows_from(std::size_t k) const {
+        std::vector<SunSky> suns{skies_[k]};
+        std::size_t last = k;
+        while (last + 1 < skies_.size() && !night_[last + 1] && (last + 1) % kTogether != 0)
+            ++last;
+        if (last > k) suns.push_back(skies_[last]);
+        return divide(suns, whole(dem_.grid()));
+    }
+
+    void add(const SweepWindow& window, std::size_t k, PostLight& posts) const {
         const SunTile tile = *skies_[k].tile(window);
-        posts.turn(tile.path.along_columns());
         // A night leaves all posts in the shade.
         const bool is_first = k == 0 || night_[k - 1], is_last = k + 1 == skies_.size();
         const Step step{k == 0 ? 0 : moments_.at_s[k - 1] / kHour_s,
@@ -252,32 +254,52 @@ class ManyDays {
           length_s_(length_s),
           table_(begin, begin + length_s) {}
 
-    std::vector<SweepWindow> windows() const {
-        std::vector<SunSky> suns;
-        for (int i = 0; i < 12; ++i)
-            suns.emplace_back(dem_, SunOverDem{kPi * (i + 0.5) / 12, 0, 0});
-        return divide(suns, kPeriodTolerance_rad);
-    }
-
-    void light(const SweepWindow& window, SunHours& result) const {
-        const geo::Geodetic middle = dem_.grid().place(window.column + (window.columns - 1) / 2.0,
-                                                       window.row + (window.rows - 1) / 2.0);
-        Directions directions = directions_over(middle);
-        TileValues lit_h(window, 0);
-        for (std::size_t k = 0; k < kDirections; ++k) {
-            Direction& low = directions[0][k];
-            if (low.empty()) continue;
-            low.sum_up();
-            directions[1][k].sum_up();
-            add(window, middle, low, directions[1][k], lit_h);
-        }
-        lit_h.put(result.hours);
+    void light(SunHours& result) const {
+        for (const SweepWindow& block : blocks())
+            light_block(block, result);
     }
 
   private:
     static constexpr std::size_t kDirections = 180;
     /// For the air of the lowest post, and of the highest one.
     using Directions = std::array<std::array<Direction, kDirections>, 2>;
+
+    /// Parts of the DEM over which the sun is at its azimuth in the middle within what directions
+    /// are apart.
+    std::vector<SweepWindow> blocks() const {
+        constexpr double kBlock_m = 200e3;
+        const dem::Grid& grid = dem_.grid();
+        const glm::dvec2 spacing_m = grid.post_spacing_m();
+        const int columns = std::max(1, static_cast<int>(kBlock_m / spacing_m.x)),
+                  rows = std::max(1, static_cast<int>(kBlock_m / spacing_m.y));
+        std::vector<SweepWindow> blocks;
+        for (int row = 0; row < grid.rows(); row += rows)
+            for (int column = 0; column < grid.columns(); column += columns)
+                blocks.push_back({column, row, std::min(columns, grid.columns() - column),
+                                  std::min(rows, grid.rows() - row)});
+        return blocks;
+    }
+
+    void light_block(const SweepWindow& block, SunHours& result) const {
+        const geo::Geodetic middle = dem_.grid().place(block.column + (block.columns - 1) / 2.0,
+                                                       block.row + (block.rows - 1) / 2.0);
+        Directions directions = directions_over(middle);
+        TileValues lit_h(block, 0);
+        for (std::size_t k = 0; k < kDirections; ++k) {
+            Direction& low = directions[0][k];
+            if (low.empty()) continue;
+            low.sum_up();
+            directions[1][k].sum_up();
+            const SunSky sky(dem_, middle, {low.azimuth_rad(), 0, 0});
+            lit_h.turn(sky.along_columns());
+            const std::vector<SweepWindow> windows = divide({sky}, block, kPeriodTolerance_rad);
+            result.windows = std::max(result.windows, static_cast<int>(windows.size()));
+            each_window(windows, [&](const SweepWindow& window) {
+                add(sky, *sky.tile(window), low, directions[1][k], lit_h);
+            });
+        }
+        lit_h.put(result.hours);
+    }
 
     Directions directions_over(const geo::Geodetic& middle) const {
         Directions directions;
@@ -300,23 +322,25 @@ class ManyDays {
         return directions;
     }
 
-    void add(const SweepWindow& window, const geo::Geodetic& middle, const Direction& low,
-             const Direction& high, TileValues& lit_h) const {
-        const SunSky sky(dem_, middle, {low.azimuth_rad(), 0, 0});
-        const SunTile tile = *sky.tile(window);
-        lit_h.turn(tile.path.along_columns());
-        // The sun is as much higher at a post than in the middle as the ground turns towards it.
-        const SweepSun level = sky.sun(tile, 0, 0);
+    void add(const SunSky& sky, const SunTile& tile, const Direction& low, const Direction& high,
+             TileValues& lit_h) const {
+        // The sun is as much higher at a post than in the middle of the block as the ground turns
+        // towards it.
+        const GridPair& at = tile.path.reference;
+        const double lift_rad = sky.elevation_rad(at.column, at.row);
+        const GridPair more{
+            (sky.elevation_rad(at.column + 1, at.row) - sky.elevation_rad(at.column - 1, at.row)) /
+                2,
+            (sky.elevation_rad(at.column, at.row + 1) - sky.elevation_rad(at.column, at.row - 1)) /
+                2};
         const double low_m = dem_.level_height_m(0);
         const double span_m = std::max(1.0, dem_.level_height_m(1) - low_m);
         each_horizon(sky, sweep_, tile, [&](const SweepRun& run) {
-            const double first = run.first, line = run.line;
-            const double lift =
-                run.along_column ? level.tangent_at(line, first) : level.tangent_at(first, line);
-            const double more =
-                run.along_column ? level.tangent_a_post.row : level.tangent_a_post.column;
-            look_up(run, lift - level.tangent, more, low.over(), high.over(), low_m, span_m,
-                    lit_h.of(run));
+            const double column = run.along_column ? run.line : run.first,
+                         row = run.along_column ? run.first : run.line;
+            look_up(run, lift_rad + more.column * (column - at.column) + more.row * (row - at.row),
+                    run.along_column ? more.row : more.column, low.over(), high.over(), low_m,
+                    span_m, lit_h.of(run));
         });
     }
 
@@ -376,15 +400,6 @@ void check(sun::Instant begin, sun::Instant end, const SunHoursOptions& options)
     sun::check_year(end);
 }
 
-template <typename Days>
-void light_all(const Days& days, const std::vector<SweepWindow>& windows, SunHours& result) {
-    result.windows = static_cast<int>(windows.size());
-    parallel_for(0, result.windows, 1, [&](int first, int last) {
-        for (int i = first; i < last; ++i)
-            days.light(windows[static_cast<std::size_t>(i)], result);
-    });
-}
-
 /// Holes, and the mean of the others.
 void sum_up(const dem::Posts::View& heights, SunHours& result) {
     std::int64_t posts = 0;
@@ -421,13 +436,10 @@ SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end
     if (options.spells)
         for (Array2d<float>* const each : {&result.first_h, &result.last_h, &result.spells})
             *each = Array2d<float>(grid.columns(), grid.rows(), kNaN);
-    if (few) {
-        const FewDays days(dem, sweep, times, options.spells);
-        light_all(days, days.windows(), result);
-    } else {
-        const ManyDays days(dem, sweep, begin, length_s);
-        light_all(days, days.windows(), result);
-    }
+    if (few)
+        FewDays(dem, sweep, times, options.spells).light(result);
+    else
+        ManyDays(dem, sweep, begin, length_s).light(result);
     sum_up(heights, result);
     result.level_hours = level_hours(dem, times);
     result.definition = fmt::format(

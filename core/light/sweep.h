@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 /// The shadows that ground casts, for every post of a grid at once. This file and its source need
@@ -36,8 +37,12 @@ struct SweepSun {
     double distance_m(double row) const;
     /// The same with rows for columns.
     SweepSun transposed() const;
-    /// Whether a sweep goes from column to column, along rows, and not from row to row.
-    bool along_columns() const { return std::abs(towards.row) < std::abs(towards.column); }
+    /// Whether a sweep goes from column to column and not from row to row: as the ray's larger step
+    /// is, unless that is set. Against it a sweep is slower, and finds the same.
+    bool along_columns() const {
+        return columns_set.value_or(std::abs(towards.row) < std::abs(towards.column));
+    }
+    std::optional<bool> columns_set;
     double tangent_at(double column, double row) const {
         return tangent + tangent_a_post.column * (column - reference.column) +
                tangent_a_post.row * (row - reference.row);
