@@ -13,6 +13,9 @@ void add_sun(CLI::App& app) {
     add_sun_carpet(verb);
     add_sun_when(verb);
     add_sun_shadow(verb);
+    add_sun_hours(verb);
+    add_sun_sky_view(verb);
+    add_sun_horizons(verb);
     add_sun_along(verb);
 }
 

@@ -4,26 +4,20 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/log.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "cli/shared.h"
 #include "cli/sun.h"
-#include "cli/sun_options.h"
-#include "dem/files_of.h"
-#include "light/raster.h"
+#include "cli/sun_rasters.h"
 #include "light/shadows.h"
 
 namespace relevo::cli {
 namespace {
 
 struct Arguments {
-    DemArguments dem;
+    RasterArguments raster;
     TimeArguments time;
     RefractionArguments refraction;
-    double terrestrial_refraction = 0.13;
     std::string sun;
-    OutputArguments output;
     bool soft = false;
 };
 
@@ -61,7 +55,7 @@ light::SunOverDem parse_sun(const std::string& text, const dem::Grid& grid) {
 
 Asked asked(const Arguments& arguments, const dem::Posts& posts) {
     Asked asked;
-    asked.options.refraction = arguments.terrestrial_refraction;
+    asked.options.refraction = arguments.raster.terrestrial_refraction;
     asked.options.soft = arguments.soft;
     if (!arguments.sun.empty()) {
         asked.sun = parse_sun(arguments.sun, posts.grid());
@@ -83,33 +77,23 @@ Asked asked(const Arguments& arguments, const dem::Posts& posts) {
     ground.height_m = std::isnan(height_m) ? posts.lowest_m() : height_m;
     const sun::Refraction air = arguments.refraction.at(ground);
     asked.apparent_rad = air.apparent_rad(position.elevation_rad);
-    asked.air = arguments.refraction.name() == "standard"
-                    ? "integrated ICAO standard atmosphere over each post"
-                    : air.description();
+    asked.air = air_of_posts(arguments.refraction, posts);
     return asked;
 }
 
-light::RasterText text_of(const Arguments& arguments, const Asked& asked,
-                          const light::Shadows& shadows, const dem::Posts& posts) {
-    light::RasterText text;
-    text.name = arguments.soft ? "share of the sun's disc" : "direct sun";
-    text.unit = "1";
-    text.metadata = {
-        {"TIFFTAG_SOFTWARE", "Relevo " RELEVO_VERSION},
-        {"DEFINITION", shadows.definition},
-        {"DEM", posts.about().path},
+light::RasterFile about(const Arguments& arguments, const Asked& asked,
+                        const light::Shadows& shadows, const dem::Posts& posts) {
+    light::RasterMetadata more{
         {"SUN_AZIMUTH_DEG", fmt::format("{:.5f}", degrees(asked.sun.azimuth_rad))},
         {"SUN_APPARENT_ELEVATION_DEG", fmt::format("{:.5f}", degrees(asked.apparent_rad))},
         {"SUN_PLACE", "the middle of the DEM; azimuth from true north"},
-        {"REFRACTION", asked.air},
-        {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", arguments.terrestrial_refraction)},
-        {"HOLES", fmt::format("{}", shadows.holes)}};
+        {"REFRACTION", asked.air}};
     if (asked.when) {
-        text.metadata.emplace_back("TIME_UTC", sun::to_iso(asked.when->utc, 3));
-        text.metadata.emplace_back("SUN_ELEVATION_DEG",
-                                   fmt::format("{:.5f}", degrees(asked.sun.elevation_rad)));
+        more.emplace_back("TIME_UTC", sun::to_iso(asked.when->utc, 3));
+        more.emplace_back("SUN_ELEVATION_DEG",
+                          fmt::format("{:.5f}", degrees(asked.sun.elevation_rad)));
     }
-    return text;
+    return arguments.raster.about(posts, shadows.definition, shadows.holes, std::move(more));
 }
 
 void print(const Arguments& arguments, const Asked& asked, const light::Shadows& shadows) {
@@ -129,15 +113,14 @@ void print(const Arguments& arguments, const Asked& asked, const light::Shadows&
     fmt::print("\n{}\nrefraction of the sun: {}\n", shadows.definition, asked.air);
 }
 
-void write(OutputFile& file, const light::Shadows& shadows, const dem::Grid& grid, bool soft,
-           const light::RasterText& text) {
-    if (soft) return light::write_raster(file, grid, shadows.lit, text);
-    Array2d<std::uint8_t> mask(grid.columns(), grid.rows());
+light::RasterBand band_of(light::Shadows shadows, bool soft) {
+    if (soft) return {"share of the sun's disc", "1", std::move(shadows.lit)};
+    Array2d<std::uint8_t> mask(shadows.lit.width(), shadows.lit.height());
     for (std::size_t i = 0; i < mask.size(); ++i) {
         const float lit = shadows.lit.data()[i];
         mask.data()[i] = std::isnan(lit) ? 255 : lit > 0;
     }
-    light::write_raster(file, grid, mask, text);
+    return {"direct sun", "1", std::move(mask)};
 }
 
 void run(const Arguments& arguments) {
@@ -148,16 +131,13 @@ void run(const Arguments& arguments) {
     if (!timed && arguments.refraction.given())
         bad_usage("--refraction: goes with --time; --sun is where the sun is seen");
     FilesInUse files;
-    OutputFile& file = *arguments.output.open(files, arguments.dem);
-    const dem::Posts posts = dem::Posts::load(arguments.dem.paths, arguments.dem.options);
+    OutputFile& file = arguments.raster.open(files);
+    const dem::Posts posts = arguments.raster.load();
     const Asked sun = asked(arguments, posts);
     const light::Shadows shadows = light::shadows(posts, sun.sun, sun.options);
-    if (shadows.holes > 0)
-        log::warning(fmt::format(
-            "the DEM has {} holes: they are neither lit nor in the shade, and the sun shines "
-            "through them",
-            shadows.holes));
-    write(file, shadows, posts.grid(), arguments.soft, text_of(arguments, sun, shadows, posts));
+    warn_of_holes(shadows.holes);
+    light::write_raster(file, posts.grid(), {band_of(shadows, arguments.soft)},
+                        about(arguments, sun, shadows, posts));
     print(arguments, sun, shadows);
 }
 
@@ -167,22 +147,14 @@ void add_sun_shadow(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb = *sun_verb.add_subcommand(
         "shadow", "What of a DEM lies in the sun at a moment, as a raster");
-    arguments->dem.add_to(verb);
+    arguments->raster.add_to(verb);
     arguments->time.add_to(verb);
     verb.add_option("--sun", arguments->sun,
                     "Instead of a time: AZ,EL in degrees, from true north and as seen in the "
                     "middle of the DEM; grid:AZ,EL from the map's north");
     arguments->refraction.add_to(verb);
-    verb.add_option("-k,--terrestrial-refraction", arguments->terrestrial_refraction,
-                    "Curvature of a line of sight over the ground, in units of the Earth's (0.13)")
-        ->check(in_range(-1.0, 0.9));
     verb.add_flag("--soft", arguments->soft,
                   "How much of the sun's disc is seen, 0 to 1, instead of whether its centre is");
-    arguments->output.endings = {"tif", "tiff"};
-    verb.add_option("-o,--output", arguments->output.path,
-                    "Write a cloud-optimised GeoTIFF on the DEM's grid")
-        ->required();
-    verb.add_flag("--overwrite", arguments->output.overwrite, "Replace an existing file");
     verb.callback([arguments] { run(*arguments); });
 }
 

@@ -54,22 +54,60 @@ std::array<double, 6> geotransform(const dem::Affine& a) {
             a.y0 - (a.y_column + a.y_row) / 2, a.y_column, a.y_row};
 }
 
-void describe(GDALDataset& dataset, const dem::Grid& grid, const RasterText& text, double hole) {
+GDALDataType type_of(const RasterBand& band) {
+    return std::holds_alternative<Array2d<float>>(band.values) ? GDT_Float32 : GDT_Byte;
+}
+
+void describe(GDALDataset& dataset, const dem::Grid& grid, const RasterFile& about) {
     std::array<double, 6> transform = geotransform(grid.affine());
     dataset.SetGeoTransform(transform.data());
     OGRSpatialReference crs;
     crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     if (crs.SetFromUserInput(grid.crs().text().c_str()) == OGRERR_NONE) dataset.SetSpatialRef(&crs);
-    for (const auto& [key, value] : text.metadata)
+    for (const auto& [key, value] : about.metadata)
         dataset.SetMetadataItem(key.c_str(), value.c_str());
-    GDALRasterBand& band = *dataset.GetRasterBand(1);
-    band.SetDescription(text.name.c_str());
-    band.SetUnitType(text.unit.c_str());
-    band.SetNoDataValue(hole);
 }
 
-void write_as(OutputFile& file, const dem::Grid& grid, const void* values, GDALDataType type,
-              double hole, const char* resampling, const RasterText& text) {
+/// @return whether GDAL took it
+bool put(GDALRasterBand& to, const dem::Grid& grid, const RasterBand& band) {
+    to.SetDescription(band.name.c_str());
+    to.SetUnitType(band.unit.c_str());
+    to.SetNoDataValue(type_of(band) == GDT_Byte ? 255 : std::numeric_limits<double>::quiet_NaN());
+    for (const auto& [key, value] : band.metadata)
+        to.SetMetadataItem(key.c_str(), value.c_str());
+    return std::visit(
+        [&](const auto& values) {
+            const void* const first = values.data();
+            return to.RasterIO(GF_Write, 0, 0, grid.columns(), grid.rows(),
+                               const_cast<void*>(first), grid.columns(), grid.rows(), type_of(band),
+                               0, 0, nullptr) == CE_None;
+        },
+        band.values);
+}
+
+/// The driver's options: ours, and over them the user's.
+CPLStringList creation_options(GDALDriver& cog, const RasterFile& about, GDALDataType type,
+                               const dem::GdalMessages& messages) {
+    CPLStringList options;
+    options.SetNameValue("COMPRESS", "DEFLATE");
+    options.SetNameValue("OVERVIEW_RESAMPLING", type == GDT_Byte ? "NEAREST" : "AVERAGE");
+    options.SetNameValue("BIGTIFF", "IF_SAFER");
+    for (const std::string& option : about.creation_options) {
+        const std::size_t equals = option.find('=');
+        if (equals == std::string::npos || equals == 0)
+            bad_usage(fmt::format("--co: {}: expected NAME=VALUE, such as COMPRESS=ZSTD",
+                                  printable(option)));
+        options.SetNameValue(option.substr(0, equals).c_str(), option.substr(equals + 1).c_str());
+    }
+    if (!GDALValidateCreationOptions(&cog, options.List()))
+        bad_usage(fmt::format("--co: GDAL's COG driver says: {}", messages.failure("--co")));
+    return options;
+}
+
+}  // namespace
+
+void write_raster(OutputFile& file, const dem::Grid& grid, const std::vector<RasterBand>& bands,
+                  const RasterFile& about) {
     dem::prepare_gdal();
     const dem::GdalMessages messages;
     const auto refuse = [&]() {
@@ -80,25 +118,24 @@ void write_as(OutputFile& file, const dem::Grid& grid, const void* values, GDALD
     const MemoryFolder folder;
     const std::string plain = folder.file("plain.tif"), whole = folder.file("whole.tif");
     {
+        const GDALDataType type = type_of(bands.front());
+        GDALDriver& cog = *driver("COG");
+        const CPLStringList wanted = creation_options(cog, about, type, messages);
         CPLStringList options;
         options.SetNameValue("COMPRESS", "LZW");
         options.SetNameValue("TILED", "YES");
+        options.SetNameValue("INTERLEAVE", "BAND");
         options.SetNameValue("BIGTIFF", "IF_SAFER");
-        const Dataset source(driver("GTiff")->Create(plain.c_str(), grid.columns(), grid.rows(), 1,
-                                                     type, options.List()));
+        const Dataset source(driver("GTiff")->Create(plain.c_str(), grid.columns(), grid.rows(),
+                                                     static_cast<int>(bands.size()), type,
+                                                     options.List()));
         if (!source) refuse();
-        describe(*source, grid, text, hole);
-        if (source->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, grid.columns(), grid.rows(),
-                                               const_cast<void*>(values), grid.columns(),
-                                               grid.rows(), type, 0, 0, nullptr) != CE_None)
-            refuse();
-        CPLStringList cog;
-        cog.SetNameValue("COMPRESS", "DEFLATE");
-        cog.SetNameValue("OVERVIEW_RESAMPLING", resampling);
-        cog.SetNameValue("BIGTIFF", "IF_SAFER");
+        describe(*source, grid, about);
+        for (std::size_t k = 0; k < bands.size(); ++k)
+            if (!put(*source->GetRasterBand(static_cast<int>(k) + 1), grid, bands[k])) refuse();
         source->FlushCache();
-        const Dataset copy(driver("COG")->CreateCopy(whole.c_str(), source.get(), FALSE, cog.List(),
-                                                     nullptr, nullptr));
+        const Dataset copy(
+            cog.CreateCopy(whole.c_str(), source.get(), FALSE, wanted.List(), nullptr, nullptr));
         if (!copy) refuse();
     }
     // What is written when it is closed may fail, too.
@@ -108,19 +145,6 @@ void write_as(OutputFile& file, const dem::Grid& grid, const void* values, GDALD
     if (!bytes) refuse();
     file.write(std::as_bytes(std::span(bytes, static_cast<std::size_t>(size))));
     file.finish();
-}
-
-}  // namespace
-
-void write_raster(OutputFile& file, const dem::Grid& grid, const Array2d<std::uint8_t>& values,
-                  const RasterText& text) {
-    write_as(file, grid, values.data(), GDT_Byte, 255, "NEAREST", text);
-}
-
-void write_raster(OutputFile& file, const dem::Grid& grid, const Array2d<float>& values,
-                  const RasterText& text) {
-    write_as(file, grid, values.data(), GDT_Float32, std::numeric_limits<double>::quiet_NaN(),
-             "AVERAGE", text);
 }
 
 }  // namespace relevo::light

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/array2d.h"
@@ -11,22 +12,30 @@
 
 namespace relevo::light {
 
-/// What the figures of a raster are.
-struct RasterText {
-    std::string name;                                           ///< of the band: "shadow"
-    std::string unit;                                           ///< "1" for shares
-    std::vector<std::pair<std::string, std::string>> metadata;  ///< of the file
+using RasterMetadata = std::vector<std::pair<std::string, std::string>>;
+
+/// Figures of all posts of a grid.
+struct RasterBand {
+    std::string name;  ///< "shadow"
+    std::string unit;  ///< "1" for shares
+    /// As many as the grid has posts. A hole is NaN; among bytes 255.
+    std::variant<Array2d<std::uint8_t>, Array2d<float>> values;
+    RasterMetadata metadata{};
 };
 
-/// Writes a raster of figures on a grid as a cloud-optimised GeoTIFF, in the grid's CRS, and gives
-/// it its name. Until it is whole it is in memory: nothing is left beside it, however the program
+/// What the bands of a file have in common.
+struct RasterFile {
+    RasterMetadata metadata;
+    /// For GDAL's COG driver besides its own defaults and ours: "COMPRESS=ZSTD".
+    std::vector<std::string> creation_options{};
+};
+
+/// Writes bands of one type on a grid as a cloud-optimised GeoTIFF, in the grid's CRS, and gives it
+/// its name. Until it is whole it is in memory: nothing is left beside it, however the program
 /// ends.
-/// @param values  as many as the grid has posts; 255 is a hole
-/// @throws Error (Failed) where GDAL or the disk refuses
-void write_raster(OutputFile& file, const dem::Grid& grid, const Array2d<std::uint8_t>& values,
-                  const RasterText& text);
-/// The same; NaN is a hole.
-void write_raster(OutputFile& file, const dem::Grid& grid, const Array2d<float>& values,
-                  const RasterText& text);
+/// @throws Error (Usage) for a creation option that the driver does not have, (Failed) where GDAL
+///     or the disk refuses
+void write_raster(OutputFile& file, const dem::Grid& grid, const std::vector<RasterBand>& bands,
+                  const RasterFile& about);
 
 }  // namespace relevo::light

@@ -66,7 +66,7 @@ TEST(SunShadow, WritesAMaskOnTheGridOfTheDem) {
     const std::string dem = walled();
     const Result run = relevo({"sun", "shadow", dem, "--sun", "grid:90,10", "-o", out("mask.tif")});
     ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_NE(run.err.find("the DEM has 1 holes: they are neither lit nor in the shade"),
+    EXPECT_NE(run.err.find("the DEM has 1 holes: they get no figure, and hide nothing"),
               std::string::npos)
         << run.err;
     const Dataset mask = opened(out("mask.tif")), ground = opened(dem);

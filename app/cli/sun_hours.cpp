@@ -1,0 +1,115 @@
+#include "light/sun_hours.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "cli/sun.h"
+#include "cli/sun_rasters.h"
+
+namespace relevo::cli {
+namespace {
+
+struct Arguments {
+    RasterArguments raster;
+    DaysArguments days;
+    RefractionArguments refraction;
+    double step_min = 3;
+    std::vector<std::string> bands{"hours"};
+};
+
+const std::vector<std::string> kBands{"hours", "first", "last", "spells"};
+
+/// From hours since the beginning to minutes.
+Array2d<float> in_minutes(Array2d<float> hours) {
+    for (float& value : hours)
+        value *= 60;
+    return hours;
+}
+
+std::vector<light::RasterBand> bands_of(const std::vector<std::string>& wanted,
+                                        light::SunHours hours) {
+    std::vector<light::RasterBand> bands;
+    for (const std::string& band : wanted) {
+        if (band == "hours") bands.push_back({"sun hours", "h", std::move(hours.hours)});
+        if (band == "first")
+            bands.push_back(
+                {"minutes to the first light", "min", in_minutes(std::move(hours.first_h))});
+        if (band == "last")
+            bands.push_back(
+                {"minutes to the last light", "min", in_minutes(std::move(hours.last_h))});
+        if (band == "spells") bands.push_back({"spells of light", "1", std::move(hours.spells)});
+    }
+    return bands;
+}
+
+void check_bands(const std::vector<std::string>& bands) {
+    for (std::size_t i = 0; i < bands.size(); ++i)
+        if (std::find(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(i), bands[i]) !=
+            bands.begin() + static_cast<std::ptrdiff_t>(i))
+            bad_usage(fmt::format("--bands: {} is named twice", bands[i]));
+}
+
+void run(const Arguments& arguments) {
+    check_bands(arguments.bands);
+    FilesInUse files;
+    OutputFile& file = arguments.raster.open(files);
+    const dem::Posts posts = arguments.raster.load();
+    const DaysArguments::Days days = arguments.days.parse(posts.grid().center());
+    const sun::Instant begin = days.zone.day(days.first).begin, end = days.zone.day(days.last).end;
+    light::SunHoursOptions options;
+    options.refraction = arguments.raster.terrestrial_refraction;
+    options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
+    options.step_s = 60 * arguments.step_min;
+    options.spells = arguments.bands != std::vector<std::string>{"hours"};
+    light::SunHours hours = light::sun_hours(posts, begin, end, options);
+    warn_of_holes(hours.holes);
+    const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);
+    const std::string air = air_of_posts(arguments.refraction, posts);
+    const light::RasterFile about = arguments.raster.about(posts, hours.definition, hours.holes,
+                                                           {{"TIME_FROM", from},
+                                                            {"TIME_TO", to},
+                                                            {"TIME_ZONE", days.zone.name()},
+                                                            {"REFRACTION", air}});
+    const double mean = hours.mean_hours, level = hours.level_hours;
+    const std::string definition = hours.definition;
+    const auto [least, most] = [&] {
+        std::pair<float, float> range{INFINITY, -INFINITY};
+        for (const float value : hours.hours)
+            if (!std::isnan(value))
+                range = {std::min(range.first, value), std::max(range.second, value)};
+        return range;
+    }();
+    light::write_raster(file, posts.grid(), bands_of(arguments.bands, std::move(hours)), about);
+    fmt::print("time                {} to {}\n", from, to);
+    fmt::print(
+        "sun hours           mean {:.2f}, least {:.2f}, most {:.2f}; over a level horizon in "
+        "the middle of the DEM {:.2f}\n",
+        mean, least, most, level);
+    fmt::print("\n{}\nrefraction of the sun: {}\n", definition, air);
+}
+
+}  // namespace
+
+void add_sun_hours(CLI::App& sun_verb) {
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App& verb = *sun_verb.add_subcommand(
+        "hours", "For how long each post of a DEM lies in the sun, as a raster");
+    arguments->raster.add_to(verb);
+    arguments->days.add_to(verb);
+    arguments->refraction.add_to(verb);
+    verb.add_option("--step", arguments->step_min,
+                    "Minutes from sun to sun, where few days are asked for (3)")
+        ->check(in_range(1 / 60.0, 60.0));
+    verb.add_option("--bands", arguments->bands,
+                    "hours; of a few days also first, last (minutes from the beginning) and spells")
+        ->delimiter(',')
+        ->check(CLI::IsMember(kBands));
+    verb.callback([arguments] { run(*arguments); });
+}
+
+}  // namespace relevo::cli

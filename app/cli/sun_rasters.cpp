@@ -1,0 +1,56 @@
+#include "cli/sun_rasters.h"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+
+namespace relevo::cli {
+
+void RasterArguments::add_to(CLI::App& verb) {
+    dem.add_to(verb);
+    verb.add_option("-k,--terrestrial-refraction", terrestrial_refraction,
+                    "Curvature of a line of sight over the ground, in units of the Earth's (0.13)")
+        ->check(in_range(-1.0, 0.9));
+    output.endings = {"tif", "tiff"};
+    verb.add_option("-o,--output", output.path, "Write a cloud-optimised GeoTIFF on the DEM's grid")
+        ->required();
+    verb.add_flag("--overwrite", output.overwrite, "Replace an existing file");
+    verb.add_option("--co", creation_options,
+                    "Creation option of GDAL's COG driver: COMPRESS=ZSTD; may be repeated")
+        ->allow_extra_args(false);
+}
+
+light::RasterFile RasterArguments::about(const dem::Posts& posts, const std::string& definition,
+                                         std::int64_t holes, light::RasterMetadata more) const {
+    light::RasterFile about;
+    about.metadata = {{"TIFFTAG_SOFTWARE", "Relevo " RELEVO_VERSION},
+                      {"DEFINITION", definition},
+                      {"DEM", posts.about().path},
+                      {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", terrestrial_refraction)},
+                      {"HOLES", fmt::format("{}", holes)}};
+    for (auto& item : more)
+        about.metadata.push_back(std::move(item));
+    about.creation_options = creation_options;
+    return about;
+}
+
+std::string air_of_posts(const RefractionArguments& refraction, const dem::Posts& posts) {
+    if (refraction.name() == "standard")
+        return "integrated ICAO standard atmosphere over each post";
+    geo::Geodetic ground = posts.grid().center();
+    const double height_m =
+        posts.height_at((posts.grid().columns() - 1) / 2.0, (posts.grid().rows() - 1) / 2.0);
+    ground.height_m = std::isnan(height_m) ? posts.lowest_m() : height_m;
+    return refraction.at(ground).description();
+}
+
+void warn_of_holes(std::int64_t holes) {
+    if (holes > 0)
+        log::warning(
+            fmt::format("the DEM has {} holes: they get no figure, and hide nothing", holes));
+}
+
+}  // namespace relevo::cli

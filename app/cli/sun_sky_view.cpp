@@ -1,0 +1,91 @@
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "cli/sun.h"
+#include "cli/sun_rasters.h"
+#include "light/horizons.h"
+
+namespace relevo::cli {
+namespace {
+
+struct Arguments {
+    RasterArguments raster;
+    int directions = 36;
+    bool level = false;
+};
+
+void run_sky_view(const Arguments& arguments) {
+    FilesInUse files;
+    OutputFile& file = arguments.raster.open(files);
+    const dem::Posts posts = arguments.raster.load();
+    light::SkyView view =
+        light::sky_view(posts, {.directions = arguments.directions,
+                                .refraction = arguments.raster.terrestrial_refraction,
+                                .level = arguments.level});
+    warn_of_holes(view.holes);
+    const light::RasterFile about =
+        arguments.raster.about(posts, view.definition, view.holes,
+                               {{"DIRECTIONS", fmt::format("{}", arguments.directions)}});
+    light::write_raster(file, posts.grid(), {{"sky-view factor", "1", std::move(view.share)}},
+                        about);
+    fmt::print("sky view            mean {:.4f}\n\n{}\n", view.mean, view.definition);
+}
+
+void run_horizons(const Arguments& arguments) {
+    FilesInUse files;
+    OutputFile& file = arguments.raster.open(files);
+    const dem::Posts posts = arguments.raster.load();
+    std::vector<double> azimuth_rad;
+    for (int i = 0; i < arguments.directions; ++i)
+        azimuth_rad.push_back(2 * kPi * i / arguments.directions);
+    light::Horizons horizons =
+        light::horizons(posts, azimuth_rad, arguments.raster.terrestrial_refraction);
+    warn_of_holes(horizons.holes);
+    std::vector<light::RasterBand> bands;
+    for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
+        Array2d<float>& elevation = horizons.elevation_rad[k];
+        for (float& value : elevation)
+            value = static_cast<float>(degrees(double{value}));
+        const std::string azimuth = fmt::format("{:.10g}", degrees(azimuth_rad[k]));
+        bands.push_back({"horizon towards azimuth " + azimuth,
+                         "deg",
+                         std::move(elevation),
+                         {{"AZIMUTH_DEG", azimuth}}});
+    }
+    light::write_raster(file, posts.grid(), bands,
+                        arguments.raster.about(posts, horizons.definition, horizons.holes, {}));
+    fmt::print("horizons            {} directions, {:.10g} degrees apart, from true north\n\n{}\n",
+               arguments.directions, 360.0 / arguments.directions, horizons.definition);
+}
+
+std::shared_ptr<Arguments> add_directions(CLI::App& verb, int least, int most) {
+    const auto arguments = std::make_shared<Arguments>();
+    arguments->raster.add_to(verb);
+    verb.add_option("--directions", arguments->directions,
+                    "How many horizons there are around a post (36)")
+        ->check(in_range(least, most));
+    return arguments;
+}
+
+}  // namespace
+
+void add_sun_sky_view(CLI::App& sun_verb) {
+    CLI::App& verb = *sun_verb.add_subcommand(
+        "sky-view", "How much of the sky each post of a DEM sees, as a raster");
+    const auto arguments = add_directions(verb, 4, 3600);
+    verb.add_flag("--level", arguments->level,
+                  "Of a level plane at each post instead of the ground as it is inclined");
+    verb.callback([arguments] { run_sky_view(*arguments); });
+}
+
+void add_sun_horizons(CLI::App& sun_verb) {
+    CLI::App& verb = *sun_verb.add_subcommand(
+        "horizons", "The horizon of each post of a DEM all around, a band for each direction");
+    const auto arguments = add_directions(verb, 1, 720);
+    verb.callback([arguments] { run_horizons(*arguments); });
+}
+
+}  // namespace relevo::cli
