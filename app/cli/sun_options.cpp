@@ -299,8 +299,8 @@ void OutputArguments::deliver(const Forms& forms, OutputFile* file) const {
             file->write(form == "svg"   ? chart::to_svg(forms.drawing())
                         : form == "csv" ? forms.csv()
                                         : json_text(forms.json()));
-            file->finish();
         }
+        file->finish();
     }
     if (json)
         fmt::print("{}", json_text(forms.json()));

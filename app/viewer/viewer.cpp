@@ -670,6 +670,7 @@ class Viewer {
             image::write(file, image,
                          {{"Software", "Relevo"},
                           {"Description", capture_command(whole_scene(), "picture.png")}});
+            file.finish();
             return name + " has the picture";
         });
     }
