@@ -13,11 +13,15 @@
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <imgui.h>
+#include <unistd.h>
 
 #include "base/error.h"
+#include "base/log.h"
+#include "base/output_file.h"
 #include "gl/context.h"
 #include "gl/framebuffer.h"
 #include "viewer/scene_thread.h"
@@ -32,6 +36,22 @@ constexpr float kText_px = 16;
     throw Error(ErrorCode::NoDevice,
                 "view: there is no display to open a window on; relevo capture takes a picture "
                 "without one");
+}
+
+/// Where the X server goes Xlib calls exit(), under threads that still draw: nothing that runs then
+/// may be run. Has the program end at once, with a line that says why.
+void end_where_the_display_goes() {
+    // GLFW loads it where the display is one of X's.
+    void* const xlib = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+    if (!xlib) return;
+    using Handler = int (*)(void* display);
+    const auto set = reinterpret_cast<Handler (*)(Handler)>(dlsym(xlib, "XSetIOErrorHandler"));
+    if (!set) return;
+    set([](void*) -> int {
+        log::error("view: the display is gone, and the window with it");
+        remove_partial_files();
+        _exit(static_cast<int>(ErrorCode::Failed));
+    });
 }
 
 /// The letter that is written on a key, whatever the keyboard's layout; else the key itself.
@@ -129,6 +149,7 @@ struct Window::Impl {
     explicit Impl(const std::string& title) {
         glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
         if (!glfwInit()) no_display();
+        end_where_the_display_goes();
         glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -81,7 +82,11 @@ Display::Display(int width_px, int height_px)
 }
 
 Display::~Display() {
-    end(server_);
+    vanish();
+}
+
+void Display::vanish() {
+    end(std::exchange(server_, -1));
 }
 
 image::Image8 Display::screen() const {
