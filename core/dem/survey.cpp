@@ -155,7 +155,10 @@ Survey survey(const Source& source, std::int64_t max_posts) {
                 source.blank({std::max(0, first - 1), row,
                               std::min(columns, last + 1) - std::max(0, first - 1), rows - row});
             int count = blank.rows;
-            if (count > 0) {
+            if (count == rows) {  // nothing stands out of it
+                result.statistics +=
+                    statistics(blank.height_m, std::int64_t{rows} * (last - first));
+            } else if (count > 0) {
                 strip.add_blank(row, count, blank.height_m);
             } else {
                 count = std::min(band_rows - row % band_rows, rows - row);
