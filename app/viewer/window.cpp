@@ -41,8 +41,7 @@ constexpr float kText_px = 16;
 /// Where the X server goes Xlib calls exit(), under threads that still draw: nothing that runs then
 /// may be run. Has the program end at once, with a line that says why.
 void end_where_the_display_goes() {
-    // GLFW loads it where the display is one of X's.
-    void* const xlib = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+    void* const xlib = dlopen("libX11.so.6", RTLD_LAZY);  // as GLFW does, for good
     if (!xlib) return;
     using Handler = int (*)(void* display);
     const auto set = reinterpret_cast<Handler (*)(Handler)>(dlsym(xlib, "XSetIOErrorHandler"));
@@ -148,8 +147,8 @@ struct Window::Impl {
 
     explicit Impl(const std::string& title) {
         glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
-        if (!glfwInit()) no_display();
         end_where_the_display_goes();
+        if (!glfwInit()) no_display();
         glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
