@@ -17,11 +17,9 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <imgui.h>
-#include <unistd.h>
 
 #include "base/error.h"
-#include "base/log.h"
-#include "base/output_file.h"
+#include "base/watchdog.h"
 #include "gl/context.h"
 #include "gl/framebuffer.h"
 #include "viewer/scene_thread.h"
@@ -46,11 +44,7 @@ void end_where_the_display_goes() {
     using Handler = int (*)(void* display);
     const auto set = reinterpret_cast<Handler (*)(Handler)>(dlsym(xlib, "XSetIOErrorHandler"));
     if (!set) return;
-    set([](void*) -> int {
-        log::error("view: the display is gone, and the window with it");
-        remove_partial_files();
-        _exit(static_cast<int>(ErrorCode::Failed));
-    });
+    set([](void*) -> int { end_program("view: the display is gone, and the window with it"); });
 }
 
 /// The letter that is written on a key, whatever the keyboard's layout; else the key itself.
@@ -148,6 +142,11 @@ struct Window::Impl {
     explicit Impl(const std::string& title) {
         glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
         end_where_the_display_goes();
+        // A display that goes, or stands still, while a window is made lets Mesa wait for ever.
+        Watchdog watchdog;
+        watchdog.start(patience(),
+                       "view: the display does not answer; relevo capture takes a "
+                       "picture without one");
         if (!glfwInit()) no_display();
         glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);

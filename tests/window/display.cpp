@@ -50,6 +50,7 @@ pid_t start(const std::vector<std::string>& line, const std::vector<std::string>
 void end(pid_t process) {
     if (process <= 0) return;
     kill(process, SIGTERM);
+    kill(process, SIGCONT);  // who stands still does not end
     waitpid(process, nullptr, 0);
 }
 
@@ -83,6 +84,10 @@ Display::Display(int width_px, int height_px)
 
 Display::~Display() {
     vanish();
+}
+
+void Display::stop() {
+    kill(server_, SIGSTOP);
 }
 
 void Display::vanish() {

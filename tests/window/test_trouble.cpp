@@ -46,6 +46,16 @@ TEST_F(Trouble, WithoutADisplayAnyMoreItEndsAndSaysSo) {
               "relevo: error: view: the display is gone, and the window with it\n");
 }
 
+TEST_F(Trouble, ADisplayThatDoesNotAnswerIsNotWaitedForForEver) {
+    display_.stop();
+    test::WindowedProgram window(display_, test::build_dir() / "bin/relevo", {dem_},
+                                 {"RELEVO_PATIENCE_S=1"}, folder_);
+    EXPECT_EQ(window.status(), 1);
+    EXPECT_EQ(window.output(),
+              "relevo: error: view: the display does not answer; relevo capture takes a picture "
+              "without one\n");
+}
+
 TEST_F(Trouble, TwoWindowsThatTakePicturesAtOnceTakeTwo) {
     test::WindowedProgram one = open(dem_, folder_), other = open(dem_, folder_);
     ASSERT_TRUE(opens(one) && opens(other)) << other.output();
