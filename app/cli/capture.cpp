@@ -54,7 +54,6 @@ class Timings {
             passes[name] = ms;
         if (repeat > 0) json["frames"] = frames(session, repeat);
         file_->write(json_text(json));
-        file_->finish();
     }
 
   private:
@@ -82,10 +81,10 @@ class Timings {
     render::PassTimes passes_;
 };
 
-/// Reads the picture back and writes it.
+/// Reads the picture back and encodes it.
 template <typename Picture>
-void deliver(OutputFile& file, const image::Metadata& metadata, Timings& timings,
-             const Picture& picture_of) {
+void write_picture(OutputFile& file, const image::Metadata& metadata, Timings& timings,
+                   const Picture& picture_of) {
     const auto readback_began = Clock::now();
     const auto picture = picture_of();
     timings.add("readback", milliseconds_since(readback_began));
@@ -133,15 +132,14 @@ void capture(const Arguments& arguments) {
         {"Software", "Relevo " RELEVO_VERSION},
         {"Description", fmt::format("{}; {}; sun at {}", where, when, sun)}};
     if (options.radiance)
-        deliver(picture_file, metadata, timings, [&] { return session.radiance(); });
+        write_picture(picture_file, metadata, timings, [&] { return session.radiance(); });
     else
-        deliver(picture_file, metadata, timings, [&] { return session.picture(); });
-    if (scene_file) {
+        write_picture(picture_file, metadata, timings, [&] { return session.picture(); });
+    if (scene_file)
         scene_file->write(scene::scene_text(
             session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));
-        scene_file->finish();
-    }
     timings.write(session, arguments.repeat);
+    files.finish_outputs();
 }
 
 }  // namespace

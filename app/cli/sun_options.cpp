@@ -304,8 +304,8 @@ void OutputArguments::deliver(const Forms& forms, OutputFile* file) const {
             file->write(form == "svg"    ? chart::to_svg(forms.drawing())
                         : form == "json" ? json_text(forms.json())
                                          : forms.csv());
-            file->finish();
         }
+        file->finish();
     }
     if (json)
         fmt::print("{}", json_text(forms.json()));

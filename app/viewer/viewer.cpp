@@ -74,12 +74,25 @@ double seconds_since(Clock::time_point began) {
     return std::chrono::duration<double>(Clock::now() - began).count();
 }
 
-/// A name in the working folder that no file has: relevo-1.png.
-std::string free_name(const std::string& ending) {
+/// Writes to a name in the working folder that no file has, such as relevo-1.png. @returns it
+template <typename Write>
+std::string write_under_free_name(const std::string& ending, const Write& write) {
     for (int n = 1;; ++n) {
         const std::string name = fmt::format("relevo-{}.{}", n, ending);
-        std::error_code ignored;
-        if (!std::filesystem::exists(name, ignored)) return name;
+        const auto is_taken = [&] {
+            std::error_code ignored;
+            return std::filesystem::exists(std::filesystem::symlink_status(name, ignored));
+        };
+        if (is_taken()) continue;
+        try {
+            OutputFile file(name, /*overwrite=*/false, "view");
+            write(file);
+            file.finish();
+            return name;
+        } catch (const Error&) {
+            // Another window may have taken the name meanwhile.
+            if (!is_taken()) throw;
+        }
     }
 }
 
@@ -624,9 +637,11 @@ class Viewer {
         scene.width_px = size.x;
         scene.height_px = size.y;
         for (std::string& dem : scene.dems) {
-            std::error_code ignored;
-            if (std::filesystem::exists(dem, ignored))
-                dem = std::filesystem::absolute(dem).lexically_normal().string();
+            std::error_code error;
+            if (!std::filesystem::exists(dem, error)) continue;
+            // The working folder may be gone.
+            const std::filesystem::path whole = std::filesystem::absolute(dem, error);
+            if (!error) dem = whole.lexically_normal().string();
         }
         return scene;
     }
@@ -638,8 +653,9 @@ class Viewer {
 
     void save_scene() {
         say_or_fail([&] {
-            const std::string name = free_name("json");
-            write_text(name, scene::scene_text(whole_scene(), ""), /*overwrite=*/false, "view");
+            const std::string text = scene::scene_text(whole_scene(), "");
+            const std::string name =
+                write_under_free_name("json", [&](OutputFile& file) { file.write(text); });
             return name + " has the scene; relevo view --scene opens it";
         });
     }
@@ -656,7 +672,6 @@ class Viewer {
             return;
         }
         say_or_fail([&] {
-            const std::string name = free_name("png");
             image::Image8 image(picture_->width_px, picture_->height_px, 3);
             for (int y = 0; y < image.height; ++y) {
                 const std::uint8_t* from =
@@ -666,10 +681,11 @@ class Viewer {
                 for (int x = 0; x < image.width; ++x, from += 4, to += 3)
                     std::copy_n(from, 3, to);
             }
-            OutputFile file(name, /*overwrite=*/false, "view");
-            image::write(file, image,
-                         {{"Software", "Relevo"},
-                          {"Description", capture_command(whole_scene(), "picture.png")}});
+            const image::Metadata metadata{
+                {"Software", "Relevo"},
+                {"Description", capture_command(whole_scene(), "picture.png")}};
+            const std::string name = write_under_free_name(
+                "png", [&](OutputFile& file) { image::write(file, image, metadata); });
             return name + " has the picture";
         });
     }

@@ -13,11 +13,13 @@
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <imgui.h>
 
 #include "base/error.h"
+#include "base/watchdog.h"
 #include "gl/context.h"
 #include "gl/framebuffer.h"
 #include "viewer/scene_thread.h"
@@ -32,6 +34,17 @@ constexpr float kText_px = 16;
     throw Error(ErrorCode::NoDevice,
                 "view: there is no display to open a window on; relevo capture takes a picture "
                 "without one");
+}
+
+/// Where the X server goes Xlib calls exit(), under threads that still draw: nothing that runs then
+/// may be run. Has the program end at once, with a line that says why.
+void end_where_the_display_goes() {
+    void* const xlib = dlopen("libX11.so.6", RTLD_LAZY);  // as GLFW does, for good
+    if (!xlib) return;
+    using Handler = int (*)(void* display);
+    const auto set = reinterpret_cast<Handler (*)(Handler)>(dlsym(xlib, "XSetIOErrorHandler"));
+    if (!set) return;
+    set([](void*) -> int { end_program("view: the display is gone, and the window with it"); });
 }
 
 /// The letter that is written on a key, whatever the keyboard's layout; else the key itself.
@@ -128,6 +141,12 @@ struct Window::Impl {
 
     explicit Impl(const std::string& title) {
         glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
+        end_where_the_display_goes();
+        // A display that goes, or stands still, while a window is made lets Mesa wait for ever.
+        Watchdog watchdog;
+        watchdog.start(patience(),
+                       "view: the display does not answer; relevo capture takes a "
+                       "picture without one");
         if (!glfwInit()) no_display();
         glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);

@@ -41,6 +41,13 @@ OutputFile& FilesInUse::open_output(const std::filesystem::path& path, bool over
     return outputs_.emplace_back(std::move(opened));
 }
 
+void FilesInUse::finish_outputs() {
+    std::vector<OutputFile*> files;
+    for (OutputFile& output : outputs_)
+        files.push_back(&output);
+    OutputFile::finish_all(files);
+}
+
 bool FilesInUse::replaces_any() const {
     return std::any_of(outputs_.begin(), outputs_.end(),
                        [](const OutputFile& output) { return output.replaces_any(); });

@@ -22,10 +22,13 @@ class FilesInUse {
     /// Opens a file that is written; it lives as long as this.
     /// @param who  the option that names it, "--timings"
     /// @throws Error (BadInput) where it would replace an input, (Usage) where it is another
-    /// output,
-    ///     and as OutputFile does
+    ///     output, and as OutputFile does
     OutputFile& open_output(const std::filesystem::path& path, bool overwrite,
                             std::string_view who);
+
+    /// Finishes all that was opened: results of one run appear together or not at all.
+    /// @throws Error as OutputFile::finish_all()
+    void finish_outputs();
 
     /// Some output would replace a file.
     bool replaces_any() const;

@@ -99,10 +99,13 @@ struct OutputFile::Impl {
     void open_folder(const std::filesystem::path& where);
     void check_replaceable(const struct stat& target) const;
     void open_part();
+    void settle() const;
     void deliver_special() const;
+    void give_name();
     void take_name() const;
     void name_unnamed();
     void name_part();
+    void take_back() const noexcept;
     void sync_folder() const;
 };
 
@@ -243,17 +246,53 @@ void OutputFile::write(std::string_view text) {
 }
 
 void OutputFile::finish() {
-    Impl& impl = *impl_;
-    if (impl.special) return impl.deliver_special();
-    if (impl.replaced_mode && fchmod(impl.file.get(), *impl.replaced_mode) != 0)
-        impl.cannot_be_written(errno);
+    finish_all({this});
+}
+
+void OutputFile::finish_all(const std::vector<OutputFile*>& files) {
+    for (const OutputFile* file : files)
+        if (!file->impl_->special) file->impl_->settle();
+    for (const OutputFile* file : files)
+        if (file->impl_->special) file->impl_->deliver_special();
+    std::vector<Impl*> named;
+    try {
+        for (const bool replacing : {false, true})
+            for (const OutputFile* file : files) {
+                Impl& impl = *file->impl_;
+                if (impl.special || impl.replaced_mode.has_value() != replacing) continue;
+                impl.give_name();
+                named.push_back(&impl);
+                impl.sync_folder();
+            }
+    } catch (...) {
+        for (const Impl* impl : named)
+            if (!impl->replaced_mode) impl->take_back();
+        throw;
+    }
+}
+
+/// All that can be refused before the file has its name.
+void OutputFile::Impl::settle() const {
+    if (replaced_mode && fchmod(file.get(), *replaced_mode) != 0) cannot_be_written(errno);
     // Without this a name may outlive a power cut, and what it names not.
-    if (fsync(impl.file.get()) != 0) impl.cannot_be_written(errno);
-    if (impl.part)
-        impl.name_part();
+    if (fsync(file.get()) != 0) cannot_be_written(errno);
+}
+
+void OutputFile::Impl::give_name() {
+    if (part)
+        name_part();
     else
-        impl.name_unnamed();
-    impl.sync_folder();
+        name_unnamed();
+}
+
+/// Removes the file, unless its name is another's by now.
+void OutputFile::Impl::take_back() const noexcept {
+    struct stat mine {
+    }, there{};
+    if (fstat(file.get(), &mine) == 0 &&
+        fstatat(folder.get(), leaf.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0 &&
+        same_file(mine, there))
+        unlinkat(folder.get(), leaf.c_str(), 0);
 }
 
 void OutputFile::Impl::deliver_special() const {

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 /// Results in files: nothing is replaced unless asked for, and nothing is there in part.
 namespace relevo {
@@ -42,6 +43,11 @@ class OutputFile {
     /// @throws Error (Failed) where the name has been taken meanwhile and may not be replaced, and
     ///     where the disk refuses
     void finish();
+
+    /// finish() of all results of a run, which appear together or not at all: none has its name
+    /// before all are on the disk or have gone to their devices and pipes, and where one cannot
+    /// have its name the others lose theirs. What has replaced a file stays; its turn is last.
+    static void finish_all(const std::vector<OutputFile*>& files);
 
     /// finish() would replace that file, by whichever of its names it is known.
     bool replaces(const std::filesystem::path& other) const;

@@ -19,7 +19,7 @@ bool CollarEdge::may_be_collar() const {
     return corners_ && static_cast<double>(posts_ - others_) >= 0.95 * static_cast<double>(posts_);
 }
 
-void CollarSteps::add(const Array2d<float>& part_m) {
+void CollarSteps::add(const Array2d<float>& height_m, const Window& part) {
     constexpr std::size_t kMaxSteps = 1 << 24;
     const auto step = [&](float a, float b) {
         if ((a == height_m_) == (b == height_m_) || std::isnan(a) || std::isnan(b)) return;
@@ -32,10 +32,10 @@ void CollarSteps::add(const Array2d<float>& part_m) {
         steps_m_.resize(kMaxSteps / 2);
         every_ *= 2;
     };
-    for (int row = 0; row + 1 < part_m.height(); ++row)
-        for (int column = 0; column + 1 < part_m.width(); ++column) {
-            step(part_m.at(column, row), part_m.at(column + 1, row));
-            step(part_m.at(column, row), part_m.at(column, row + 1));
+    for (int row = part.row; row + 1 < part.row + part.rows; ++row)
+        for (int column = part.column; column + 1 < part.column + part.columns; ++column) {
+            step(height_m.at(column, row), height_m.at(column + 1, row));
+            step(height_m.at(column, row), height_m.at(column, row + 1));
         }
 }
 
@@ -62,7 +62,7 @@ std::optional<Collar> find_collar(const Array2d<float>& height_m) {
     }
     if (!edge.may_be_collar()) return std::nullopt;
     CollarSteps steps(edge.height_m());
-    steps.add(height_m);
+    steps.add(height_m, {0, 0, columns, rows});
     return steps.collar();
 }
 

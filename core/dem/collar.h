@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/array2d.h"
+#include "dem/grid.h"
 
 namespace relevo::dem {
 
@@ -47,7 +48,7 @@ class CollarSteps {
   public:
     explicit CollarSteps(float height_m) : height_m_(height_m) {}
     /// Parts that share their last column and row with the next ones.
-    void add(const Array2d<float>& part_m);
+    void add(const Array2d<float>& height_m, const Window& part);
     std::optional<Collar> collar();
 
   private:

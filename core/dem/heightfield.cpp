@@ -30,16 +30,16 @@ bool is_of_the_earth(double height_m) {
 }
 
 Statistics statistics(const Array2d<float>& height_m) {
-    return statistics(height_m, height_m.width(), height_m.height());
+    return statistics(height_m, {0, 0, height_m.width(), height_m.height()});
 }
 
-Statistics statistics(const Array2d<float>& height_m, int columns, int rows) {
+Statistics statistics(const Array2d<float>& height_m, const Window& window) {
     Statistics total;
     float total_min = kInfinity;
     float total_max = -kInfinity;
     std::mutex mutex;
-    const int grain = std::max(1, 100'000 / std::max(1, columns));
-    parallel_for(0, rows, grain, [&](int first, int last) {
+    const int grain = std::max(1, 100'000 / std::max(1, window.columns));
+    parallel_for(window.row, window.row + window.rows, grain, [&](int first, int last) {
         float min = kInfinity;
         float max = -kInfinity;
         std::int64_t valid = 0;
@@ -47,7 +47,9 @@ Statistics statistics(const Array2d<float>& height_m, int columns, int rows) {
         for (int row = first; row < last; ++row) {
             int row_valid = 0;
             int row_outliers = 0;
-            for (const float h : height_m.row(row).first(static_cast<std::size_t>(columns))) {
+            for (const float h :
+                 height_m.row(row).subspan(static_cast<std::size_t>(window.column),
+                                           static_cast<std::size_t>(window.columns))) {
                 // Comparisons with NaN are false: a hole changes nothing.
                 min = h < min ? h : min;
                 max = h > max ? h : max;
@@ -63,7 +65,7 @@ Statistics statistics(const Array2d<float>& height_m, int columns, int rows) {
         total.valid += valid;
         total.outliers += outliers;
     });
-    total.holes = std::int64_t{columns} * rows - total.valid;
+    total.holes = std::int64_t{window.columns} * window.rows - total.valid;
     if (total.valid > 0) {
         total.min_m = total_min;
         total.max_m = total_max;

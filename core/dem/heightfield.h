@@ -35,8 +35,7 @@ bool is_of_the_earth(double height_m);
 /// Lowest, highest, holes (NaN) and outliers of a field; the range is 0 to 0 where nothing is
 /// valid.
 Statistics statistics(const Array2d<float>& height_m);
-/// Of the first columns and rows.
-Statistics statistics(const Array2d<float>& height_m, int columns, int rows);
+Statistics statistics(const Array2d<float>& height_m, const Window& window);
 
 /// Of so many posts of one height, NaN for holes.
 Statistics statistics(float height_m, std::int64_t posts);

@@ -172,8 +172,8 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
             } else {
                 const Array2d<float> height_m = source->read(slab, slab.columns, slab.rows);
                 find_highest({height_m.data(), height_m.width(), slab.column, slab.row}, slab);
-                if (collar_steps) collar_steps->add(height_m);
-                about.statistics += statistics(height_m, own_columns, own_rows);
+                if (collar_steps) collar_steps->add(height_m, {0, 0, slab.columns, slab.rows});
+                about.statistics += statistics(height_m, {0, 0, own_columns, own_rows});
             }
             progress.add(double(own_columns) * own_rows);
             column += slab.columns - 1;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -42,59 +43,45 @@ class Strip {
     /// The next rows.
     void add(int row, int rows) {
         const Window window{left_, row, right_ - left_, rows};
-        const Array2d<float> read = source_.read(window, window.columns, window.rows);
-        const int before = tail_.height();
-        Array2d<float> all(window.columns, before + rows);
-        std::copy(tail_.begin(), tail_.end(), all.begin());
-        std::copy(read.begin(), read.end(), all.begin() + before * std::ptrdiff_t{window.columns});
-        take(all, row - before, before, read);
-        keep_tail(all);
+        take(row, source_.read(window, window.columns, window.rows));
     }
 
     /// The next rows, of one height.
     void add_blank(int row, int rows, float height_m) {
         const int shown = std::min(rows, 2);
-        const Array2d<float> begin(right_ - left_, shown, height_m);
-        const int before = tail_.height();
-        Array2d<float> all(right_ - left_, before + shown);
-        std::copy(tail_.begin(), tail_.end(), all.begin());
-        std::copy(begin.begin(), begin.end(), all.begin() + before * std::ptrdiff_t{all.width()});
-        take(all, row - before, before, begin);
+        take(row, Array2d<float>(right_ - left_, shown, height_m));
         survey_.statistics += statistics(height_m, std::int64_t{rows - shown} * (last_ - first_));
-        keep_tail(all);
     }
 
   private:
-    /// @param row    of the DEM, where `all` begins
-    /// @param known  rows at its beginning that statistics have had
-    /// @param fresh  those after them
-    void take(const Array2d<float>& all, int row, int known, const Array2d<float>& fresh) {
-        const Window own{first_ - left_, 0, last_ - first_, fresh.height()};
-        survey_.statistics += own.column == 0 ? statistics(fresh, own.columns, own.rows)
-                                              : statistics(part_of(fresh, own));
+    void take(int row, Array2d<float> fresh) {
+        const int known = tail_.height();
+        const Array2d<float> all = below_tail(std::move(fresh));
+        const int column = first_ - left_, columns = last_ - first_, rows = all.height();
+        survey_.statistics += statistics(all, {column, known, columns, rows - known});
         // A post's neighbours are known once the next row is; the DEM's last one has none.
-        const int begin = known > 0 ? known - 1 : 0;
-        const bool ends = row + all.height() == source_.grid().rows();
-        const int end = ends ? all.height() : all.height() - 1;
-        if (end > begin) {
-            const Window core{own.column, begin, own.columns, end - begin};
-            dem::add(survey_.spikes, find_spikes(all, spacing_m_, core), {left_, row});
-        }
+        const int top = row - known, begin = known > 0 ? known - 1 : 0;
+        const bool ends = top + rows == source_.grid().rows();
+        const int end = ends ? rows : rows - 1;
+        if (end > begin)
+            dem::add(survey_.spikes,
+                     find_spikes(all, spacing_m_, {column, begin, columns, end - begin}),
+                     {left_, top});
         if (collar_steps_)
-            collar_steps_->add(
-                part_of(all, {own.column, begin, all.width() - own.column, all.height() - begin}));
+            collar_steps_->add(all, {column, begin, all.width() - column, rows - begin});
+        if (!ends) keep_tail(all);
     }
 
-    static Array2d<float> part_of(const Array2d<float>& all, const Window& window) {
-        Array2d<float> part(window.columns, window.rows);
-        for (int row = 0; row < window.rows; ++row)
-            std::copy_n(&all.at(window.column, window.row + row), window.columns, &part.at(0, row));
-        return part;
+    Array2d<float> below_tail(Array2d<float> fresh) const {
+        if (tail_.empty()) return fresh;
+        Array2d<float> all(tail_.width(), tail_.height() + fresh.height());
+        std::copy(fresh.begin(), fresh.end(), std::copy(tail_.begin(), tail_.end(), all.begin()));
+        return all;
     }
 
     void keep_tail(const Array2d<float>& all) {
-        const int rows = std::min(2, all.height());
-        tail_ = part_of(all, {0, all.height() - rows, all.width(), rows});
+        tail_ = Array2d<float>(all.width(), std::min(2, all.height()));
+        std::copy(all.end() - static_cast<std::ptrdiff_t>(tail_.size()), all.end(), tail_.begin());
     }
 
     const Source& source_;
@@ -168,7 +155,10 @@ Survey survey(const Source& source, std::int64_t max_posts) {
                 source.blank({std::max(0, first - 1), row,
                               std::min(columns, last + 1) - std::max(0, first - 1), rows - row});
             int count = blank.rows;
-            if (count > 0) {
+            if (count == rows) {  // nothing stands out of it
+                result.statistics +=
+                    statistics(blank.height_m, std::int64_t{rows} * (last - first));
+            } else if (count > 0) {
                 strip.add_blank(row, count, blank.height_m);
             } else {
                 count = std::min(band_rows - row % band_rows, rows - row);

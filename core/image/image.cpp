@@ -114,14 +114,13 @@ class EncoderAtWork {
 std::atomic<const std::string*> EncoderAtWork::at_work = nullptr;
 
 template <typename T, typename Write>
-void write_whole(OutputFile& file, const Pixels<T>& image, Write write_pixels) {
+void write_checked(OutputFile& file, const Pixels<T>& image, Write write_pixels) {
     const Format& format = known_format(file.path());
     if (format.linear != std::is_same_v<T, float>)
         failed(fmt::format("image: {}: {} holds {}", printable(file.path().string()), format.name,
                            format.linear ? "linear light" : "8-bit sRGB"));
     check_format(file.path(), image.width, image.height);
     write_pixels(format);
-    file.finish();
 }
 
 /// @param encode  FormatsModule's
@@ -164,7 +163,7 @@ void load_format(const std::filesystem::path& path) {
 }
 
 void write(OutputFile& file, const Image8& image, const Metadata& metadata) {
-    write_whole(file, image, [&](const Format& format) {
+    write_checked(file, image, [&](const Format& format) {
         if (is_png(format))
             write_png(file, image, metadata);
         else
@@ -173,7 +172,7 @@ void write(OutputFile& file, const Image8& image, const Metadata& metadata) {
 }
 
 void write(OutputFile& file, const ImageF& image, const Metadata& metadata) {
-    write_whole(file, image, [&](const Format& format) {
+    write_checked(file, image, [&](const Format& format) {
         write_other(file, format, image, metadata, formats_module(file.path()).encode_float);
     });
 }
@@ -183,6 +182,7 @@ void write(const std::filesystem::path& path, const Image8& image, const Metadat
     known_format(path);
     OutputFile file(path, overwrite, "image");
     write(file, image, metadata);
+    file.finish();
 }
 
 void write(const std::filesystem::path& path, const ImageF& image, const Metadata& metadata,
@@ -190,6 +190,7 @@ void write(const std::filesystem::path& path, const ImageF& image, const Metadat
     known_format(path);
     OutputFile file(path, overwrite, "image");
     write(file, image, metadata);
+    file.finish();
 }
 
 Image8 read(const std::filesystem::path& path) {

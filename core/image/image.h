@@ -64,8 +64,8 @@ void check_format(const std::filesystem::path& path, int width_px, int height_px
 /// @throws Error (Failed) if it is not installed
 void load_format(const std::filesystem::path& path);
 
-/// Writes a picture to `file` and finishes it. An ImageF goes to EXR, an Image8 to the other
-/// formats.
+/// Writes a picture to `file`, all of it but finish(). An ImageF goes to EXR, an Image8 to the
+/// other formats.
 /// @throws Error as check_format and load_format, and (Failed) where memory, the disk or the format
 ///     refuses
 void write(OutputFile& file, const Image8& image, const Metadata& metadata = {});

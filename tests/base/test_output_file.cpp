@@ -5,6 +5,7 @@
 #include <cstdarg>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -177,6 +178,48 @@ TEST_P(OutputFiles, LeaveANameAloneThatIsTakenMeanwhile) {
     mine.finish();
     EXPECT_EQ(read_text(path_, "test"), "mine");
     EXPECT_EQ(names(), Names{"a.csv"});
+}
+
+TEST_P(OutputFiles, OfOneRunAppearTogetherOrNotAtAll) {
+    const std::filesystem::path other = dir_ / "b.json";
+    const auto finish_with = [&](const std::filesystem::path& first,
+                                 const std::filesystem::path& second,
+                                 const std::function<void()>& meanwhile) {
+        FilesInUse files;
+        for (const auto& path : {first, second})
+            files.open_output(path, path == path_, "test").write("mine");
+        meanwhile();
+        return error_of([&] { files.finish_outputs(); });
+    };
+    const std::string taken = "exit 1: test: " + other.string() +
+                              ": exists by now, another program has made it; pass --overwrite to "
+                              "replace it";
+    for (const auto& [first, second] : {std::pair(path_, other), std::pair(other, path_)}) {
+        EXPECT_EQ(finish_with(first, second, [&] { std::ofstream(other) << "theirs"; }), taken);
+        EXPECT_EQ(names(), Names{"b.json"});
+        EXPECT_EQ(read_text(other, "test"), "theirs");
+        // What would be replaced is left as it is.
+        std::filesystem::remove(other);
+        std::ofstream(path_) << "old";
+        EXPECT_EQ(finish_with(first, second, [&] { std::ofstream(other) << "theirs"; }), taken);
+        EXPECT_EQ(read_text(path_, "test"), "old");
+        std::filesystem::remove(other);
+        std::filesystem::remove(path_);
+    }
+    for (const auto& [first, second] :
+         {std::pair<std::filesystem::path, std::filesystem::path>(path_, "/dev/full"),
+          std::pair<std::filesystem::path, std::filesystem::path>("/dev/full", path_)}) {
+        EXPECT_EQ(finish_with(first, second, [] {}),
+                  "exit 1: test: /dev/full: cannot be written, No space left on device");
+        EXPECT_EQ(names(), Names{});
+    }
+    EXPECT_EQ(finish_with(path_, other, [&] { fsync_error = EIO; }),
+              message("cannot be written, Input/output error", 1));
+    EXPECT_EQ(names(), Names{});
+    fsync_error = 0;
+    finish_with(path_, other, [] {});
+    EXPECT_EQ(names(), (Names{"a.csv", "b.json"}));
+    EXPECT_EQ(read_text(other, "test"), "mine");
 }
 
 TEST_P(OutputFiles, AreOnTheDiskBeforeTheyHaveANameAndTheNameAfter) {

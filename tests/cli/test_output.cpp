@@ -9,6 +9,7 @@
 #include <gdal.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -295,6 +296,21 @@ TEST_F(Output, TimingsAreAnOutputLikeAnyOther) {
     EXPECT_EQ(names(), (std::vector<std::string>{"a.png", "t.json"}));
 }
 
+TEST_F(Output, OfOneRunIsThereTogetherOrNotAtAll) {
+    const auto arguments = [&](const std::string& scene, const std::string& timings) {
+        std::vector<std::string> all = capture(path("a.png"));
+        all.insert(all.end(), {"--save-scene", scene, "--timings", timings});
+        return all;
+    };
+    const std::string full = ": /dev/full: cannot be written, No space left on device";
+    expect_failure(arguments("/dev/full", path("t.json")), 1, "--save-scene" + full);
+    EXPECT_TRUE(names().empty()) << names().front();
+    expect_failure(arguments(path("s.json"), "/dev/full"), 1, "--timings" + full);
+    EXPECT_TRUE(names().empty()) << names().front();
+    EXPECT_EQ(relevo(arguments(path("s.json"), path("t.json"))).status, 0);
+    EXPECT_EQ(names(), (std::vector<std::string>{"a.png", "s.json", "t.json"}));
+}
+
 TEST_F(Output, DumpedShadersReplaceNothingUnasked) {
     std::vector<std::string> arguments = capture(path("a.png"));
     arguments.insert(arguments.end(), {"--dump-shaders", path("s")});
@@ -333,23 +349,26 @@ TEST_F(Output, OfTwoAtOnceOneIsThereAndWhole) {
 }
 
 TEST_F(Output, OfAProgramThatASignalEndsIsNotThere) {
+    const std::filesystem::path fifo = scratch_dir("cli_output_fifo") / "scene";
+    ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
     for (const std::string& refused : {std::string("nothing"), std::string("unnamed")})
         for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
             // Only one who is killed without a word leaves what has a name.
             if (number == SIGKILL && refused == "unnamed") continue;
             std::vector<std::string> arguments = capture(path("a.png"));
             // Long enough that it does not end before it is ended.
-            arguments.insert(arguments.end(), {"--timings", path("t.json"), "--repeat", "100000"});
+            arguments.insert(arguments.end(), {"--timings", path("t.json"), "--repeat", "100000",
+                                               "--save-scene", fifo.string()});
             const pid_t child = start(arguments, shim(refused));
-            // Both outputs are open by the time that the picture is there.
-            for (int i = 0; i < 600 && !std::filesystem::exists(path("a.png")); ++i)
-                std::this_thread::sleep_for(100ms);
-            EXPECT_EQ(names().size(), refused == "unnamed" ? 2U : 1U);
+            // It opens when the program opens it, which is after the others.
+            const int scene = open(fifo.c_str(), O_RDONLY | O_CLOEXEC);
+            EXPECT_EQ(names().size(), refused == "unnamed" ? 2U : 0U);
+            std::this_thread::sleep_for(100ms * number);
             kill(child, number);
             const int status = status_of(child);
             EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == number) << number;
-            EXPECT_EQ(names(), std::vector<std::string>{"a.png"});
-            std::filesystem::remove(path("a.png"));
+            close(scene);
+            EXPECT_TRUE(names().empty()) << names().front();
         }
 }
 

@@ -98,8 +98,10 @@ TEST_F(Toggles, EachDisabledEffectIsAbsentFromTheText) {
 TEST_F(Toggles, EveryPairOfEffectsCompilesAndDraws) {
     const Result list = relevo({"plugins", "list", "--json"});
     std::vector<std::string> ids;
-    for (const auto& plugin : nlohmann::json::parse(list.out)["plugins"])
+    const nlohmann::json plugins = nlohmann::json::parse(list.out)["plugins"];
+    for (const auto& plugin : plugins)
         ids.push_back(plugin["id"]);
+    ASSERT_GE(ids.size(), 2U);
     take("none.png", {"--only", ""});
     const image::Image8 none = picture("none.png");
     for (std::size_t i = 0; i < ids.size(); ++i) {

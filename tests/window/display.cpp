@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -49,6 +50,7 @@ pid_t start(const std::vector<std::string>& line, const std::vector<std::string>
 void end(pid_t process) {
     if (process <= 0) return;
     kill(process, SIGTERM);
+    kill(process, SIGCONT);  // who stands still does not end
     waitpid(process, nullptr, 0);
 }
 
@@ -81,7 +83,15 @@ Display::Display(int width_px, int height_px)
 }
 
 Display::~Display() {
-    end(server_);
+    vanish();
+}
+
+void Display::stop() {
+    kill(server_, SIGSTOP);
+}
+
+void Display::vanish() {
+    end(std::exchange(server_, -1));
 }
 
 image::Image8 Display::screen() const {

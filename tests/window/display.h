@@ -22,6 +22,10 @@ class Display {
     ~Display();
 
     const std::string& name() const { return name_; }  ///< ":57"
+    /// Ends the server under its programs.
+    void vanish();
+    /// Has the server stand still, to the end.
+    void stop();
     /// What is on the screen now, RGB.
     image::Image8 screen() const;
     /// Runs xdotool: {"mousemove", "100", "200"}. @returns what it prints
