@@ -16,10 +16,10 @@ namespace {
 
 void light_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double radius_rad,
                 Array2d<float>& lit) {
-    TileValues values(tile.window, 0), upper(tile.window, 0);
+    const bool soft = radius_rad > 0;
+    TileValues values(tile.window, 0), upper(soft ? tile.window : SweepWindow{}, 0);
     for (TileValues* const each : {&values, &upper})
         each->turn(tile.path.along_columns());
-    const bool soft = radius_rad > 0;
     each_edge(sky, sweep, tile, radius_rad, [&](const SweepRun& run) {
         if (soft) std::copy_n(run.found, run.count, upper.of(run));
         float* const out = values.of(run);

@@ -20,10 +20,10 @@ namespace relevo::light {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr double kAirTolerance_rad = radians(0.01);
-constexpr int kLeastTile = 2;               // posts a side
-constexpr int kLarge = 64;                  // likewise
-constexpr double kNight_rad = radians(-4);  // no ground of the Earth sees the sun so low
+constexpr double kAirTolerance_rad = radians(0.03);  // seven seconds of the sun's way
+constexpr int kLeastTile = 2;                        // posts a side
+constexpr int kLarge = 64;                           // likewise
+constexpr double kNight_rad = radians(-4);           // no ground of the Earth sees the sun so low
 
 /// The wider of the two spacings of posts.
 double grid_spacing_m(const dem::Grid& grid) {
@@ -53,21 +53,24 @@ void add_earth(const SweepSun& sun, const SweepRun& run, double lowest_m, double
         const double at = run.first + i;
         return run.along_column ? sun.tangent_at(run.line, at) : sun.tangent_at(at, run.line);
     };
-    if (tangent(0) >= 0 && tangent(run.count - 1) >= 0) return;
+    const auto first = static_cast<float>(tangent(0)),
+               a_post = static_cast<float>(tangent(1) - tangent(0)),
+               scale = static_cast<float>(1 / (2 * curvature)),
+               lowest = static_cast<float>(lowest_m);
     for (int i = 0; i < run.count; ++i) {
-        const double t = std::min(tangent(i), 0.0);
-        if (t < 0)
-            edge_m[i] = std::max(edge_m[i], static_cast<float>(lowest_m + t * t / (2 * curvature)));
+        const float t = first + a_post * static_cast<float>(i);
+        const float earth_m = lowest + t * t * scale;
+        edge_m[i] = t < 0 && earth_m > edge_m[i] ? earth_m : edge_m[i];
     }
 }
 
 /// Edges between those for the air of the lowest post and of the highest one, by a post's height.
 void mix(const SweepRun& run, const float* low_edge_m, double low_m, double span_m, float* edge_m) {
+    const auto bottom_m = static_cast<float>(low_m), share = static_cast<float>(1 / span_m);
     for (int i = 0; i < run.count; ++i) {
         const float low = low_edge_m[i], high = edge_m[i];
-        const double part = (run.height_m[i] - low_m) / span_m;
-        const bool both = low > -kInfinity && high > -kInfinity;
-        edge_m[i] = both ? low + static_cast<float>(part * (double{high} - low)) : low;
+        const float between = low + (run.height_m[i] - bottom_m) * share * (high - low);
+        edge_m[i] = low > -kInfinity && high > -kInfinity ? between : low;
     }
 }
 
@@ -334,17 +337,25 @@ void each_window(const std::vector<SweepWindow>& windows,
 void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
                const Sweep::Use& use) {
     const DemSky& dem = sky.dem();
+    const SweepWindow& w = tile.window;
+    const SweepSun lower = sky.sun(tile, 0, offset_rad);
+    const auto is_over = [&](double column, double row) {
+        return lower.tangent_at(column, row) >= 0;
+    };
+    const int right = w.column + w.columns, end = w.row + w.rows;
+    const bool over_earth = is_over(w.column, w.row) && is_over(right, w.row) &&
+                            is_over(w.column, end) && is_over(right, end);
     const bool two = sky.levels() == 2;
-    TileValues low(two ? tile.window : SweepWindow{}, 0);
+    if (over_earth && !two) return sweep.each_edge(lower, w, use);
+
+    TileValues low(two ? w : SweepWindow{}, 0);
     low.turn(tile.path.along_columns());
     if (two)
-        sweep.each_edge(sky.sun(tile, 0, offset_rad), tile.window, [&](const SweepRun& run) {
-            std::copy_n(run.found, run.count, low.of(run));
-        });
-    const SweepSun lower = sky.sun(tile, 0, offset_rad);
+        sweep.each_edge(
+            lower, w, [&](const SweepRun& run) { std::copy_n(run.found, run.count, low.of(run)); });
     const SweepSun sun = two ? sky.sun(tile, 1, offset_rad) : lower;
     const double low_m = dem.level_height_m(0), span_m = dem.level_height_m(1) - low_m;
-    sweep.each_edge(sun, tile.window, [&](const SweepRun& run) {
+    sweep.each_edge(sun, w, [&](const SweepRun& run) {
         std::array<float, kRun> edge;
         for (int done = 0; done < run.count; done += kRun) {
             SweepRun part = run;
@@ -355,10 +366,9 @@ void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doubl
             part.found = edge.data();
             add_earth(sun, part, sweep.lowest_m(), dem.curvature(), edge.data());
             if (two) {
-                std::array<float, kRun> other;
-                std::copy_n(low.of(part), part.count, other.begin());
-                add_earth(lower, part, sweep.lowest_m(), dem.curvature(), other.data());
-                mix(part, other.data(), low_m, span_m, edge.data());
+                float* const other = low.of(part);
+                add_earth(lower, part, sweep.lowest_m(), dem.curvature(), other);
+                mix(part, other, low_m, span_m, edge.data());
             }
             use(part);
         }

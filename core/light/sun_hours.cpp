@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -20,8 +21,8 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kDay_s = 86400, kHour_s = 3600;
-constexpr float kOpen_m = 1e6F;           // margin where nothing of the DEM lies towards the sun
-constexpr double kLow_rad = radians(-4);  // sun without air under which all is night
+constexpr float kOpen_m = 1e6F;  // margin where nothing of the DEM lies towards the sun
+constexpr double kLow_rad = radians(1.5);
 constexpr int kFiner = 6;
 constexpr double kPeriodTolerance_rad = radians(0.1);  // of suns that are put together anyway
 
@@ -39,13 +40,15 @@ SunOverDem sun_over(const sun::PositionTable& table, sun::Instant utc,
 
 /// @param finer  of a step, where the sun is near the horizon of a plain: how far off what hides it
 ///     lies changes there with every minute, and margins are not linear
-Moments moments(const geo::Geodetic& place, sun::Instant begin, double length_s, double step_s,
-                int finer) {
+Moments moments(const DemSky& dem, sun::Instant begin, double length_s, double step_s, int finer) {
+    const geo::Geodetic place = dem.grid().center();
+    // From the highest post the sea's horizon dips, and air lifts the sun by up to 0.7 degrees.
+    const double lowest_rad = -std::sqrt(2 * dem.curvature() * dem.relief_m()) - radians(0.7);
     const sun::PositionTable table(begin, begin + length_s);
     const sun::Observer observer(place);
     const auto sun_at = [&](double at_s) { return sun_over(table, begin + at_s, observer); };
-    const auto is_low = [](const SunOverDem& sun) {
-        return sun.elevation_rad > kLow_rad && sun.elevation_rad < -kLow_rad / 2;
+    const auto is_low = [&](const SunOverDem& sun) {
+        return sun.elevation_rad > lowest_rad && sun.elevation_rad < kLow_rad;
     };
     Moments moments{{0}, {sun_at(0)}};
     const auto steps = static_cast<int>(std::ceil(length_s / step_s - 1e-9));
@@ -90,17 +93,56 @@ void measure(const SweepRun& run, float* margin_m) {
         margin_m[i] = std::min(run.height_m[i] - run.found[i], kOpen_m);
 }
 
-/// The light since the moment before. Both ways have the same light: a share of the step, margins
-/// being linear.
+/// Some numbers at once, as sweep.cpp has them.
+using Numbers [[gnu::vector_size(16 * sizeof(float))]] = float;
+
+/// The light since the moment before: a share of the step, margins being linear.
+template <typename V>
+[[gnu::always_inline]] inline void add_light_of(const float* height_m, const float* edge_m,
+                                                float hours, float* margin_m, float* lit_h) {
+    V height, edge, before, lit;
+    std::memcpy(&height, height_m, sizeof(V));
+    std::memcpy(&edge, edge_m, sizeof(V));
+    std::memcpy(&before, margin_m, sizeof(V));
+    std::memcpy(&lit, lit_h, sizeof(V));
+    V now = height - edge;
+    now = now > kOpen_m ? V{} + kOpen_m : now;
+    const V over_before = before > 0 ? before : V{}, over_now = now > 0 ? now : V{};
+    const V under_before = before > 0 ? V{} : -before, under_now = now > 0 ? V{} : -now;
+    const V over = over_before + over_now, all = over + (under_before + under_now);
+    lit += hours * (all > 0 ? over / all : V{} + 1);
+    std::memcpy(margin_m, &now, sizeof(V));
+    std::memcpy(lit_h, &lit, sizeof(V));
+}
+
+[[gnu::always_inline]] inline void add_light_everywhere(const SweepRun& run, float hours,
+                                                        float* margin_m, float* lit_h) {
+    constexpr int kTogether = sizeof(Numbers) / sizeof(float);
+    int i = 0;
+    for (; i + kTogether <= run.count; i += kTogether)
+        add_light_of<Numbers>(run.height_m + i, run.found + i, hours, margin_m + i, lit_h + i);
+    for (; i < run.count; ++i)
+        add_light_of<float>(run.height_m + i, run.found + i, hours, margin_m + i, lit_h + i);
+}
+
+#if defined(__x86_64__)
+[[gnu::target("avx512f")]] void add_light_16(const SweepRun& run, float hours, float* margin_m,
+                                             float* lit_h) {
+    add_light_everywhere(run, hours, margin_m, lit_h);
+}
+[[gnu::target("avx2")]] void add_light_8(const SweepRun& run, float hours, float* margin_m,
+                                         float* lit_h) {
+    add_light_everywhere(run, hours, margin_m, lit_h);
+}
+#endif
+
+/// All ways have the same bits.
 void add_light(const SweepRun& run, float hours, float* margin_m, float* lit_h) {
-    for (int i = 0; i < run.count; ++i) {
-        const float before = margin_m[i];
-        const float now = std::min(run.height_m[i] - run.found[i], kOpen_m);
-        const float all = std::abs(before) + std::abs(now);
-        const float over = std::max(before, 0.0F) + std::max(now, 0.0F);
-        lit_h[i] += hours * (all > 0 ? over / all : 1);
-        margin_m[i] = now;
-    }
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f")) return add_light_16(run, hours, margin_m, lit_h);
+    if (__builtin_cpu_supports("avx2")) return add_light_8(run, hours, margin_m, lit_h);
+#endif
+    add_light_everywhere(run, hours, margin_m, lit_h);
 }
 
 /// Where light comes or goes between two moments. Call before add_light().
@@ -430,7 +472,7 @@ SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end
     const double length_s = end - begin;
     const bool few = length_s <= SunHoursOptions::kMostDays * kDay_s;
     const Moments times =
-        moments(grid.center(), begin, length_s, few ? options.step_s : 600, few ? kFiner : 1);
+        moments(dem, begin, length_s, few ? options.step_s : 600, few ? kFiner : 1);
     SunHours result;
     result.hours = Array2d<float>(grid.columns(), grid.rows(), 0);
     if (options.spells)
