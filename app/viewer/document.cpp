@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include "base/units.h"
-#include "render/renderer.h"
 
 namespace relevo::viewer {
 namespace {
@@ -70,7 +69,7 @@ void add_dem(Command& command, const scene::Scene& scene) {
                        fmt::format("{},{},{},{}", dem.bounds->west_deg, dem.bounds->south_deg,
                                    dem.bounds->east_deg, dem.bounds->north_deg));
     if (dem.max_posts != dem::LoadOptions{}.max_posts)
-        command.option("--memory", std::to_string(dem.max_posts * 4 >> 20));
+        command.option("--memory", std::to_string(dem::mib_of_posts(dem.max_posts)));
 }
 
 void add_view(Command& command, const scene::Scene& scene) {
@@ -133,18 +132,9 @@ const Document& History::redo() {
 }
 
 std::unique_ptr<EffectsModel> EffectsModel::of(const scene::Effects& effects) {
-    auto model = std::make_unique<EffectsModel>();
-    model->registry =
-        effect::Registry::load_installed({effects.plugin_path.begin(), effects.plugin_path.end()});
-    std::vector<effect::Preset> presets;
-    for (const std::string& preset : effects.presets)
-        presets.push_back(effect::load_preset(preset));
-    std::vector<shader::Param> params = model->registry.params();
-    for (const shader::Param& param : render::core_params())
-        params.push_back(param);
-    model->values.declare(params, model->registry.texts());
-    model->selection = effect::select(model->registry, presets, effects.switches);
-    effect::apply_settings(model->values, model->registry, model->selection, presets,
+    auto model = std::make_unique<EffectsModel>(effects);
+    model->selection = effect::select(model->registry, model->presets, effects.switches);
+    effect::apply_settings(model->values, model->registry, model->selection, model->presets,
                            effects.settings);
     return model;
 }

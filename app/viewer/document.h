@@ -4,11 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "effect/preset.h"
-#include "effect/registry.h"
 #include "effect/selection.h"
 #include "scene/scene.h"
-#include "shader/param_store.h"
+#include "session/active_effects.h"
 #include "sun/zone.h"
 #include "viewer/navigation.h"
 
@@ -44,11 +42,10 @@ class History {
 };
 
 /// The effects there are and what is on, without a device: for panels.
-struct EffectsModel {
-    effect::Registry registry;
+struct EffectsModel : session::InstalledEffects {
     effect::Selection selection;  ///< points into registry
-    shader::ParamStore values;
 
+    using InstalledEffects::InstalledEffects;
     /// @throws Error (BadInput) as those who load and select
     static std::unique_ptr<EffectsModel> of(const scene::Effects& effects);
 };

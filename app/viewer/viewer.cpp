@@ -657,19 +657,11 @@ class Viewer {
         }
         say_or_fail([&] {
             const std::string name = free_name("png");
-            image::Image8 image(picture_->width_px, picture_->height_px, 3);
-            for (int y = 0; y < image.height; ++y) {
-                const std::uint8_t* from =
-                    picture_->rgba.data() + std::size_t{4} * static_cast<std::size_t>(image.width) *
-                                                static_cast<std::size_t>(image.height - 1 - y);
-                std::uint8_t* to = image.row(y);
-                for (int x = 0; x < image.width; ++x, from += 4, to += 3)
-                    std::copy_n(from, 3, to);
-            }
             OutputFile file(name, /*overwrite=*/false, "view");
-            image::write(file, image,
-                         {{"Software", "Relevo"},
-                          {"Description", capture_command(whole_scene(), "picture.png")}});
+            image::write(
+                file, image::from_device(picture_->width_px, picture_->height_px, picture_->rgba),
+                {{"Software", "Relevo"},
+                 {"Description", capture_command(whole_scene(), "picture.png")}});
             return name + " has the picture";
         });
     }

@@ -85,7 +85,18 @@ class Viewer : public testing::Test {
         act({"mouseup", std::to_string(button)});
     }
 
+    /// Writes a plugin of the test's own that changes the light of the ground.
+    void paint(const std::string& body) const {
+        std::filesystem::create_directories(plugins_ / "paint");
+        std::ofstream(plugins_ / "paint/plugin.json")
+            << R"({"format": 1, "id": "paint", "name": "Paint", "description": "One colour",)"
+               R"( "version": "1.0.0"})";
+        std::ofstream(plugins_ / "paint/paint.glsl")
+            << "void paint_on_lit(in Surface s, inout vec3 radiance) { " << body << " }\n";
+    }
+
     const std::filesystem::path folder_ = test::scratch_dir("viewer");
+    const std::filesystem::path plugins_ = folder_ / "plugins";
     const std::string dem_ = (test::source_dir() / "data/dem/jacksboro.tif").string();
     test::Display display_{1280, 800};
     std::optional<test::WindowedProgram> program_;
@@ -181,24 +192,15 @@ TEST_F(Viewer, TheCopiedCommandTakesThePicture) {
 }
 
 TEST_F(Viewer, ReadsEffectsAgainWhenTheirFilesAreWritten) {
-    const auto plugin = folder_ / "plugins/paint";
-    std::filesystem::create_directories(plugin);
-    std::ofstream(plugin / "plugin.json")
-        << R"({"format": 1, "id": "paint", "name": "Paint", "description": "One colour",)"
-           R"( "version": "1.0.0"})";
-    const auto write = [&](const char* body) {
-        std::ofstream(plugin / "paint.glsl")
-            << "void paint_on_lit(in Surface s, inout vec3 radiance) { " << body << " }\n";
-    };
-    write("radiance.r += 0.1;");
-    open({dem_, "--only", "paint", "--plugin-path", (folder_ / "plugins").string()});
-    EXPECT_TRUE(changes([&] { write("radiance.b += 0.3;"); }));
+    paint("radiance.r += 0.1;");
+    open({dem_, "--only", "paint", "--plugin-path", plugins_.string()});
+    EXPECT_TRUE(changes([&] { paint("radiance.b += 0.3;"); }));
     const image::Image8 good = display_.screen();
-    write("radiance.b += nothing;");
+    paint("radiance.b += nothing;");
     std::this_thread::sleep_for(std::chrono::seconds(4));
     EXPECT_TRUE(program_->is_running());
     EXPECT_LT(test::difference(display_.screen(), good), 0.05);  // but for the panel's message
-    EXPECT_TRUE(changes([&] { write("radiance.g += 0.3;"); }));
+    EXPECT_TRUE(changes([&] { paint("radiance.g += 0.3;"); }));
 }
 
 TEST_F(Viewer, ReadsTheDemAgainWhenItIsWrittenAndStandsItsLoss) {
@@ -221,23 +223,14 @@ TEST_F(Viewer, ReadsTheDemAgainWhenItIsWrittenAndStandsItsLoss) {
 }
 
 TEST_F(Viewer, ComparesWithWhatWas) {
-    const auto plugin = folder_ / "plugins/paint";
-    std::filesystem::create_directories(plugin);
-    std::ofstream(plugin / "plugin.json")
-        << R"({"format": 1, "id": "paint", "name": "Paint", "description": "One colour",)"
-           R"( "version": "1.0.0"})";
-    const auto write = [&](const char* body) {
-        std::ofstream(plugin / "paint.glsl")
-            << "void paint_on_lit(in Surface s, inout vec3 radiance) { " << body << " }\n";
-    };
-    write("radiance.r += 0.1;");
-    open({dem_, "--only", "paint", "--plugin-path", (folder_ / "plugins").string()});
+    paint("radiance.r += 0.1;");
+    open({dem_, "--only", "paint", "--plugin-path", plugins_.string()});
     act({"key", "Tab"});
     ASSERT_TRUE(settles());
     act({"key", "c"});
     ASSERT_TRUE(changes([] {}, 1e-4));  // the line
     const image::Image8 before = display_.screen();
-    ASSERT_TRUE(changes([&] { write("radiance.b += 0.3;"); }, 0.02));
+    ASSERT_TRUE(changes([&] { paint("radiance.b += 0.3;"); }, 0.02));
     const auto half_differs = [&](const image::Image8& a, int from, int to) {
         int count = 0;
         for (int y = 100; y < 600; ++y)
@@ -275,17 +268,8 @@ TEST_F(Viewer, EndsWithItsWindowAndRestsWhenNothingChanges) {
 /// Whatever a hand does, for as long as RELEVO_SOAK_S says (25 s): the window stays, says nothing
 /// of GL, and its memory does not grow.
 TEST_F(Viewer, StandsWhateverIsDoneToIt) {
-    const auto plugin = folder_ / "plugins/paint";
-    std::filesystem::create_directories(plugin);
-    std::ofstream(plugin / "plugin.json")
-        << R"({"format": 1, "id": "paint", "name": "Paint", "description": "One colour",)"
-           R"( "version": "1.0.0"})";
-    const auto write = [&](const char* body) {
-        std::ofstream(plugin / "paint.glsl")
-            << "void paint_on_lit(in Surface s, inout vec3 radiance) { " << body << " }\n";
-    };
-    write("radiance.r += 0.1;");
-    open({dem_, "--plugin-path", (folder_ / "plugins").string()});
+    paint("radiance.r += 0.1;");
+    open({dem_, "--plugin-path", plugins_.string()});
     const std::string window =
         display_.act({"search", "--onlyvisible", "--pid", std::to_string(program_->process())});
     const std::string id = window.substr(0, window.find('\n'));
@@ -318,7 +302,7 @@ TEST_F(Viewer, StandsWhateverIsDoneToIt) {
         } else if (what < 9) {
             act({"key", keys[static_cast<std::size_t>(upto(static_cast<int>(keys.size())))]});
         } else if (upto(2)) {
-            write(upto(2) ? "radiance.b += 0.2;" : "radiance.b += nothing;");
+            paint(upto(2) ? "radiance.b += 0.2;" : "radiance.b += nothing;");
         } else {
             const bool tiny = upto(2) != 0;
             act({"windowsize", id, tiny ? "1" : "1000", tiny ? "1" : "700"});
