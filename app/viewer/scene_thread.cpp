@@ -183,11 +183,9 @@ struct SceneThread::Impl {
         session->read_depths(made->depths_m);
         made->camera = session->camera();
         made->utc = session->moment();
-        made->sun_text = session->sun_text();
-        made->took_ms = milliseconds_since(began);
         made->sharp = sharp;
         made->answers = answers;
-        ms_a_pixel = made->took_ms / static_cast<double>(pixels);
+        ms_a_pixel = milliseconds_since(began) / static_cast<double>(pixels);
         const std::lock_guard lock(mutex);
         made->number = picture ? picture->number + 1 : 1;
         picture = std::move(made);

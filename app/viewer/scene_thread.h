@@ -45,8 +45,6 @@ struct Picture {
     std::vector<float> depths_m;     ///< as session::Session::read_depths
     scene::Camera camera;
     sun::Instant utc;
-    std::string sun_text;  ///< session::Session::sun_text
-    double took_ms = 0;
     bool sharp = false;  ///< in the window's size, with all its ground and its sun's shadows
 };
 

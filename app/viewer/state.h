@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/frame_block.h"
 #include "viewer/document.h"
 #include "viewer/overlay.h"
 #include "viewer/point_light.h"
@@ -27,7 +28,8 @@ struct Cursor {
 struct State {
     Document document;
     Land land;
-    geo::Geodetic centre;  ///< of the DEM
+    geo::Geodetic centre;                           ///< of the DEM
+    sun::Refraction air = sun::Refraction::none();  ///< over it
     std::unique_ptr<EffectsModel> effects;
     SunDay day;
     std::vector<SunDay> extremes;  ///< the solstices of its year
@@ -52,6 +54,8 @@ struct State {
     std::optional<scene::Effects> new_effects;  ///< for the thread that draws
     std::vector<std::pair<std::string, std::string>> new_values;
 
+    /// The sun is seen from a DEM's middle from now on, through the air that the scene has there.
+    void stand_on(const render::Ground& ground);
     /// Moves the sun. Dates outside 1900-2100 leave it where it is.
     void set_utc(sun::Instant utc);
     /// Other switches or values, of parameters that need another program too. Panels go on with the
@@ -62,6 +66,9 @@ struct State {
 };
 
 void sun_panel(State& state);
+/// "azimuth 114.27°, height 65.13°": where the sun is seen from the DEM's middle.
+std::string sun_figures(const State& state);
+
 void effects_panel(State& state);
 void point_panel(State& state);
 

@@ -30,30 +30,6 @@
 
 namespace relevo::viewer {
 
-void State::set_utc(sun::Instant utc) {
-    const sun::Date date = document.zone.local(utc).wall.date;
-    if (date.year < 1900 || date.year > 2100) return;
-    document.utc = utc;
-    if (day.date == date && !day.points.empty()) return;
-    if (day.date.year != date.year || day.points.empty())
-        extremes = {SunDay::of({date.year, 6, 21}, document.zone, centre),
-                    SunDay::of({date.year, 12, 21}, document.zone, centre)};
-    day = SunDay::of(date, document.zone, centre);
-}
-
-void State::take_effects(bool is_step) {
-    if (!asked_effects) return;
-    const scene::Effects changed = *std::exchange(asked_effects, std::nullopt);
-    try {
-        effects = EffectsModel::of(changed);
-        document.scene.effects = changed;
-        new_effects = changed;
-        step = step || is_step;
-    } catch (const Error& error) {
-        message = error.what();
-    }
-}
-
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -250,11 +226,10 @@ class Viewer {
         state_.land.height_m = [&session](const geo::Geodetic& at) {
             return session.ground_height_m(at);
         };
-        state_.centre = session.ground().frame.origin();
+        state_.stand_on(session.ground());
         Document& document = state_.document;
         document.zone = sun::choose_zone(zone_, state_.centre).zone;
         document.pose = home_ = pose_of(opened_->camera, state_.land);
-        state_.day = {};
         state_.set_utc(last_good_ ? document.utc : opened_->utc);
         history_.add(document);
         window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));

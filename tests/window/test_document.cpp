@@ -1,12 +1,19 @@
 // What a person sets in the viewer, and how it is taken away.
+#include <cstdio>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "base/units.h"
+#include "session/session.h"
+#include "sun/position.h"
+#include "sun/seasons.h"
 #include "support/support.h"
 #include "viewer/document.h"
 #include "viewer/file_watch.h"
+#include "viewer/state.h"
 #include "viewer/sun_model.h"
 
 namespace relevo::viewer {
@@ -83,12 +90,67 @@ TEST(SunModel, MinutesAndDaysOfTheYear) {
     EXPECT_EQ(days_in_month(2024, 2), 29);
     EXPECT_EQ(in_year({2024, 2, 29}, 2026), (sun::Date{2026, 2, 28}));
     // The day's way passes where the sun is.
-    const SunDay day = SunDay::of({2026, 6, 21}, zone, geo::geodetic_deg(46.5, 8, 0));
+    const SunDay day =
+        SunDay::of({2026, 6, 21}, zone, geo::geodetic_deg(46.5, 8, 0), sun::Refraction::none());
     EXPECT_EQ(day.points.size(), 145u);
     double highest = -90;
     for (const SunPoint& point : day.points)
         highest = std::max(highest, point.elevation_deg);
     EXPECT_NEAR(highest, 90 - 46.5 + 23.44, 0.1);
+}
+
+TEST(SunModel, SeasonsHaveTheDateOfTheZone) {
+    // The autumn's equinox of 2026 is at 00:05 UTC on 23 September.
+    const sun::Instant equinox = sun::seasons(2026).september_equinox;
+    const auto label = [&](const char* zone) {
+        return day_label(sun::Zone::named(zone).local(equinox).wall.date);
+    };
+    EXPECT_EQ(label("Europe/Zurich"), "23 Sep");
+    EXPECT_EQ(label("America/New_York"), "22 Sep");
+}
+
+/// What `relevo sun position` has of a place [deg].
+double apparent_elevation_deg(const std::string& place, const std::string& time,
+                              const std::string& refraction) {
+    const std::string command =
+        fmt::format("{} -q sun position --at={} --time {} --refraction {} --json",
+                    (test::build_dir() / "bin/relevo").string(), place, time, refraction);
+    std::FILE* const pipe = popen(command.c_str(), "r");
+    std::string text(4096, ' ');
+    text.resize(std::fread(text.data(), 1, text.size(), pipe));
+    pclose(pipe);
+    return nlohmann::json::parse(text)["apparent_elevation_deg"];
+}
+
+TEST(SunPanel, SaysWhatTheCommandLineSaysInTheSameAir) {
+    const std::string time = "2026-06-21T10:32:00Z";  // low, where air lifts the most
+    for (const char* refraction : {"standard", "none"}) {
+        scene::Scene scene;
+        scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
+        scene.refraction = refraction;
+        scene.effects.switches.only.emplace();
+        FilesInUse files;
+        const session::Session session(scene, {.device = "software"}, files);
+        State state;
+        state.document.scene = scene;
+        state.stand_on(session.ground());
+        state.set_utc(sun::parse_time(time).utc);
+        const geo::Geodetic at = session.ground().frame.origin();
+        const double expected = apparent_elevation_deg(
+            fmt::format("{:.7f},{:.7f},{:.1f}", degrees(at.lat_rad), degrees(at.lon_rad),
+                        session.ground().air_height_m()),
+            time, refraction);
+        ASSERT_GT(expected, 0.2);
+        ASSERT_LT(expected, 3);
+        EXPECT_THAT(sun_figures(state),
+                    testing::EndsWith(fmt::format(", height {:.2f}°", expected)));
+        // And so does the way of the day.
+        const SunPoint& dawn = state.day.points[62];
+        EXPECT_NEAR(
+            dawn.elevation_deg,
+            degrees(state.air.apparent_rad(sun::position(dawn.utc, state.centre).elevation_rad)),
+            1e-9);
+    }
 }
 
 TEST(FileWatch, TellsOfChangesOnceTheyRest) {
