@@ -95,14 +95,15 @@ void profile_panel(const Profile& profile) {
 }
 
 void draw_scale_and_north(const Picture& picture, const Land& land,
-                          const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px) {
+                          const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
+                          float top_px) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     // North, as it is at the eye, on a level plate.
     const geo::Axes axes = land.axes(picture.camera.eye_m);
     const glm::dvec3 right = cross(picture.camera.forward, picture.camera.up);
     const glm::dvec2 north(dot(axes.north, right), dot(axes.north, picture.camera.up));
     const glm::dvec2 east(dot(axes.east, right), dot(axes.east, picture.camera.up));
-    const ImVec2 middle{size_px.x - 46, 46};
+    const ImVec2 middle{size_px.x - 46, 46 + top_px};
     const auto tip = [&](glm::dvec2 way, double length) {
         return ImVec2(middle.x + static_cast<float>(way.x * length),
                       middle.y - static_cast<float>(way.y * length));
@@ -130,11 +131,12 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 24> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 28> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
-        {"Wheel", "nearer to the ground under the cursor, and farther"},
+        {"Wheel, two fingers", "nearer to the ground under the cursor, and farther"},
+        {"Shift + wheel", "move the ground"},
         {"Drag the sun", "along its way of the day"},
         {"Arrows", "turn about the middle"},
         {"Page up, Page down", "nearer, farther"},
@@ -143,16 +145,19 @@ void key_sheet() {
         {"Home, N, T", "the whole DEM, north up, from above"},
         {"[ ]", "half an hour earlier, later; with Shift a day"},
         {"Space", "let the time pass, and pause"},
-        {"Click", "the ground's sun of the day"},
+        {"Click", "the ground's sun of the day, its horizon and year"},
+        {"P", "horizon and year on and off"},
         {"M", "measure from there to the cursor"},
         {"C", "compare: the left stays as it is, the right follows; drag the line"},
         {"F12", "take the picture"},
         {"Ctrl + C", "copy the command that takes it"},
         {"Ctrl + S", "save the scene"},
         {"Ctrl + O", "open a DEM; files can be dropped too"},
+        {"Ctrl + Page down, Page up", "the next DEM of the folder, the one before"},
+        {"B, then 1 to 9", "keep this view; go to one that was kept"},
         {"F5", "read effects and DEM again"},
         {"Ctrl + Z, Ctrl + Y", "undo, redo"},
-        {"Tab", "panels on and off"},
+        {"Tab", "panels and menu on and off"},
         {"H, Esc", "this sheet"},
         {"Ctrl + Q", "end"},
     }};

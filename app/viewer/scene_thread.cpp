@@ -15,7 +15,6 @@
 
 #include "base/error.h"
 #include "gl/texture.h"
-#include "session/session.h"
 
 namespace relevo::viewer {
 namespace {
@@ -46,6 +45,7 @@ std::string text_of(const std::exception& error) {
 struct SceneThread::Impl {
     scene::Scene scene;
     std::string device;
+    std::shared_ptr<const session::LoadedDem> dem;
     std::function<void()> on_change;
 
     mutable std::mutex mutex;
@@ -73,12 +73,16 @@ struct SceneThread::Impl {
         try {
             session::Options options;
             options.device = device;
+            options.dem = std::move(dem);
             FilesInUse files;
             session = std::make_unique<session::Session>(scene, options, files);
-            const std::lock_guard lock(mutex);
+            // The view of the whole DEM hangs on the window's size.
+            std::unique_lock lock(mutex);
+            changed.wait(lock, [&] { return ends || has_new_wants; });
             session->resize(wanted.width_px, wanted.height_px);
-            opened = std::make_shared<Opened>(
-                Opened{session.get(), session->scene(), session->camera(), session->moment()});
+            opened =
+                std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
+                                                session->camera(), session->moment()});
         } catch (...) {
             const std::lock_guard lock(mutex);
             failure = std::current_exception();
@@ -192,11 +196,13 @@ struct SceneThread::Impl {
     }
 };
 
-SceneThread::SceneThread(scene::Scene scene, std::string device, std::function<void()> on_change)
+SceneThread::SceneThread(scene::Scene scene, std::string device, std::function<void()> on_change,
+                         std::shared_ptr<const session::LoadedDem> dem)
     : impl_(std::make_unique<Impl>()) {
     impl_->scene = std::move(scene);
     impl_->device = std::move(device);
     impl_->on_change = std::move(on_change);
+    impl_->dem = std::move(dem);
     impl_->thread = std::thread([this] { impl_->run(); });
 }
 

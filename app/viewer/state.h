@@ -1,6 +1,5 @@
 #pragma once
 
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,10 +7,12 @@
 #include <vector>
 
 #include "render/frame_block.h"
+#include "viewer/command.h"
 #include "viewer/document.h"
 #include "viewer/overlay.h"
 #include "viewer/point_light.h"
 #include "viewer/scene_thread.h"
+#include "viewer/settings.h"
 #include "viewer/sun_model.h"
 
 /// What panels show and change.
@@ -39,15 +40,26 @@ struct State {
     std::string search;
     bool compare_is_wanted = false;  ///< with the effects as they are when it is
 
+    Settings settings;
+    std::vector<std::vector<std::string>> recent;  ///< DEMs that were opened
+    std::vector<SavedView> views;                  ///< of this DEM
+    double spacing_m = 1;                          ///< of its posts, about
+
     std::optional<Cursor> cursor;
-    std::optional<PointLight> point;  ///< that was clicked
-    std::future<PointLight> point_in_work;
-    std::vector<glm::dvec3> measured;  ///< ends of a measured line, up to two
-    std::optional<Profile> profile;    ///< of that line
+    std::optional<geo::Geodetic> chosen;      ///< that was clicked
+    std::shared_ptr<const PointLight> point;  ///< what is known of it; null: nothing yet
+    bool point_in_work = false;               ///< there is more to come
+    std::vector<glm::dvec3> measured;         ///< ends of a measured line, up to two
+    std::optional<Profile> profile;           ///< of that line
 
     std::string message;  ///< the last thing that went wrong, or was done
 
     // What panels have done in this frame.
+    std::vector<Command> commands;
+    std::vector<std::string> files_to_open;
+    std::optional<std::size_t> view_to_go_to;  ///< of views
+    bool views_changed = false;
+    glm::ivec2 chart_px{0};  ///< that drawings of the point have room in; 0: none is shown
     bool sun_moves = false;  ///< a widget of the sun is held
     bool step = false;       ///< a change is done, for undo
     std::optional<scene::Effects> asked_effects;
@@ -70,6 +82,7 @@ void sun_panel(State& state);
 std::string sun_figures(const State& state);
 
 void effects_panel(State& state);
+void menu_bar(State& state);
 void point_panel(State& state);
 
 /// The sun's way of the day over the picture, with its hours; what the ground hides is faint.

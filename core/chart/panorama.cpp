@@ -56,7 +56,7 @@ class Panorama {
             plot_ = {kPanelLeft, kPanelTop, of.panel->width - kPanelLeft - kPanelRight,
                      of.panel->height - kPanelTop - kPanelBottom};
         choose_range();
-        make_foot();
+        if (!of.panel) make_foot();
     }
 
     Drawing draw() {
