@@ -17,8 +17,6 @@ constexpr float kLine_px = 8;   // beside the line of a comparison that take hol
 constexpr float kClick_px = 4;  // that a click may move by
 /// The last turn of the wheel and the last pull of the hand die away so fast [1/s].
 constexpr double kZoomRate = 14, kGlideRate = 7;
-/// A wheel's notch; touchpads send parts of it.
-constexpr double kZoomANotch = 0.25;  // natural logarithm
 constexpr float kPanANotch_px = 60;
 
 }  // namespace
@@ -66,7 +64,7 @@ void Hand::scroll(glm::vec2 mouse) {
     if (by == glm::vec2(0)) return;
     if (!io.KeyShift) {
         zoom_at_ = hold(mouse);
-        zoom_left_ += by.y * kZoomANotch;
+        zoom_left_ -= std::log(zoom_of_scroll(by.y));
         return;
     }
     stop_gliding();

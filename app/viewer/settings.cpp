@@ -42,9 +42,12 @@ json read(const fs::path& file) {
     if (file.empty() || !fs::exists(file, ignored)) return {};
     try {
         return json::parse(read_text(file, "view"));
-    } catch (const std::exception& error) {
-        log::warning(fmt::format("view: {}: {}; it counts as empty", printable(file.string()),
-                                 printable(error.what())));
+    } catch (const Error& error) {
+        log::warning(fmt::format("{}; it counts as empty", error.what()));
+        return {};
+    } catch (const json::exception&) {
+        log::warning(fmt::format("view: {}: no JSON; it counts as empty",
+                                 printable(file.string())));
         return {};
     }
 }
