@@ -79,7 +79,7 @@ void file_menu(State& state) {
     recent_files(state);
     item(state, "Next in its folder", "Ctrl+Page down", Command::NextFile);
     item(state, "Previous in its folder", "Ctrl+Page up", Command::PreviousFile);
-    item(state, "Read again", "F5", Command::ReadAgain);
+    item(state, "Read effects again", "F5", Command::ReadAgain);
     ImGui::Separator();
     item(state, "Take the picture", "F12", Command::TakePicture);
     item(state, "Copy the command that takes it", "Ctrl+C", Command::CopyCommand);

@@ -94,6 +94,19 @@ void profile_panel(const Profile& profile) {
     ImGui::Text("%.0f m up, %.0f m down", profile.up_m, profile.down_m);
 }
 
+void draw_sides(float line_px, float top_px) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const auto label = [&](const char* words, bool left) {
+        const ImVec2 extent = ImGui::CalcTextSize(words);
+        const ImVec2 at{left ? line_px - extent.x - 14 : line_px + 14, top_px + 8};
+        list.AddRectFilled({at.x - 6, at.y - 3}, {at.x + extent.x + 6, at.y + extent.y + 3}, kShade,
+                           4);
+        list.AddText(at, kInk, words);
+    };
+    label("as it was", true);
+    label("as it is now", false);
+}
+
 void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
                           float top_px) {
@@ -120,14 +133,15 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     constexpr double kBar_px = 160;
     const double length_m = round_length(kBar_px * m_a_px);
     const auto width = static_cast<float>(length_m / m_a_px);
+    const std::string text = length_text(length_m) + " here";
+    const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
     const ImVec2 end{size_px.x - 24, size_px.y - 24};
-    list.AddRectFilled({end.x - width - 8, end.y - 26}, {end.x + 8, end.y + 8}, kShade, 4);
+    const float wide = std::max(width, extent.x), tall = extent.y + 10;
+    list.AddRectFilled({end.x - wide - 8, end.y - tall}, {end.x + 8, end.y + 8}, kShade, 4);
     list.AddLine({end.x - width, end.y}, end, kInk, 2);
     list.AddLine({end.x - width, end.y - 5}, {end.x - width, end.y + 1}, kInk, 2);
     list.AddLine({end.x, end.y - 5}, {end.x, end.y + 1}, kInk, 2);
-    const std::string text = length_text(length_m) + " here";
-    const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
-    list.AddText({end.x - width / 2 - extent.x / 2, end.y - 22}, kInk, text.c_str());
+    list.AddText({end.x - wide / 2 - extent.x / 2, end.y - tall + 3}, kInk, text.c_str());
 }
 
 void key_sheet() {
@@ -155,7 +169,7 @@ void key_sheet() {
         {"Ctrl + O", "open a DEM; files can be dropped too"},
         {"Ctrl + Page down, Page up", "the next DEM of the folder, the one before"},
         {"B, then 1 to 9", "keep this view; go to one that was kept"},
-        {"F5", "read effects and DEM again"},
+        {"F5", "read effects again, which happens by itself when their files are written"},
         {"Ctrl + Z, Ctrl + Y", "undo, redo"},
         {"Tab", "panels and menu on and off"},
         {"H, Esc", "this sheet"},

@@ -62,7 +62,9 @@ class Worker {
             day_zone_ = wanted_.zone.name();
         }
         for (const light::LitInterval& interval : day_->lit)
-            to.lit.push_back({interval.begin.utc, interval.end.utc});
+            to.lit.push_back({{interval.begin.utc, interval.end.utc},
+                              interval.begin.midnight,
+                              interval.end.midnight});
         to.lit_s = day_->lit_s;
         to.not_known_s = day_->not_known_s;
         to.flat_s = day_->flat.day_length_s;
@@ -128,15 +130,14 @@ class Worker {
 }  // namespace
 
 bool PointLight::is_lit(sun::Instant utc) const {
-    return std::any_of(lit.begin(), lit.end(), [&](const sun::TimeSpan& span) {
-        return span.begin <= utc && utc < span.end;
-    });
+    return std::any_of(lit.begin(), lit.end(),
+                       [&](const LitSpan& span) { return span.begin <= utc && utc < span.end; });
 }
 
 std::optional<sun::Instant> PointLight::next_change(sun::Instant utc) const {
-    for (const sun::TimeSpan& span : lit) {
-        if (utc < span.begin) return span.begin;
-        if (utc < span.end) return span.end;
+    for (const LitSpan& span : lit) {
+        if (utc < span.begin && !span.from_midnight) return span.begin;
+        if (utc < span.end && !span.to_midnight) return span.end;
     }
     return std::nullopt;
 }

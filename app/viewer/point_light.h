@@ -42,10 +42,15 @@ struct YearPicture {
     double lit_s = 0, level_s = 0;
 };
 
+/// A stretch of a day with sun. Where it shines at midnight the day begins or ends, not the light.
+struct LitSpan : sun::TimeSpan {
+    bool from_midnight = false, to_midnight = false;
+};
+
 /// When the sun reaches a point of the ground on a day.
 struct PointLight {
     PointWanted of;
-    std::vector<sun::TimeSpan> lit;
+    std::vector<LitSpan> lit;
     double lit_s = 0, flat_s = 0;  ///< of that day, here and over a flat horizon
     double not_known_s = 0;        ///< of lit_s, for holes of the DEM
     /// Where the DEM ends too near to be sure: azimuths [deg], from and to.
@@ -55,7 +60,7 @@ struct PointLight {
     std::string error;                              ///< why there is no answer
 
     bool is_lit(sun::Instant utc) const;
-    /// When that changes next on that day.
+    /// When that changes next on that day; none: not any more.
     std::optional<sun::Instant> next_change(sun::Instant utc) const;
 };
 

@@ -51,7 +51,7 @@ struct SceneThread::Impl {
     mutable std::mutex mutex;
     std::condition_variable changed;
     Wanted wanted;
-    bool has_new_wants = false, ends = false;
+    bool has_new_wants = false, ends = false, rests = false;
     std::optional<scene::Effects> effects;
     std::map<std::string, std::string> values;
     std::shared_ptr<const Picture> picture;
@@ -96,9 +96,12 @@ struct SceneThread::Impl {
         bool sharp = false;
         std::unique_lock lock(mutex);
         while (!ends) {
-            changed.wait(lock, [&] {
+            const auto is_asked = [&] {
                 return ends || has_new_wants || effects || !values.empty() || !sharp;
-            });
+            };
+            rests = !is_asked();
+            changed.wait(lock, is_asked);
+            rests = false;
             if (ends) return;
             const Wanted now = wanted;
             const auto new_effects = std::exchange(effects, std::nullopt);
@@ -252,6 +255,11 @@ void SceneThread::want_value(const std::string& address, const std::string& valu
         ++impl_->wants;
     }
     impl_->changed.notify_one();
+}
+
+bool SceneThread::rests() const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->rests && !impl_->has_new_wants;
 }
 
 std::uint64_t SceneThread::wants() const {

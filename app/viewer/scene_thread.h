@@ -71,6 +71,8 @@ class SceneThread {
     /// A value of a parameter that is not static.
     void want_value(const std::string& address, const std::string& value);
 
+    /// Whether there is nothing left to draw.
+    bool rests() const;
     /// How often something was wanted.
     std::uint64_t wants() const;
 

@@ -46,8 +46,8 @@ json read(const fs::path& file) {
         log::warning(fmt::format("{}; it counts as empty", error.what()));
         return {};
     } catch (const json::exception&) {
-        log::warning(fmt::format("view: {}: no JSON; it counts as empty",
-                                 printable(file.string())));
+        log::warning(
+            fmt::format("view: {}: no JSON; it counts as empty", printable(file.string())));
         return {};
     }
 }

@@ -125,6 +125,11 @@ class Viewer {
         before_->want(wanted_now());
     }
 
+    /// Whether the picture is late, so that it is said.
+    bool is_drawing() const {
+        return is_open() && rested_ && !scene_->rests() && seconds_since(moved_at_) > 2 * kRest_s;
+    }
+
     void stop_comparing() {
         discard_.take(std::move(before_));
         picture_before_ = nullptr;
@@ -155,7 +160,7 @@ class Viewer {
     double waiting_s() const {
         if (busy_frames_ > 0 || state_.playing || hand_->is_moving()) return 0.008;
         if (!rested_) return 0.05;
-        return kWatch_s;
+        return is_drawing() ? 0.25 : kWatch_s;
     }
 
     void read_thread() {
@@ -352,6 +357,7 @@ class Viewer {
                 return true;
             case Command::CloseKeys:
                 sheet_ = false;
+                closes_menus_ = true;
                 state_.message.clear();
                 return true;
             default:
@@ -631,6 +637,8 @@ class Viewer {
     }
 
     void panels() {
+        // No focus on any of them: menus close.
+        if (std::exchange(closes_menus_, false)) ImGui::SetWindowFocus(nullptr);
         if (!is_open()) {
             if (state_.settings.panels) menu_bar(state_);
             waiting_text();
@@ -642,6 +650,7 @@ class Viewer {
             const float top = state_.settings.panels ? ImGui::GetFrameHeight() : 0;
             draw_scale_and_north(*picture_, state_.land, hand_->ground_at(0.5f * size()), size(),
                                  top);
+            if (before_) draw_sides(window_->line() * size().x, top);
         }
         if (state_.settings.panels) {
             menu_bar(state_);
@@ -725,6 +734,7 @@ class Viewer {
         } else {
             text = "H: keys";
         }
+        if (is_drawing()) text += "   drawing ...";
         ImDrawList& list = *ImGui::GetForegroundDrawList();
         const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
         const ImVec2 at{12, ImGui::GetIO().DisplaySize.y - extent.y - 10};
@@ -829,6 +839,7 @@ class Viewer {
 
     Clock::time_point frame_at_ = Clock::now(), moved_at_ = Clock::now();
     bool rested_ = true, sheet_ = false, takes_when_sharp_ = false;
+    bool closes_menus_ = false;
     int busy_frames_ = 3;  // that panels still need to settle
 };
 

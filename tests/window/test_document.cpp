@@ -234,13 +234,26 @@ TEST(PointWork, HasTheFiguresOfTheCommandLine) {
         work.want(wanted);
         while (!work.is_done())
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        const auto json = json_of(
-            fmt::format("sun day {} --at 36.3,-84.2 --date 2026-02-10 {} --json",
-                        (test::source_dir() / "data/dem/jacksboro.tif").string(),
-            wanted.refraction == "none" ? "--no-refraction" : ""));
+        const auto json =
+            json_of(fmt::format("sun day {} --at 36.3,-84.2 --date 2026-02-10 {} --json",
+                                (test::source_dir() / "data/dem/jacksboro.tif").string(),
+                                wanted.refraction == "none" ? "--no-refraction" : ""));
         EXPECT_NEAR(work.answer()->lit_s / 3600, json["direct_sun_h"], 1e-6);
         EXPECT_NEAR(work.answer()->flat_s / 3600, json["day_length_h"], 1e-6);
     }
+}
+
+TEST(PointLight, MidnightIsNoEdgeOfTheLight) {
+    PointLight light;
+    const sun::Instant begin = sun::parse_time("2026-06-21T00:00Z").utc;
+    light.lit = {{{begin, begin + 86400.0}, true, true}};
+    EXPECT_TRUE(light.is_lit(begin + 3600.0));
+    EXPECT_FALSE(light.next_change(begin + 3600.0));
+    light.lit = {{{begin, begin + 7200.0}, true, false},
+                 {{begin + 9000.0, begin + 86400.0}, false, true}};
+    EXPECT_EQ(light.next_change(begin + 3600.0), begin + 7200.0);
+    EXPECT_EQ(light.next_change(begin + 8000.0), begin + 9000.0);
+    EXPECT_FALSE(light.next_change(begin + 10000.0));
 }
 
 TEST(PointWork, APointInNoDemHasWordsForAnAnswer) {
