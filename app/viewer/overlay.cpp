@@ -86,12 +86,12 @@ void profile_panel(const Profile& profile) {
         std::minmax_element(profile.heights_m.begin(), profile.heights_m.end(),
                             [](float a, float b) { return !(a >= b) && !std::isnan(b); });
     ImGui::PlotLines("##profile", profile.heights_m.data(),
-                     static_cast<int>(profile.heights_m.size()), 0,
-                     fmt::format("{:.0f} to {:.0f} m", *low, *high).c_str(), *low, *high,
+                     static_cast<int>(profile.heights_m.size()), 0, nullptr, *low, *high,
                      {ImGui::GetContentRegionAvail().x, 90});
     ImGui::Text("%s level, %s over the ground%s", length_text(profile.level_m).c_str(),
                 length_text(profile.surface_m).c_str(), profile.has_holes ? " without holes" : "");
-    ImGui::Text("%.0f m up, %.0f m down", profile.up_m, profile.down_m);
+    ImGui::Text("%.0f m up, %.0f m down, between %.0f and %.0f m", profile.up_m, profile.down_m,
+                *low, *high);
 }
 
 void draw_sides(float line_px, float top_px) {
