@@ -83,6 +83,16 @@ std::string sun_figures(const State& state);
 
 void effects_panel(State& state);
 void menu_bar(State& state);
+/// Those that are about the scene, one below the other.
+/// @param size_px    of the window; likewise below
+/// @param px_a_unit  of what is made for usual letters; likewise
+void side_panel(State& state, glm::vec2 size_px, double px_a_unit);
+/// The ground under the cursor, at the lower edge.
+void status_line(const State& state, bool is_drawing);
+/// While no scene is open.
+void waiting_text(const State& state, bool has_failed);
+/// State::message, at the upper edge, also where there are no panels.
+void message_box(State& state, glm::vec2 size_px, double px_a_unit);
 void point_panel(State& state);
 
 /// The sun's way of the day over the picture, with its hours; what the ground hides is faint.

@@ -32,7 +32,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr float kPanel_px = 360;
 /// After the last input the hand counts as moving for so long.
 constexpr double kRest_s = 0.15;
 /// What comes after so long is another step of undo.
@@ -296,6 +295,10 @@ class Viewer {
     /// The chosen point's light is that of the day that is shown.
     void follow_the_day() {
         if (!state_.chosen) return;
+        const bool same = asked_point_ && asked_point_->date == state_.day.date &&
+                          asked_point_->chart_px == state_.chart_px &&
+                          asked_point_->px_a_unit == unit();
+        if (same) return;
         PointWanted wanted;
         wanted.dem = opened_->dem;
         wanted.dems = opened_->scene.dems;
@@ -306,10 +309,6 @@ class Viewer {
         wanted.zone = state_.document.zone;
         wanted.chart_px = state_.chart_px;
         wanted.px_a_unit = unit();
-        const bool same = asked_point_ && asked_point_->date == wanted.date &&
-                          asked_point_->chart_px == wanted.chart_px &&
-                          asked_point_->px_a_unit == wanted.px_a_unit;
-        if (same) return;
         asked_point_ = wanted;
         point_work_->want(std::move(wanted));
     }
@@ -641,7 +640,7 @@ class Viewer {
         if (std::exchange(closes_menus_, false)) ImGui::SetWindowFocus(nullptr);
         if (!is_open()) {
             if (state_.settings.panels) menu_bar(state_);
-            waiting_text();
+            waiting_text(state_, has_failed_);
             return;
         }
         if (picture_) {
@@ -654,93 +653,12 @@ class Viewer {
         }
         if (state_.settings.panels) {
             menu_bar(state_);
-            side_panel();
+            side_panel(state_, size(), unit());
             charts_.draw(state_, size(), unit());
         }
-        status_line();
-        message_box();
+        status_line(state_, is_drawing());
+        message_box(state_, size(), unit());
         if (sheet_) key_sheet();
-    }
-
-    /// At the upper edge, also where there are no panels. What was done goes by itself, what went
-    /// wrong stays.
-    void message_box() {
-        if (state_.message.empty()) return;
-        const float width = std::max(size().x - 2 * static_cast<float>((kPanel_px + 30) * unit()),
-                                     std::min(size().x - 20, 420.0f));
-        ImGui::SetNextWindowPos({size().x / 2, ImGui::GetFrameHeight() + 10}, ImGuiCond_Always,
-                                {0.5f, 0});
-        ImGui::SetNextWindowSizeConstraints({0, 0}, {width, size().y / 2});
-        ImGui::Begin("##message", nullptr,
-                     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                         ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove);
-        if (ImGui::SmallButton("x")) state_.message.clear();
-        ImGui::SameLine();
-        ImGui::PushTextWrapPos(width - 20);
-        ImGui::TextUnformatted(state_.message.c_str());
-        ImGui::PopTextWrapPos();
-        ImGui::End();
-    }
-
-    void waiting_text() const {
-        ImGui::SetNextWindowPos({20, 20 + ImGui::GetFrameHeight()});
-        ImGui::Begin("##opening", nullptr,
-                     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
-        if (has_failed_)
-            ImGui::TextWrapped("%s", state_.message.c_str());
-        else
-            ImGui::Text("opening %s ...", printable(state_.document.scene.dems.front()).c_str());
-        ImGui::End();
-    }
-
-    void side_panel() {
-        const auto width = static_cast<float>(kPanel_px * unit());
-        const float top = 10 + ImGui::GetFrameHeight();
-        ImGui::SetNextWindowPos({10, top}, ImGuiCond_FirstUseEver);
-        ImGui::SetNextWindowSizeConstraints({width, 60}, {width, size().y - top - 50});
-        ImGui::Begin("Relevo", nullptr,
-                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
-        constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
-        if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state_);
-        if (ImGui::CollapsingHeader("Point", kOpen)) point_panel(state_);
-        if (state_.profile && ImGui::CollapsingHeader("Profile", kOpen))
-            profile_panel(*state_.profile);
-        if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state_);
-        if (ImGui::CollapsingHeader("Take it away", kOpen)) take_away_panel();
-        ImGui::End();
-    }
-
-    void take_away_panel() {
-        const auto button = [&](const char* name, Command command) {
-            if (ImGui::Button(name)) state_.commands.push_back(command);
-        };
-        button("Picture (F12)", Command::TakePicture);
-        ImGui::SameLine();
-        button("Copy command", Command::CopyCommand);
-        ImGui::SameLine();
-        button("Save scene", Command::SaveScene);
-    }
-
-    void status_line() {
-        std::string text;
-        if (state_.cursor) {
-            const Cursor& at = *state_.cursor;
-            text = fmt::format("{}   {:.1f} m",
-                               coordinates_text(at.place, state_.settings.coordinates),
-                               at.place.height_m);
-            if (!std::isnan(at.slope_deg)) text += fmt::format("   slope {:.1f}°", at.slope_deg);
-            if (!std::isnan(at.slope_deg) && !std::isnan(at.aspect_deg))
-                text += fmt::format(" to {:.0f}°", at.aspect_deg);
-        } else {
-            text = "H: keys";
-        }
-        if (is_drawing()) text += "   drawing ...";
-        ImDrawList& list = *ImGui::GetForegroundDrawList();
-        const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
-        const ImVec2 at{12, ImGui::GetIO().DisplaySize.y - extent.y - 10};
-        list.AddRectFilled({at.x - 6, at.y - 4}, {at.x + extent.x + 6, at.y + extent.y + 4},
-                           IM_COL32(0, 0, 0, 150), 4);
-        list.AddText(at, IM_COL32(255, 255, 255, 235), text.c_str());
     }
 
     // ---- to the threads that work

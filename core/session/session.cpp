@@ -93,9 +93,8 @@ struct Session::Impl {
         const bool timed = !scene.moment.time.empty();
         if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
         // Where the system gives no further thread it is read when it is waited for.
-        auto loading =
-            std::async(std::launch::async | std::launch::deferred,
-                       [this] { return options.dem ? options.dem : load(scene); });
+        auto loading = std::async(std::launch::async | std::launch::deferred,
+                                  [this] { return options.dem ? options.dem : load(scene); });
         open_device(files);
         const auto began = Clock::now();
         compile(drawn);

@@ -33,7 +33,8 @@ struct Options {
     std::string device = "auto";  ///< as gl::Context takes it
     /// Gives the context of a window instead of one on `device`.
     std::function<gl::Context()> context{};
-    /// The scene's DEM where it has been read already, such as for another session; else it is read.
+    /// The scene's DEM where it has been read already, such as for another session; else it is
+    /// read.
     std::shared_ptr<const LoadedDem> dem{};
     bool radiance = false;  ///< keep linear light, for Session::radiance()
     /// Effects of a comparison: pictures have them on the left and not on the right.
