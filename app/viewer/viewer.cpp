@@ -41,7 +41,7 @@ constexpr double kWatch_s = 1;
 /// What was done is told of for so long.
 constexpr double kTold_s = 8;
 /// At the end work in progress is waited for so long; reading a large DEM may take longer.
-constexpr auto kLeave = std::chrono::milliseconds(1500);
+constexpr auto kLeave = std::chrono::milliseconds(600);
 
 double seconds_since(Clock::time_point began) {
     return std::chrono::duration<double>(Clock::now() - began).count();

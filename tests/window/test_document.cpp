@@ -329,7 +329,7 @@ TEST(Memory, KeepsWhatWasWrittenAndStandsWhateverIsThere) {
     EXPECT_EQ(none.settings(), Settings{});
 }
 
-TEST(Navigation, ScrollingIsByAsMuchAsTheFingersMove) {
+TEST(Scrolling, IsByAsMuchAsTheFingersMove) {
     // Ten tenths of a notch are a notch.
     EXPECT_NEAR(std::pow(zoom_of_scroll(0.1), 10), zoom_of_scroll(1), 1e-12);
     EXPECT_NEAR(1 - zoom_of_scroll(0.01), 0.01 * -std::log(zoom_of_scroll(1)), 1e-5);
