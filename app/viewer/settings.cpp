@@ -223,8 +223,11 @@ void Memory::write_views(const std::vector<std::string>& dems,
 
 std::vector<std::string> absolute_names(std::vector<std::string> dems) {
     for (std::string& dem : dems) {
-        std::error_code ignored;
-        if (fs::exists(dem, ignored)) dem = fs::absolute(dem, ignored).lexically_normal().string();
+        std::error_code error;
+        if (!fs::exists(dem, error)) continue;
+        // The working folder may be gone.
+        const fs::path whole = fs::absolute(dem, error);
+        if (!error) dem = whole.lexically_normal().string();
     }
     return dems;
 }
