@@ -108,6 +108,24 @@ scene::Scene Document::whole(const Land& land) const {
     return result;
 }
 
+SavedView saved_view(const Document& document, const Land& land, std::string name) {
+    const Pose& pose = document.pose;
+    return {.name = std::move(name),
+            .eye = view_of(pose, land).eye->place,
+            .heading_deg = pose.heading_deg,
+            .pitch_deg = pose.pitch_deg,
+            .fov_y_rad = pose.fov_y_rad,
+            .utc = document.utc};
+}
+
+Pose pose_of(const SavedView& view, const Land& land) {
+    return {.eye_m = land.frame->to_local(
+                {view.eye.lat_rad, view.eye.lon_rad, view.eye.height_m * land.exaggeration}),
+            .heading_deg = view.heading_deg,
+            .pitch_deg = view.pitch_deg,
+            .fov_y_rad = view.fov_y_rad};
+}
+
 void History::add(const Document& document) {
     if (!states_.empty()) states_.resize(at_ + 1);
     states_.push_back(document);

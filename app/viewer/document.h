@@ -9,6 +9,7 @@
 #include "session/active_effects.h"
 #include "sun/zone.h"
 #include "viewer/navigation.h"
+#include "viewer/settings.h"
 
 namespace relevo::viewer {
 
@@ -23,6 +24,9 @@ struct Document {
     /// @param land  of the pose
     scene::Scene whole(const Land& land) const;
 };
+
+SavedView saved_view(const Document& document, const Land& land, std::string name);
+Pose pose_of(const SavedView& view, const Land& land);
 
 /// What was, step by step.
 class History {

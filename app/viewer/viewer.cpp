@@ -247,10 +247,8 @@ class Viewer {
         has_gone_back_ = false;
         const std::vector<std::string> names = absolute_names(scene.dems);
         state_.views = memory_.views(names);
-        say_or_fail([&] {
-            memory_.add_recent(names);
-            state_.recent = memory_.recent();
-        });
+        remember([&] { memory_.add_recent(names); });
+        state_.recent = memory_.recent();
         watch(scene);
         busy_frames_ = 3;
     }
@@ -454,15 +452,8 @@ class Viewer {
     // ---- views and settings that are kept
 
     void keep_view() {
-        SavedView view;
-        view.name = fmt::format("View {}", state_.views.size() + 1);
-        const Pose& pose = state_.document.pose;
-        const scene::View seen = view_of(pose, state_.land);
-        view.eye = seen.eye->place;
-        view.heading_deg = pose.heading_deg;
-        view.pitch_deg = pose.pitch_deg;
-        view.fov_y_rad = pose.fov_y_rad;
-        view.utc = state_.document.utc;
+        const SavedView view = saved_view(state_.document, state_.land,
+                                          fmt::format("View {}", state_.views.size() + 1));
         state_.views.push_back(view);
         tell(state_.views.size() < 10
                  ? fmt::format("{} is kept; key {} goes back to it", view.name, state_.views.size())
@@ -475,12 +466,7 @@ class Viewer {
         const SavedView& view = state_.views[i];
         end_step();
         hand_->rest();
-        Pose& pose = state_.document.pose;
-        pose.eye_m = state_.land.frame->to_local(
-            {view.eye.lat_rad, view.eye.lon_rad, view.eye.height_m * state_.land.exaggeration});
-        pose.heading_deg = view.heading_deg;
-        pose.pitch_deg = view.pitch_deg;
-        pose.fov_y_rad = view.fov_y_rad;
+        state_.document.pose = pose_of(view, state_.land);
         state_.set_utc(view.utc);
         moved();
         state_.step = true;
@@ -504,7 +490,17 @@ class Viewer {
     void remember_settings() {
         if (state_.settings == written_) return;
         written_ = state_.settings;
-        say_or_fail([&] { memory_.write(written_); });
+        remember([&] { memory_.write(written_); });
+    }
+
+    /// A home that nothing can be written to is not what the window is for.
+    template <typename Do>
+    static void remember(const Do& act) {
+        try {
+            act();
+        } catch (const Error& error) {
+            log::warning(error.what());
+        }
     }
 
     // ---- taking it away
