@@ -215,8 +215,8 @@ TEST_F(Viewer, NeverWaitsForADemThatIsStillBeingRead) {
     fmt::print("[ measured ] replaced after {:.1f} s, closed after {:.1f} s; read in {:.1f} s\n",
                replaced_s, closed_s, read_s);
     EXPECT_LT(replaced_s, 0.5 * read_s);
-    EXPECT_LT(closed_s, 3);
-    EXPECT_GT(read_s, 5);
+    EXPECT_LT(closed_s, 0.5 * read_s);
+    ASSERT_GT(read_s, 2) << "too soon to tell";
 }
 
 }  // namespace
