@@ -16,12 +16,6 @@
 
 namespace relevo::cli {
 
-namespace {
-
-constexpr std::int64_t kBytesAPost = sizeof(float);
-
-}  // namespace
-
 void DemArguments::add_to(CLI::App& verb) {
     dem_option = verb.add_option("DEM", paths,
                                  "Elevation rasters: anything GDAL opens; several are one DEM");
@@ -62,8 +56,7 @@ void DemArguments::add_to(CLI::App& verb) {
             "Edges of the raster instead of its georeference: W,S,E,N in degrees")
         ->group("DEM");
     verb.add_option_function<int>(
-            "--memory",
-            [this](int mib) { options.max_posts = (std::int64_t{mib} << 20) / kBytesAPost; },
+            "--memory", [this](int mib) { options.max_posts = dem::posts_in_mib(mib); },
             "MiB of heights that are kept; a larger DEM is averaged, and drawn in detail where it "
             "is near (1024)")
         ->check(whole_number())

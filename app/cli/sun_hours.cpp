@@ -66,6 +66,9 @@ void run(const Arguments& arguments) {
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
     options.step_s = 60 * arguments.step_min;
     options.spells = arguments.bands != std::vector<std::string>{"hours"};
+    if (options.spells && end - begin > 86400 * light::SunHoursOptions::kMostDays)
+        bad_usage(fmt::format("--bands: first, last and spells are known of {:.10g} days at most",
+                              light::SunHoursOptions::kMostDays));
     light::SunHours hours = light::sun_hours(posts, begin, end, options);
     warn_of_holes(hours.holes);
     const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);

@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include "base/units.h"
-#include "render/renderer.h"
 
 namespace relevo::viewer {
 namespace {
@@ -70,7 +69,7 @@ void add_dem(Command& command, const scene::Scene& scene) {
                        fmt::format("{},{},{},{}", dem.bounds->west_deg, dem.bounds->south_deg,
                                    dem.bounds->east_deg, dem.bounds->north_deg));
     if (dem.max_posts != dem::LoadOptions{}.max_posts)
-        command.option("--memory", std::to_string(dem.max_posts * 4 >> 20));
+        command.option("--memory", std::to_string(dem::mib_of_posts(dem.max_posts)));
 }
 
 void add_view(Command& command, const scene::Scene& scene) {
@@ -109,6 +108,24 @@ scene::Scene Document::whole(const Land& land) const {
     return result;
 }
 
+SavedView saved_view(const Document& document, const Land& land, std::string name) {
+    const Pose& pose = document.pose;
+    return {.name = std::move(name),
+            .eye = view_of(pose, land).eye->place,
+            .heading_deg = pose.heading_deg,
+            .pitch_deg = pose.pitch_deg,
+            .fov_y_rad = pose.fov_y_rad,
+            .utc = document.utc};
+}
+
+Pose pose_of(const SavedView& view, const Land& land) {
+    return {.eye_m = land.frame->to_local(
+                {view.eye.lat_rad, view.eye.lon_rad, view.eye.height_m * land.exaggeration}),
+            .heading_deg = view.heading_deg,
+            .pitch_deg = view.pitch_deg,
+            .fov_y_rad = view.fov_y_rad};
+}
+
 void History::add(const Document& document) {
     if (!states_.empty()) states_.resize(at_ + 1);
     states_.push_back(document);
@@ -133,18 +150,9 @@ const Document& History::redo() {
 }
 
 std::unique_ptr<EffectsModel> EffectsModel::of(const scene::Effects& effects) {
-    auto model = std::make_unique<EffectsModel>();
-    model->registry =
-        effect::Registry::load_installed({effects.plugin_path.begin(), effects.plugin_path.end()});
-    std::vector<effect::Preset> presets;
-    for (const std::string& preset : effects.presets)
-        presets.push_back(effect::load_preset(preset));
-    std::vector<shader::Param> params = model->registry.params();
-    for (const shader::Param& param : render::core_params())
-        params.push_back(param);
-    model->values.declare(params, model->registry.texts());
-    model->selection = effect::select(model->registry, presets, effects.switches);
-    effect::apply_settings(model->values, model->registry, model->selection, presets,
+    auto model = std::make_unique<EffectsModel>(effects);
+    model->selection = effect::select(model->registry, model->presets, effects.switches);
+    effect::apply_settings(model->values, model->registry, model->selection, model->presets,
                            effects.settings);
     return model;
 }

@@ -4,13 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "effect/preset.h"
-#include "effect/registry.h"
 #include "effect/selection.h"
 #include "scene/scene.h"
-#include "shader/param_store.h"
+#include "session/active_effects.h"
 #include "sun/zone.h"
 #include "viewer/navigation.h"
+#include "viewer/settings.h"
 
 namespace relevo::viewer {
 
@@ -25,6 +24,9 @@ struct Document {
     /// @param land  of the pose
     scene::Scene whole(const Land& land) const;
 };
+
+SavedView saved_view(const Document& document, const Land& land, std::string name);
+Pose pose_of(const SavedView& view, const Land& land);
 
 /// What was, step by step.
 class History {
@@ -44,11 +46,10 @@ class History {
 };
 
 /// The effects there are and what is on, without a device: for panels.
-struct EffectsModel {
-    effect::Registry registry;
+struct EffectsModel : session::InstalledEffects {
     effect::Selection selection;  ///< points into registry
-    shader::ParamStore values;
 
+    using InstalledEffects::InstalledEffects;
     /// @throws Error (BadInput) as those who load and select
     static std::unique_ptr<EffectsModel> of(const scene::Effects& effects);
 };

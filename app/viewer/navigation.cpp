@@ -141,6 +141,10 @@ Pose zoom(const Pose& pose, const Land& land, const glm::dvec3& point_m, double 
     return above_ground(moved, land);
 }
 
+double zoom_of_scroll(double notches) {
+    return std::exp(-0.25 * notches);
+}
+
 Pose look_around(const Pose& pose, double right_deg, double up_deg) {
     Pose turned = pose;
     turned.heading_deg = wrapped_deg(pose.heading_deg + right_deg);

@@ -56,6 +56,9 @@ Pose pan(const Pose& pose, const Land& land, const glm::dvec3& grabbed_m, glm::d
          double aspect);
 /// Nearer to a point, which stays where it is in the picture. @param factor  of the distance
 Pose zoom(const Pose& pose, const Land& land, const glm::dvec3& point_m, double factor);
+/// The factor of the distance that a wheel's turn means. @param notches  touchpads send parts of
+/// one
+double zoom_of_scroll(double notches);
 /// Turns the head.
 Pose look_around(const Pose& pose, double right_deg, double up_deg);
 /// Flies: right, forward as it looks, up [m].

@@ -86,23 +86,37 @@ void profile_panel(const Profile& profile) {
         std::minmax_element(profile.heights_m.begin(), profile.heights_m.end(),
                             [](float a, float b) { return !(a >= b) && !std::isnan(b); });
     ImGui::PlotLines("##profile", profile.heights_m.data(),
-                     static_cast<int>(profile.heights_m.size()), 0,
-                     fmt::format("{:.0f} to {:.0f} m", *low, *high).c_str(), *low, *high,
+                     static_cast<int>(profile.heights_m.size()), 0, nullptr, *low, *high,
                      {ImGui::GetContentRegionAvail().x, 90});
     ImGui::Text("%s level, %s over the ground%s", length_text(profile.level_m).c_str(),
                 length_text(profile.surface_m).c_str(), profile.has_holes ? " without holes" : "");
-    ImGui::Text("%.0f m up, %.0f m down", profile.up_m, profile.down_m);
+    ImGui::Text("%.0f m up, %.0f m down, between %.0f and %.0f m", profile.up_m, profile.down_m,
+                *low, *high);
+}
+
+void draw_sides(float line_px, float top_px) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const auto label = [&](const char* words, bool left) {
+        const ImVec2 extent = ImGui::CalcTextSize(words);
+        const ImVec2 at{left ? line_px - extent.x - 14 : line_px + 14, top_px + 8};
+        list.AddRectFilled({at.x - 6, at.y - 3}, {at.x + extent.x + 6, at.y + extent.y + 3}, kShade,
+                           4);
+        list.AddText(at, kInk, words);
+    };
+    label("as it was", true);
+    label("as it is now", false);
 }
 
 void draw_scale_and_north(const Picture& picture, const Land& land,
-                          const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px) {
+                          const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
+                          float top_px) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     // North, as it is at the eye, on a level plate.
     const geo::Axes axes = land.axes(picture.camera.eye_m);
     const glm::dvec3 right = cross(picture.camera.forward, picture.camera.up);
     const glm::dvec2 north(dot(axes.north, right), dot(axes.north, picture.camera.up));
     const glm::dvec2 east(dot(axes.east, right), dot(axes.east, picture.camera.up));
-    const ImVec2 middle{size_px.x - 46, 46};
+    const ImVec2 middle{size_px.x - 46, 46 + top_px};
     const auto tip = [&](glm::dvec2 way, double length) {
         return ImVec2(middle.x + static_cast<float>(way.x * length),
                       middle.y - static_cast<float>(way.y * length));
@@ -119,22 +133,24 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     constexpr double kBar_px = 160;
     const double length_m = round_length(kBar_px * m_a_px);
     const auto width = static_cast<float>(length_m / m_a_px);
+    const std::string text = length_text(length_m) + " here";
+    const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
     const ImVec2 end{size_px.x - 24, size_px.y - 24};
-    list.AddRectFilled({end.x - width - 8, end.y - 26}, {end.x + 8, end.y + 8}, kShade, 4);
+    const float wide = std::max(width, extent.x), tall = extent.y + 10;
+    list.AddRectFilled({end.x - wide - 8, end.y - tall}, {end.x + 8, end.y + 8}, kShade, 4);
     list.AddLine({end.x - width, end.y}, end, kInk, 2);
     list.AddLine({end.x - width, end.y - 5}, {end.x - width, end.y + 1}, kInk, 2);
     list.AddLine({end.x, end.y - 5}, {end.x, end.y + 1}, kInk, 2);
-    const std::string text = length_text(length_m) + " here";
-    const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
-    list.AddText({end.x - width / 2 - extent.x / 2, end.y - 22}, kInk, text.c_str());
+    list.AddText({end.x - wide / 2 - extent.x / 2, end.y - tall + 3}, kInk, text.c_str());
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 24> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 28> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
-        {"Wheel", "nearer to the ground under the cursor, and farther"},
+        {"Wheel, two fingers", "nearer to the ground under the cursor, and farther"},
+        {"Shift + wheel", "move the ground"},
         {"Drag the sun", "along its way of the day"},
         {"Arrows", "turn about the middle"},
         {"Page up, Page down", "nearer, farther"},
@@ -143,16 +159,19 @@ void key_sheet() {
         {"Home, N, T", "the whole DEM, north up, from above"},
         {"[ ]", "half an hour earlier, later; with Shift a day"},
         {"Space", "let the time pass, and pause"},
-        {"Click", "the ground's sun of the day"},
+        {"Click", "the ground's sun of the day, its horizon and year"},
+        {"P", "horizon and year on and off"},
         {"M", "measure from there to the cursor"},
         {"C", "compare: the left stays as it is, the right follows; drag the line"},
         {"F12", "take the picture"},
         {"Ctrl + C", "copy the command that takes it"},
         {"Ctrl + S", "save the scene"},
         {"Ctrl + O", "open a DEM; files can be dropped too"},
-        {"F5", "read effects and DEM again"},
+        {"Ctrl + Page down, Page up", "the next DEM of the folder, the one before"},
+        {"B, then 1 to 9", "keep this view; go to one that was kept"},
+        {"F5", "read effects again, which happens by itself when their files are written"},
         {"Ctrl + Z, Ctrl + Y", "undo, redo"},
-        {"Tab", "panels on and off"},
+        {"Tab", "panels and menu on and off"},
         {"H, Esc", "this sheet"},
         {"Ctrl + Q", "end"},
     }};

@@ -28,9 +28,15 @@ void draw_measured(const std::vector<glm::dvec3>& points, const std::optional<Pr
                    const Picture& picture, glm::vec2 size_px);
 void profile_panel(const Profile& profile);
 
+/// What is on which side of a comparison's line.
+/// @param line_px  from the left edge
+void draw_sides(float line_px, float top_px);
+
 /// @param middle_m  ground in the picture's middle; without it there is no scale
+/// @param top_px    that something else has at the upper edge
 void draw_scale_and_north(const Picture& picture, const Land& land,
-                          const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px);
+                          const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
+                          float top_px);
 
 void key_sheet();
 

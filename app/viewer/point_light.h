@@ -1,33 +1,91 @@
 #pragma once
 
-#include <future>
+#include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "dem/heightfield.h"
+#include "chart/panorama.h"
 #include "geo/geodetic.h"
+#include "image/image.h"
 #include "scene/scene.h"
+#include "session/session.h"
 #include "sun/zone.h"
 
 namespace relevo::viewer {
 
-/// When the sun reaches a point of the ground on a day.
-struct PointLight {
+/// What is to be known of a point of the ground.
+struct PointWanted {
+    std::shared_ptr<const session::LoadedDem> dem;
+    std::vector<std::string> dems;  ///< its files
+    dem::LoadOptions options;       ///< how they are read
+    std::string refraction;         ///< as scene::Scene
     geo::Geodetic place;
     sun::Date date;
-    std::vector<sun::TimeSpan> lit;
+    sun::Zone zone;
+    glm::ivec2 chart_px{0};  ///< sides of the drawings; 0: none are wanted
+    double px_a_unit = 1;    ///< of them
+};
+
+/// The horizon of a point, with the sun's ways of a day before it.
+struct HorizonPicture {
+    image::Image8 picture;
+    chart::HorizonPanorama::Axes axes;  ///< in units
+};
+
+/// A year of light at a point.
+struct YearPicture {
+    image::Image8 picture;
+    chart::Rect plot;  ///< in units
+    double lit_s = 0, level_s = 0;
+};
+
+/// A stretch of a day with sun. Where it shines at midnight the day begins or ends, not the light.
+struct LitSpan : sun::TimeSpan {
+    bool from_midnight = false, to_midnight = false;
+};
+
+/// When the sun reaches a point of the ground on a day.
+struct PointLight {
+    PointWanted of;
+    std::vector<LitSpan> lit;
     double lit_s = 0, flat_s = 0;  ///< of that day, here and over a flat horizon
-    std::string error;             ///< why there is no answer
+    double not_known_s = 0;        ///< of lit_s, for holes of the DEM
+    /// Where the DEM ends too near to be sure: azimuths [deg], from and to.
+    std::vector<glm::dvec2> open_deg;
+    std::shared_ptr<const HorizonPicture> horizon;  ///< null: not yet, or not wanted
+    std::shared_ptr<const YearPicture> year;        ///< likewise
+    std::string error;                              ///< why there is no answer
 
     bool is_lit(sun::Instant utc) const;
-    /// When that changes next on that day.
+    /// When that changes next on that day; none: not any more.
     std::optional<sun::Instant> next_change(sun::Instant utc) const;
 };
 
-/// Works it out on a thread of its own, from every post of the DEM.
-/// @param loaded  all posts or means of them; must outlive the work
-std::future<PointLight> light_at(const geo::Geodetic& place, sun::Date date, const sun::Zone& zone,
-                                 const scene::Scene& scene, const dem::Heightfield& loaded);
+/// Works it out on a thread of its own, from every post of the DEM: first the day, then the
+/// drawings. What was begun for another point is given up; what the next answer can use is kept.
+class PointWork {
+  public:
+    /// @param on_change  called on that thread whenever there is more to be had
+    explicit PointWork(std::function<void()> on_change);
+    PointWork(const PointWork&) = delete;
+    PointWork& operator=(const PointWork&) = delete;
+    /// Waits for the step in work.
+    ~PointWork();
+
+    void want(PointWanted wanted);
+    /// Nothing any more.
+    void forget();
+    /// What there is of what was wanted last; null: nothing yet.
+    std::shared_ptr<const PointLight> answer() const;
+    /// Whether all that was wanted is there.
+    bool is_done() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace relevo::viewer

@@ -4,14 +4,14 @@
 #include <imgui.h>
 
 #include "base/units.h"
-#include "geo/format.h"
 #include "viewer/state.h"
 
 namespace relevo::viewer {
 namespace {
 
+/// To the nearest minute, as diagrams have it.
 std::string clock_text(sun::Instant utc, const sun::Zone& zone) {
-    const sun::CivilTime wall = zone.local(utc).wall;
+    const sun::CivilTime wall = zone.local(utc + 30.0).wall;
     return fmt::format("{:02}:{:02}", wall.hour, wall.minute);
 }
 
@@ -28,51 +28,77 @@ void go_to_edge(State& state, const char* name, sun::Instant utc) {
     ImGui::SameLine();
 }
 
+ImVec4 colour_of(bool lit, bool on_light) {
+    if (on_light) return lit ? ImVec4(0.65f, 0.4f, 0, 1) : ImVec4(0.2f, 0.3f, 0.7f, 1);
+    return lit ? ImVec4(1, 0.85f, 0.4f, 1) : ImVec4(0.6f, 0.7f, 1, 1);
+}
+
+/// "in the sun, till it leaves at 15:03".
+std::string light_words(const PointLight& point, sun::Instant now, const sun::Zone& zone) {
+    const auto next = point.next_change(now);
+    if (point.is_lit(now))
+        return next ? "in the sun, till it leaves at " + clock_text(*next, zone)
+                    : "in the sun, till the day ends";
+    return next ? "in shade, sun comes at " + clock_text(*next, zone)
+                : "in shade for the rest of the day";
+}
+
+/// What the DEM leaves open.
+void doubts(const PointLight& point) {
+    if (point.not_known_s > 0)
+        ImGui::TextWrapped("%s of it are not known, for holes of the DEM.",
+                           duration_text(point.not_known_s).c_str());
+    if (point.open_deg.empty()) return;
+    std::string where;
+    for (const glm::dvec2& open : point.open_deg) {
+        where += fmt::format("{}{:.0f}°", where.empty() ? "" : ", ", open.x);
+        if (std::lround(open.x) != std::lround(open.y)) where += fmt::format(" to {:.0f}°", open.y);
+    }
+    ImGui::TextWrapped("Ridges beyond the DEM may hide more: azimuth %s.", where.c_str());
+}
+
 void light_of(State& state, const PointLight& point) {
     const sun::Zone& zone = state.document.zone;
-    if (!point.error.empty()) {
-        ImGui::TextWrapped("%s", point.error.c_str());
-        return;
-    }
-    const sun::Instant now = state.document.utc;
-    const auto next = point.next_change(now);
-    const bool lit = point.is_lit(now);
-    ImGui::TextColored(lit ? ImVec4(1, 0.85f, 0.4f, 1) : ImVec4(0.6f, 0.7f, 1, 1), "%s%s",
-                       lit ? "in the sun" : "in shade",
-                       next ? fmt::format(", {} at {}", lit ? "till it leaves" : "sun comes",
-                                          clock_text(*next, zone))
-                                  .c_str()
-                            : (lit ? "" : " for the rest of the day"));
-    for (const sun::TimeSpan& span : point.lit)
-        ImGui::Text("%s to %s  (%s)", clock_text(span.begin, zone).c_str(),
-                    clock_text(span.end, zone).c_str(), duration_text(span.length_s()).c_str());
-    if (!point.lit.empty()) {
-        go_to_edge(state, "First light", point.lit.front().begin);
-        go_to_edge(state, "Last light", point.lit.back().end);
-        ImGui::NewLine();
-    }
+    const bool lit = point.is_lit(state.document.utc);
+    ImGui::TextColored(colour_of(lit, state.settings.light_style), "%s",
+                       light_words(point, state.document.utc, zone).c_str());
+    for (const LitSpan& span : point.lit)
+        ImGui::Text("%s to %s  (%s)",
+                    span.from_midnight ? "midnight" : clock_text(span.begin, zone).c_str(),
+                    span.to_midnight ? "midnight" : clock_text(span.end, zone).c_str(),
+                    duration_text(span.length_s()).c_str());
+    const bool has_first = !point.lit.empty() && !point.lit.front().from_midnight;
+    const bool has_last = !point.lit.empty() && !point.lit.back().to_midnight;
+    if (has_first) go_to_edge(state, "First light", point.lit.front().begin);
+    if (has_last) go_to_edge(state, "Last light", point.lit.back().end);
+    if (has_first || has_last) ImGui::NewLine();
     ImGui::Text("%s of sun, %s over a flat horizon", duration_text(point.lit_s).c_str(),
                 duration_text(point.flat_s).c_str());
+    if (point.year)
+        ImGui::Text("%.0f h in %d, %.0f h over a level horizon", point.year->lit_s / 3600,
+                    point.of.date.year, point.year->level_s / 3600);
+    doubts(point);
 }
 
 }  // namespace
 
 void point_panel(State& state) {
-    if (!state.point && !state.point_in_work.valid()) {
+    if (!state.chosen) {
         ImGui::TextDisabled("Click the ground: its sun of the day, here.");
         return;
     }
-    if (state.point) {
-        const geo::Geodetic& place = state.point->place;
-        ImGui::TextUnformatted(geo::degrees_text(place).c_str());
-        ImGui::TextUnformatted(geo::utm_text(place).c_str());
-        ImGui::Text("MGRS %s", geo::mgrs_text(place).c_str());
-        ImGui::Text("height %.1f m", place.height_m);
-    }
-    if (state.point_in_work.valid() || state.point->date != state.day.date)
+    const geo::Geodetic& place = *state.chosen;
+    for (const Coordinates kind : {Coordinates::Degrees, Coordinates::Utm, Coordinates::Mgrs})
+        ImGui::Text("%s%s", kind == Coordinates::Mgrs ? "MGRS " : "",
+                    coordinates_text(place, kind).c_str());
+    ImGui::Text("height %.1f m", place.height_m);
+    if (state.point && !state.point->error.empty())
+        ImGui::TextWrapped("%s", state.point->error.c_str());
+    else if (!state.point || state.point->of.date != state.day.date)
         ImGui::TextDisabled("looking at its horizon ...");
     else
         light_of(state, *state.point);
+    ImGui::Checkbox("Horizon and year (P)", &state.settings.charts);
 }
 
 }  // namespace relevo::viewer

@@ -15,7 +15,6 @@
 
 #include "base/error.h"
 #include "gl/texture.h"
-#include "session/session.h"
 
 namespace relevo::viewer {
 namespace {
@@ -46,12 +45,13 @@ std::string text_of(const std::exception& error) {
 struct SceneThread::Impl {
     scene::Scene scene;
     std::string device;
+    std::shared_ptr<const session::LoadedDem> dem;
     std::function<void()> on_change;
 
     mutable std::mutex mutex;
     std::condition_variable changed;
     Wanted wanted;
-    bool has_new_wants = false, ends = false;
+    bool has_new_wants = false, ends = false, rests = false;
     std::optional<scene::Effects> effects;
     std::map<std::string, std::string> values;
     std::shared_ptr<const Picture> picture;
@@ -73,12 +73,16 @@ struct SceneThread::Impl {
         try {
             session::Options options;
             options.device = device;
+            options.dem = std::move(dem);
             FilesInUse files;
             session = std::make_unique<session::Session>(scene, options, files);
-            const std::lock_guard lock(mutex);
+            // The view of the whole DEM hangs on the window's size.
+            std::unique_lock lock(mutex);
+            changed.wait(lock, [&] { return ends || has_new_wants; });
             session->resize(wanted.width_px, wanted.height_px);
-            opened = std::make_shared<Opened>(
-                Opened{session.get(), session->scene(), session->camera(), session->moment()});
+            opened =
+                std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
+                                                session->camera(), session->moment()});
         } catch (...) {
             const std::lock_guard lock(mutex);
             failure = std::current_exception();
@@ -92,9 +96,12 @@ struct SceneThread::Impl {
         bool sharp = false;
         std::unique_lock lock(mutex);
         while (!ends) {
-            changed.wait(lock, [&] {
+            const auto is_asked = [&] {
                 return ends || has_new_wants || effects || !values.empty() || !sharp;
-            });
+            };
+            rests = !is_asked();
+            changed.wait(lock, is_asked);
+            rests = false;
             if (ends) return;
             const Wanted now = wanted;
             const auto new_effects = std::exchange(effects, std::nullopt);
@@ -183,22 +190,22 @@ struct SceneThread::Impl {
         session->read_depths(made->depths_m);
         made->camera = session->camera();
         made->utc = session->moment();
-        made->sun_text = session->sun_text();
-        made->took_ms = milliseconds_since(began);
         made->sharp = sharp;
         made->answers = answers;
-        ms_a_pixel = made->took_ms / static_cast<double>(pixels);
+        ms_a_pixel = milliseconds_since(began) / static_cast<double>(pixels);
         const std::lock_guard lock(mutex);
         made->number = picture ? picture->number + 1 : 1;
         picture = std::move(made);
     }
 };
 
-SceneThread::SceneThread(scene::Scene scene, std::string device, std::function<void()> on_change)
+SceneThread::SceneThread(scene::Scene scene, std::string device, std::function<void()> on_change,
+                         std::shared_ptr<const session::LoadedDem> dem)
     : impl_(std::make_unique<Impl>()) {
     impl_->scene = std::move(scene);
     impl_->device = std::move(device);
     impl_->on_change = std::move(on_change);
+    impl_->dem = std::move(dem);
     impl_->thread = std::thread([this] { impl_->run(); });
 }
 
@@ -248,6 +255,11 @@ void SceneThread::want_value(const std::string& address, const std::string& valu
         ++impl_->wants;
     }
     impl_->changed.notify_one();
+}
+
+bool SceneThread::rests() const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->rests && !impl_->has_new_wants;
 }
 
 std::uint64_t SceneThread::wants() const {

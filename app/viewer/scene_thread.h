@@ -7,12 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "render/frame_block.h"
 #include "scene/scene.h"
+#include "session/session.h"
 #include "sun/time.h"
-
-namespace relevo::session {
-class Session;
-}
 
 /// The scene is drawn on a thread of its own, in a context of its own, so that the window never
 /// waits for it.
@@ -29,8 +27,8 @@ struct Wanted {
 
 /// A scene as it was opened.
 struct Opened {
-    /// For what does not change while it draws: heightfield(), source(), ground().
-    const session::Session* session = nullptr;
+    std::shared_ptr<const session::LoadedDem> dem;
+    render::Ground ground;
     scene::Scene scene;
     scene::Camera camera;
     sun::Instant utc;
@@ -45,8 +43,6 @@ struct Picture {
     std::vector<float> depths_m;     ///< as session::Session::read_depths
     scene::Camera camera;
     sun::Instant utc;
-    std::string sun_text;  ///< session::Session::sun_text
-    double took_ms = 0;
     bool sharp = false;  ///< in the window's size, with all its ground and its sun's shadows
 };
 
@@ -55,10 +51,12 @@ class SceneThread {
     /// Opens the scene and draws.
     /// @param device    as session::Options
     /// @param on_change called on that thread whenever there is something to fetch
-    SceneThread(scene::Scene scene, std::string device, std::function<void()> on_change);
+    /// @param dem       the scene's, where it has been read already; else it is read
+    SceneThread(scene::Scene scene, std::string device, std::function<void()> on_change,
+                std::shared_ptr<const session::LoadedDem> dem = {});
     SceneThread(const SceneThread&) = delete;
     SceneThread& operator=(const SceneThread&) = delete;
-    /// Waits for the frame in work.
+    /// Waits for the frame in work, or for the scene to be open: Discard does it beside.
     ~SceneThread();
 
     /// Once the scene is open; else null.
@@ -73,6 +71,8 @@ class SceneThread {
     /// A value of a parameter that is not static.
     void want_value(const std::string& address, const std::string& value);
 
+    /// Whether there is nothing left to draw.
+    bool rests() const;
     /// How often something was wanted.
     std::uint64_t wants() const;
 

@@ -1,16 +1,18 @@
 #pragma once
 
-#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "render/frame_block.h"
+#include "viewer/command.h"
 #include "viewer/document.h"
 #include "viewer/overlay.h"
 #include "viewer/point_light.h"
 #include "viewer/scene_thread.h"
+#include "viewer/settings.h"
 #include "viewer/sun_model.h"
 
 /// What panels show and change.
@@ -27,7 +29,8 @@ struct Cursor {
 struct State {
     Document document;
     Land land;
-    geo::Geodetic centre;  ///< of the DEM
+    geo::Geodetic centre;                           ///< of the DEM
+    sun::Refraction air = sun::Refraction::none();  ///< over it
     std::unique_ptr<EffectsModel> effects;
     SunDay day;
     std::vector<SunDay> extremes;  ///< the solstices of its year
@@ -37,21 +40,34 @@ struct State {
     std::string search;
     bool compare_is_wanted = false;  ///< with the effects as they are when it is
 
+    Settings settings;
+    std::vector<std::vector<std::string>> recent;  ///< DEMs that were opened
+    std::vector<SavedView> views;                  ///< of this DEM
+    double spacing_m = 1;                          ///< of its posts, about
+
     std::optional<Cursor> cursor;
-    std::optional<PointLight> point;  ///< that was clicked
-    std::future<PointLight> point_in_work;
-    std::vector<glm::dvec3> measured;  ///< ends of a measured line, up to two
-    std::optional<Profile> profile;    ///< of that line
+    std::optional<geo::Geodetic> chosen;      ///< that was clicked
+    std::shared_ptr<const PointLight> point;  ///< what is known of it; null: nothing yet
+    bool point_in_work = false;               ///< there is more to come
+    std::vector<glm::dvec3> measured;         ///< ends of a measured line, up to two
+    std::optional<Profile> profile;           ///< of that line
 
     std::string message;  ///< the last thing that went wrong, or was done
 
     // What panels have done in this frame.
+    std::vector<Command> commands;
+    std::vector<std::string> files_to_open;
+    std::optional<std::size_t> view_to_go_to;  ///< of views
+    bool views_changed = false;
+    glm::ivec2 chart_px{0};  ///< that drawings of the point have room in; 0: none is shown
     bool sun_moves = false;  ///< a widget of the sun is held
     bool step = false;       ///< a change is done, for undo
     std::optional<scene::Effects> asked_effects;
     std::optional<scene::Effects> new_effects;  ///< for the thread that draws
     std::vector<std::pair<std::string, std::string>> new_values;
 
+    /// The sun is seen from a DEM's middle from now on, through the air that the scene has there.
+    void stand_on(const render::Ground& ground);
     /// Moves the sun. Dates outside 1900-2100 leave it where it is.
     void set_utc(sun::Instant utc);
     /// Other switches or values, of parameters that need another program too. Panels go on with the
@@ -62,7 +78,21 @@ struct State {
 };
 
 void sun_panel(State& state);
+/// "azimuth 114.27°, height 65.13°": where the sun is seen from the DEM's middle.
+std::string sun_figures(const State& state);
+
 void effects_panel(State& state);
+void menu_bar(State& state);
+/// Those that are about the scene, one below the other.
+/// @param size_px    of the window; likewise below
+/// @param px_a_unit  of what is made for usual letters; likewise
+void side_panel(State& state, glm::vec2 size_px, double px_a_unit);
+/// The ground under the cursor, at the lower edge.
+void status_line(const State& state, bool is_drawing);
+/// While no scene is open.
+void waiting_text(const State& state, bool has_failed);
+/// State::message, at the upper edge, also where there are no panels.
+void message_box(State& state, glm::vec2 size_px, double px_a_unit);
 void point_panel(State& state);
 
 /// The sun's way of the day over the picture, with its hours; what the ground hides is faint.

@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "base/units.h"
 #include "sun/position.h"
-#include "sun/refraction.h"
 
 namespace relevo::viewer {
 
-SunPoint sun_at(sun::Instant utc, const geo::Geodetic& place) {
+SunPoint sun_at(sun::Instant utc, const geo::Geodetic& place, const sun::Refraction& air) {
     const sun::Position position = sun::position(utc, place);
-    // Saemundsson's formula is near enough for a line in a picture, and has no table to make.
-    const double elevation = sun::Refraction::saemundsson().apparent_rad(position.elevation_rad);
+    const double elevation = air.apparent_rad(position.elevation_rad);
     const double level = std::cos(elevation);
     return {utc,
             {level * std::sin(position.azimuth_rad), level * std::cos(position.azimuth_rad),
@@ -22,14 +21,15 @@ SunPoint sun_at(sun::Instant utc, const geo::Geodetic& place) {
             degrees(elevation)};
 }
 
-SunDay SunDay::of(sun::Date date, const sun::Zone& zone, const geo::Geodetic& place) {
+SunDay SunDay::of(sun::Date date, const sun::Zone& zone, const geo::Geodetic& place,
+                  const sun::Refraction& air) {
     SunDay day;
     day.date = date;
     day.events = sun::day_events(date, zone, place);
     constexpr double kStep_s = 600;
     const double length_s = day.events.span.length_s();
     for (double s = 0; s < length_s + kStep_s; s += kStep_s)
-        day.points.push_back(sun_at(day.events.span.begin + std::min(s, length_s), place));
+        day.points.push_back(sun_at(day.events.span.begin + std::min(s, length_s), place, air));
     return day;
 }
 
@@ -46,6 +46,12 @@ int days_in_month(int year, int month) {
     const sun::Date first{year, month, 1};
     return sun::days_between(
         first, month == 12 ? sun::Date{year + 1, 1, 1} : sun::Date{year, month + 1, 1});
+}
+
+std::string day_label(sun::Date date) {
+    constexpr const char* kMonths[] = {"Jan", "Feb", "Mar", "Apr", "May", "Jun",
+                                       "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
+    return fmt::format("{} {}", date.day, kMonths[date.month - 1]);
 }
 
 sun::Date in_year(sun::Date date, int year) {

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "geo/geodetic.h"
 #include "sun/events.h"
+#include "sun/refraction.h"
 #include "sun/zone.h"
 
 namespace relevo::viewer {
@@ -24,11 +26,13 @@ struct SunDay {
     std::vector<SunPoint> points;  ///< every ten minutes of the day, both ends included
     sun::Day events;
 
-    static SunDay of(sun::Date date, const sun::Zone& zone, const geo::Geodetic& place);
+    static SunDay of(sun::Date date, const sun::Zone& zone, const geo::Geodetic& place,
+                     const sun::Refraction& air);
 };
 
 /// @param place  the DEM's middle
-SunPoint sun_at(sun::Instant utc, const geo::Geodetic& place);
+/// @param air    over it, as the scene has it
+SunPoint sun_at(sun::Instant utc, const geo::Geodetic& place, const sun::Refraction& air);
 
 /// A wall clock's minute of a local day, 0 to 1439, and the day.
 struct DayMinute {
@@ -45,5 +49,7 @@ sun::Date in_year(sun::Date date, int year);
 int day_of_year(sun::Date date);
 sun::Date date_of(int year, int day_of_year);
 int days_in_month(int year, int month);
+/// "22 Sep".
+std::string day_label(sun::Date date);
 
 }  // namespace relevo::viewer

@@ -116,16 +116,14 @@ void jumps(State& state, sun::Date date) {
     jump(state, "Sunset", day.first(sun::EventKind::Sunset), kNone);
     const sun::Seasons seasons = sun::seasons(date.year);
     ImGui::NewLine();
-    const auto season = [&](const char* name, sun::Instant of) {
+    for (const sun::Instant of : {seasons.march_equinox, seasons.june_solstice,
+                                  seasons.september_equinox, seasons.december_solstice}) {
         // The day of it, at the hour there is.
         const sun::Date then = state.document.zone.local(of).wall.date;
         const int minute = DayMinute::of(state.document.utc, state.document.zone).minute;
-        jump(state, name, DayMinute{then, minute}.utc(state.document.zone), kNone);
-    };
-    season("20 Mar", seasons.march_equinox);
-    season("21 Jun", seasons.june_solstice);
-    season("23 Sep", seasons.september_equinox);
-    season("21 Dec", seasons.december_solstice);
+        jump(state, day_label(then).c_str(), DayMinute{then, minute}.utc(state.document.zone),
+             kNone);
+    }
     ImGui::NewLine();
 }
 
@@ -145,6 +143,13 @@ void play(State& state) {
 }
 
 }  // namespace
+
+std::string sun_figures(const State& state) {
+    const SunPoint sun = sun_at(state.document.utc, state.centre, state.air);
+    double azimuth_deg = degrees(std::atan2(sun.direction.x, sun.direction.y));
+    if (azimuth_deg < 0) azimuth_deg += 360;
+    return fmt::format("azimuth {:.2f}°, height {:.2f}°", azimuth_deg, sun.elevation_deg);
+}
 
 void sun_panel(State& state) {
     const DayMinute now = DayMinute::of(state.document.utc, state.document.zone);
@@ -178,10 +183,7 @@ void sun_panel(State& state) {
     const sun::LocalTime local = state.document.zone.local(state.document.utc);
     ImGui::TextDisabled("%s (UTC%s)", state.document.zone.name().c_str(),
                         sun::offset_text(local.utc_offset_s).c_str());
-    const SunPoint sun = sun_at(state.document.utc, state.centre);
-    double azimuth_deg = degrees(std::atan2(sun.direction.x, sun.direction.y));
-    if (azimuth_deg < 0) azimuth_deg += 360;
-    ImGui::Text("azimuth %.2f°, height %.2f°", azimuth_deg, sun.elevation_deg);
+    ImGui::TextUnformatted(sun_figures(state).c_str());
     const int length_min = static_cast<int>(std::lround(state.day.events.day_length_s / 60));
     ImGui::Text("day length %d h %02d min", length_min / 60, length_min % 60);
 }

@@ -76,7 +76,7 @@ void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px
     draw_way(state.day, picture, size_px, IM_COL32(255, 214, 120, 220), IM_COL32(255, 214, 120, 70),
              2.5f);
     draw_hours(state.day, state.document.zone, picture, size_px);
-    const SunPoint now = sun_at(picture.utc, state.centre);
+    const SunPoint now = sun_at(picture.utc, state.centre, state.air);
     const auto at = at_window(picture, size_px, now.direction);
     if (!at || now.elevation_deg < kLowest_deg) return;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();

@@ -3,97 +3,48 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 #include <imgui.h>
 
 #include "base/error.h"
 #include "base/log.h"
-#include "base/output_file.h"
 #include "base/paths.h"
-#include "base/units.h"
-#include "geo/format.h"
-#include "geo/geodetic.h"
-#include "image/image.h"
-#include "session/session.h"
+#include "base/text.h"
 #include "sun/zone_of_place.h"
+#include "viewer/charts_panel.h"
+#include "viewer/discard.h"
 #include "viewer/file_dialog.h"
 #include "viewer/file_watch.h"
+#include "viewer/hand.h"
 #include "viewer/overlay.h"
 #include "viewer/state.h"
+#include "viewer/take_away.h"
 #include "viewer/window.h"
 
 namespace relevo::viewer {
-
-void State::set_utc(sun::Instant utc) {
-    const sun::Date date = document.zone.local(utc).wall.date;
-    if (date.year < 1900 || date.year > 2100) return;
-    document.utc = utc;
-    if (day.date == date && !day.points.empty()) return;
-    if (day.date.year != date.year || day.points.empty())
-        extremes = {SunDay::of({date.year, 6, 21}, document.zone, centre),
-                    SunDay::of({date.year, 12, 21}, document.zone, centre)};
-    day = SunDay::of(date, document.zone, centre);
-}
-
-void State::take_effects(bool is_step) {
-    if (!asked_effects) return;
-    const scene::Effects changed = *std::exchange(asked_effects, std::nullopt);
-    try {
-        effects = EffectsModel::of(changed);
-        document.scene.effects = changed;
-        new_effects = changed;
-        step = step || is_step;
-    } catch (const Error& error) {
-        message = error.what();
-    }
-}
-
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr float kPanel_px = 360;
 /// After the last input the hand counts as moving for so long.
 constexpr double kRest_s = 0.15;
 /// What comes after so long is another step of undo.
 constexpr double kStep_s = 0.5;
 /// Files are looked at again so often.
 constexpr double kWatch_s = 1;
-constexpr float kLine_px = 8;    // beside the line of a comparison that take hold of it
-constexpr double kClick_px = 4;  // that a click may move by
-/// The last turn of the wheel and the last pull of the hand die away so fast [1/s].
-constexpr double kZoomRate = 14, kGlideRate = 7;
+/// What was done is told of for so long.
+constexpr double kTold_s = 8;
+/// At the end work in progress is waited for so long; reading a large DEM may take longer.
+constexpr auto kLeave = std::chrono::milliseconds(600);
 
 double seconds_since(Clock::time_point began) {
     return std::chrono::duration<double>(Clock::now() - began).count();
-}
-
-/// Writes to a name in the working folder that no file has, such as relevo-1.png. @returns it
-template <typename Write>
-std::string write_under_free_name(const std::string& ending, const Write& write) {
-    for (int n = 1;; ++n) {
-        const std::string name = fmt::format("relevo-{}.{}", n, ending);
-        const auto is_taken = [&] {
-            std::error_code ignored;
-            return std::filesystem::exists(std::filesystem::symlink_status(name, ignored));
-        };
-        if (is_taken()) continue;
-        try {
-            OutputFile file(name, /*overwrite=*/false, "view");
-            write(file);
-            file.finish();
-            return name;
-        } catch (const Error&) {
-            // Another window may have taken the name meanwhile.
-            if (!is_taken()) throw;
-        }
-    }
 }
 
 /// The window's whole life.
@@ -106,7 +57,12 @@ class Viewer {
         // The scene opens beside the window.
         scene_ = std::make_unique<SceneThread>(scene, device_, &Window::wake);
         window_ = std::make_unique<Window>("Relevo");
+        hand_ = std::make_unique<Hand>(*window_, state_);
+        point_work_ = std::make_unique<PointWork>(&Window::wake);
         state_.effects = EffectsModel::of(scene.effects);
+        state_.settings = written_ = memory_.settings();
+        state_.recent = memory_.recent();
+        window_->set_style(state_.settings.light_style, state_.settings.text_px);
         want_size();
     }
 
@@ -121,9 +77,9 @@ class Viewer {
             const double passed_s = seconds_since(frame_at_);
             frame_at_ = Clock::now();
             read_thread();
+            keys();
             if (is_open()) {
-                keys();
-                navigate(std::min(passed_s, 0.1));
+                take_hand(std::min(passed_s, 0.1));
                 pass_time(std::min(passed_s, 0.5));
                 want_view();  // before the panels are drawn, which takes its time too
             }
@@ -133,46 +89,62 @@ class Viewer {
             if (most_s >= kWatch_s && busy_frames_ == 0) continue;
             window_->draw([&] { panels(); });
             state_.take_effects(/*is_step=*/true);
-            if (is_open()) hand_over();
+            hand_over();
+            restyle();
         }
+        leave();
     }
 
   private:
     bool is_open() const { return opened_ != nullptr; }
 
     void open() {
-        // What works on the ground before ends first.
-        if (state_.point_in_work.valid()) state_.point_in_work.wait();
-        state_.point_in_work = {};
+        point_work_->forget();
+        state_.chosen.reset();
         state_.point.reset();
         state_.measured.clear();
         state_.profile.reset();
         state_.cursor.reset();
+        hand_->rest();
+        hand_->see(nullptr);
         opened_ = nullptr;
         picture_ = nullptr;
         wanted_.reset();
-        dragging_.reset();
-        stop_gliding();
-        walking_ = keys_held_ = false;
         history_ = {};  // poses are of the other ground
         stop_comparing();
-        scene_.reset();
+        discard_.take(std::move(scene_));
         scene_ = std::make_unique<SceneThread>(state_.document.scene, device_, &Window::wake);
         want_size();
+        busy_frames_ = 3;
     }
 
     /// From now on the left of the line is drawn with the effects as they are now.
     void compare() {
-        scene::Scene scene = whole_scene();
-        before_ = std::make_unique<SceneThread>(scene, device_, &Window::wake);
+        before_ = std::make_unique<SceneThread>(whole(), device_, &Window::wake, opened_->dem);
         before_->want(wanted_now());
     }
 
+    /// Whether the picture is late, so that it is said.
+    bool is_drawing() const {
+        return is_open() && rested_ && !scene_->rests() && seconds_since(moved_at_) > 2 * kRest_s;
+    }
+
     void stop_comparing() {
-        before_.reset();
+        discard_.take(std::move(before_));
         picture_before_ = nullptr;
         window_->take_before(nullptr);
         state_.compare_is_wanted = false;
+    }
+
+    /// Ends what works beside. Nobody waits for a DEM to be read that nobody will see.
+    void leave() {
+        window_->hide();
+        remember_settings();
+        discard_.take(std::move(before_));
+        discard_.take(std::move(scene_));
+        discard_.take(std::move(point_work_));
+        // Nothing is being written by then, and the rest is the system's to take back.
+        if (!discard_.ends_within(kLeave)) std::_Exit(EXIT_SUCCESS);
     }
 
     void want_size() {
@@ -185,17 +157,10 @@ class Viewer {
 
     /// How long nothing but input can change what is seen.
     double waiting_s() const {
-        if (busy_frames_ > 0 || state_.playing || glides() || keys_held_) return 0.008;
+        if (busy_frames_ > 0 || state_.playing || hand_->is_moving()) return 0.008;
         if (!rested_) return 0.05;
-        return kWatch_s;
+        return is_drawing() ? 0.25 : kWatch_s;
     }
-
-    void stop_gliding() {
-        zoom_left_ = 0;
-        glide_deg_a_s_ = {};
-    }
-
-    bool glides() const { return std::abs(zoom_left_) > 1e-3 || length(glide_deg_a_s_) > 0.5; }
 
     void read_thread() {
         if (has_failed_) return;
@@ -210,6 +175,7 @@ class Viewer {
             if (auto opened = scene_->opened()) start(std::move(opened));
         if (const auto newer = scene_->newer_than(picture_ ? picture_->number : 0)) {
             picture_ = newer;
+            hand_->see(picture_);
             window_->take(*newer);
             busy_frames_ = std::max(busy_frames_, 1);
         }
@@ -225,11 +191,16 @@ class Viewer {
             state_.message = std::move(*message);
             busy_frames_ = 2;
         }
-        if (state_.point_in_work.valid() &&
-            state_.point_in_work.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
-            state_.point = state_.point_in_work.get();
-            busy_frames_ = 2;
-        }
+        read_point_work();
+    }
+
+    void read_point_work() {
+        const std::shared_ptr<const PointLight> answer = point_work_->answer();
+        state_.point_in_work = !point_work_->is_done();
+        if (answer == state_.point) return;
+        // Drawings of the day before stay until there are others.
+        state_.point = answer;
+        busy_frames_ = std::max(busy_frames_, 2);
     }
 
     void watch_comparison() {
@@ -256,23 +227,33 @@ class Viewer {
     /// The scene has been opened: from here on it can be moved in.
     void start(std::shared_ptr<const Opened> opened) {
         opened_ = std::move(opened);
-        const session::Session& session = *opened_->session;
         const scene::Scene& scene = opened_->scene;
-        state_.land.frame = &session.ground().frame;
+        state_.land.frame = &opened_->ground.frame;
         state_.land.exaggeration = scene.exaggeration;
-        state_.land.height_m = [&session](const geo::Geodetic& at) {
-            return session.ground_height_m(at);
+        state_.land.height_m = [dem = opened_->dem](const geo::Geodetic& at) {
+            return dem->height_m(at);
         };
-        state_.centre = session.ground().frame.origin();
+        const glm::dvec2 spacing_m = opened_->dem->field.grid.post_spacing_m();
+        state_.spacing_m = std::sqrt(spacing_m.x * spacing_m.y);
+        state_.stand_on(opened_->ground);
         Document& document = state_.document;
         document.zone = sun::choose_zone(zone_, state_.centre).zone;
         document.pose = home_ = pose_of(opened_->camera, state_.land);
-        state_.day = {};
         state_.set_utc(last_good_ ? document.utc : opened_->utc);
         history_.add(document);
         window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
         last_good_ = document.scene;
+        if (!has_gone_back_) tried_ = scene.dems.front();
         has_gone_back_ = false;
+        const std::vector<std::string> names = absolute_names(scene.dems);
+        state_.views = memory_.views(names);
+        remember([&] { memory_.add_recent(names); });
+        state_.recent = memory_.recent();
+        watch(scene);
+        busy_frames_ = 3;
+    }
+
+    void watch(const scene::Scene& scene) {
         std::vector<std::filesystem::path> dems;
         std::error_code ignored;
         for (const std::string& dem : scene.dems)
@@ -282,317 +263,156 @@ class Viewer {
         plugins.insert(plugins.end(), scene.effects.plugin_path.begin(),
                        scene.effects.plugin_path.end());
         effect_files_.watch(std::move(plugins));
-        busy_frames_ = 3;
     }
 
     // ---- the hand
 
-    /// Of the window, in the mouse's units.
     glm::vec2 size() const { return window_->size(); }
-    double aspect() const { return static_cast<double>(size().x) / size().y; }
-
-    /// From the window's pixels to -1 to 1.
-    glm::dvec2 in_view(glm::vec2 at_px) const {
-        return {2 * at_px.x / size().x - 1, 1 - 2 * at_px.y / size().y};
-    }
-
-    /// The ground of the picture that is shown.
-    std::optional<glm::dvec3> ground_at(glm::vec2 at_px) const {
-        if (!picture_) return std::nullopt;
-        const int x = static_cast<int>(at_px.x / size().x * static_cast<float>(picture_->width_px));
-        const int y =
-            static_cast<int>((1 - at_px.y / size().y) * static_cast<float>(picture_->height_px));
-        if (x < 0 || y < 0 || x >= picture_->width_px || y >= picture_->height_px)
-            return std::nullopt;
-        const float depth_m =
-            picture_->depths_m[static_cast<std::size_t>(y * picture_->width_px + x)];
-        if (std::isinf(depth_m)) return std::nullopt;
-        const glm::dvec3 direction = ray(picture_->camera, in_view(at_px), aspect());
-        return picture_->camera.eye_m +
-               depth_m / dot(direction, picture_->camera.forward) * direction;
-    }
-
-    /// What the hand takes hold of: the ground there, else where that of the middle would be if it
-    /// were level, else some way ahead.
-    glm::dvec3 hold(glm::vec2 at_px) const {
-        if (const auto ground = ground_at(at_px)) return *ground;
-        if (const auto middle = ground_at(0.5f * size())) {
-            const glm::dvec3 direction = ray(picture_->camera, in_view(at_px), aspect());
-            const glm::dvec3 up = state_.land.axes(*middle).up;
-            const double falls = -dot(direction, up);
-            const double above_m = dot(picture_->camera.eye_m - *middle, up);
-            if (falls > 0.05 && above_m > 0)
-                return picture_->camera.eye_m + above_m / falls * direction;
-            return *middle;
-        }
-        const scene::Camera camera = camera_of(state_.document.pose, state_.land);
-        return camera.eye_m + std::max(100.0, height_above_ground()) * 3 * camera.forward;
-    }
-
-    double height_above_ground() const {
-        const glm::dvec3& eye_m = state_.document.pose.eye_m;
-        const double ground_m = state_.land.ground_under(eye_m);
-        const double height_m = state_.land.frame->to_geodetic(eye_m).height_m;
-        return std::max(2.0, std::isnan(ground_m) ? height_m : height_m - ground_m);
-    }
 
     void moved() {
         moved_at_ = Clock::now();
         rested_ = false;
     }
 
-    void navigate(double passed_s) {
-        const ImGuiIO& io = ImGui::GetIO();
-        const glm::vec2 mouse = window_->mouse();
-        Pose& pose = state_.document.pose;
-        const Pose before = pose;
-        if (!io.WantCaptureMouse) {
-            press(mouse);
-            if (io.MouseWheel != 0) {
-                zoom_at_ = hold(mouse);
-                zoom_left_ += io.MouseWheel * 0.25;
-            }
-        }
-        drag(mouse, passed_s);
-        if (std::abs(zoom_left_) > 1e-3) {
-            const double part = zoom_left_ * (1 - std::exp(-kZoomRate * passed_s));
-            zoom_left_ -= part;
-            pose = zoom(pose, state_.land, zoom_at_, std::exp(-part));
-        }
-        if (!dragging_ && length(glide_deg_a_s_) > 0.5) {
-            pose = orbit(pose, state_.land, held_, glide_deg_a_s_.x * passed_s,
-                         glide_deg_a_s_.y * passed_s);
-            glide_deg_a_s_ *= std::exp(-kGlideRate * passed_s);
-        }
-        fly_by_keys(passed_s);
-        if (pose.eye_m != before.eye_m || pose.heading_deg != before.heading_deg ||
-            pose.pitch_deg != before.pitch_deg)
-            moved();
-        hover(mouse);
+    void take_hand(double passed_s) {
+        hand_->act(passed_s, before_ != nullptr);
+        if (hand_->has_moved()) moved();
+        if (const auto point = hand_->take_click()) choose_point(*point);
     }
 
-    enum class Drag { Pan, Orbit, Look, Sun, Line };
-
-    void press(glm::vec2 mouse) {
-        const ImGuiIO& io = ImGui::GetIO();
-        for (const int button : {0, 1, 2}) {
-            if (!ImGui::IsMouseClicked(button)) continue;
-            pressed_px_ = last_px_ = mouse;
-            held_ = hold(mouse);
-            dragging_ = button == 1 || (button == 0 && io.KeyShift) ? Drag::Orbit
-                        : button == 2                               ? Drag::Look
-                                                                    : Drag::Pan;
-            if (button == 0 && picture_ && !ground_at(mouse) &&
-                moment_at(state_, *picture_, size(), mouse))
-                dragging_ = Drag::Sun;
-            if (button == 0 && before_ && std::abs(mouse.x - window_->line() * size().x) < kLine_px)
-                dragging_ = Drag::Line;
-            stop_gliding();
-        }
-    }
-
-    void drag(glm::vec2 mouse, double passed_s) {
-        if (!dragging_) return;
-        const ImGuiIO& io = ImGui::GetIO();
-        if (!io.MouseDown[0] && !io.MouseDown[1] && !io.MouseDown[2]) {
-            const bool click = distance(mouse, pressed_px_) < kClick_px;
-            if (click && *dragging_ == Drag::Pan) choose_point(mouse);
-            dragging_.reset();
-            return;
-        }
-        const glm::dvec2 by = glm::dvec2(mouse - last_px_) / static_cast<double>(size().y);
-        last_px_ = mouse;
-        Pose& pose = state_.document.pose;
-        switch (*dragging_) {
-            case Drag::Pan:
-                if (distance(mouse, pressed_px_) >= kClick_px)
-                    pose = pan(pose, state_.land, held_, in_view(mouse), aspect());
-                break;
-            case Drag::Orbit: {
-                const glm::dvec2 turn{-by.x * 200, by.y * 120};
-                pose = orbit(pose, state_.land, held_, turn.x, turn.y);
-                if (passed_s > 0) glide_deg_a_s_ = 0.5 * glide_deg_a_s_ + 0.5 * turn / passed_s;
-                break;
-            }
-            case Drag::Look:
-                pose = look_around(pose, -by.x * degrees(pose.fov_y_rad),
-                                   by.y * degrees(pose.fov_y_rad));
-                break;
-            case Drag::Sun:
-                drag_sun(mouse);
-                state_.sun_moves = true;
-                break;
-            case Drag::Line:
-                window_->set_line(std::clamp(mouse.x / size().x, 0.02f, 0.98f));
-                break;
-        }
-    }
-
-    void drag_sun(glm::vec2 mouse) {
-        if (!picture_) return;
-        if (const auto utc = moment_at(state_, *picture_, size(), mouse)) state_.set_utc(*utc);
-    }
-
-    void fly_by_keys(double passed_s) {
-        const auto axis = [&](int plus, int minus) {
-            return (window_->is_down(plus) ? 1.0 : 0.0) - (window_->is_down(minus) ? 1.0 : 0.0);
-        };
-        const glm::dvec3 by(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_W, GLFW_KEY_S),
-                            axis(GLFW_KEY_E, GLFW_KEY_Q));
-        const glm::dvec2 turn(axis(GLFW_KEY_LEFT, GLFW_KEY_RIGHT),
-                              axis(GLFW_KEY_UP, GLFW_KEY_DOWN));
-        const double nearer = axis(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN);
-        keys_held_ = by != glm::dvec3(0) || turn != glm::dvec2(0) || nearer != 0;
-        if (!keys_held_) return;
-        Pose& pose = state_.document.pose;
-        const double fast = ImGui::GetIO().KeyShift ? 4 : 1;
-        if (walking_)
-            pose = walk(pose, state_.land, glm::dvec2(by) * (3 * fast * passed_s));
-        else
-            pose = fly(pose, state_.land, by * (height_above_ground() * fast * passed_s));
-        if (turn != glm::dvec2(0))
-            pose = orbit(pose, state_.land, hold(0.5f * size()), turn.x * 45 * passed_s,
-                         turn.y * 30 * passed_s);
-        if (nearer != 0)
-            pose = zoom(pose, state_.land, hold(0.5f * size()), std::exp(-nearer * passed_s));
-    }
-
-    void hover(glm::vec2 mouse) {
-        const auto point = ImGui::GetIO().WantCaptureMouse ? std::nullopt : ground_at(mouse);
-        if (!point) {
-            state_.cursor.reset();
-            return;
-        }
-        Cursor cursor;
-        cursor.point_m = *point;
-        cursor.place = state_.land.frame->to_geodetic(*point);
-        const double height_m = state_.land.height_m(cursor.place);
-        cursor.place.height_m =
-            std::isnan(height_m) ? cursor.place.height_m / state_.land.exaggeration : height_m;
-        slope_at(cursor);
-        state_.cursor = cursor;
-    }
-
-    /// By central differences over a post spacing each way.
-    void slope_at(Cursor& cursor) const {
-        const glm::dvec2 spacing_m = opened_->session->heightfield().grid.post_spacing_m();
-        const double reach_m = std::sqrt(spacing_m.x * spacing_m.y);
-        const geo::Axes axes = state_.land.axes(cursor.point_m);
-        const glm::dvec3 here_m = state_.land.frame->to_local(cursor.place);
-        const auto height = [&](const glm::dvec3& by_m) {
-            return state_.land.height_m(state_.land.frame->to_geodetic(here_m + by_m));
-        };
-        const double east =
-            (height(axes.east * reach_m) - height(-axes.east * reach_m)) / (2 * reach_m);
-        const double north =
-            (height(axes.north * reach_m) - height(-axes.north * reach_m)) / (2 * reach_m);
-        cursor.slope_deg = degrees(std::atan(std::hypot(east, north)));
-        cursor.aspect_deg =
-            east == 0 && north == 0 ? std::nan("") : degrees(std::atan2(-east, -north));
-        if (cursor.aspect_deg < 0) cursor.aspect_deg += 360;
-    }
-
-    void choose_point(glm::vec2 mouse) {
-        const auto point = ground_at(mouse);
-        if (!point || state_.point_in_work.valid()) return;
-        geo::Geodetic place = state_.land.frame->to_geodetic(*point);
+    void choose_point(const glm::dvec3& point_m) {
+        geo::Geodetic place = state_.land.frame->to_geodetic(point_m);
         place.height_m = state_.land.height_m(place);
         if (std::isnan(place.height_m)) return;
-        state_.measured = {*point};
+        state_.measured = {point_m};
         state_.profile.reset();
-        work_out_light(place);
+        state_.chosen = place;
+        asked_point_.reset();
     }
 
-    void work_out_light(const geo::Geodetic& place) {
-        const Document& document = state_.document;
-        state_.point = PointLight{.place = place, .date = {}, .lit = {}, .error = {}};
-        state_.point_in_work =
-            light_at(place, document.zone.local(document.utc).wall.date, document.zone,
-                     document.scene, opened_->session->heightfield());
+    /// The chosen point's light is that of the day that is shown.
+    void follow_the_day() {
+        if (!state_.chosen) return;
+        const bool same = asked_point_ && asked_point_->date == state_.day.date &&
+                          asked_point_->chart_px == state_.chart_px &&
+                          asked_point_->px_a_unit == unit();
+        if (same) return;
+        PointWanted wanted;
+        wanted.dem = opened_->dem;
+        wanted.dems = opened_->scene.dems;
+        wanted.options = opened_->scene.dem;
+        wanted.refraction = opened_->scene.refraction;
+        wanted.place = *state_.chosen;
+        wanted.date = state_.day.date;
+        wanted.zone = state_.document.zone;
+        wanted.chart_px = state_.chart_px;
+        wanted.px_a_unit = unit();
+        asked_point_ = wanted;
+        point_work_->want(std::move(wanted));
     }
 
-    // ---- keys
+    // ---- keys and menus
 
     void keys() {
         for (const KeyPress& press : window_->take_keys()) {
             busy_frames_ = 3;
-            if (press.control)
-                with_control(press);
-            else
-                plain(press);
+            if (const auto command = command_of(press))
+                state_.commands.push_back(*command);
+            else if (!press.control && press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9)
+                state_.view_to_go_to = static_cast<std::size_t>(press.key - GLFW_KEY_1);
         }
+        for (const Command command : std::exchange(state_.commands, {}))
+            if (!of_program(command) && is_open()) of_scene(command);
+        if (state_.view_to_go_to && is_open()) go_to_view(*state_.view_to_go_to);
+        state_.view_to_go_to.reset();
+        if (std::exchange(state_.views_changed, false)) remember_views();
     }
 
-    void with_control(const KeyPress& press) {
-        if (press.key == GLFW_KEY_C) copy_command();
-        if (press.key == GLFW_KEY_S) save_scene();
-        if (press.key == GLFW_KEY_O) ask_for_dem();
-        if (press.key == GLFW_KEY_Q) window_->close();
-        if (press.key == GLFW_KEY_Z && history_.differs(state_.document))
-            history_.add(state_.document);
-        const bool redo = press.key == GLFW_KEY_Y || (press.key == GLFW_KEY_Z && press.shift);
-        if (redo && history_.can_redo())
-            go_to(history_.redo());
-        else if (press.key == GLFW_KEY_Z && !press.shift && history_.can_undo())
-            go_to(history_.undo());
-    }
-
-    void plain(const KeyPress& press) {
-        switch (press.key) {
-            case GLFW_KEY_H:
+    /// What can be done while nothing is open. @returns whether it is such
+    bool of_program(Command command) {
+        switch (command) {
+            case Command::Open:
+                ask_for_dem();
+                return true;
+            case Command::NextFile:
+                open_neighbour(1);
+                return true;
+            case Command::PreviousFile:
+                open_neighbour(-1);
+                return true;
+            case Command::Quit:
+                window_->close();
+                return true;
+            case Command::Panels:
+                state_.settings.panels = !state_.settings.panels;
+                return true;
+            case Command::Charts:
+                state_.settings.charts = !state_.settings.charts;
+                return true;
+            case Command::Keys:
                 sheet_ = !sheet_;
-                break;
-            case GLFW_KEY_ESCAPE:
+                return true;
+            case Command::CloseKeys:
                 sheet_ = false;
-                break;
-            case GLFW_KEY_TAB:
-                panels_ = !panels_;
-                break;
-            case GLFW_KEY_SPACE:
-                state_.playing = !state_.playing;
-                break;
-            case GLFW_KEY_C:
-                state_.compare_is_wanted = !state_.compare_is_wanted;
-                break;
-            case GLFW_KEY_M:
-                measure();
-                break;
-            case GLFW_KEY_F5:
-                read_again();
-                break;
-            case GLFW_KEY_F12:
-                take_picture();
-                break;
+                closes_menus_ = true;
+                state_.message.clear();
+                return true;
             default:
-                move_by_key(press);
+                return false;
         }
     }
 
-    void move_by_key(const KeyPress& press) {
-        Pose& pose = state_.document.pose;
-        constexpr double kHour_s = 3600, kDay_s = 86400;
-        const double step_s = press.shift ? kDay_s : kHour_s / 2;
-        const glm::dvec3 middle = hold(0.5f * size());
-        // What the hand has done before is a step of its own.
-        if (history_.differs(state_.document)) history_.add(state_.document);
-        stop_gliding();
-        if (press.key == GLFW_KEY_LEFT_BRACKET) {
-            state_.set_utc(state_.document.utc - step_s);
-        } else if (press.key == GLFW_KEY_RIGHT_BRACKET) {
-            state_.set_utc(state_.document.utc + step_s);
-        } else if (press.key == GLFW_KEY_HOME) {
-            pose = home_;
-        } else if (press.key == GLFW_KEY_N) {
-            pose = orbit(pose, state_.land, middle, pose.heading_deg, 0);
-            pose.heading_deg = 0;
-        } else if (press.key == GLFW_KEY_T) {
-            pose = from_above(pose, state_.land, middle, distance(pose.eye_m, middle));
-        } else if (press.key == GLFW_KEY_G) {
-            walking_ = !walking_;
-            if (walking_) pose = walk(pose, state_.land, {0, 0});
-        } else {
-            return;
+    void of_scene(Command command) {
+        switch (command) {
+            case Command::ReadAgain:
+                return read_again();
+            case Command::TakePicture:
+                return take_picture();
+            case Command::CopyCommand:
+                return copy_command();
+            case Command::SaveScene:
+                return say_or_fail([&] { done(save_scene(whole())); });
+            case Command::SaveView:
+                return keep_view();
+            case Command::Measure:
+                return measure();
+            case Command::Compare:
+                state_.compare_is_wanted = !state_.compare_is_wanted;
+                return;
+            case Command::Play:
+                state_.playing = !state_.playing;
+                return;
+            case Command::Undo:
+                end_step();
+                if (history_.can_undo()) go_to(history_.undo());
+                return;
+            case Command::Redo:
+                if (history_.can_redo()) go_to(history_.redo());
+                return;
+            default:
+                move(command);
         }
+    }
+
+    /// What the hand has done before is a step of its own.
+    void end_step() {
+        if (history_.differs(state_.document)) history_.add(state_.document);
+    }
+
+    void move(Command command) {
+        constexpr double kHour_s = 3600, kDay_s = 86400;
+        end_step();
+        const auto by = [&](double seconds) { state_.set_utc(state_.document.utc + seconds); };
+        if (command == Command::Earlier)
+            by(-kHour_s / 2);
+        else if (command == Command::Later)
+            by(kHour_s / 2);
+        else if (command == Command::DayEarlier)
+            by(-kDay_s);
+        else if (command == Command::DayLater)
+            by(kDay_s);
+        else if (!hand_->move(command, home_))
+            return;
         moved();
         state_.step = true;
     }
@@ -610,7 +430,7 @@ class Viewer {
     }
 
     void go_to(const Document& document) {
-        stop_gliding();
+        hand_->rest();
         const bool other_effects = scene::scene_text(with_effects(document), "") !=
                                    scene::scene_text(with_effects(state_.document), "");
         state_.document = document;
@@ -629,35 +449,69 @@ class Viewer {
         return scene;
     }
 
+    // ---- views and settings that are kept
+
+    void keep_view() {
+        const SavedView view = saved_view(state_.document, state_.land,
+                                          fmt::format("View {}", state_.views.size() + 1));
+        state_.views.push_back(view);
+        tell(state_.views.size() < 10
+                 ? fmt::format("{} is kept; key {} goes back to it", view.name, state_.views.size())
+                 : fmt::format("{} is kept, in the menu View", view.name));
+        remember_views();
+    }
+
+    void go_to_view(std::size_t i) {
+        if (i >= state_.views.size()) return;
+        const SavedView& view = state_.views[i];
+        end_step();
+        hand_->rest();
+        state_.document.pose = pose_of(view, state_.land);
+        state_.set_utc(view.utc);
+        moved();
+        state_.step = true;
+    }
+
+    void remember_views() {
+        if (opened_)
+            say_or_fail(
+                [&] { memory_.write_views(absolute_names(opened_->scene.dems), state_.views); });
+    }
+
+    /// Between frames, where fonts may be made anew.
+    void restyle() {
+        const Settings& now = state_.settings;
+        if (now.light_style == styled_.light_style && now.text_px == styled_.text_px) return;
+        styled_ = now;
+        window_->set_style(now.light_style, now.text_px);
+        busy_frames_ = 3;
+    }
+
+    void remember_settings() {
+        if (state_.settings == written_) return;
+        written_ = state_.settings;
+        remember([&] { memory_.write(written_); });
+    }
+
+    /// A home that nothing can be written to is not what the window is for.
+    template <typename Do>
+    static void remember(const Do& act) {
+        try {
+            act();
+        } catch (const Error& error) {
+            log::warning(error.what());
+        }
+    }
+
     // ---- taking it away
 
-    scene::Scene whole_scene() const {
-        scene::Scene scene = state_.document.whole(state_.land);
-        const glm::ivec2 size = window_->size_px();
-        scene.width_px = size.x;
-        scene.height_px = size.y;
-        for (std::string& dem : scene.dems) {
-            std::error_code error;
-            if (!std::filesystem::exists(dem, error)) continue;
-            // The working folder may be gone.
-            const std::filesystem::path whole = std::filesystem::absolute(dem, error);
-            if (!error) dem = whole.lexically_normal().string();
-        }
-        return scene;
+    scene::Scene whole() const {
+        return whole_scene(state_.document, state_.land, window_->size_px());
     }
 
     void copy_command() {
-        window_->copy(capture_command(whole_scene(), "picture.png"));
-        state_.message = "the command that takes this picture is on the clipboard";
-    }
-
-    void save_scene() {
-        say_or_fail([&] {
-            const std::string text = scene::scene_text(whole_scene(), "");
-            const std::string name =
-                write_under_free_name("json", [&](OutputFile& file) { file.write(text); });
-            return name + " has the scene; relevo view --scene opens it";
-        });
+        window_->copy(capture_command(whole(), "picture.png"));
+        tell("the command that takes this picture is on the clipboard");
     }
 
     /// Whether the picture is what was wanted last.
@@ -667,38 +521,41 @@ class Viewer {
     }
 
     void take_picture() {
-        if (!is_answered()) {
-            takes_when_sharp_ = true;
-            return;
+        takes_when_sharp_ = !is_answered();
+        if (!takes_when_sharp_) say_or_fail([&] { done(save_picture(*picture_, whole())); });
+    }
+
+    /// Tells of something that was done, for a while.
+    void tell(std::string what) {
+        state_.message = told_ = std::move(what);
+        told_at_ = Clock::now();
+    }
+
+    /// Likewise of a file, also where the program was started.
+    void done(std::string what) {
+        log::info(what);
+        tell(std::move(what));
+    }
+
+    void end_message() {
+        if (told_.empty() || seconds_since(told_at_) < kTold_s) return;
+        if (state_.message == told_) {
+            state_.message.clear();
+            busy_frames_ = 2;
         }
-        say_or_fail([&] {
-            image::Image8 image(picture_->width_px, picture_->height_px, 3);
-            for (int y = 0; y < image.height; ++y) {
-                const std::uint8_t* from =
-                    picture_->rgba.data() + std::size_t{4} * static_cast<std::size_t>(image.width) *
-                                                static_cast<std::size_t>(image.height - 1 - y);
-                std::uint8_t* to = image.row(y);
-                for (int x = 0; x < image.width; ++x, from += 4, to += 3)
-                    std::copy_n(from, 3, to);
-            }
-            const image::Metadata metadata{
-                {"Software", "Relevo"},
-                {"Description", capture_command(whole_scene(), "picture.png")}};
-            const std::string name = write_under_free_name(
-                "png", [&](OutputFile& file) { image::write(file, image, metadata); });
-            return name + " has the picture";
-        });
+        told_.clear();
     }
 
     template <typename Do>
     void say_or_fail(const Do& act) {
         try {
-            state_.message = act();
-            log::info(state_.message);
+            act();
         } catch (const Error& error) {
             state_.message = error.what();
         }
     }
+
+    // ---- files
 
     void read_again() {
         state_.set_effects(state_.document.scene.effects);
@@ -713,12 +570,25 @@ class Viewer {
             files = asked_files_->get();
             asked_files_.reset();
         }
+        if (!state_.files_to_open.empty()) files = std::exchange(state_.files_to_open, {});
         if (files.empty() || !last_good_) return;
-        state_.document.scene.dems = std::move(files);
-        state_.document.scene.view = {};
-        state_.document.scene.dem = {};
+        tried_ = files.front();
+        scene::Scene& scene = state_.document.scene;
+        scene.dems = std::move(files);
+        scene.view = {};
+        scene.dem = {.max_posts = scene.dem.max_posts};  // the rest is said of the other file
         has_gone_back_ = has_failed_ = false;
+        state_.message.clear();
         open();
+    }
+
+    /// Beside the one that was tried last, so that one that is no DEM is not the end of the way.
+    void open_neighbour(int by) {
+        if (tried_.empty()) return;
+        if (const std::string next = neighbour_in_folder(tried_, by); !next.empty())
+            state_.files_to_open = {next};
+        else
+            state_.message = "there is no other DEM in its folder";
     }
 
     void ask_for_dem() {
@@ -731,13 +601,16 @@ class Viewer {
 
     /// Effects are read again when their files are written, and the DEM when its are.
     void watch_files() {
-        if ((!is_open() && !has_failed_) || seconds_since(watched_at_) < kWatch_s) return;
+        if (seconds_since(watched_at_) < kWatch_s) return;
         watched_at_ = Clock::now();
+        remember_settings();
+        end_message();
+        if (!is_open() && !has_failed_) return;
         if (is_open() && effect_files_.changed()) read_again();
         if (dem_files_.changed() && dem_files_.all_there()) {
             if (is_open()) state_.document.scene.view = view_of(state_.document.pose, state_.land);
             has_gone_back_ = has_failed_ = false;
-            state_.message = "the DEM was written again, and read again";
+            tell("the DEM was written again, and read again");
             open();
         }
     }
@@ -752,80 +625,39 @@ class Viewer {
 
     // ---- what is seen
 
+    /// Pixels for a unit of what is made for usual letters.
+    double unit() const {
+        constexpr double kUsual_px = 16;
+        return window_->scale() * state_.settings.text_px / kUsual_px;
+    }
+
     void panels() {
+        // No focus on any of them: menus close.
+        if (std::exchange(closes_menus_, false)) ImGui::SetWindowFocus(nullptr);
         if (!is_open()) {
-            waiting_text();
+            if (state_.settings.panels) menu_bar(state_);
+            waiting_text(state_, has_failed_);
             return;
         }
         if (picture_) {
             draw_sun_path(state_, *picture_, size());
             draw_measured(state_.measured, state_.profile, *picture_, size());
-            draw_scale_and_north(*picture_, state_.land, ground_at(0.5f * size()), size());
+            const float top = state_.settings.panels ? ImGui::GetFrameHeight() : 0;
+            draw_scale_and_north(*picture_, state_.land, hand_->ground_at(0.5f * size()), size(),
+                                 top);
+            if (before_) draw_sides(window_->line() * size().x, top);
         }
-        if (panels_) side_panel();
-        status_line();
+        if (state_.settings.panels) {
+            menu_bar(state_);
+            side_panel(state_, size(), unit());
+            charts_.draw(state_, size(), unit());
+        }
+        status_line(state_, is_drawing());
+        message_box(state_, size(), unit());
         if (sheet_) key_sheet();
     }
 
-    void waiting_text() const {
-        ImGui::SetNextWindowPos({20, 20});
-        ImGui::Begin("##opening", nullptr,
-                     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
-        if (has_failed_)
-            ImGui::TextWrapped("%s", state_.message.c_str());
-        else
-            ImGui::Text("opening %s ...", state_.document.scene.dems.front().c_str());
-        ImGui::End();
-    }
-
-    void side_panel() {
-        const float scale = window_->scale();
-        ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
-        ImGui::SetNextWindowSizeConstraints({kPanel_px * scale, 60},
-                                            {kPanel_px * scale, size().y - 60});
-        ImGui::Begin("Relevo", nullptr,
-                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
-        constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
-        if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state_);
-        if (ImGui::CollapsingHeader("Point", kOpen)) point_panel(state_);
-        if (state_.profile && ImGui::CollapsingHeader("Profile", kOpen))
-            profile_panel(*state_.profile);
-        if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state_);
-        if (ImGui::CollapsingHeader("Take it away", kOpen)) {
-            if (ImGui::Button("Picture (F12)")) take_picture();
-            ImGui::SameLine();
-            if (ImGui::Button("Copy command")) copy_command();
-            ImGui::SameLine();
-            if (ImGui::Button("Save scene")) save_scene();
-        }
-        if (!state_.message.empty()) {
-            ImGui::Separator();
-            ImGui::TextWrapped("%s", state_.message.c_str());
-        }
-        ImGui::End();
-    }
-
-    void status_line() {
-        std::string text;
-        if (state_.cursor) {
-            const Cursor& at = *state_.cursor;
-            text = fmt::format("{}   {}   {:.1f} m", geo::degrees_text(at.place),
-                               geo::utm_text(at.place), at.place.height_m);
-            if (!std::isnan(at.slope_deg)) text += fmt::format("   slope {:.1f}°", at.slope_deg);
-            if (!std::isnan(at.slope_deg) && !std::isnan(at.aspect_deg))
-                text += fmt::format(" to {:.0f}°", at.aspect_deg);
-        } else {
-            text = "H: keys";
-        }
-        ImDrawList& list = *ImGui::GetForegroundDrawList();
-        const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
-        const ImVec2 at{12, ImGui::GetIO().DisplaySize.y - extent.y - 10};
-        list.AddRectFilled({at.x - 6, at.y - 4}, {at.x + extent.x + 6, at.y + extent.y + 4},
-                           IM_COL32(0, 0, 0, 150), 4);
-        list.AddText(at, IM_COL32(255, 255, 255, 235), text.c_str());
-    }
-
-    // ---- to the thread that draws
+    // ---- to the threads that work
 
     void want_view() {
         if (state_.sun_moves) moved();
@@ -839,6 +671,15 @@ class Viewer {
     }
 
     void hand_over() {
+        if (busy_frames_ > 0) --busy_frames_;
+        if (is_open()) hand_over_scene();
+        sun_moved_ = state_.sun_moves;
+        state_.step = state_.sun_moves = false;
+        state_.new_effects.reset();
+        state_.new_values.clear();
+    }
+
+    void hand_over_scene() {
         want_view();
         if (state_.new_effects) scene_->want_effects(*state_.new_effects);
         for (const auto& [address, value] : state_.new_values)
@@ -847,32 +688,16 @@ class Viewer {
             history_.add(state_.document);
             busy_frames_ = 2;
         }
-        if (!state_.sun_moves && !state_.playing) follow_the_day();
-        if (busy_frames_ > 0) --busy_frames_;
+        follow_the_day();
         if (state_.compare_is_wanted && !before_) compare();
         if (!state_.compare_is_wanted && before_) stop_comparing();
-        sun_moved_ = state_.sun_moves;
-        state_.step = state_.sun_moves = false;
-        state_.new_effects.reset();
-        state_.new_values.clear();
-        if (takes_when_sharp_ && is_answered()) {
-            takes_when_sharp_ = false;
-            take_picture();
-        }
+        if (takes_when_sharp_ && is_answered()) take_picture();
     }
 
     /// What the hand has moved is a step of undo when it has come to rest.
     void step_at_rest() {
-        if (is_open() && seconds_since(moved_at_) > kStep_s && !dragging_ && !glides() &&
-            !keys_held_ && !state_.playing && history_.differs(state_.document))
-            history_.add(state_.document);
-    }
-
-    /// The chosen point's light is that of the day that is shown.
-    void follow_the_day() {
-        if (!state_.point || state_.point_in_work.valid()) return;
-        if (state_.point->date != state_.document.zone.local(state_.document.utc).wall.date)
-            work_out_light(state_.point->place);
+        if (is_open() && seconds_since(moved_at_) > kStep_s && !hand_->is_busy() && !state_.playing)
+            end_step();
     }
 
     Wanted wanted_now() const {
@@ -898,11 +723,18 @@ class Viewer {
     }
 
     std::unique_ptr<Window> window_;  // ends after the threads that wake it
+    Discard discard_;
     std::string device_;
     std::string zone_;  // as --tz takes it
+    Memory memory_ = Memory::of_user();
+    Settings written_, styled_;
     std::unique_ptr<SceneThread> scene_;
     std::shared_ptr<const Opened> opened_;  // scene_'s
-    State state_;                           // its work refers to the session: ends before it
+    State state_;
+    std::unique_ptr<Hand> hand_;  // refers to both
+    ChartsPanel charts_;
+    std::unique_ptr<PointWork> point_work_;
+    std::optional<PointWanted> asked_point_;  // of state_.chosen
     History history_;
     Pose home_;
     std::shared_ptr<const Picture> picture_;
@@ -910,21 +742,18 @@ class Viewer {
     std::shared_ptr<const Picture> picture_before_;
     std::optional<Wanted> wanted_;
     std::optional<scene::Scene> last_good_;  // that was open
+    std::string tried_;                      // the DEM that was to be opened last
     bool has_gone_back_ = false, has_failed_ = false;
     std::optional<std::future<std::vector<std::string>>> asked_files_;
     FileWatch effect_files_, dem_files_;
     Clock::time_point watched_at_ = Clock::now();
-
-    std::optional<Drag> dragging_;
-    glm::vec2 pressed_px_{0}, last_px_{0};
-    glm::dvec3 held_{0}, zoom_at_{0};
-    double zoom_left_ = 0;  // natural logarithm of what is still to be zoomed
-    glm::dvec2 glide_deg_a_s_{0};
-    bool walking_ = false, keys_held_ = false;
     bool sun_moved_ = false;  // in the frame before
+    std::string told_;
+    Clock::time_point told_at_;
 
     Clock::time_point frame_at_ = Clock::now(), moved_at_ = Clock::now();
-    bool rested_ = true, panels_ = true, sheet_ = false, takes_when_sharp_ = false;
+    bool rested_ = true, sheet_ = false, takes_when_sharp_ = false;
+    bool closes_menus_ = false;
     int busy_frames_ = 3;  // that panels still need to settle
 };
 

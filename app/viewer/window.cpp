@@ -28,7 +28,7 @@ namespace relevo::viewer {
 namespace {
 
 constexpr int kWidth = 1280, kHeight = 800;
-constexpr float kText_px = 16;
+constexpr float kText_px = 16;  // that panels' sizes are made for
 
 [[noreturn]] void no_display() {
     throw Error(ErrorCode::NoDevice,
@@ -93,20 +93,20 @@ std::string wide_font_file() {
     return {};
 }
 
-void load_fonts(float scale) {
+/// @param text_px  of the display
+void load_fonts(float text_px) {
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
     // Latin with its accents, Greek, Cyrillic, and dashes and degrees.
     static const ImWchar ranges[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x2044, 0x2190, 0x2193, 0};
     const std::string file = font_file();
     if (file.empty()) return;
-    fonts.AddFontFromFileTTF(file.c_str(), kText_px * scale, nullptr, ranges);
+    fonts.AddFontFromFileTTF(file.c_str(), text_px, nullptr, ranges);
     if (const std::string wide = wide_font_file(); !wide.empty()) {
         ImFontConfig config;
         config.MergeMode = true;
-        fonts.AddFontFromFileTTF(wide.c_str(), kText_px * scale, &config,
+        fonts.AddFontFromFileTTF(wide.c_str(), text_px, &config,
                                  fonts.GetGlyphRangesChineseSimplifiedCommon());
-        fonts.AddFontFromFileTTF(wide.c_str(), kText_px * scale, &config,
-                                 fonts.GetGlyphRangesJapanese());
+        fonts.AddFontFromFileTTF(wide.c_str(), text_px, &config, fonts.GetGlyphRangesJapanese());
     }
 }
 
@@ -194,15 +194,24 @@ struct Window::Impl {
         ImGui::GetIO().LogFilename = nullptr;
         ImGui_ImplGlfw_InitForOpenGL(handle, /*install_callbacks=*/true);
         ImGui_ImplOpenGL3_Init("#version 450 core");
+        is_open() = true;
+    }
+
+    void set_style(bool light, int text_px) {
         float scale = 1;
         glfwGetWindowContentScale(handle, &scale, nullptr);
-        load_fonts(scale);
-        ImGui::StyleColorsDark();
-        ImGui::GetStyle().ScaleAllSizes(scale);
-        ImGui::GetStyle().WindowRounding = 6 * scale;
-        ImGui::GetStyle().FrameRounding = 3 * scale;
-        ImGui::GetStyle().Colors[ImGuiCol_WindowBg].w = 0.86f;
-        is_open() = true;
+        ImGui::GetIO().Fonts->Clear();
+        load_fonts(static_cast<float>(text_px) * scale);
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+        scale *= static_cast<float>(text_px) / kText_px;
+        ImGuiStyle& style = ImGui::GetStyle();
+        style = ImGuiStyle();
+        light ? ImGui::StyleColorsLight() : ImGui::StyleColorsDark();
+        style.ScaleAllSizes(scale);
+        style.WindowRounding = 6 * scale;
+        style.FrameRounding = 3 * scale;
+        style.Colors[ImGuiCol_WindowBg].w = light ? 0.93f : 0.86f;
     }
 
     void close() {
@@ -246,6 +255,15 @@ bool Window::should_close() const {
 
 void Window::close() {
     glfwSetWindowShouldClose(impl_->handle, GLFW_TRUE);
+}
+
+void Window::hide() {
+    glfwHideWindow(impl_->handle);
+    glfwPollEvents();
+}
+
+void Window::set_style(bool light, int text_px) {
+    impl_->set_style(light, text_px);
 }
 
 void Window::set_title(const std::string& title) {

@@ -33,11 +33,17 @@ class Window {
 
     bool should_close() const;
     void close();
+    /// Takes it off the display; what goes on goes on unseen.
+    void hide();
     void set_title(const std::string& title);
     glm::ivec2 size_px() const;  ///< of what is drawn into
     glm::vec2 size() const;      ///< in the units of the mouse and of panels
     /// Pixels that are drawn for one of the mouse's units, for text that can be read.
     float scale() const;
+
+    /// How panels look from the next frame on.
+    /// @param text_px  height of letters, on a display of usual density
+    void set_style(bool light, int text_px);
 
     /// Waits for input for so long at most, or for wake().
     void wait(double at_most_s);

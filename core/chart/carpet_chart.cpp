@@ -10,8 +10,10 @@ namespace relevo::chart {
 namespace {
 
 constexpr double kMargin = 28;
-constexpr double kLeft = 116, kTop = 112;
+constexpr double kLeft = 116, kTop = 112;  // of a sheet
 constexpr double kDayWidth = 2.8, kHourHeight = 20;
+// A panel's plot, in the panel.
+constexpr double kPanelLeft = 56, kPanelRight = 14, kPanelTop = 8, kPanelBottom = 48;
 constexpr double kLit = 40, kLevel = 57;  // lines of hours below the carpet
 const Pen kNoon{.stroke = Color{0xb06000}, .width = 1.1, .dash = {4, 3}};
 
@@ -29,33 +31,43 @@ Color color_of(light::Light light) {
     return {};
 }
 
-double y_of(double time_of_day_s) {
-    return kTop + 24 * kHourHeight - time_of_day_s / 3600 * kHourHeight;
+int days_of(int year) {
+    return sun::days_between({year, 1, 1}, {year + 1, 1, 1});
 }
 
-double x_of(int year, const sun::Date& date) {
-    return kLeft + sun::days_between({year, 1, 1}, date) * kDayWidth;
-}
+/// Where days and times are.
+struct Plot : Rect {
+    int year = 0;
+
+    double day_width() const { return width / days_of(year); }
+    double x_of(const sun::Date& date) const {
+        return x + sun::days_between({year, 1, 1}, date) * day_width();
+    }
+    double y_of(double time_of_day_s) const { return y + height * (1 - time_of_day_s / 86400); }
+    double right() const { return x + width; }
+    double bottom() const { return y + height; }
+};
 
 /// Cells of one kind that follow each other are one area.
-void add_cells(Drawing& drawing, const light::Carpet& carpet, const Rect& area) {
+void add_cells(Drawing& drawing, const light::Carpet& carpet, const Plot& area) {
     drawing.rect(area, {.fill = color_of(light::Light::Night), .crisp = true});
     for (int row = 0; row < carpet.light.height(); ++row) {
         const sun::Date date = carpet.days[static_cast<std::size_t>(row)].date;
-        const double x = x_of(carpet.year, date);
+        const double x = area.x_of(date);
         for (int from = 0, to = 0; from < carpet.light.width(); from = to) {
             const light::Light light = carpet.light.at(from, row);
             while (to < carpet.light.width() && carpet.light.at(to, row) == light)
                 ++to;
             if (light == light::Light::Night) continue;
-            const double top = y_of(to * double{1} * carpet.step_s);
-            drawing.rect({x, top, kDayWidth, y_of(from * double{1} * carpet.step_s) - top},
-                         {.fill = color_of(light), .crisp = true});
+            const double top = area.y_of(to * double{1} * carpet.step_s);
+            drawing.rect(
+                {x, top, area.day_width(), area.y_of(from * double{1} * carpet.step_s) - top},
+                {.fill = color_of(light), .crisp = true});
         }
     }
 }
 
-void add_noon(Drawing& drawing, const light::Carpet& carpet) {
+void add_noon(Drawing& drawing, const light::Carpet& carpet, const Plot& area) {
     std::vector<glm::dvec2> noon;
     double before_s = -1;
     for (const light::LightDay& day : carpet.days) {
@@ -65,58 +77,60 @@ void add_noon(Drawing& drawing, const light::Carpet& carpet) {
         const double s = wall.hour * 3600 + wall.minute * 60 + wall.second;
         if (before_s >= 0 && std::abs(s - before_s) > 600) noon.emplace_back(std::nan(""));
         before_s = s;
-        noon.emplace_back(x_of(carpet.year, day.date) + 0.5 * kDayWidth, y_of(s));
+        noon.emplace_back(area.x_of(day.date) + 0.5 * area.day_width(), area.y_of(s));
     }
     drawing.path(std::move(noon), kNoon);
 }
 
-void add_hours(Drawing& drawing, double right) {
+void add_hours(Drawing& drawing, const Plot& area) {
     for (int hour = 0; hour <= 24; hour += 1) {
-        const double y = y_of(hour * 3600.0);
+        const double y = area.y_of(hour * 3600.0);
         if (hour % 3 == 0 && hour % 24 != 0)
-            drawing.line({kLeft, y}, {right, y}, {.stroke = Color{0xffffff, 0.35}, .width = 0.8});
-        drawing.line({kLeft - (hour % 3 == 0 ? 7 : 4), y}, {kLeft, y}, {.stroke = kSoft});
+            drawing.line({area.x, y}, {area.right(), y},
+                         {.stroke = Color{0xffffff, 0.35}, .width = 0.8});
+        drawing.line({area.x - (hour % 3 == 0 ? 7 : 4), y}, {area.x, y}, {.stroke = kSoft});
         if (hour % 3 == 0)
-            drawing.text({kLeft - 11, y + 4}, fmt::format("{:02}:00", hour),
+            drawing.text({area.x - 11, y + 4}, fmt::format("{:02}:00", hour),
                          {.size = 12, .color = kSoft, .anchor = Anchor::End});
     }
 }
 
 /// Names of the months, and their hours of light.
-void add_months(Drawing& drawing, const light::Carpet& carpet, double bottom) {
+void add_months(Drawing& drawing, const light::Carpet& carpet, const Plot& area, bool is_panel) {
     const int year = carpet.year;
     std::vector<double> month_level_s(12, 0);
     for (std::size_t i = 0; i < carpet.days.size(); ++i)
         month_level_s[static_cast<std::size_t>(carpet.days[i].date.month - 1)] +=
             carpet.day_level_s[i];
-    const double names_y = bottom + 20, lit_y = bottom + kLit, level_y = bottom + kLevel;
+    const double bottom = area.bottom();
     for (int month = 1; month <= 12; ++month) {
-        const double from = x_of(year, {year, month, 1});
+        const double from = area.x_of({year, month, 1});
         const sun::Date next =
             month < 12 ? sun::Date{year, month + 1, 1} : sun::Date{year + 1, 1, 1};
-        const double middle = (from + x_of(year, next)) / 2;
+        const double middle = (from + area.x_of(next)) / 2;
         if (month > 1)
-            drawing.line({from, kTop}, {from, bottom},
+            drawing.line({from, area.y}, {from, bottom},
                          {.stroke = Color{0xffffff, 0.35}, .width = 0.8});
         drawing.line({from, bottom}, {from, bottom + 7}, {.stroke = kSoft});
         const auto i = static_cast<std::size_t>(month - 1);
-        drawing.text({middle, names_y}, month_name(month).substr(0, 3),
+        drawing.text({middle, bottom + 20}, month_name(month).substr(0, 3),
                      {.size = 13, .color = kInk, .anchor = Anchor::Middle, .bold = true});
-        drawing.text({middle, lit_y}, fmt::format("{:.0f} h", carpet.month_lit_s[i] / 3600),
+        drawing.text({middle, bottom + kLit}, fmt::format("{:.0f} h", carpet.month_lit_s[i] / 3600),
                      {.size = 12, .color = kInk, .anchor = Anchor::Middle});
-        drawing.text({middle, level_y}, fmt::format("{:.0f} h", month_level_s[i] / 3600),
+        if (is_panel) continue;
+        drawing.text({middle, bottom + kLevel}, fmt::format("{:.0f} h", month_level_s[i] / 3600),
                      {.size = 12, .color = kSoft, .anchor = Anchor::Middle});
     }
 }
 
-void add_frame(Drawing& drawing, const Rect& area) {
-    const double right = area.x + area.width, bottom = area.y + area.height;
-    const double lit_y = bottom + kLit, level_y = bottom + kLevel;
+void add_frame(Drawing& drawing, const Plot& area, bool is_panel) {
+    const double right = area.right(), bottom = area.bottom();
     drawing.line({right, bottom}, {right, bottom + 7}, {.stroke = kSoft});
     drawing.rect(area, {.stroke = kSoft, .width = 1.2});
-    drawing.text({kLeft - 11, lit_y}, "direct sun",
+    drawing.text({area.x - 11, bottom + kLit}, is_panel ? "sun" : "direct sun",
                  {.size = 12, .color = kInk, .anchor = Anchor::End});
-    drawing.text({kLeft - 11, level_y}, "level horizon",
+    if (is_panel) return;
+    drawing.text({area.x - 11, bottom + kLevel}, "level horizon",
                  {.size = 12, .color = kSoft, .anchor = Anchor::End});
     drawing.text({kMargin + 14, area.y + area.height / 2}, "time of day, by the clock",
                  {.size = 12, .color = kSoft, .anchor = Anchor::Middle, .turn_deg = -90});
@@ -146,28 +160,42 @@ std::vector<std::string> title_lines(const CarpetChart& chart) {
     return lines;
 }
 
+void add_plot(Drawing& drawing, const light::Carpet& carpet, const Plot& area, bool is_panel) {
+    add_cells(drawing, carpet, area);
+    add_noon(drawing, carpet, area);
+    add_hours(drawing, area);
+    add_months(drawing, carpet, area, is_panel);
+    add_frame(drawing, area, is_panel);
+}
+
 }  // namespace
 
+Rect CarpetChart::plot() const {
+    if (panel)
+        return {kPanelLeft, kPanelTop, panel->width - kPanelLeft - kPanelRight,
+                panel->height - kPanelTop - kPanelBottom};
+    return {kLeft, kTop, days_of(carpet->year) * kDayWidth, 24 * kHourHeight};
+}
+
 Drawing CarpetChart::draw() const {
-    const int days = sun::days_between({carpet->year, 1, 1}, {carpet->year + 1, 1, 1});
-    const Rect area{kLeft, kTop, days * kDayWidth, 24 * kHourHeight};
-    const double bottom = area.y + area.height;
+    const Plot area{plot(), carpet->year};
+    if (panel) {
+        Drawing drawing(panel->width, panel->height);
+        add_plot(drawing, *carpet, area, /*is_panel=*/true);
+        return drawing;
+    }
     const std::vector<std::string> foot{
         "D" + carpet->definition.substr(1) +
             ". Level horizon: the same part of the sun at 0 degrees. Twilight: civil, the sun's "
             "centre less than 6 degrees below the horizon.",
         "T" + horizon_definition.substr(1) + "."};
-    const double keys_y = bottom + 92;
+    const double keys_y = area.bottom() + 92;
     Drawing drawing(1160, keys_y + 22 + foot_height(1160, kMargin, foot) + kMargin);
     const std::string subject = fmt::format("Direct sun through {}", carpet->year);
     const std::vector<std::string> lines = title_lines(*this);
     drawing.describe(title_of(place_name, subject), lines.back());
     add_title(drawing, kMargin, place_name, subject, lines);
-    add_cells(drawing, *carpet, area);
-    add_noon(drawing, *carpet);
-    add_hours(drawing, area.x + area.width);
-    add_months(drawing, *carpet, bottom);
-    add_frame(drawing, area);
+    add_plot(drawing, *carpet, area, /*is_panel=*/false);
     add_keys(drawing, keys_y);
     add_foot(drawing, kMargin, foot);
     return drawing;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "chart/drawing.h"
@@ -15,7 +16,11 @@ struct CarpetChart {
     std::string place_name;          ///< for the title, where there is one
     std::string horizon_definition;  ///< TerrainHorizon::description()
 
-    /// 1160 units wide.
+    std::optional<PanelSize> panel;  ///< none: a sheet
+
+    /// The days of the year from left to right, the day from midnight at the lower edge.
+    Rect plot() const;
+    /// A sheet is 1160 units wide.
     Drawing draw() const;
 };
 

@@ -44,6 +44,12 @@ struct Rect {
     double x = 0, y = 0, width = 0, height = 0;
 };
 
+/// Of a diagram in a panel of a window: without title, keys and small print, and with letters as
+/// large as otherwise.
+struct PanelSize {
+    double width = 0, height = 0;
+};
+
 /// A drawing of lines, areas and words, in units of a pixel, y downwards. What comes later lies on
 /// top. Letters are Helvetica's widths everywhere: Liberation Sans, Arial and Nimbus Sans share
 /// them. Words are as printable() leaves them: neither SVG nor Cairo takes control characters, or

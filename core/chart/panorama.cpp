@@ -16,9 +16,9 @@ namespace {
 
 constexpr double kMargin = 28;
 constexpr double kWidth = 1500;
-constexpr double kLeft = 74, kRight = 34;
-constexpr double kPlotHeight = 460;
-constexpr double kTop = 104;
+constexpr Rect kSheetPlot{74, 104, kWidth - 74 - 34, 460};
+// A panel's plot, in the panel.
+constexpr double kPanelLeft = 40, kPanelRight = 18, kPanelTop = 8, kPanelBottom = 48;
 constexpr int kColumns = 1440;  // directions of the ridges
 
 constexpr Color kZenithSky{0xd3e5f3};
@@ -52,40 +52,50 @@ class Panorama {
     explicit Panorama(const HorizonPanorama& of) : of_(of) {
         if (of.year != 0) paths_.emplace(of.horizon->place(), of.refraction, of.year, of.zone);
         middle_rad_ = of.horizon->place().lat_rad < 0 ? 0 : kPi;
+        if (of.panel)
+            plot_ = {kPanelLeft, kPanelTop, of.panel->width - kPanelLeft - kPanelRight,
+                     of.panel->height - kPanelTop - kPanelBottom};
         choose_range();
-        make_foot();
+        if (!of.panel) make_foot();
     }
 
     Drawing draw() {
-        const double keys_y = kTop + kPlotHeight + 62;
+        if (of_.panel) {
+            Drawing drawing(of_.panel->width, of_.panel->height);
+            drawing_ = &drawing;
+            add_plot();
+            return drawing;
+        }
+        const double keys_y = plot_.y + plot_.height + 62;
         Drawing drawing(
             kWidth, keys_y + (paths_ ? 50 : 30) + foot_height(kWidth, kMargin, foot_) + kMargin);
         drawing_ = &drawing;
         add_head();
-        drawing.clip(plot());
-        add_sky();
-        if (paths_) add_paths();
-        add_ridges();
-        add_holes();
-        add_level();
-        drawing.end_clip();
-        add_axes();
-        add_marks();
+        add_plot();
         add_keys(keys_y);
         add_foot(drawing, kMargin, foot_);
         return drawing;
     }
 
-  private:
-    static Rect plot() { return {kLeft, kTop, kWidth - kLeft - kRight, kPlotHeight}; }
+    HorizonPanorama::Axes axes() const {
+        return {plot_, middle_rad_, radians(low_deg_), radians(high_deg_)};
+    }
 
-    double x(double azimuth_rad) const {
-        const double from_middle = std::remainder(azimuth_rad - middle_rad_, 2 * kPi);
-        return kLeft + plot().width * (0.5 + from_middle / (2 * kPi));
+  private:
+    void add_plot() {
+        drawing_->clip(plot_);
+        add_sky();
+        if (paths_) add_paths();
+        add_ridges();
+        add_holes();
+        add_level();
+        drawing_->end_clip();
+        add_axes();
+        add_marks();
     }
-    double y(double elevation_rad) const {
-        return kTop + kPlotHeight * (high_deg_ - degrees(elevation_rad)) / (high_deg_ - low_deg_);
-    }
+
+    double x(double azimuth_rad) const { return axes().at(azimuth_rad, 0).x; }
+    double y(double elevation_rad) const { return axes().at(0, elevation_rad).y; }
     glm::dvec2 point(const PathPoint& p) const { return {x(p.azimuth_rad), y(p.elevation_rad)}; }
 
     void choose_range() {
@@ -104,7 +114,7 @@ class Panorama {
         low_deg_ = std::floor(degrees(lowest) - std::max(1.0, 0.06 * tall));
     }
 
-    double stretch() const { return kPlotHeight / (high_deg_ - low_deg_) / (plot().width / 360); }
+    double stretch() const { return plot_.height / (high_deg_ - low_deg_) / (plot_.width / 360); }
 
     void make_foot() {
         foot_.push_back("T" + of_.horizon->description().substr(1) + ".");
@@ -133,7 +143,7 @@ class Panorama {
 
     void add_sky() {
         constexpr int kStrips = 60;
-        const Rect all = plot();
+        const Rect all = plot_;
         for (int i = 0; i < kStrips; ++i)
             drawing_->rect(
                 {all.x, all.y + all.height * i / kStrips, all.width, all.height / kStrips + 1},
@@ -141,7 +151,7 @@ class Panorama {
     }
 
     void path(const std::vector<PathPoint>& points, const Pen& pen) const {
-        const double left = plot().x, width = plot().width;
+        const double left = plot_.x, width = plot_.width;
         std::vector<glm::dvec2> line;
         for (const PathPoint& p : points) {
             const glm::dvec2 at = point(p);
@@ -211,7 +221,7 @@ class Panorama {
                     of_.horizon->elevation_rad(azimuth_rad);
             }
         });
-        const Rect all = plot();
+        const Rect all = plot_;
         for (int b = n - 1; b >= 0; --b) {
             std::vector<glm::dvec2> ridge;
             for (int i = 0; i <= kColumns; ++i)
@@ -234,7 +244,7 @@ class Panorama {
 
     void add_holes() {
         const std::vector<light::HorizonPoint>& p = *of_.profile;
-        const glm::dvec2 half(plot().width / static_cast<double>(p.size()) / 2, 0);
+        const glm::dvec2 half(plot_.width / static_cast<double>(p.size()) / 2, 0);
         std::vector<glm::dvec2> line;
         for (const light::HorizonPoint& point : p) {
             const glm::dvec2 at(x(point.azimuth_rad), y(point.elevation_rad));
@@ -251,12 +261,12 @@ class Panorama {
     }
 
     void add_level() {
-        drawing_->line({kLeft, y(0)}, {kLeft + plot().width, y(0)},
+        drawing_->line({plot_.x, y(0)}, {plot_.x + plot_.width, y(0)},
                        {.stroke = Color{0xffffff, 0.75}, .width = 1, .dash = {5, 4}});
     }
 
     void add_axes() {
-        const Rect all = plot();
+        const Rect all = plot_;
         drawing_->rect(all, {.stroke = kSoft, .width = 1.2});
         const double bottom = all.y + all.height;
         constexpr const char* kNames[] = {"N", "NE", "E", "SE", "S", "SW", "W", "NW"};
@@ -292,6 +302,7 @@ class Panorama {
             drawing_->text({all.x - 9, y(radians(el)) + 4}, fmt::format("{}°", el),
                            {.size = 11.5, .color = kSoft, .anchor = Anchor::End});
         }
+        if (of_.panel) return;
         drawing_->text({kMargin + 4, all.y + all.height / 2}, "elevation",
                        {.size = 12, .color = kSoft, .anchor = Anchor::Middle, .turn_deg = -90});
         drawing_->text({all.x + all.width, all.y - 8},
@@ -302,7 +313,7 @@ class Panorama {
 
     /// Hours, first and last light, and the ridges that stand out.
     void add_marks() {
-        LabelPlacer labels(*drawing_, plot());
+        LabelPlacer labels(*drawing_, plot_);
         if (of_.day) {
             for (const PathPoint& p : paths_->full_hours(of_.day->date)) {
                 const double ground_rad = of_.horizon->elevation_rad(p.azimuth_rad);
@@ -377,7 +388,7 @@ class Panorama {
         std::sort(summits.begin(), summits.end(),
                   [](const Summit& a, const Summit& b) { return a.rises_rad > b.rises_rad; });
         // In the sky, not on ground that stands higher beside.
-        const Rect all = plot();
+        const Rect all = plot_;
         const double column = all.width / static_cast<double>(n);
         for (const light::HorizonPoint& h : p) {
             const double top = y(h.elevation_rad);
@@ -426,6 +437,7 @@ class Panorama {
 
     const HorizonPanorama& of_;
     std::optional<SunPaths> paths_;
+    Rect plot_ = kSheetPlot;
     double middle_rad_ = kPi, low_deg_ = 0, high_deg_ = 90;
     std::vector<std::string> foot_;
     std::vector<double> bands_m_;
@@ -435,8 +447,16 @@ class Panorama {
 
 }  // namespace
 
-Drawing HorizonPanorama::draw() const {
-    return Panorama(*this).draw();
+glm::dvec2 HorizonPanorama::Axes::at(double azimuth_rad, double elevation_rad) const {
+    const double from_middle = std::remainder(azimuth_rad - middle_rad, 2 * kPi);
+    return {plot.x + plot.width * (0.5 + from_middle / (2 * kPi)),
+            plot.y + plot.height * (high_rad - elevation_rad) / (high_rad - low_rad)};
+}
+
+Drawing HorizonPanorama::draw(Axes* axes) const {
+    Panorama panorama(*this);
+    if (axes) *axes = panorama.axes();
+    return panorama.draw();
 }
 
 }  // namespace relevo::chart

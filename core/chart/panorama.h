@@ -23,9 +23,20 @@ struct HorizonPanorama {
     std::optional<light::LightDay> day;
     std::string light_definition;
 
-    /// 1500 units wide. Azimuths run evenly along it, the sun's side of the sky in the middle;
-    /// elevations have a scale of their own, which is said.
-    Drawing draw() const;
+    std::optional<PanelSize> panel;  ///< none: a sheet
+
+    /// Where directions are in the drawing.
+    struct Axes {
+        Rect plot;
+        double middle_rad = 0;  ///< azimuth
+        double low_rad = 0, high_rad = 0;
+        glm::dvec2 at(double azimuth_rad, double elevation_rad) const;
+    };
+
+    /// A sheet is 1500 units wide. Azimuths run evenly along it, the sun's side of the sky in the
+    /// middle; elevations have a scale of their own, which is said.
+    /// @param axes  filled if not null
+    Drawing draw(Axes* axes = nullptr) const;
 };
 
 }  // namespace relevo::chart

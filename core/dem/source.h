@@ -28,6 +28,14 @@ struct LoadOptions {
     std::int64_t max_posts = std::int64_t{1} << 28;
 };
 
+/// Posts whose heights take so much memory, and the whole MiB that posts take.
+constexpr std::int64_t posts_in_mib(std::int64_t mib) {
+    return (mib << 20) / std::int64_t{sizeof(float)};
+}
+constexpr std::int64_t mib_of_posts(std::int64_t posts) {
+    return posts * std::int64_t{sizeof(float)} >> 20;
+}
+
 /// A DEM that is open: what it is, and its heights on demand. Errors begin with `dem::load`.
 ///
 /// Several files are one DEM. Its grid is that of the finest of them, over all; files on that grid

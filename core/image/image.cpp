@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -215,6 +216,21 @@ Metadata read_metadata(const std::filesystem::path& path) {
     Metadata metadata;
     read_png(path, &metadata);
     return metadata;
+}
+
+Image8 from_device(int width_px, int height_px, const std::vector<std::uint8_t>& rgba) {
+    assert(rgba.size() >= std::size_t{4} * static_cast<std::size_t>(width_px) *
+                              static_cast<std::size_t>(height_px));
+    Image8 picture(width_px, height_px, 3);
+    for (int y = 0; y < height_px; ++y) {
+        const std::uint8_t* from = rgba.data() + std::size_t{4} *
+                                                     static_cast<std::size_t>(width_px) *
+                                                     static_cast<std::size_t>(height_px - 1 - y);
+        std::uint8_t* to = picture.row(y);
+        for (int x = 0; x < width_px; ++x, from += 4, to += 3)
+            std::copy_n(from, 3, to);
+    }
+    return picture;
 }
 
 Difference compare(const Image8& a, const Image8& b) {

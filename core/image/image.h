@@ -47,6 +47,9 @@ using Image8 = Pixels<std::uint8_t>;
 /// Linear light, as EXR keeps it.
 using ImageF = Pixels<float>;
 
+/// A picture of a device, RGBA with rows from below, without its alpha.
+Image8 from_device(int width_px, int height_px, const std::vector<std::uint8_t>& rgba);
+
 /// Text that travels inside a picture, by keyword.
 using Metadata = std::map<std::string, std::string>;
 

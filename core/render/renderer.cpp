@@ -486,16 +486,7 @@ image::Image8 Renderer::read_picture(int* not_numbers) const {
         for (std::size_t alpha = 3; alpha < texels.size(); alpha += 4)
             *not_numbers += texels[alpha] != 255;
     }
-    image::Image8 picture(width, height, 3);
-    for (int y = 0; y < height; ++y) {
-        // GL's first row is the lowest.
-        const std::uint8_t* from = texels.data() + static_cast<std::size_t>(height - 1 - y) *
-                                                       static_cast<std::size_t>(width) * 4;
-        std::uint8_t* to = picture.row(y);
-        for (int x = 0; x < width; ++x, from += 4, to += 3)
-            std::copy_n(from, 3, to);
-    }
-    return picture;
+    return image::from_device(width, height, texels);
 }
 
 image::ImageF Renderer::read_radiance(int* not_numbers) const {

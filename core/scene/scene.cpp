@@ -24,7 +24,6 @@ using nlohmann::ordered_json;
 
 constexpr std::string_view kWho = "scene";
 constexpr int kFormat = 1;
-constexpr std::int64_t kBytesAPost = sizeof(float);
 
 const std::vector<std::string>& refractions() {
     static const std::vector<std::string> names = {"standard", "saemundsson", "none"};
@@ -122,7 +121,7 @@ class SceneReader {
         }
         if (const auto mib =
                 static_cast<std::int64_t>(object.number("memory_mib", 0, 1, 1 << 20, true)))
-            options.max_posts = (mib << 20) / kBytesAPost;
+            options.max_posts = dem::posts_in_mib(mib);
         object.finish();
     }
 
@@ -292,7 +291,7 @@ ordered_json dem_json(const Scene& scene, const fs::path& folder) {
         json["bounds"] = {b.west_deg, b.south_deg, b.east_deg, b.north_deg};
     }
     if (options.max_posts != dem::LoadOptions{}.max_posts)
-        json["memory_mib"] = options.max_posts * kBytesAPost >> 20;
+        json["memory_mib"] = dem::mib_of_posts(options.max_posts);
     return json;
 }
 

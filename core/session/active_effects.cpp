@@ -20,6 +20,17 @@ void say(const effect::Selection& selection) {
 
 }  // namespace
 
+InstalledEffects::InstalledEffects(const scene::Effects& effects)
+    : registry(effect::Registry::load_installed(
+          {effects.plugin_path.begin(), effects.plugin_path.end()})) {
+    for (const std::string& preset : effects.presets)
+        presets.push_back(effect::load_preset(preset));
+    std::vector<shader::Param> params = registry.params();
+    for (const shader::Param& param : render::core_params())
+        params.push_back(param);
+    values.declare(params, registry.texts());
+}
+
 void ActiveEffects::fit(const gl::DeviceInfo& device, bool aloud) {
     const std::size_t unusable = loaded.unusable.size();
     loaded = effect::select_and_load(
@@ -104,16 +115,8 @@ scene::Effects without(scene::Effects effects, const std::vector<std::string>& i
 }
 
 std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, bool aloud) {
-    auto active = std::make_unique<ActiveEffects>();
-    active->registry =
-        effect::Registry::load_installed({effects.plugin_path.begin(), effects.plugin_path.end()});
-    for (const std::string& preset : effects.presets)
-        active->presets.push_back(effect::load_preset(preset));
+    auto active = std::make_unique<ActiveEffects>(effects);
     active->switches = effects.switches;
-    std::vector<shader::Param> params = active->registry.params();
-    for (const shader::Param& param : render::core_params())
-        params.push_back(param);
-    active->values.declare(params, active->registry.texts());
     active->loaded = effect::select_and_load(active->registry, active->presets, active->switches,
                                              active->values);
     const std::vector<std::string> notices =

@@ -12,13 +12,23 @@
 
 namespace relevo::session {
 
-/// The plugins there are, those that are on, and the values of their parameters.
-struct ActiveEffects {
+/// The plugins there are, and the parameters that they and the core have. No device is needed.
+struct InstalledEffects {
     effect::Registry registry;
     std::vector<effect::Preset> presets;
+    shader::ParamStore values;
+
+    /// Reads the plugins and presets that a scene names; values are those of the plugins.
+    /// @throws Error (BadInput) as effect::Registry and effect::load_preset
+    explicit InstalledEffects(const scene::Effects& effects);
+};
+
+/// Those that are on as well, with what they load, and the values that a scene gives.
+struct ActiveEffects : InstalledEffects {
     effect::Switches switches;
     effect::LoadedSelection loaded;  // points into registry
-    shader::ParamStore values;
+
+    using InstalledEffects::InstalledEffects;
 
     /// Loads the plugins and switches them.
     /// @param aloud  says with log what is not as asked

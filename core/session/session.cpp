@@ -31,18 +31,12 @@ double milliseconds_since(Clock::time_point began) {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
 }
 
-/// The DEM, and how long it took.
-struct Loaded {
-    dem::Source source;
-    dem::Heightfield field;
-    double took_ms = 0;
-};
-
-Loaded load(const scene::Scene& scene) {
+std::shared_ptr<const LoadedDem> load(const scene::Scene& scene) {
     const auto began = Clock::now();
     dem::Source source = dem::Source::open(scene.dems, scene.dem);
     dem::Heightfield field = dem::load(source, scene.dem.max_posts);
-    return {std::move(source), std::move(field), milliseconds_since(began)};
+    return std::make_shared<const LoadedDem>(
+        LoadedDem{std::move(source), std::move(field), milliseconds_since(began)});
 }
 
 constexpr int kDivider_px = 2;
@@ -62,6 +56,12 @@ Picture side_by_side(const Picture& left, const Picture& right, Value line) {
 
 }  // namespace
 
+double LoadedDem::height_m(const geo::Geodetic& at) const {
+    if (field.reduction > 1) return source.height_at(at);
+    const glm::dvec2 post = field.grid.post(at);
+    return field.height_at(post.x, post.y);
+}
+
 /// What draws a scene: some effects, and of a comparison the rest of them.
 struct Session::DrawnEffects {
     std::unique_ptr<ActiveEffects> effects, others;
@@ -75,7 +75,7 @@ struct Session::Impl {
 
     // In the order in which each needs those above.
     std::optional<gl::Context> context;
-    std::optional<Loaded> loaded;
+    std::shared_ptr<const LoadedDem> loaded;
     DrawnEffects drawn;
     std::optional<render::Ground> ground;
     std::optional<render::Terrain> terrain;
@@ -93,14 +93,14 @@ struct Session::Impl {
         const bool timed = !scene.moment.time.empty();
         if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
         // Where the system gives no further thread it is read when it is waited for.
-        auto loading =
-            std::async(std::launch::async | std::launch::deferred, [this] { return load(scene); });
+        auto loading = std::async(std::launch::async | std::launch::deferred,
+                                  [this] { return options.dem ? options.dem : load(scene); });
         open_device(files);
         const auto began = Clock::now();
         compile(drawn);
         stages.emplace_back("compile", milliseconds_since(began));
-        loaded.emplace(loading.get());
-        stages.emplace_back("load", loaded->took_ms);
+        loaded = loading.get();
+        stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
         if (timed && !time) time = parse_over(scene.moment, loaded->source, loaded->field);
         upload();
         set_moment(time ? time->utc : scene::default_moment(ground->frame.origin()));
@@ -195,15 +195,9 @@ struct Session::Impl {
         inputs.unix_s = static_cast<double>(utc.unix_us()) * 1e-6;
     }
 
-    double ground_height_m(const geo::Geodetic& at) const {
-        if (loaded->field.reduction > 1) return loaded->source.height_at(at);
-        const glm::dvec2 post = loaded->field.grid.post(at);
-        return loaded->field.height_at(post.x, post.y);
-    }
-
     void look(const scene::View& view) {
         inputs.camera = scene::make_camera(
-            view, [this](const geo::Geodetic& at) { return ground_height_m(at); }, ground->frame,
+            view, [this](const geo::Geodetic& at) { return loaded->height_m(at); }, ground->frame,
             points, static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration,
             render::points_moved_to(points, *ground, scene.exaggeration,
                                     drawn.renderer->displacement()));
@@ -356,16 +350,8 @@ const scene::Camera& Session::camera() const {
     return impl_->inputs.camera;
 }
 
-const dem::Heightfield& Session::heightfield() const {
-    return impl_->loaded->field;
-}
-
-double Session::ground_height_m(const geo::Geodetic& at) const {
-    return impl_->ground_height_m(at);
-}
-
-const dem::Source& Session::source() const {
-    return impl_->loaded->source;
+const std::shared_ptr<const LoadedDem>& Session::dem() const {
+    return impl_->loaded;
 }
 
 const render::Ground& Session::ground() const {

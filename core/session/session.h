@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "base/files_in_use.h"
+#include "dem/heightfield.h"
+#include "dem/source.h"
 #include "gl/context.h"
 #include "image/image.h"
 #include "render/renderer.h"
@@ -16,10 +18,24 @@
 /// What every front end shares: a scene becomes frames, pictures and words about them.
 namespace relevo::session {
 
+/// A DEM that has been read. What refers to it may be used on several threads at once.
+struct LoadedDem {
+    dem::Source source;
+    dem::Heightfield field;  ///< all posts, or means of them
+    double took_ms = 0;
+
+    /// The height of the posts there [m], also where only means of them are in memory; NaN where
+    /// there is no ground.
+    double height_m(const geo::Geodetic& at) const;
+};
+
 struct Options {
     std::string device = "auto";  ///< as gl::Context takes it
     /// Gives the context of a window instead of one on `device`.
     std::function<gl::Context()> context{};
+    /// The scene's DEM where it has been read already, such as for another session; else it is
+    /// read.
+    std::shared_ptr<const LoadedDem> dem{};
     bool radiance = false;  ///< keep linear light, for Session::radiance()
     /// Effects of a comparison: pictures have them on the left and not on the right.
     std::vector<std::string> compared{};
@@ -87,11 +103,8 @@ class Session {
     void read_depths(std::vector<float>& depths_m) const;
 
     const scene::Camera& camera() const;
-    const dem::Heightfield& heightfield() const;
-    /// The height of the posts there [m], also where only means of them are in memory; NaN where
-    /// there is no ground. Safe beside a frame that is drawn.
-    double ground_height_m(const geo::Geodetic& at) const;
-    const dem::Source& source() const;
+    /// Its DEM, which may outlive it.
+    const std::shared_ptr<const LoadedDem>& dem() const;
     /// The DEM's ground; its local frame is the camera's.
     const render::Ground& ground() const;
 

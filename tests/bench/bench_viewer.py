@@ -100,7 +100,8 @@ def latencies_ms(screen, move, times=40):
 
 def bench(program, dem):
     screen = Screen()
-    env = {**os.environ, "DISPLAY": screen.name, "WAYLAND_DISPLAY": ""}
+    env = {**os.environ, "DISPLAY": screen.name, "WAYLAND_DISPLAY": "",
+           "XDG_CONFIG_HOME": screen.folder.name, "XDG_STATE_HOME": screen.folder.name}
     began = time.perf_counter()
     viewer = subprocess.Popen([program, "-q", *([dem] if dem else [])], env=env, cwd=screen.folder.name)
     try:

@@ -41,15 +41,15 @@ std::vector<Box> words_of(const Drawing& drawing) {
 }
 
 /// Words stand within the drawing and never on each other.
-void expect_readable(const Drawing& drawing) {
+void expect_readable(const Drawing& drawing, double margin = 10) {
     const std::vector<Box> boxes = words_of(drawing);
     EXPECT_GT(boxes.size(), 20U);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const Box& a = boxes[i];
-        EXPECT_GE(a.left, 10) << a.words;
-        EXPECT_GE(a.top, 10) << a.words;
-        EXPECT_LE(a.right, drawing.width() - 10) << a.words;
-        EXPECT_LE(a.bottom, drawing.height() - 10) << a.words;
+        EXPECT_GE(a.left, margin) << a.words;
+        EXPECT_GE(a.top, margin) << a.words;
+        EXPECT_LE(a.right, drawing.width() - margin) << a.words;
+        EXPECT_LE(a.bottom, drawing.height() - margin) << a.words;
         for (std::size_t k = i + 1; k < boxes.size(); ++k) {
             const Box& b = boxes[k];
             EXPECT_FALSE(a.left < b.right && b.left < a.right && a.top < b.bottom &&
@@ -158,7 +158,41 @@ TEST(Diagrams, WordsNeverStandOnEachOtherOrOverTheEdge) {
         }
         const light::Carpet c = carpet(scene.direct, 2026, scene.zone, 1800);
         expect_readable(
-            CarpetChart{&c, scene.horizon.place(), "", scene.horizon.description()}.draw());
+            CarpetChart{&c, scene.horizon.place(), "", scene.horizon.description(), {}}.draw());
+    }
+}
+
+TEST(Diagrams, APanelHasTheSizeThatIsAskedForAndNoLettersOnEachOther) {
+    for (const Place& place : places()) {
+        SCOPED_TRACE(place.lat_deg);
+        const Scene scene(place);
+        HorizonPanorama panorama = scene.panorama(true);
+        panorama.panel = PanelSize{760, 260};
+        HorizonPanorama::Axes axes;
+        const Drawing horizon = panorama.draw(&axes);
+        EXPECT_EQ(glm::dvec2(horizon.width(), horizon.height()), glm::dvec2(760, 260));
+        expect_readable(horizon, 3);
+        // The edges of the light lie where the axes say.
+        for (const light::LitInterval& lit : panorama.day->lit) {
+            if (lit.begin.midnight) continue;
+            const glm::dvec2 at = axes.at(lit.begin.azimuth_rad, lit.begin.elevation_rad);
+            double least = 1e9;
+            for (const auto& circle : all_of<Drawing::Circle>(horizon))
+                least = std::min(least, glm::distance(circle.center, at));
+            EXPECT_LT(least, 1e-6);
+        }
+        const light::Carpet c = carpet(scene.direct, 2026, scene.zone, 1800);
+        CarpetChart chart{&c, scene.horizon.place(), "", "", PanelSize{760, 260}};
+        const Drawing year = chart.draw();
+        expect_readable(year, 3);
+        double lit = 0;
+        for (const auto& path : all_of<Drawing::Path>(year)) {
+            if (!path.closed || !path.pen.crisp || path.pen.fill->rgb != 0xffd24a) continue;
+            lit += std::abs(path.points[2].x - path.points[0].x) *
+                   std::abs(path.points[2].y - path.points[0].y);
+        }
+        const Rect plot = chart.plot();
+        EXPECT_NEAR(lit / (plot.width / 365) / (plot.height / 24) * 3600 / (c.lit_s + 1), 1, 0.02);
     }
 }
 
@@ -168,7 +202,7 @@ TEST(Diagrams, ALongNameLeavesTheRestOfTheTitle) {
     SunPathDiagram diagram = scene.diagram(true);
     HorizonPanorama panorama = scene.panorama(true);
     const light::Carpet light = carpet(scene.direct, 2026, scene.zone, 1800);
-    CarpetChart chart{&light, scene.horizon.place(), name, scene.horizon.description()};
+    CarpetChart chart{&light, scene.horizon.place(), name, scene.horizon.description(), {}};
     diagram.place_name = panorama.place_name = name;
     const std::pair<Drawing, std::string> drawings[] = {
         {diagram.draw(), "\u2026: path of the sun, 10 February 2026"},
@@ -258,7 +292,7 @@ TEST(CarpetChart, AreasAreTheHours) {
     const Scene scene(places()[2]);
     const light::Carpet c = carpet(scene.direct, 2026, scene.zone, 180);
     const Drawing drawing =
-        CarpetChart{&c, scene.horizon.place(), "Valley", scene.horizon.description()}.draw();
+        CarpetChart{&c, scene.horizon.place(), "Valley", scene.horizon.description(), {}}.draw();
     EXPECT_EQ(drawing.title(), "Valley: direct sun through 2026");
     double lit = 0;
     for (const auto& path : all_of<Drawing::Path>(drawing)) {

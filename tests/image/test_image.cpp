@@ -183,6 +183,12 @@ TEST_F(ImageFiles, HighlyCompressedOnesAreRead) {
     EXPECT_EQ(compare(read(dir_ / "flat.png"), flat).worst, 0);
 }
 
+TEST(Image, RowsOfADeviceAreTurnedAndLoseTheirAlpha) {
+    const Image8 picture = from_device(1, 2, {1, 2, 3, 4, 5, 6, 7, 8});
+    EXPECT_EQ(picture.channels, 3);
+    EXPECT_EQ(picture.values, (std::vector<std::uint8_t>{5, 6, 7, 1, 2, 3}));
+}
+
 TEST(ImageCompare, MeasuresWhatDiffers) {
     const Image8 a = gradient(10, 10, 3);
     Image8 b = a;

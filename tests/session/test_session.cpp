@@ -132,6 +132,27 @@ TEST(Session, DrawsCoarserGroundUntilItsPagesAreThere) {
     EXPECT_EQ(session.picture().values, picture_of(scene).values);
 }
 
+TEST(Session, DrawsADemThatAnotherHasRead) {
+    scene::Scene scene = bundled_scene();
+    const auto dem = test::scratch_dir("shared_dem") / "mine.tif";
+    std::filesystem::copy_file(scene.dems.front(), dem);
+    scene.dems = {dem.string()};
+    FilesInUse files, others;
+    std::shared_ptr<const LoadedDem> read;
+    image::Image8 first;
+    {
+        Session session(scene, {.device = "software"}, files);
+        session.draw();
+        first = session.picture();
+        read = session.dem();
+    }
+    std::filesystem::remove(dem);
+    Session session(scene, {.device = "software", .dem = read}, others);
+    EXPECT_EQ(session.dem(), read);
+    session.draw();
+    EXPECT_EQ(session.picture().values, first.values);
+}
+
 TEST(Session, RefusesWhatNeedsAnotherProgram) {
     FilesInUse files;
     Session session(bundled_scene(), {.device = "software"}, files);

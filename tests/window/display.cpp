@@ -130,7 +130,11 @@ WindowedProgram::WindowedProgram(const Display& display, const std::filesystem::
     : display_(display), output_(scratch_dir(fmt::format("window_{}", getpid())) / "output.txt") {
     std::vector<std::string> line{program.string()};
     line.insert(line.end(), arguments.begin(), arguments.end());
-    std::vector<std::string> settings{"DISPLAY=" + display.name(), "WAYLAND_DISPLAY="};
+    // Whoever runs the tests has settings and recent files of their own.
+    const std::string own = output_.parent_path().string();
+    std::vector<std::string> settings{"DISPLAY=" + display.name(),
+                                      "WAYLAND_DISPLAY=", "XDG_CONFIG_HOME=" + own + "/config",
+                                      "XDG_STATE_HOME=" + own + "/state"};
     settings.insert(settings.end(), environment.begin(), environment.end());
     process_ = start(line, settings, output_, folder);
 }

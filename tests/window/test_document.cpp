@@ -1,12 +1,28 @@
 // What a person sets in the viewer, and how it is taken away.
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <fstream>
+#include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/units.h"
+#include "dem/load.h"
+#include "session/session.h"
+#include "sun/position.h"
+#include "sun/seasons.h"
 #include "support/support.h"
 #include "viewer/document.h"
 #include "viewer/file_watch.h"
+#include "viewer/navigation.h"
+#include "viewer/point_light.h"
+#include "viewer/settings.h"
+#include "viewer/state.h"
 #include "viewer/sun_model.h"
 
 namespace relevo::viewer {
@@ -83,12 +99,259 @@ TEST(SunModel, MinutesAndDaysOfTheYear) {
     EXPECT_EQ(days_in_month(2024, 2), 29);
     EXPECT_EQ(in_year({2024, 2, 29}, 2026), (sun::Date{2026, 2, 28}));
     // The day's way passes where the sun is.
-    const SunDay day = SunDay::of({2026, 6, 21}, zone, geo::geodetic_deg(46.5, 8, 0));
+    const SunDay day =
+        SunDay::of({2026, 6, 21}, zone, geo::geodetic_deg(46.5, 8, 0), sun::Refraction::none());
     EXPECT_EQ(day.points.size(), 145u);
     double highest = -90;
     for (const SunPoint& point : day.points)
         highest = std::max(highest, point.elevation_deg);
     EXPECT_NEAR(highest, 90 - 46.5 + 23.44, 0.1);
+}
+
+TEST(SunModel, SeasonsHaveTheDateOfTheZone) {
+    // The autumn's equinox of 2026 is at 00:05 UTC on 23 September.
+    const sun::Instant equinox = sun::seasons(2026).september_equinox;
+    const auto label = [&](const char* zone) {
+        return day_label(sun::Zone::named(zone).local(equinox).wall.date);
+    };
+    EXPECT_EQ(label("Europe/Zurich"), "23 Sep");
+    EXPECT_EQ(label("America/New_York"), "22 Sep");
+}
+
+/// What the program answers with --json.
+nlohmann::json json_of(const std::string& arguments) {
+    const std::string command =
+        fmt::format("{} -q {} 2>/dev/null", (test::build_dir() / "bin/relevo").string(), arguments);
+    std::FILE* const pipe = popen(command.c_str(), "r");
+    std::string text(1 << 16, ' ');
+    text.resize(std::fread(text.data(), 1, text.size(), pipe));
+    pclose(pipe);
+    return nlohmann::json::parse(text);
+}
+
+TEST(SunPanel, SaysWhatTheCommandLineSaysInTheSameAir) {
+    const std::string time = "2026-06-21T10:32:00Z";  // low, where air lifts the most
+    for (const char* refraction : {"standard", "none"}) {
+        scene::Scene scene;
+        scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
+        scene.refraction = refraction;
+        scene.effects.switches.only.emplace();
+        FilesInUse files;
+        const session::Session session(scene, {.device = "software"}, files);
+        State state;
+        state.document.scene = scene;
+        state.stand_on(session.ground());
+        state.set_utc(sun::parse_time(time).utc);
+        const geo::Geodetic at = session.ground().frame.origin();
+        const double expected = json_of(
+            fmt::format("sun position --at={:.7f},{:.7f},{:.1f} --time {} --refraction {} --json",
+                        degrees(at.lat_rad), degrees(at.lon_rad), session.ground().air_height_m(),
+                        time, refraction))["apparent_elevation_deg"];
+        ASSERT_GT(expected, 0.2);
+        ASSERT_LT(expected, 3);
+        EXPECT_THAT(sun_figures(state),
+                    testing::EndsWith(fmt::format(", height {:.2f}°", expected)));
+        // And so does the way of the day.
+        const SunPoint& dawn = state.day.points[62];
+        EXPECT_NEAR(
+            dawn.elevation_deg,
+            degrees(state.air.apparent_rad(sun::position(dawn.utc, state.centre).elevation_rad)),
+            1e-9);
+    }
+}
+
+std::shared_ptr<const session::LoadedDem> jacksboro() {
+    const std::string file = (test::source_dir() / "data/dem/jacksboro.tif").string();
+    dem::Source source = dem::Source::open(file);
+    dem::Heightfield field = dem::load(source, dem::LoadOptions{}.max_posts);
+    return std::make_shared<const session::LoadedDem>(
+        session::LoadedDem{std::move(source), std::move(field)});
+}
+
+TEST(PointWork, GivesUpWhatIsNotWantedAnyMoreAndNeverHoldsItsCallerUp) {
+    PointWanted wanted;
+    wanted.dem = jacksboro();
+    wanted.refraction = "standard";
+    wanted.date = {2026, 2, 10};
+    wanted.zone = sun::Zone::named("America/New_York");
+    wanted.chart_px = {640, 220};
+    const auto at = [&](int i) { return geo::geodetic_deg(36.2 + 0.004 * i, -84.2, 0); };
+    std::atomic<int> answers = 0;
+    PointWork work([&] { ++answers; });
+    const auto wait = [&] {
+        const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+        while (!work.is_done() && std::chrono::steady_clock::now() < until)
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        ASSERT_TRUE(work.is_done());
+    };
+    wanted.place = at(40);
+    work.want(wanted);
+    wait();
+    const std::shared_ptr<const PointLight> alone = work.answer();
+    ASSERT_EQ(alone->error, "");
+    EXPECT_EQ(answers, 3);  // the day, the horizon, the year
+    EXPECT_EQ(alone->horizon->picture.width, 640);
+    answers = 0;
+    double longest_s = 0;
+    for (int i = 0; i <= 40; ++i) {
+        wanted.place = at(i);
+        const auto began = std::chrono::steady_clock::now();
+        work.want(wanted);
+        longest_s = std::max(
+            longest_s,
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+        const auto answer = work.answer();
+        EXPECT_TRUE(!answer || answer->of.place.lat_rad == wanted.place.lat_rad);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    wait();
+    fmt::print("[ measured ] of 123 answers {} were worked out; want() took {:.2f} ms at most\n",
+               answers.load(), 1000 * longest_s);
+    EXPECT_LT(answers, 60);
+    EXPECT_LT(longest_s, 0.05);
+    const std::shared_ptr<const PointLight> last = work.answer();
+    EXPECT_EQ(last->lit_s, alone->lit_s);
+    EXPECT_EQ(last->horizon->picture.values, alone->horizon->picture.values);
+    EXPECT_EQ(last->year->picture.values, alone->year->picture.values);
+    // Another day of the same point is another answer; a year stays what it is.
+    wanted.date = {2026, 6, 21};
+    work.want(wanted);
+    wait();
+    EXPECT_GT(work.answer()->lit_s, last->lit_s + 3600);
+    EXPECT_NE(work.answer()->horizon->picture.values, last->horizon->picture.values);
+    EXPECT_EQ(work.answer()->year->picture.values, last->year->picture.values);
+}
+
+TEST(PointWork, HasTheFiguresOfTheCommandLine) {
+    for (const char* refraction : {"standard", "none"}) {
+        PointWanted wanted;
+        wanted.dem = jacksboro();
+        wanted.refraction = refraction;
+        wanted.place = geo::geodetic_deg(36.3, -84.2, 0);
+        wanted.date = {2026, 2, 10};
+        wanted.zone = sun::Zone::named("America/New_York");
+        PointWork work([] {});
+        work.want(wanted);
+        while (!work.is_done())
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        const auto json =
+            json_of(fmt::format("sun day {} --at 36.3,-84.2 --date 2026-02-10 {} --json",
+                                (test::source_dir() / "data/dem/jacksboro.tif").string(),
+                                wanted.refraction == "none" ? "--no-refraction" : ""));
+        EXPECT_NEAR(work.answer()->lit_s / 3600, json["direct_sun_h"], 1e-6);
+        EXPECT_NEAR(work.answer()->flat_s / 3600, json["day_length_h"], 1e-6);
+    }
+}
+
+TEST(PointLight, MidnightIsNoEdgeOfTheLight) {
+    PointLight light;
+    const sun::Instant begin = sun::parse_time("2026-06-21T00:00Z").utc;
+    light.lit = {{{begin, begin + 86400.0}, true, true}};
+    EXPECT_TRUE(light.is_lit(begin + 3600.0));
+    EXPECT_FALSE(light.next_change(begin + 3600.0));
+    light.lit = {{{begin, begin + 7200.0}, true, false},
+                 {{begin + 9000.0, begin + 86400.0}, false, true}};
+    EXPECT_EQ(light.next_change(begin + 3600.0), begin + 7200.0);
+    EXPECT_EQ(light.next_change(begin + 8000.0), begin + 9000.0);
+    EXPECT_FALSE(light.next_change(begin + 10000.0));
+}
+
+TEST(PointWork, APointInNoDemHasWordsForAnAnswer) {
+    PointWanted wanted;
+    wanted.dem = jacksboro();
+    wanted.refraction = "standard";
+    wanted.place = geo::geodetic_deg(40, -84.2, 0);
+    wanted.date = {2026, 2, 10};
+    PointWork work([] {});
+    work.want(wanted);
+    while (!work.is_done())
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_NE(work.answer()->error, "");
+    work.forget();
+    EXPECT_EQ(work.answer(), nullptr);
+}
+
+TEST(Memory, KeepsWhatWasWrittenAndStandsWhateverIsThere) {
+    const std::filesystem::path folder = test::scratch_dir("memory");
+    const Memory memory(folder / "config", folder / "state");
+    EXPECT_EQ(memory.settings(), Settings{});
+    EXPECT_THAT(memory.recent(), testing::IsEmpty());
+    const Settings settings{.light_style = true,
+                            .text_px = 20,
+                            .coordinates = Coordinates::Mgrs,
+                            .panels = false,
+                            .charts = false};
+    memory.write(settings);
+    EXPECT_EQ(memory.settings(), settings);
+    // The last one first, each once, and not without end.
+    for (int i = 0; i < 30; ++i)
+        memory.add_recent({fmt::format("/dem{}.tif", i % 20)});
+    memory.add_recent({"/dem5.tif", "/dem6.tif"});
+    ASSERT_EQ(memory.recent().size(), 12u);
+    EXPECT_THAT(memory.recent()[0], ElementsAre("/dem5.tif", "/dem6.tif"));
+    EXPECT_THAT(memory.recent()[1], ElementsAre("/dem9.tif"));
+    SavedView view;
+    view.name = "Über \"quoted\"";
+    view.eye = geo::geodetic_deg(-46.5, 170.25, 1234.5);
+    view.heading_deg = 12.5;
+    view.pitch_deg = -30;
+    view.fov_y_rad = radians(40.0);
+    view.utc = sun::parse_time("2026-06-21T18:30:00Z").utc;
+    memory.write_views({"/a.tif"}, {view, view});
+    EXPECT_THAT(memory.views({"/b.tif"}), testing::IsEmpty());
+    const std::vector<SavedView> views = memory.views({"/a.tif"});
+    ASSERT_EQ(views.size(), 2u);
+    EXPECT_EQ(views[0].name, view.name);
+    EXPECT_NEAR(views[0].eye.lon_rad, view.eye.lon_rad, 1e-12);
+    EXPECT_EQ(views[0].utc, view.utc);
+    // Broken, of another kind, or a folder.
+    for (const char* text : {"", "{", "[1, {}]", "{\"text_px\": \"large\", \"style\": 7}", "null",
+                             "{\"text_px\": 1e300, \"views\": {}}", "\xff\xfe"}) {
+        for (const auto& file : std::filesystem::recursive_directory_iterator(folder))
+            if (file.is_regular_file()) std::ofstream(file.path()) << text;
+        const int text_px = memory.settings().text_px;
+        EXPECT_TRUE(text_px == 16 || text_px == kMostText_px) << text;
+        EXPECT_THAT(memory.recent(), testing::IsEmpty()) << text;
+        EXPECT_THAT(memory.views({"/a.tif"}), testing::IsEmpty()) << text;
+    }
+    std::filesystem::remove(folder / "state/recent.json");
+    std::filesystem::create_directories(folder / "state/recent.json");
+    EXPECT_THAT(memory.recent(), testing::IsEmpty());
+    EXPECT_THROW(memory.add_recent({"/a.tif"}), Error);
+    // Names of any bytes.
+    std::filesystem::remove(folder / "state/recent.json");
+    EXPECT_NO_THROW(memory.add_recent({"/\xff.tif"}));
+    // Nowhere to remember anything.
+    const Memory none({}, {});
+    none.write(settings);
+    none.add_recent({"/a.tif"});
+    none.write_views({"/a.tif"}, {view});
+    EXPECT_EQ(none.settings(), Settings{});
+}
+
+TEST(Scrolling, IsByAsMuchAsTheFingersMove) {
+    // Ten tenths of a notch are a notch.
+    EXPECT_NEAR(std::pow(zoom_of_scroll(0.1), 10), zoom_of_scroll(1), 1e-12);
+    EXPECT_NEAR(1 - zoom_of_scroll(0.01), 0.01 * -std::log(zoom_of_scroll(1)), 1e-5);
+    EXPECT_EQ(zoom_of_scroll(0), 1);
+}
+
+TEST(Folder, HasNeighboursByName) {
+    const std::filesystem::path folder = test::scratch_dir("neighbours");
+    for (const char* name : {"b.tif", "a.TIF", "c.hgt", "notes.txt", "z.png"})
+        std::ofstream(folder / name) << "x";
+    std::filesystem::create_directories(folder / "d.tif");
+    const auto next = [&](const char* name, int by) {
+        return std::filesystem::path(neighbour_in_folder((folder / name).string(), by))
+            .filename()
+            .string();
+    };
+    EXPECT_EQ(next("a.TIF", 1), "b.tif");
+    EXPECT_EQ(next("b.tif", 1), "c.hgt");
+    EXPECT_EQ(next("c.hgt", 1), "a.TIF");
+    EXPECT_EQ(next("a.TIF", -1), "c.hgt");
+    EXPECT_EQ(next("gone.tif", 1), "a.TIF");  // its place in the order is known still
+    EXPECT_EQ(neighbour_in_folder((folder / "d.tif/alone.tif").string(), 1), "");
 }
 
 TEST(FileWatch, TellsOfChangesOnceTheyRest) {

@@ -4,93 +4,18 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <random>
 #include <thread>
 
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "base/text.h"
 #include "image/image.h"
-#include "support/support.h"
-#include "window/display.h"
+#include "window/viewer_fixture.h"
 
 namespace relevo {
 namespace {
 
 using testing::HasSubstr;
-
-class Viewer : public testing::Test {
-  protected:
-    /// Opens the window in a folder of its own, without panels over the picture.
-    void open(const std::vector<std::string>& arguments) {
-        std::vector<std::string> words = arguments;
-        program_.emplace(display_, test::build_dir() / "bin/relevo", words,
-                         std::vector<std::string>{}, folder_);
-        ASSERT_TRUE(wait([&] { return program_->title().find("Relevo") != std::string::npos; }))
-            << program_->output();
-        act({"mousemove", "900", "500"});
-        ASSERT_TRUE(settles()) << program_->output();
-    }
-    static bool wait(const std::function<bool()>& holds) {
-        return test::WindowedProgram::wait(holds);
-    }
-    void act(const std::vector<std::string>& arguments) const { display_.act(arguments); }
-    /// Waits until the screen shows something, and the same for a while.
-    bool settles() {
-        image::Image8 before = display_.screen();
-        int same = 0;
-        return wait([&] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(60));
-            image::Image8 now = display_.screen();
-            same = test::difference(now, before) < 1e-4 && brightness(now) > 30 ? same + 1 : 0;
-            before = std::move(now);
-            return same >= 6;
-        });
-    }
-    static double brightness(const image::Image8& picture) {
-        double sum = 0;
-        for (const std::uint8_t value : picture.values)
-            sum += value;
-        return sum / static_cast<double>(picture.values.size());
-    }
-    /// Whether doing it makes another picture, of which this share differs at least.
-    bool changes(const std::function<void()>& act, double share = 0.05) {
-        const image::Image8 before = display_.screen();
-        act();
-        if (!wait([&] { return test::difference(display_.screen(), before) > share; }))
-            return false;
-        return settles();
-    }
-    /// The scene as Ctrl+S saves it now.
-    nlohmann::json scene() {
-        const auto name = folder_ / fmt::format("relevo-{}.json", ++saved_);
-        act({"key", "ctrl+s"});
-        EXPECT_TRUE(wait([&] { return std::filesystem::exists(name); })) << program_->output();
-        return nlohmann::json::parse(read_text(name, "test"));
-    }
-    void drag(int button, int x, int y, int dx, int dy) {
-        act({"mousemove", std::to_string(x), std::to_string(y)});
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        act({"mousedown", std::to_string(button)});
-        for (int step = 1; step <= 5; ++step) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(60));
-            act({"mousemove", std::to_string(x + dx * step / 5),
-                 std::to_string(y + dy * step / 5)});
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(60));
-        act({"mouseup", std::to_string(button)});
-    }
-
-    const std::filesystem::path folder_ = test::scratch_dir("viewer");
-    const std::string dem_ = (test::source_dir() / "data/dem/jacksboro.tif").string();
-    test::Display display_{1280, 800};
-    std::optional<test::WindowedProgram> program_;
-    int saved_ = 0;
-};
 
 TEST_F(Viewer, TurnsPansZoomsAndGoesHome) {
     open({dem_});
@@ -145,14 +70,17 @@ TEST_F(Viewer, ShowsTimesInTheZoneThatIsAskedFor) {
 TEST_F(Viewer, APictureIsWhatACaptureOfItsSceneIs) {
     open({dem_, "--time", "2026-06-21T20:00:00Z"});
     ASSERT_TRUE(changes([&] { drag(3, 800, 400, 90, 30); }));
-    scene();
+    // Until the view has stopped gliding, which a slow machine may not show.
+    for (nlohmann::json before; before != scene()["camera"];)
+        before = scene()["camera"];
     act({"key", "F12"});
     const auto taken = folder_ / "relevo-1.png";
     ASSERT_TRUE(wait([&] { return std::filesystem::exists(taken); })) << program_->output();
     const auto captured = folder_ / "captured.png";
-    test::WindowedProgram capture(display_, test::build_dir() / "bin/relevo",
-                                  {"-q", "capture", "--scene", (folder_ / "relevo-1.json").string(),
-                                   "-o", captured.string()});
+    test::WindowedProgram capture(
+        display_, test::build_dir() / "bin/relevo",
+        {"-q", "capture", "--scene", (folder_ / fmt::format("relevo-{}.json", saved_)).string(),
+         "-o", captured.string()});
     ASSERT_EQ(capture.status(), 0) << capture.output();
     const image::Image8 a = image::read(taken), b = image::read(captured);
     EXPECT_LE(test::difference(a, b, 1), 2e-4);
@@ -181,24 +109,15 @@ TEST_F(Viewer, TheCopiedCommandTakesThePicture) {
 }
 
 TEST_F(Viewer, ReadsEffectsAgainWhenTheirFilesAreWritten) {
-    const auto plugin = folder_ / "plugins/paint";
-    std::filesystem::create_directories(plugin);
-    std::ofstream(plugin / "plugin.json")
-        << R"({"format": 1, "id": "paint", "name": "Paint", "description": "One colour",)"
-           R"( "version": "1.0.0"})";
-    const auto write = [&](const char* body) {
-        std::ofstream(plugin / "paint.glsl")
-            << "void paint_on_lit(in Surface s, inout vec3 radiance) { " << body << " }\n";
-    };
-    write("radiance.r += 0.1;");
-    open({dem_, "--only", "paint", "--plugin-path", (folder_ / "plugins").string()});
-    EXPECT_TRUE(changes([&] { write("radiance.b += 0.3;"); }));
+    paint("radiance.r += 0.1;");
+    open({dem_, "--only", "paint", "--plugin-path", plugins_.string()});
+    EXPECT_TRUE(changes([&] { paint("radiance.b += 0.3;"); }));
     const image::Image8 good = display_.screen();
-    write("radiance.b += nothing;");
+    paint("radiance.b += nothing;");
     std::this_thread::sleep_for(std::chrono::seconds(4));
     EXPECT_TRUE(program_->is_running());
-    EXPECT_LT(test::difference(display_.screen(), good), 0.05);  // but for the panel's message
-    EXPECT_TRUE(changes([&] { write("radiance.g += 0.3;"); }));
+    EXPECT_LT(test::difference(display_.screen(), good), 0.08);  // but for the message
+    EXPECT_TRUE(changes([&] { paint("radiance.g += 0.3;"); }));
 }
 
 TEST_F(Viewer, ReadsTheDemAgainWhenItIsWrittenAndStandsItsLoss) {
@@ -213,31 +132,23 @@ TEST_F(Viewer, ReadsTheDemAgainWhenItIsWrittenAndStandsItsLoss) {
     EXPECT_TRUE(program_->is_running());
     // Another one: the same ground, and seen from where it was.
     std::filesystem::copy_file(dem_, dem, std::filesystem::copy_options::overwrite_existing);
-    EXPECT_TRUE(wait([&] { return test::difference(display_.screen(), whole) < 0.01; }));
+    EXPECT_TRUE(wait(
+        [&] { return test::difference(display_.screen(), whole) < 0.02; }));  // but for the message
     std::filesystem::remove(dem);
     std::this_thread::sleep_for(std::chrono::seconds(3));
     EXPECT_TRUE(program_->is_running());
-    EXPECT_LT(test::difference(display_.screen(), whole), 0.01);
+    EXPECT_LT(test::difference(display_.screen(), whole), 0.02);
 }
 
 TEST_F(Viewer, ComparesWithWhatWas) {
-    const auto plugin = folder_ / "plugins/paint";
-    std::filesystem::create_directories(plugin);
-    std::ofstream(plugin / "plugin.json")
-        << R"({"format": 1, "id": "paint", "name": "Paint", "description": "One colour",)"
-           R"( "version": "1.0.0"})";
-    const auto write = [&](const char* body) {
-        std::ofstream(plugin / "paint.glsl")
-            << "void paint_on_lit(in Surface s, inout vec3 radiance) { " << body << " }\n";
-    };
-    write("radiance.r += 0.1;");
-    open({dem_, "--only", "paint", "--plugin-path", (folder_ / "plugins").string()});
+    paint("radiance.r += 0.1;");
+    open({dem_, "--only", "paint", "--plugin-path", plugins_.string()});
     act({"key", "Tab"});
     ASSERT_TRUE(settles());
     act({"key", "c"});
     ASSERT_TRUE(changes([] {}, 1e-4));  // the line
     const image::Image8 before = display_.screen();
-    ASSERT_TRUE(changes([&] { write("radiance.b += 0.3;"); }, 0.02));
+    ASSERT_TRUE(changes([&] { paint("radiance.b += 0.3;"); }, 0.02));
     const auto half_differs = [&](const image::Image8& a, int from, int to) {
         int count = 0;
         for (int y = 100; y < 600; ++y)
@@ -251,6 +162,22 @@ TEST_F(Viewer, ComparesWithWhatWas) {
     // The line is dragged: more of it stays as it was.
     ASSERT_TRUE(changes([&] { drag(1, 640, 300, 400, 0); }, 0.01));
     EXPECT_LT(half_differs(display_.screen(), 0, 1000), half_differs(after, 0, 1000) / 4);
+}
+
+TEST_F(Viewer, ComparesWithoutReadingTheDemAgain) {
+    const auto dem = folder_ / "mine.tif";
+    std::filesystem::copy_file(dem_, dem);
+    open({dem.string(), "--only"});
+    act({"key", "Tab"});
+    ASSERT_TRUE(settles());
+    std::filesystem::remove(dem);
+    const image::Image8 alone = display_.screen();
+    act({"key", "c"});
+    // The line and its names, and no message: both halves are the same.
+    ASSERT_TRUE(changes([] {}, 1e-4));
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    EXPECT_LT(test::difference(display_.screen(), alone), 0.01);
+    EXPECT_GT(test::difference(display_.screen(), alone), 0.0005);
 }
 
 TEST_F(Viewer, EndsWithItsWindowAndRestsWhenNothingChanges) {
@@ -275,17 +202,8 @@ TEST_F(Viewer, EndsWithItsWindowAndRestsWhenNothingChanges) {
 /// Whatever a hand does, for as long as RELEVO_SOAK_S says (25 s): the window stays, says nothing
 /// of GL, and its memory does not grow.
 TEST_F(Viewer, StandsWhateverIsDoneToIt) {
-    const auto plugin = folder_ / "plugins/paint";
-    std::filesystem::create_directories(plugin);
-    std::ofstream(plugin / "plugin.json")
-        << R"({"format": 1, "id": "paint", "name": "Paint", "description": "One colour",)"
-           R"( "version": "1.0.0"})";
-    const auto write = [&](const char* body) {
-        std::ofstream(plugin / "paint.glsl")
-            << "void paint_on_lit(in Surface s, inout vec3 radiance) { " << body << " }\n";
-    };
-    write("radiance.r += 0.1;");
-    open({dem_, "--plugin-path", (folder_ / "plugins").string()});
+    paint("radiance.r += 0.1;");
+    open({dem_, "--plugin-path", plugins_.string()});
     const std::string window =
         display_.act({"search", "--onlyvisible", "--pid", std::to_string(program_->process())});
     const std::string id = window.substr(0, window.find('\n'));
@@ -318,7 +236,7 @@ TEST_F(Viewer, StandsWhateverIsDoneToIt) {
         } else if (what < 9) {
             act({"key", keys[static_cast<std::size_t>(upto(static_cast<int>(keys.size())))]});
         } else if (upto(2)) {
-            write(upto(2) ? "radiance.b += 0.2;" : "radiance.b += nothing;");
+            paint(upto(2) ? "radiance.b += 0.2;" : "radiance.b += nothing;");
         } else {
             const bool tiny = upto(2) != 0;
             act({"windowsize", id, tiny ? "1" : "1000", tiny ? "1" : "700"});

@@ -1,0 +1,138 @@
+#include "viewer/charts_panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "base/units.h"
+#include "sun/position.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
+constexpr float kHeight_units = 300;
+
+/// Rows from above, as ImGui has them.
+gl::Texture texture_of(const image::Image8& picture) {
+    std::vector<std::uint8_t> rgba;
+    rgba.reserve(picture.values.size() / static_cast<std::size_t>(picture.channels) * 4);
+    for (std::size_t i = 0; i < picture.values.size();
+         i += static_cast<std::size_t>(picture.channels)) {
+        for (std::size_t c = 0; c < 3; ++c)
+            rgba.push_back(picture.values[i + c]);
+        rgba.push_back(255);
+    }
+    const gl::Extent extent{picture.width, picture.height, 1};
+    gl::Texture texture(gl::TextureKind::D2, gl::Format::RGBA8, extent, 1, "chart");
+    texture.write(0, {0, 0, 0}, extent, std::as_bytes(std::span(rgba)));
+    return texture;
+}
+
+/// Draws a chart in its own size. @returns its upper left corner in the window
+ImVec2 show(const gl::Texture& texture) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const gl::Extent extent = texture.extent();
+    ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.name())),
+                 {static_cast<float>(extent.width), static_cast<float>(extent.height)});
+    return at;
+}
+
+ImVec2 at_screen(ImVec2 corner, glm::dvec2 units, double px_a_unit) {
+    return {corner.x + static_cast<float>(units.x * px_a_unit),
+            corner.y + static_cast<float>(units.y * px_a_unit)};
+}
+
+}  // namespace
+
+template <typename Chart>
+void ChartsPanel::Shown<Chart>::take(std::shared_ptr<const Chart> newer) {
+    if (newer == chart) return;
+    chart = std::move(newer);
+    texture = chart ? texture_of(chart->picture) : gl::Texture();
+}
+
+/// With the sun as it stands now.
+void ChartsPanel::horizon(State& state) {
+    const double px_a_unit = state.point->of.px_a_unit;
+    const ImVec2 corner = show(horizon_.texture);
+    const chart::HorizonPanorama::Axes& axes = horizon_.chart->axes;
+    const sun::Position position = sun::position(state.document.utc, state.point->of.place);
+    const double elevation_rad = state.air.apparent_rad(position.elevation_rad);
+    if (elevation_rad < axes.low_rad || elevation_rad > axes.high_rad) return;
+    const ImVec2 at = at_screen(corner, axes.at(position.azimuth_rad, elevation_rad), px_a_unit);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddCircleFilled(at, 7, IM_COL32(255, 214, 90, 255));
+    list.AddCircle(at, 7.5f, kNow, 0, 2);
+}
+
+/// With the shown day and time; a click goes to another.
+void ChartsPanel::year(State& state) {
+    const double px_a_unit = state.point->of.px_a_unit;
+    const ImVec2 corner = show(year_.texture);
+    const bool hovered = ImGui::IsItemHovered();
+    const chart::Rect& plot = year_.chart->plot;
+    const sun::Zone& zone = state.document.zone;
+    const DayMinute now = DayMinute::of(state.document.utc, zone);
+    const int days = sun::days_between({now.date.year, 1, 1}, {now.date.year + 1, 1, 1});
+    const double x = plot.x + plot.width * (day_of_year(now.date) + 0.5) / days;
+    const double y = plot.y + plot.height * (1 - now.minute / 1440.0);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddLine(at_screen(corner, {x, plot.y}, px_a_unit),
+                 at_screen(corner, {x, plot.y + plot.height}, px_a_unit), kNow, 1.5f);
+    list.AddCircle(at_screen(corner, {x, y}, px_a_unit), 5, kNow, 0, 2);
+    if (!hovered) return;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const double across = ((mouse.x - corner.x) / px_a_unit - plot.x) / plot.width;
+    const double up = 1 - ((mouse.y - corner.y) / px_a_unit - plot.y) / plot.height;
+    if (across < 0 || across >= 1 || up < 0 || up >= 1) return;
+    const DayMinute there{date_of(now.date.year, static_cast<int>(across * days)),
+                          static_cast<int>(up * 1440)};
+    ImGui::SetTooltip("%s, %02d:%02d", day_label(there.date).c_str(), there.minute / 60,
+                      there.minute % 60);
+    if (!ImGui::IsMouseClicked(0)) return;
+    state.set_utc(there.utc(zone));
+    state.step = true;
+}
+
+void ChartsPanel::draw(State& state, glm::vec2 size_px, double px_a_unit) {
+    horizon_.take(state.point ? state.point->horizon : nullptr);
+    year_.take(state.point ? state.point->year : nullptr);
+    state.chart_px = {0, 0};
+    if (!state.settings.charts || !state.chosen) return;
+    const auto unit = static_cast<float>(px_a_unit);
+    const float left = 400 * unit;
+    const float width = std::max(420 * unit, std::min(size_px.x - left - 10, 1100 * unit));
+    ImGui::SetNextWindowPos({std::max(0.0f, size_px.x - 10 - width), size_px.y - 64 * unit},
+                            ImGuiCond_FirstUseEver, {0, 1});
+    ImGui::SetNextWindowSize({width, kHeight_units * unit}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSizeConstraints({360 * unit, 220 * unit}, {size_px.x, size_px.y});
+    const bool open =
+        ImGui::Begin("Horizon and year of the point", &state.settings.charts,
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoScrollbar |
+                         ImGuiWindowFlags_NoScrollWithMouse);
+    if (open && ImGui::BeginTabBar("charts")) {
+        const auto tab = [&](const char* name, bool is_there, const auto& draw_it) {
+            if (!ImGui::BeginTabItem(name)) return;
+            const ImVec2 room = ImGui::GetContentRegionAvail();
+            state.chart_px = {static_cast<int>(room.x), static_cast<int>(room.y)};
+            if (is_there)
+                draw_it();
+            else if (state.point && !state.point->error.empty())
+                ImGui::TextWrapped("%s", state.point->error.c_str());
+            else
+                ImGui::TextDisabled("looking at its horizon ...");
+            ImGui::EndTabItem();
+        };
+        tab("Horizon", horizon_.chart != nullptr, [&] { horizon(state); });
+        tab("Year", year_.chart != nullptr, [&] { year(state); });
+        ImGui::EndTabBar();
+    }
+    ImGui::End();
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+namespace relevo::viewer {
+
+struct KeyPress;
+
+/// What keys and menus have the window do.
+enum class Command {
+    Open,
+    NextFile,
+    PreviousFile,
+    ReadAgain,
+    TakePicture,
+    CopyCommand,
+    SaveScene,
+    Quit,
+    Undo,
+    Redo,
+    Whole,
+    NorthUp,
+    FromAbove,
+    Walk,
+    SaveView,
+    Measure,
+    Compare,
+    Play,
+    Earlier,
+    Later,
+    DayEarlier,
+    DayLater,
+    Panels,
+    Charts,
+    Keys,
+    CloseKeys,
+};
+
+std::optional<Command> command_of(const KeyPress& press);
+
+}  // namespace relevo::viewer

@@ -1,0 +1,275 @@
+#include "viewer/hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <glm/geometric.hpp>
+#include <imgui.h>
+
+#include "base/units.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr float kLine_px = 8;   // beside the line of a comparison that take hold of it
+constexpr float kClick_px = 4;  // that a click may move by
+/// The last turn of the wheel and the last pull of the hand die away so fast [1/s].
+constexpr double kZoomRate = 14, kGlideRate = 7;
+constexpr float kPanANotch_px = 60;
+
+}  // namespace
+
+double Hand::aspect() const {
+    return static_cast<double>(window_.size().x) / window_.size().y;
+}
+
+void Hand::act(double passed_s, bool comparing) {
+    const glm::vec2 mouse = window_.mouse();
+    const Pose& pose = state_.document.pose;
+    const Pose before = pose;
+    if (!ImGui::GetIO().WantCaptureMouse) {
+        press(mouse, comparing);
+        scroll(mouse);
+    }
+    drag(mouse, passed_s);
+    glide(passed_s);
+    fly_by_keys(passed_s);
+    has_moved_ = pose.eye_m != before.eye_m || pose.heading_deg != before.heading_deg ||
+                 pose.pitch_deg != before.pitch_deg;
+    hover(mouse);
+}
+
+void Hand::rest() {
+    dragging_.reset();
+    clicked_.reset();
+    stop_gliding();
+    walking_ = keys_held_ = has_moved_ = false;
+}
+
+void Hand::stop_gliding() {
+    zoom_left_ = 0;
+    glide_deg_a_s_ = {};
+}
+
+bool Hand::glides() const {
+    return std::abs(zoom_left_) > 1e-3 || length(glide_deg_a_s_) > 0.5;
+}
+
+/// By as much as was scrolled, which of a touchpad is any part of a notch.
+void Hand::scroll(glm::vec2 mouse) {
+    const ImGuiIO& io = ImGui::GetIO();
+    glm::vec2 by(io.MouseWheelH, io.MouseWheel);
+    if (by == glm::vec2(0)) return;
+    if (!io.KeyShift) {
+        zoom_at_ = hold(mouse);
+        zoom_left_ -= std::log(zoom_of_scroll(by.y));
+        return;
+    }
+    stop_gliding();
+    // Content moves as it does under a page: scrolling down shows what lies lower.
+    const glm::vec2 to = mouse + kPanANotch_px * by;
+    state_.document.pose =
+        pan(state_.document.pose, state_.land, hold(mouse), in_view(to), aspect());
+}
+
+void Hand::glide(double passed_s) {
+    Pose& pose = state_.document.pose;
+    if (std::abs(zoom_left_) > 1e-3) {
+        const double part = zoom_left_ * (1 - std::exp(-kZoomRate * passed_s));
+        zoom_left_ -= part;
+        pose = zoom(pose, state_.land, zoom_at_, std::exp(-part));
+    }
+    if (!dragging_ && length(glide_deg_a_s_) > 0.5) {
+        pose = orbit(pose, state_.land, held_, glide_deg_a_s_.x * passed_s,
+                     glide_deg_a_s_.y * passed_s);
+        glide_deg_a_s_ *= std::exp(-kGlideRate * passed_s);
+    }
+}
+
+bool Hand::move(Command command, const Pose& home) {
+    Pose& pose = state_.document.pose;
+    const glm::dvec3 middle = hold(0.5f * window_.size());
+    stop_gliding();
+    switch (command) {
+        case Command::Whole:
+            pose = home;
+            return true;
+        case Command::NorthUp:
+            pose = orbit(pose, state_.land, middle, pose.heading_deg, 0);
+            pose.heading_deg = 0;
+            return true;
+        case Command::FromAbove:
+            pose = from_above(pose, state_.land, middle, distance(pose.eye_m, middle));
+            return true;
+        case Command::Walk:
+            walking_ = !walking_;
+            if (walking_) pose = walk(pose, state_.land, {0, 0});
+            return true;
+        default:
+            return false;
+    }
+}
+
+/// From the window's pixels to -1 to 1.
+glm::dvec2 Hand::in_view(glm::vec2 at_px) const {
+    return {2 * at_px.x / window_.size().x - 1, 1 - 2 * at_px.y / window_.size().y};
+}
+
+/// The ground of the picture that is shown.
+std::optional<glm::dvec3> Hand::ground_at(glm::vec2 at_px) const {
+    if (!picture_) return std::nullopt;
+    const int x =
+        static_cast<int>(at_px.x / window_.size().x * static_cast<float>(picture_->width_px));
+    const int y = static_cast<int>((1 - at_px.y / window_.size().y) *
+                                   static_cast<float>(picture_->height_px));
+    if (x < 0 || y < 0 || x >= picture_->width_px || y >= picture_->height_px) return std::nullopt;
+    const float depth_m = picture_->depths_m[static_cast<std::size_t>(y * picture_->width_px + x)];
+    if (std::isinf(depth_m)) return std::nullopt;
+    const glm::dvec3 direction = ray(picture_->camera, in_view(at_px), aspect());
+    return picture_->camera.eye_m + depth_m / dot(direction, picture_->camera.forward) * direction;
+}
+
+/// What the hand takes hold of: the ground there, else where that of the middle would be if it
+/// were level, else some way ahead.
+glm::dvec3 Hand::hold(glm::vec2 at_px) const {
+    if (const auto ground = ground_at(at_px)) return *ground;
+    if (const auto middle = ground_at(0.5f * window_.size())) {
+        const glm::dvec3 direction = ray(picture_->camera, in_view(at_px), aspect());
+        const glm::dvec3 up = state_.land.axes(*middle).up;
+        const double falls = -dot(direction, up);
+        const double above_m = dot(picture_->camera.eye_m - *middle, up);
+        if (falls > 0.05 && above_m > 0)
+            return picture_->camera.eye_m + above_m / falls * direction;
+        return *middle;
+    }
+    const scene::Camera camera = camera_of(state_.document.pose, state_.land);
+    return camera.eye_m + std::max(100.0, height_above_ground()) * 3 * camera.forward;
+}
+
+double Hand::height_above_ground() const {
+    const glm::dvec3& eye_m = state_.document.pose.eye_m;
+    const double ground_m = state_.land.ground_under(eye_m);
+    const double height_m = state_.land.frame->to_geodetic(eye_m).height_m;
+    return std::max(2.0, std::isnan(ground_m) ? height_m : height_m - ground_m);
+}
+
+void Hand::press(glm::vec2 mouse, bool comparing) {
+    const ImGuiIO& io = ImGui::GetIO();
+    for (const int button : {0, 1, 2}) {
+        if (!ImGui::IsMouseClicked(button)) continue;
+        pressed_px_ = last_px_ = mouse;
+        held_ = hold(mouse);
+        dragging_ = button == 1 || (button == 0 && io.KeyShift) ? Drag::Orbit
+                    : button == 2                               ? Drag::Look
+                                                                : Drag::Pan;
+        if (button == 0 && picture_ && !ground_at(mouse) &&
+            moment_at(state_, *picture_, window_.size(), mouse))
+            dragging_ = Drag::Sun;
+        if (button == 0 && comparing &&
+            std::abs(mouse.x - window_.line() * window_.size().x) < kLine_px)
+            dragging_ = Drag::Line;
+        stop_gliding();
+    }
+}
+
+void Hand::drag(glm::vec2 mouse, double passed_s) {
+    if (!dragging_) return;
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!io.MouseDown[0] && !io.MouseDown[1] && !io.MouseDown[2]) {
+        const bool click = distance(mouse, pressed_px_) < kClick_px;
+        if (click && *dragging_ == Drag::Pan) clicked_ = ground_at(mouse);
+        dragging_.reset();
+        return;
+    }
+    const glm::dvec2 by = glm::dvec2(mouse - last_px_) / static_cast<double>(window_.size().y);
+    last_px_ = mouse;
+    Pose& pose = state_.document.pose;
+    switch (*dragging_) {
+        case Drag::Pan:
+            if (distance(mouse, pressed_px_) >= kClick_px)
+                pose = pan(pose, state_.land, held_, in_view(mouse), aspect());
+            break;
+        case Drag::Orbit: {
+            const glm::dvec2 turn{-by.x * 200, by.y * 120};
+            pose = orbit(pose, state_.land, held_, turn.x, turn.y);
+            if (passed_s > 0) glide_deg_a_s_ = 0.5 * glide_deg_a_s_ + 0.5 * turn / passed_s;
+            break;
+        }
+        case Drag::Look:
+            pose =
+                look_around(pose, -by.x * degrees(pose.fov_y_rad), by.y * degrees(pose.fov_y_rad));
+            break;
+        case Drag::Sun:
+            drag_sun(mouse);
+            state_.sun_moves = true;
+            break;
+        case Drag::Line:
+            window_.set_line(std::clamp(mouse.x / window_.size().x, 0.02f, 0.98f));
+            break;
+    }
+}
+
+void Hand::drag_sun(glm::vec2 mouse) {
+    if (!picture_) return;
+    if (const auto utc = moment_at(state_, *picture_, window_.size(), mouse)) state_.set_utc(*utc);
+}
+
+void Hand::fly_by_keys(double passed_s) {
+    const auto axis = [&](int plus, int minus) {
+        return (window_.is_down(plus) ? 1.0 : 0.0) - (window_.is_down(minus) ? 1.0 : 0.0);
+    };
+    const glm::dvec3 by(axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_W, GLFW_KEY_S),
+                        axis(GLFW_KEY_E, GLFW_KEY_Q));
+    const glm::dvec2 turn(axis(GLFW_KEY_LEFT, GLFW_KEY_RIGHT), axis(GLFW_KEY_UP, GLFW_KEY_DOWN));
+    const double nearer = axis(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN);
+    keys_held_ = by != glm::dvec3(0) || turn != glm::dvec2(0) || nearer != 0;
+    if (!keys_held_) return;
+    Pose& pose = state_.document.pose;
+    const double fast = ImGui::GetIO().KeyShift ? 4 : 1;
+    if (walking_)
+        pose = walk(pose, state_.land, glm::dvec2(by) * (3 * fast * passed_s));
+    else
+        pose = fly(pose, state_.land, by * (height_above_ground() * fast * passed_s));
+    if (turn != glm::dvec2(0))
+        pose = orbit(pose, state_.land, hold(0.5f * window_.size()), turn.x * 45 * passed_s,
+                     turn.y * 30 * passed_s);
+    if (nearer != 0)
+        pose = zoom(pose, state_.land, hold(0.5f * window_.size()), std::exp(-nearer * passed_s));
+}
+
+void Hand::hover(glm::vec2 mouse) {
+    const auto point = ImGui::GetIO().WantCaptureMouse ? std::nullopt : ground_at(mouse);
+    if (!point) {
+        state_.cursor.reset();
+        return;
+    }
+    Cursor cursor;
+    cursor.point_m = *point;
+    cursor.place = state_.land.frame->to_geodetic(*point);
+    const double height_m = state_.land.height_m(cursor.place);
+    cursor.place.height_m =
+        std::isnan(height_m) ? cursor.place.height_m / state_.land.exaggeration : height_m;
+    slope_at(cursor);
+    state_.cursor = cursor;
+}
+
+/// By central differences over a post spacing each way.
+void Hand::slope_at(Cursor& cursor) const {
+    const double reach_m = state_.spacing_m;
+    const geo::Axes axes = state_.land.axes(cursor.point_m);
+    const glm::dvec3 here_m = state_.land.frame->to_local(cursor.place);
+    const auto height = [&](const glm::dvec3& by_m) {
+        return state_.land.height_m(state_.land.frame->to_geodetic(here_m + by_m));
+    };
+    const double east =
+        (height(axes.east * reach_m) - height(-axes.east * reach_m)) / (2 * reach_m);
+    const double north =
+        (height(axes.north * reach_m) - height(-axes.north * reach_m)) / (2 * reach_m);
+    cursor.slope_deg = degrees(std::atan(std::hypot(east, north)));
+    cursor.aspect_deg = east == 0 && north == 0 ? std::nan("") : degrees(std::atan2(-east, -north));
+    if (cursor.aspect_deg < 0) cursor.aspect_deg += 360;
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,186 @@
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "base/text.h"
+#include "viewer/state.h"
+#include "viewer/window.h"
+
+namespace relevo::viewer {
+namespace {
+
+struct Key {
+    int key;
+    bool control;
+    Command command;
+};
+
+constexpr std::array<Key, 25> kKeys = {{
+    {GLFW_KEY_O, true, Command::Open},
+    {GLFW_KEY_PAGE_DOWN, true, Command::NextFile},
+    {GLFW_KEY_PAGE_UP, true, Command::PreviousFile},
+    {GLFW_KEY_F5, false, Command::ReadAgain},
+    {GLFW_KEY_F12, false, Command::TakePicture},
+    {GLFW_KEY_C, true, Command::CopyCommand},
+    {GLFW_KEY_S, true, Command::SaveScene},
+    {GLFW_KEY_Q, true, Command::Quit},
+    {GLFW_KEY_Z, true, Command::Undo},
+    {GLFW_KEY_Y, true, Command::Redo},
+    {GLFW_KEY_HOME, false, Command::Whole},
+    {GLFW_KEY_N, false, Command::NorthUp},
+    {GLFW_KEY_T, false, Command::FromAbove},
+    {GLFW_KEY_G, false, Command::Walk},
+    {GLFW_KEY_B, false, Command::SaveView},
+    {GLFW_KEY_M, false, Command::Measure},
+    {GLFW_KEY_C, false, Command::Compare},
+    {GLFW_KEY_SPACE, false, Command::Play},
+    {GLFW_KEY_LEFT_BRACKET, false, Command::Earlier},
+    {GLFW_KEY_RIGHT_BRACKET, false, Command::Later},
+    {GLFW_KEY_TAB, false, Command::Panels},
+    {GLFW_KEY_P, false, Command::Charts},
+    {GLFW_KEY_H, false, Command::Keys},
+    {GLFW_KEY_F1, false, Command::Keys},
+    {GLFW_KEY_ESCAPE, false, Command::CloseKeys},
+}};
+
+void item(State& state, const char* label, const char* keys, Command command, bool checked = false,
+          bool enabled = true) {
+    if (ImGui::MenuItem(label, keys, checked, enabled)) state.commands.push_back(command);
+}
+
+/// The last part of a DEM's name, and how many files it has beside.
+std::string short_name(const std::vector<std::string>& dems) {
+    std::string name = printable(std::filesystem::path(dems.front()).filename().string());
+    if (name.empty()) name = printable(dems.front());
+    if (dems.size() > 1) name += fmt::format(" and {} more", dems.size() - 1);
+    return name;
+}
+
+void recent_files(State& state) {
+    if (!ImGui::BeginMenu("Open again", !state.recent.empty())) return;
+    for (std::size_t i = 0; i < state.recent.size(); ++i) {
+        const std::vector<std::string>& dems = state.recent[i];
+        if (ImGui::MenuItem(fmt::format("{}##{}", short_name(dems), i).c_str()))
+            state.files_to_open = dems;
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", printable(dems.front()).c_str());
+    }
+    ImGui::EndMenu();
+}
+
+void file_menu(State& state) {
+    if (!ImGui::BeginMenu("File")) return;
+    item(state, "Open a DEM ...", "Ctrl+O", Command::Open);
+    recent_files(state);
+    item(state, "Next in its folder", "Ctrl+Page down", Command::NextFile);
+    item(state, "Previous in its folder", "Ctrl+Page up", Command::PreviousFile);
+    item(state, "Read effects again", "F5", Command::ReadAgain);
+    ImGui::Separator();
+    item(state, "Take the picture", "F12", Command::TakePicture);
+    item(state, "Copy the command that takes it", "Ctrl+C", Command::CopyCommand);
+    item(state, "Save the scene", "Ctrl+S", Command::SaveScene);
+    ImGui::Separator();
+    item(state, "End", "Ctrl+Q", Command::Quit);
+    ImGui::EndMenu();
+}
+
+void saved_views(State& state) {
+    if (state.views.empty()) return;
+    ImGui::Separator();
+    std::optional<std::size_t> gone;
+    for (std::size_t i = 0; i < state.views.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::SmallButton("go")) {
+            state.view_to_go_to = i;
+            ImGui::CloseCurrentPopup();
+        }
+        ImGui::SameLine();
+        ImGui::SetNextItemWidth(ImGui::GetFontSize() * 12);
+        ImGui::InputText("##name", &state.views[i].name);
+        state.views_changed = state.views_changed || ImGui::IsItemDeactivatedAfterEdit();
+        ImGui::SameLine();
+        if (ImGui::SmallButton("x")) gone = i;
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("Forget this view");
+        if (i < 9) {
+            ImGui::SameLine();
+            ImGui::TextDisabled("%d", static_cast<int>(i) + 1);
+        }
+        ImGui::PopID();
+    }
+    if (!gone) return;
+    state.views.erase(state.views.begin() + static_cast<std::ptrdiff_t>(*gone));
+    state.views_changed = true;
+}
+
+void view_menu(State& state) {
+    if (!ImGui::BeginMenu("View")) return;
+    item(state, "The whole DEM", "Home", Command::Whole);
+    item(state, "North up", "N", Command::NorthUp);
+    item(state, "From above", "T", Command::FromAbove);
+    item(state, "Walk at eye height", "G", Command::Walk);
+    ImGui::Separator();
+    item(state, "Undo", "Ctrl+Z", Command::Undo);
+    item(state, "Redo", "Ctrl+Y", Command::Redo);
+    ImGui::Separator();
+    item(state, "Keep this view", "B", Command::SaveView);
+    saved_views(state);
+    ImGui::EndMenu();
+}
+
+void show_menu(State& state) {
+    if (!ImGui::BeginMenu("Show")) return;
+    Settings& settings = state.settings;
+    item(state, "Panels", "Tab", Command::Panels, settings.panels);
+    item(state, "Horizon and year of the point", "P", Command::Charts, settings.charts);
+    item(state, "Comparison", "C", Command::Compare, state.compare_is_wanted);
+    ImGui::Separator();
+    if (ImGui::MenuItem("Light style", nullptr, settings.light_style))
+        settings.light_style = !settings.light_style;
+    if (ImGui::BeginMenu("Text size")) {
+        for (const int px : {13, 16, 20, 24, 28})
+            if (ImGui::MenuItem(fmt::format("{}", px).c_str(), nullptr, settings.text_px == px))
+                settings.text_px = px;
+        ImGui::EndMenu();
+    }
+    if (ImGui::BeginMenu("Coordinates")) {
+        for (const auto& [name, kind] :
+             {std::pair("UTM", Coordinates::Utm), std::pair("MGRS", Coordinates::Mgrs),
+              std::pair("Degrees", Coordinates::Degrees)})
+            if (ImGui::MenuItem(name, nullptr, settings.coordinates == kind))
+                settings.coordinates = kind;
+        ImGui::EndMenu();
+    }
+    ImGui::EndMenu();
+}
+
+}  // namespace
+
+std::optional<Command> command_of(const KeyPress& press) {
+    if (press.key == GLFW_KEY_Z && press.control && press.shift) return Command::Redo;
+    for (const Key& key : kKeys) {
+        if (key.key != press.key || key.control != press.control) continue;
+        if (press.shift && key.command == Command::Earlier) return Command::DayEarlier;
+        if (press.shift && key.command == Command::Later) return Command::DayLater;
+        return key.command;
+    }
+    return std::nullopt;
+}
+
+void menu_bar(State& state) {
+    if (!ImGui::BeginMainMenuBar()) return;
+    file_menu(state);
+    view_menu(state);
+    show_menu(state);
+    if (ImGui::BeginMenu("Help")) {
+        item(state, "Keys", "H", Command::Keys);
+        ImGui::EndMenu();
+    }
+    ImGui::EndMainMenuBar();
+}
+
+}  // namespace relevo::viewer

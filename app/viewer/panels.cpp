@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "base/text.h"
+#include "viewer/state.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr float kPanel_px = 360;
+
+void take_away_panel(State& state) {
+    const auto button = [&](const char* name, Command command) {
+        if (ImGui::Button(name)) state.commands.push_back(command);
+    };
+    button("Picture (F12)", Command::TakePicture);
+    ImGui::SameLine();
+    button("Copy command", Command::CopyCommand);
+    ImGui::SameLine();
+    button("Save scene", Command::SaveScene);
+}
+
+}  // namespace
+
+void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
+    const auto width = static_cast<float>(kPanel_px * px_a_unit);
+    const float top = 10 + ImGui::GetFrameHeight();
+    ImGui::SetNextWindowPos({10, top}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSizeConstraints({width, 60}, {width, size_px.y - top - 50});
+    ImGui::Begin("Relevo", nullptr,
+                 ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
+    constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
+    if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state);
+    if (ImGui::CollapsingHeader("Point", kOpen)) point_panel(state);
+    if (state.profile && ImGui::CollapsingHeader("Profile", kOpen)) profile_panel(*state.profile);
+    if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state);
+    if (ImGui::CollapsingHeader("Take it away", kOpen)) take_away_panel(state);
+    ImGui::End();
+}
+
+void status_line(const State& state, bool is_drawing) {
+    std::string text;
+    if (state.cursor) {
+        const Cursor& at = *state.cursor;
+        text = fmt::format("{}   {:.1f} m", coordinates_text(at.place, state.settings.coordinates),
+                           at.place.height_m);
+        if (!std::isnan(at.slope_deg)) text += fmt::format("   slope {:.1f}°", at.slope_deg);
+        if (!std::isnan(at.slope_deg) && !std::isnan(at.aspect_deg))
+            text += fmt::format(" to {:.0f}°", at.aspect_deg);
+    } else {
+        text = "H: keys";
+    }
+    if (is_drawing) text += "   drawing ...";
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
+    const ImVec2 at{12, ImGui::GetIO().DisplaySize.y - extent.y - 10};
+    list.AddRectFilled({at.x - 6, at.y - 4}, {at.x + extent.x + 6, at.y + extent.y + 4},
+                       IM_COL32(0, 0, 0, 150), 4);
+    list.AddText(at, IM_COL32(255, 255, 255, 235), text.c_str());
+}
+
+void waiting_text(const State& state, bool has_failed) {
+    ImGui::SetNextWindowPos({20, 20 + ImGui::GetFrameHeight()});
+    ImGui::Begin("##opening", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
+    if (has_failed)
+        ImGui::TextWrapped("%s", state.message.c_str());
+    else
+        ImGui::Text("opening %s ...", printable(state.document.scene.dems.front()).c_str());
+    ImGui::End();
+}
+
+void message_box(State& state, glm::vec2 size_px, double px_a_unit) {
+    if (state.message.empty()) return;
+    const float width = std::max(size_px.x - 2 * static_cast<float>((kPanel_px + 30) * px_a_unit),
+                                 std::min(size_px.x - 20, 420.0f));
+    ImGui::SetNextWindowPos({size_px.x / 2, ImGui::GetFrameHeight() + 10}, ImGuiCond_Always,
+                            {0.5f, 0});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {width, size_px.y / 2});
+    ImGui::Begin("##message", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove);
+    if (ImGui::SmallButton("x")) state.message.clear();
+    ImGui::SameLine();
+    ImGui::PushTextWrapPos(width - 20);
+    ImGui::TextUnformatted(state.message.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,259 @@
+#include "viewer/settings.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/output_file.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "geo/format.h"
+#include "sun/zone.h"
+
+namespace relevo::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMostRecent = 12;
+constexpr std::array<const char*, 3> kCoordinates = {"utm", "mgrs", "degrees"};
+
+/// A folder of the desktop's, as its specification says where it is: relative names do not count.
+fs::path folder_of(const char* variable, const char* otherwise) {
+    const char* const folder = std::getenv(variable);
+    if (folder && fs::path(folder).is_absolute()) return fs::path(folder) / "relevo";
+    const char* const home = std::getenv("HOME");
+    if (home && fs::path(home).is_absolute()) return fs::path(home) / otherwise / "relevo";
+    return {};
+}
+
+/// What a file holds; null where there is none, or where it holds no JSON.
+json read(const fs::path& file) {
+    std::error_code ignored;
+    if (file.empty() || !fs::exists(file, ignored)) return {};
+    try {
+        return json::parse(read_text(file, "view"));
+    } catch (const Error& error) {
+        log::warning(fmt::format("{}; it counts as empty", error.what()));
+        return {};
+    } catch (const json::exception&) {
+        log::warning(
+            fmt::format("view: {}: no JSON; it counts as empty", printable(file.string())));
+        return {};
+    }
+}
+
+void write_whole(const fs::path& file, const ordered_json& content) {
+    if (file.empty()) return;
+    std::error_code failure;
+    fs::create_directories(file.parent_path(), failure);
+    if (failure)
+        failed(fmt::format("view: {}: cannot be made, {}; nothing is remembered",
+                           printable(file.parent_path().string()), failure.message()));
+    // Names of files may be of any bytes.
+    write_text(file, content.dump(2, ' ', false, json::error_handler_t::replace) + "\n",
+               /*overwrite=*/true, "view");
+}
+
+/// A member of the right type; else what is there already.
+template <typename T>
+void take(const json& from, const char* name, T& value) {
+    const auto member = from.is_object() ? from.find(name) : from.end();
+    if (!from.is_object() || member == from.end()) return;
+    const bool fits = std::is_same_v<T, bool>          ? member->is_boolean()
+                      : std::is_same_v<T, std::string> ? member->is_string()
+                                                       : member->is_number();
+    if (fits) value = member->get<T>();
+}
+
+std::vector<std::string> strings(const json& from) {
+    std::vector<std::string> result;
+    if (!from.is_array()) return result;
+    for (const json& one : from)
+        if (one.is_string()) result.push_back(one.get<std::string>());
+    return result;
+}
+
+/// A view whose figures mean one; none for another.
+std::optional<SavedView> view_of(const json& from) {
+    SavedView view;
+    std::string time;
+    double lat_deg = 100, lon_deg = 0, fov_deg = 0;
+    take(from, "name", view.name);
+    take(from, "lat_deg", lat_deg);
+    take(from, "lon_deg", lon_deg);
+    take(from, "height_m", view.eye.height_m);
+    take(from, "heading_deg", view.heading_deg);
+    take(from, "pitch_deg", view.pitch_deg);
+    take(from, "fov_deg", fov_deg);
+    take(from, "time", time);
+    if (std::abs(lat_deg) > 90 || std::abs(lon_deg) > 360 || std::abs(view.pitch_deg) > 90 ||
+        fov_deg < 0.01 || fov_deg > 170 || std::abs(view.eye.height_m) > 1e9)
+        return std::nullopt;
+    view.eye.lat_rad = radians(lat_deg);
+    view.eye.lon_rad = radians(lon_deg);
+    view.fov_y_rad = radians(fov_deg);
+    try {
+        view.utc = sun::parse_time(time).utc;
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+    return view;
+}
+
+ordered_json json_of(const SavedView& view) {
+    return {{"name", view.name},
+            {"lat_deg", degrees(view.eye.lat_rad)},
+            {"lon_deg", degrees(view.eye.lon_rad)},
+            {"height_m", view.eye.height_m},
+            {"heading_deg", view.heading_deg},
+            {"pitch_deg", view.pitch_deg},
+            {"fov_deg", degrees(view.fov_y_rad)},
+            {"time", sun::to_iso(view.utc, 3)}};
+}
+
+/// FNV-1a, for a short name of a file.
+std::uint64_t hash_of(const std::vector<std::string>& words) {
+    std::uint64_t hash = 0xcbf29ce484222325;
+    for (const std::string& word : words)
+        for (const char c : word + '\n')
+            hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    return hash;
+}
+
+}  // namespace
+
+std::string coordinates_text(const geo::Geodetic& place, Coordinates coordinates) {
+    switch (coordinates) {
+        case Coordinates::Mgrs:
+            return geo::mgrs_text(place);
+        case Coordinates::Degrees:
+            return geo::degrees_text(place);
+        default:
+            return geo::utm_text(place);
+    }
+}
+
+Memory Memory::of_user() {
+    return {folder_of("XDG_CONFIG_HOME", ".config"), folder_of("XDG_STATE_HOME", ".local/state")};
+}
+
+Memory::Memory(fs::path config, fs::path state)
+    : config_(std::move(config)), state_(std::move(state)) {}
+
+Settings Memory::settings() const {
+    Settings settings;
+    const json from = config_.empty() ? json() : read(config_ / "settings.json");
+    std::string style, coordinates;
+    double text_px = settings.text_px;
+    take(from, "style", style);
+    take(from, "text_px", text_px);
+    take(from, "coordinates", coordinates);
+    take(from, "panels", settings.panels);
+    take(from, "charts", settings.charts);
+    settings.light_style = style == "light";
+    settings.text_px = static_cast<int>(std::clamp<double>(text_px, kLeastText_px, kMostText_px));
+    for (std::size_t i = 0; i < kCoordinates.size(); ++i)
+        if (coordinates == kCoordinates[i]) settings.coordinates = static_cast<Coordinates>(i);
+    return settings;
+}
+
+void Memory::write(const Settings& settings) const {
+    if (config_.empty()) return;
+    write_whole(config_ / "settings.json",
+                {{"style", settings.light_style ? "light" : "dark"},
+                 {"text_px", settings.text_px},
+                 {"coordinates", kCoordinates[static_cast<std::size_t>(settings.coordinates)]},
+                 {"panels", settings.panels},
+                 {"charts", settings.charts}});
+}
+
+std::vector<std::vector<std::string>> Memory::recent() const {
+    std::vector<std::vector<std::string>> result;
+    const json from = state_.empty() ? json() : read(state_ / "recent.json");
+    if (!from.is_array()) return result;
+    for (const json& one : from)
+        if (std::vector<std::string> dems = strings(one);
+            !dems.empty() && result.size() < kMostRecent)
+            result.push_back(std::move(dems));
+    return result;
+}
+
+void Memory::add_recent(const std::vector<std::string>& dems) const {
+    if (state_.empty()) return;
+    std::vector<std::vector<std::string>> all = recent();
+    std::erase(all, dems);
+    all.insert(all.begin(), dems);
+    if (all.size() > kMostRecent) all.resize(kMostRecent);
+    write_whole(state_ / "recent.json", all);
+}
+
+fs::path Memory::views_file(const std::vector<std::string>& dems) const {
+    if (config_.empty()) return {};
+    return config_ / "views" / fmt::format("{:016x}.json", hash_of(dems));
+}
+
+std::vector<SavedView> Memory::views(const std::vector<std::string>& dems) const {
+    std::vector<SavedView> result;
+    const json from = read(views_file(dems));
+    if (!from.is_object() || !from.contains("views") || !from["views"].is_array() ||
+        !from.contains("dems") || strings(from["dems"]) != dems)
+        return result;
+    for (const json& one : from["views"])
+        if (auto view = view_of(one)) result.push_back(std::move(*view));
+    return result;
+}
+
+void Memory::write_views(const std::vector<std::string>& dems,
+                         const std::vector<SavedView>& views) const {
+    ordered_json list = ordered_json::array();
+    for (const SavedView& view : views)
+        list.push_back(json_of(view));
+    write_whole(views_file(dems), {{"dems", dems}, {"views", list}});
+}
+
+std::vector<std::string> absolute_names(std::vector<std::string> dems) {
+    for (std::string& dem : dems) {
+        std::error_code error;
+        if (!fs::exists(dem, error)) continue;
+        // The working folder may be gone.
+        const fs::path whole = fs::absolute(dem, error);
+        if (!error) dem = whole.lexically_normal().string();
+    }
+    return dems;
+}
+
+std::string neighbour_in_folder(const std::string& dem, int by) {
+    static constexpr std::array<std::string_view, 13> kEndings = {
+        ".tif", ".tiff", ".asc", ".hgt", ".dem", ".dt0", ".dt1",
+        ".dt2", ".img",  ".nc",  ".vrt", ".bil", ".flt"};
+    const fs::path here = fs::path(absolute_names({dem}).front());
+    std::vector<std::string> names{here.filename().string()};
+    std::error_code ignored;
+    for (fs::directory_iterator it(here.parent_path(), ignored), end; it != end;
+         it.increment(ignored)) {
+        if (ignored) break;
+        const std::string ending = lower(it->path().extension().string());
+        const bool is_dem = std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end() &&
+                            it->is_regular_file(ignored);
+        if (is_dem) names.push_back(it->path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    if (names.size() < 2) return {};
+    const auto at = std::find(names.begin(), names.end(), here.filename().string());
+    const auto count = static_cast<std::ptrdiff_t>(names.size());
+    const std::ptrdiff_t next = (at - names.begin() + by + count) % count;
+    return (here.parent_path() / names[static_cast<std::size_t>(next)]).string();
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "geo/geodetic.h"
+#include "sun/time.h"
+
+/// What the window remembers from one time to the next. Whatever is wrong with a file of it, the
+/// window opens: what cannot be read is as if it had never been written. Files are replaced whole.
+namespace relevo::viewer {
+
+enum class Coordinates { Utm, Mgrs, Degrees };
+
+/// "47.41700 N 11.43708 E", "32N 683473 E 5255234 N", "32TPT8347355234".
+std::string coordinates_text(const geo::Geodetic& place, Coordinates coordinates);
+
+/// How the window looks.
+struct Settings {
+    bool light_style = false;
+    int text_px = 16;  ///< kLeastText_px to kMostText_px
+    Coordinates coordinates = Coordinates::Utm;
+    bool panels = true;  ///< all of them
+    bool charts = true;  ///< the chosen point's horizon and year
+
+    bool operator==(const Settings&) const = default;
+};
+
+inline constexpr int kLeastText_px = 11, kMostText_px = 32;
+
+/// A camera and a moment, by a name.
+struct SavedView {
+    std::string name;
+    geo::Geodetic eye;  ///< height as the DEM has it
+    double heading_deg = 0, pitch_deg = 0;
+    double fov_y_rad = 0;
+    sun::Instant utc;
+};
+
+/// The files in which that is kept.
+class Memory {
+  public:
+    /// Where the desktop wants them: $XDG_CONFIG_HOME/relevo (~/.config/relevo), and
+    /// $XDG_STATE_HOME/relevo (~/.local/state/relevo) for what was opened last. Where there is no
+    /// home either, nothing is remembered.
+    static Memory of_user();
+    /// @param config, state  folders, which need not be there; empty: nothing is remembered
+    Memory(std::filesystem::path config, std::filesystem::path state);
+
+    Settings settings() const;
+    /// @throws Error (BadInput, Failed) as OutputFile; here and below
+    void write(const Settings& settings) const;
+
+    /// DEMs that were opened, the last one first, each the files that it is made of.
+    std::vector<std::vector<std::string>> recent() const;
+    /// Puts a DEM before the others, of which some are kept.
+    void add_recent(const std::vector<std::string>& dems) const;
+
+    /// Of a DEM.
+    std::vector<SavedView> views(const std::vector<std::string>& dems) const;
+    void write_views(const std::vector<std::string>& dems,
+                     const std::vector<SavedView>& views) const;
+
+  private:
+    std::filesystem::path views_file(const std::vector<std::string>& dems) const;
+
+    std::filesystem::path config_, state_;
+};
+
+/// The same names from the root of the file system, so that they mean the same from every folder;
+/// what is no file, such as "/vsizip/a.zip/a.tif", stays.
+std::vector<std::string> absolute_names(std::vector<std::string> dems);
+
+/// The DEM before or after one in its folder, by name, at the end the first; none where there is no
+/// other.
+/// @param by  1 or -1
+std::string neighbour_in_folder(const std::string& dem, int by);
+
+}  // namespace relevo::viewer

@@ -1,0 +1,41 @@
+#include "viewer/state.h"
+
+#include <utility>
+
+#include "base/error.h"
+#include "session/words.h"
+
+namespace relevo::viewer {
+
+void State::stand_on(const render::Ground& ground) {
+    centre = ground.frame.origin();
+    air = session::refraction_at(document.scene.refraction,
+                                 {centre.lat_rad, centre.lon_rad, ground.air_height_m()});
+    day = {};
+}
+
+void State::set_utc(sun::Instant utc) {
+    const sun::Date date = document.zone.local(utc).wall.date;
+    if (date.year < 1900 || date.year > 2100) return;
+    document.utc = utc;
+    if (day.date == date && !day.points.empty()) return;
+    if (day.date.year != date.year || day.points.empty())
+        extremes = {SunDay::of({date.year, 6, 21}, document.zone, centre, air),
+                    SunDay::of({date.year, 12, 21}, document.zone, centre, air)};
+    day = SunDay::of(date, document.zone, centre, air);
+}
+
+void State::take_effects(bool is_step) {
+    if (!asked_effects) return;
+    const scene::Effects changed = *std::exchange(asked_effects, std::nullopt);
+    try {
+        effects = EffectsModel::of(changed);
+        document.scene.effects = changed;
+        new_effects = changed;
+        step = step || is_step;
+    } catch (const Error& error) {
+        message = error.what();
+    }
+}
+
+}  // namespace relevo::viewer

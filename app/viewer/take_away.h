@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "scene/scene.h"
+#include "viewer/document.h"
+#include "viewer/scene_thread.h"
+
+/// What is taken out of the window into files and the clipboard.
+namespace relevo::viewer {
+
+/// The document as `relevo capture` takes it from any folder.
+scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 size_px);
+
+/// Writes the scene into the working folder under a name that is free. @returns what to tell of it
+/// @throws Error as OutputFile; likewise below
+std::string save_scene(const scene::Scene& scene);
+/// Likewise a picture, with the command that takes it.
+std::string save_picture(const Picture& picture, const scene::Scene& scene);
+
+}  // namespace relevo::viewer

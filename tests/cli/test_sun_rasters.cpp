@@ -1,0 +1,161 @@
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+
+#include "base/units.h"
+#include "cli/program.h"
+#include "dem/fixture.h"
+#include "support/support.h"
+
+/// `relevo sun hours`, `sky-view` and `horizons`, from file to file.
+namespace relevo::test {
+namespace {
+
+struct Close {
+    void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using Dataset = std::unique_ptr<GDALDataset, Close>;
+
+Dataset opened(const std::string& path) {
+    GDALAllRegister();
+    return Dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
+}
+
+double value_at(GDALDataset& dataset, int band, int column, int row) {
+    float value = 0;
+    EXPECT_EQ(dataset.GetRasterBand(band)->RasterIO(GF_Read, column, row, 1, 1, &value, 1, 1,
+                                                    GDT_Float32, 0, 0),
+              CE_None);
+    return double{value};
+}
+
+std::filesystem::path folder() {
+    static const std::filesystem::path made = scratch_dir("sun_rasters");
+    return made;
+}
+std::string out(const std::string& name) {
+    return (folder() / name).string();
+}
+
+/// A plain at the equator in UTM with a wall of 100 m, which has a hole, along the column 60.
+std::string walled() {
+    Raster raster;
+    raster.columns = 121;
+    raster.rows = 81;
+    raster.crs = "EPSG:32631";
+    raster.geotransform = {{500000, 10, 0, 400, 0, -10}};
+    raster.nodata = -9999;
+    raster.value = [](int column, int row, int) {
+        if (column == 60 && row == 40) return -9999.0;
+        return column == 60 ? 600.0 : 500.0;
+    };
+    return write_raster(folder() / "walled.tif", raster);
+}
+
+TEST(SunHours, HasAsManyBandsAsAreAskedFor) {
+    const Result run = relevo({"sun", "hours", walled(), "--date", "2026-03-20", "--tz", "UTC",
+                               "--bands", "hours,first,last,spells", "-o", out("day.tif")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("the DEM has 1 holes: they get no figure, and hide nothing"),
+              std::string::npos)
+        << run.err;
+    EXPECT_TRUE(run.out.starts_with(
+        "time                2026-03-20T00:00:00+00:00 to 2026-03-21T00:00:00+00:00\nsun hours "))
+        << run.out;
+    const Dataset day = opened(out("day.tif"));
+    ASSERT_TRUE(day);
+    ASSERT_EQ(day->GetRasterCount(), 4);
+    EXPECT_STREQ(day->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG");
+    EXPECT_STREQ(day->GetMetadataItem("TIME_ZONE"), "UTC");
+    EXPECT_STREQ(day->GetMetadataItem("HOLES"), "1");
+    EXPECT_STREQ(day->GetRasterBand(1)->GetUnitType(), "h");
+    EXPECT_STREQ(day->GetRasterBand(2)->GetUnitType(), "min");
+    EXPECT_STREQ(day->GetRasterBand(4)->GetDescription(), "spells of light");
+    // 100 m before the wall in the west the sun comes over it 45 degrees high, three hours after it
+    // rises in the east of it.
+    const double rises_min = value_at(*day, 2, 118, 20);
+    EXPECT_NEAR(value_at(*day, 2, 50, 20) - rises_min, 180, 3);
+    EXPECT_NEAR(value_at(*day, 1, 50, 20), 9.1, 0.1);
+    EXPECT_NEAR(value_at(*day, 3, 70, 20), value_at(*day, 3, 2, 20) - 180, 3);
+    EXPECT_EQ(value_at(*day, 4, 50, 20), 1);
+    for (int band = 1; band <= 4; ++band) {
+        EXPECT_TRUE(std::isnan(value_at(*day, band, 60, 40))) << band;
+        EXPECT_TRUE(std::isnan(day->GetRasterBand(band)->GetNoDataValue())) << band;
+    }
+}
+
+TEST(SunHours, OfAYearAreOfItsDays) {
+    const std::string dem = walled();
+    ASSERT_EQ(relevo({"sun", "hours", dem, "--year", "2026", "-o", out("year.tif")}).status, 0);
+    const Dataset year = opened(out("year.tif"));
+    ASSERT_TRUE(year);
+    // The zone is that of the place; in the open there are half of all hours, and some for the air.
+    EXPECT_STREQ(year->GetMetadataItem("TIME_ZONE"), "Etc/GMT");
+    EXPECT_NEAR(value_at(*year, 1, 118, 20), 4380 + 30, 40);
+    EXPECT_LT(value_at(*year, 1, 59, 20), 3000);
+}
+
+TEST(SunHorizons, ABandForEachDirection) {
+    const Result run =
+        relevo({"sun", "horizons", walled(), "--directions", "4", "-o", out("horizons.tif")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const Dataset horizons = opened(out("horizons.tif"));
+    ASSERT_TRUE(horizons);
+    ASSERT_EQ(horizons->GetRasterCount(), 4);
+    EXPECT_STREQ(horizons->GetRasterBand(2)->GetDescription(), "horizon towards azimuth 90");
+    EXPECT_STREQ(horizons->GetRasterBand(2)->GetMetadataItem("AZIMUTH_DEG"), "90");
+    EXPECT_NEAR(value_at(*horizons, 2, 50, 20), 45, 0.1);
+    EXPECT_NEAR(value_at(*horizons, 4, 80, 20), degrees(std::atan(0.5)), 0.1);
+    EXPECT_NEAR(value_at(*horizons, 4, 50, 20), 0, 0.1);
+}
+
+TEST(SunSkyView, IsAShareThatAWallTakesAway) {
+    const std::string dem = walled();
+    ASSERT_EQ(relevo({"sun", "sky-view", dem, "-o", out("sky.tif"), "--co", "COMPRESS=LZW"}).status,
+              0);
+    const Dataset sky = opened(out("sky.tif"));
+    ASSERT_TRUE(sky);
+    EXPECT_STREQ(sky->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE"), "LZW");
+    EXPECT_STREQ(sky->GetMetadataItem("DIRECTIONS"), "36");
+    // Of a long wall 45 degrees high: (1 + cos 45 degrees) / 2 of the sky is left.
+    EXPECT_NEAR(value_at(*sky, 1, 50, 20), 0.855, 0.03);
+    EXPECT_NEAR(value_at(*sky, 1, 2, 20), 1, 0.02);
+    ASSERT_EQ(relevo({"sun", "sky-view", dem, "--level", "-o", out("level.tif")}).status, 0);
+    EXPECT_NEAR(value_at(*opened(out("level.tif")), 1, 50, 20), 0.855, 0.03);
+}
+
+TEST(SunRasters, WhatMeansNothingIsRefused) {
+    const std::string dem = walled();
+    const auto hours = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"sun", "hours", dem, "-o", out("x.tif")};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
+    };
+    expect_failure(hours({}), 2,
+                   "--date: missing; pass --date 2026-06-21, --from and --to, or --year 2026");
+    expect_failure(hours({"--from", "2026-03-20", "--to", "2026-03-10"}), 3,
+                   "--from 2026-03-20 --to 2026-03-10: ends before it begins, expected the earlier "
+                   "day first");
+    expect_failure(hours({"--date", "2026-03-20", "--step", "0"}), 2,
+                   "--step: Value 0 not in range 0.0166667 to 60");
+    expect_failure(hours({"--date", "2026-03-20", "--bands", "first,first"}), 2,
+                   "--bands: first is named twice");
+    expect_failure(hours({"--year", "2026", "--bands", "first"}), 2,
+                   "--bands: first, last and spells are known of 4 days at most");
+    expect_failure({"sun", "sky-view", dem, "-o", out("x.tif"), "--co", "ZSTD"}, 2,
+                   "--co: ZSTD: expected NAME=VALUE, such as COMPRESS=ZSTD");
+    const Result odd =
+        relevo({"sun", "sky-view", dem, "-o", out("x.tif"), "--co", "COMPRESS=MAGIC"});
+    EXPECT_EQ(odd.status, 2);
+    EXPECT_TRUE(odd.err.find("--co: GDAL's COG driver says: ") != std::string::npos) << odd.err;
+    EXPECT_FALSE(std::filesystem::exists(out("x.tif")));
+}
+
+}  // namespace
+}  // namespace relevo::test

@@ -1,0 +1,223 @@
+// The window's points, files, and what it remembers.
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "window/viewer_fixture.h"
+
+namespace relevo {
+namespace {
+
+TEST_F(Viewer, AClickShowsThePointsHorizonAndYearForTheShownDate) {
+    // Chart and panel colours: the day's way, first and last light; direct sun through the year.
+    constexpr glm::ivec3 kDay{0xe0, 0x7b, 0x12}, kSun{0xff, 0xd2, 0x4a};
+    constexpr glm::ivec4 kChart{410, 495, 850, 240};
+    open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+    EXPECT_EQ(count_near(display_.screen(), kChart, kDay), 0);
+    act({"mousemove", "900", "350"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    act({"click", "1"});
+    ASSERT_TRUE(wait([&] { return count_near(display_.screen(), kChart, kDay) > 1000; }));
+    ASSERT_TRUE(settles());
+    const image::Image8 summer = display_.screen();
+    // Another date: another way of the sun, lower in the sky.
+    act({"key", "--repeat", "120", "--delay", "10", "shift+bracketright"});
+    ASSERT_TRUE(settles());
+    const auto highest = [&](const image::Image8& screen) {
+        for (int y = kChart.y; y < kChart.y + kChart.w; ++y)
+            if (count_near(screen, {kChart.x, y, kChart.z, 1}, kDay) > 5) return y;
+        return 0;
+    };
+    EXPECT_GT(highest(display_.screen()), highest(summer) + 30);
+    // The year: a click on it goes to that day and hour.
+    act({"mousemove", "490", std::to_string(tab_y_)});
+    act({"click", "1"});
+    ASSERT_TRUE(wait([&] { return count_near(display_.screen(), kChart, kSun) > 20000; }));
+    ASSERT_TRUE(settles());
+    act({"mousemove", "520", "590"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    act({"click", "1"});
+    act({"mousemove", "900", "350"});
+    ASSERT_TRUE(settles());
+    EXPECT_THAT(scene()["time"]["at"].get<std::string>(), testing::StartsWith("2026-01-"));
+    act({"key", "p"});
+    EXPECT_TRUE(wait([&] { return count_near(display_.screen(), kChart, kSun) == 0; }));
+}
+
+TEST_F(Viewer, GoesToTheNextDemOfTheFolderAndRemembersWhatWasOpen) {
+    std::filesystem::create_directories(folder_ / "maps");
+    for (const char* name : {"a.tif", "c.tif"})
+        std::filesystem::copy_file(dem_, folder_ / "maps" / name);
+    std::ofstream(folder_ / "maps/b.tif") << "no DEM";
+    std::ofstream(folder_ / "maps/readme.txt") << "no DEM";
+    open({(folder_ / "maps/a.tif").string(), "--only"});
+    const auto shows = [&](const char* name) {
+        return wait([&] { return program_->title().find(name) != std::string::npos; });
+    };
+    // One that cannot be opened is told of, and is not the end of the way.
+    const image::Image8 before = display_.screen();
+    act({"key", "ctrl+Next"});
+    ASSERT_TRUE(wait([&] {
+        return program_->output().find("b.tif") != std::string::npos ||
+               test::difference(display_.screen(), before) > 0.005;
+    }));
+    ASSERT_TRUE(settles());
+    EXPECT_TRUE(shows("a.tif"));
+    act({"key", "ctrl+Next"});
+    EXPECT_TRUE(shows("c.tif"));
+    act({"key", "ctrl+Next"});
+    EXPECT_TRUE(shows("a.tif"));
+    act({"key", "ctrl+Prior"});
+    EXPECT_TRUE(shows("c.tif"));
+    ASSERT_TRUE(settles());
+    const auto recent = nlohmann::json::parse(read_text(folder_ / "state/relevo/recent.json", ""));
+    ASSERT_EQ(recent.size(), 2u);
+    EXPECT_EQ(recent[0][0], (folder_ / "maps/c.tif").string());
+    EXPECT_EQ(recent[1][0], (folder_ / "maps/a.tif").string());
+    // From the menu: File, Open again, the second.
+    act({"mousemove", "23", "11", "click", "1"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    act({"mousemove", "60", "52"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    act({"mousemove", "330", "52"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    act({"mousemove", "330", "72"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    act({"click", "1"});
+    EXPECT_TRUE(shows("a.tif"));
+}
+
+TEST_F(Viewer, KeepsViewsAndSettingsTillTheNextTime) {
+    open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+    act({"key", "Home"});
+    ASSERT_TRUE(changes([&] { drag(3, 800, 400, 90, 30); }));
+    const nlohmann::json kept = scene();
+    act({"key", "b"});
+    act({"key", "Tab"});  // without panels, also the next time
+    ASSERT_TRUE(changes([&] { act({"key", "t"}); }));
+    EXPECT_NE(scene()["camera"]["eye"], kept["camera"]["eye"]);
+    ASSERT_TRUE(changes([&] { act({"key", "1"}); }));
+    const auto is_kept = [&](const nlohmann::json& now) {
+        for (int i = 0; i < 3; ++i)
+            EXPECT_NEAR(now["camera"]["eye"][i], kept["camera"]["eye"][i], 1e-3) << i;
+        EXPECT_NEAR(now["camera"]["heading"], kept["camera"]["heading"], 1e-6);
+        EXPECT_EQ(now["time"], kept["time"]);
+    };
+    is_kept(scene());
+    // Back, as any other step.
+    ASSERT_TRUE(changes([&] { act({"key", "ctrl+z"}); }));
+    act({"key", "ctrl+q"});
+    ASSERT_EQ(program_->status(), 0) << program_->output();
+    open({dem_, "--only"});
+    EXPECT_EQ(count_near(display_.screen(), {0, 0, 600, 20}, {36, 36, 36}, 4), 0);  // no menu
+    ASSERT_TRUE(changes([&] { act({"key", "1"}); }));
+    is_kept(scene());
+    act({"key", "ctrl+q"});
+    ASSERT_EQ(program_->status(), 0);
+    // Whatever has become of the files.
+    for (const auto& file : std::filesystem::recursive_directory_iterator(folder_ / "config"))
+        if (file.is_regular_file()) std::ofstream(file.path()) << "{\"views\": [[], 7";
+    std::ofstream(folder_ / "state/relevo/recent.json") << "[[1, {}], \xff";
+    open({dem_, "--only"});
+    EXPECT_GT(count_near(display_.screen(), {0, 0, 600, 20}, {36, 36, 36}, 4), 5000);
+    act({"key", "1"});
+    EXPECT_TRUE(settles());
+    act({"key", "ctrl+q"});
+    EXPECT_EQ(program_->status(), 0) << program_->output();
+}
+
+TEST_F(Viewer, HasALightStyleAndLargerLetters) {
+    std::filesystem::create_directories(folder_ / "config/relevo");
+    std::ofstream(folder_ / "config/relevo/settings.json")
+        << R"({"style": "light", "text_px": 24, "coordinates": "mgrs"})";
+    open({dem_, "--only"});
+    const image::Image8 screen = display_.screen();
+    EXPECT_GT(count_near(screen, {0, 0, 1200, 30}, {219, 219, 219}, 16), 20000);     // the menu
+    EXPECT_GT(count_near(screen, {400, 60, 100, 600}, {240, 240, 240}, 30), 10000);  // the panel
+    act({"key", "ctrl+q"});
+    ASSERT_EQ(program_->status(), 0) << program_->output();
+    const auto settings =
+        nlohmann::json::parse(read_text(folder_ / "config/relevo/settings.json", ""));
+    EXPECT_EQ(settings["coordinates"], "mgrs");
+}
+
+TEST_F(Viewer, ScrollingWithShiftMovesTheGround) {
+    open({dem_, "--only"});
+    const auto camera = [&] { return scene()["camera"]; };
+    const auto before = camera();
+    act({"keydown", "shift"});
+    ASSERT_TRUE(changes([&] { act({"click", "--repeat", "4", "--delay", "60", "5"}); }));
+    act({"keyup", "shift"});
+    const auto after = camera();
+    EXPECT_EQ(after["heading"], before["heading"]);
+    EXPECT_EQ(after["pitch"], before["pitch"]);
+    EXPECT_NEAR(after["eye"][2], before["eye"][2], 30);  // level, on a round Earth
+    EXPECT_GT(std::abs(after["eye"][0].get<double>() - before["eye"][0].get<double>()), 0.01);
+}
+
+/// A DEM that takes seconds to read: one of many posts, which come from a small one.
+std::filesystem::path slow_dem(const std::filesystem::path& folder, const std::string& from) {
+    const auto file = folder / "slow.vrt";
+    constexpr int kPosts = 24000;
+    std::ofstream(file) << fmt::format(
+        R"(<VRTDataset rasterXSize="{0}" rasterYSize="{0}"><SRS>EPSG:4326</SRS>)"
+        R"(<GeoTransform>-84.4,1e-5,0,36.4,0,-1e-5</GeoTransform>)"
+        R"(<VRTRasterBand dataType="Float32" band="1" ><SimpleSource>)"
+        R"(<SourceFilename>{1}</SourceFilename><SrcRect xOff="0" yOff="0" xSize="400" ySize="340"/>)"
+        R"(<DstRect xOff="0" yOff="0" xSize="{0}" ySize="{0}"/></SimpleSource></VRTRasterBand>)"
+        R"(</VRTDataset>)",
+        kPosts, from);
+    return file;
+}
+
+TEST_F(Viewer, NeverWaitsForADemThatIsStillBeingRead) {
+    const std::filesystem::path slow = slow_dem(folder_, dem_);
+    // What a file dialog would give, one after the other.
+    std::filesystem::create_directories(folder_ / "bin");
+    std::ofstream(folder_ / "bin/zenity")
+        << "#!/bin/sh\ncat '" << (folder_ / "choice").string() << "'\n";
+    std::filesystem::permissions(folder_ / "bin/zenity", std::filesystem::perms::owner_all);
+    open({dem_, "--only", "--memory", "64"});
+    const auto choose = [&](const std::string& dem) {
+        std::ofstream(folder_ / "choice") << dem << "\n";
+        act({"key", "ctrl+o"});
+    };
+    // There is no panel then, but the empty part of the picture before.
+    const auto is_opening = [&] {
+        return count_near(display_.screen(), {20, 600, 100, 120}, {176, 178, 196}) > 10000;
+    };
+    const auto seconds = [](const std::function<void()>& act) {
+        const auto began = std::chrono::steady_clock::now();
+        act();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    };
+    choose(slow.string());
+    ASSERT_TRUE(wait([&] { return is_opening(); }));
+    // Another one instead, at once.
+    const double replaced_s = seconds([&] {
+        choose(dem_);
+        EXPECT_TRUE(wait([&] { return !is_opening(); }));
+    });
+    EXPECT_TRUE(settles());
+    choose(slow.string());
+    ASSERT_TRUE(wait([&] { return is_opening(); }));
+    const double closed_s = seconds([&] {
+        act({"key", "ctrl+q"});
+        EXPECT_EQ(program_->status(), 0) << program_->output();
+    });
+    const double read_s = seconds([&] {
+        test::WindowedProgram info(display_, test::build_dir() / "bin/relevo",
+                                   {"-q", "capture", slow.string(), "--only", "--memory", "64",
+                                    "--size", "32x32", "-o", (folder_ / "slow.png").string()});
+        EXPECT_EQ(info.status(120), 0) << info.output();
+    });
+    fmt::print("[ measured ] replaced after {:.1f} s, closed after {:.1f} s; read in {:.1f} s\n",
+               replaced_s, closed_s, read_s);
+    EXPECT_LT(replaced_s, 0.5 * read_s);
+    EXPECT_LT(closed_s, 0.5 * read_s);
+    ASSERT_GT(read_s, 2) << "too soon to tell";
+}
+
+}  // namespace
+}  // namespace relevo

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "support/support.h"
+#include "window/display.h"
+
+namespace relevo {
+
+/// The window of `relevo DEM`, driven by a mouse and keys on a display of the tests' own.
+class Viewer : public testing::Test {
+  protected:
+    /// Starts the program, which remembers nothing outside of the test's folder.
+    void start(const std::vector<std::string>& arguments) {
+        program_.emplace(display_, test::build_dir() / "bin/relevo", arguments,
+                         std::vector<std::string>{
+                             "XDG_CONFIG_HOME=" + (folder_ / "config").string(),
+                             "XDG_STATE_HOME=" + (folder_ / "state").string(),
+                             "PATH=" + (folder_ / "bin").string() + ":" + std::getenv("PATH")},
+                         folder_);
+    }
+    /// Opens the window in a folder of its own, without panels over the picture.
+    void open(const std::vector<std::string>& arguments) {
+        start(arguments);
+        ASSERT_TRUE(wait([&] { return program_->title().find("Relevo") != std::string::npos; }))
+            << program_->output();
+        act({"mousemove", "900", "500"});
+        ASSERT_TRUE(settles()) << program_->output();
+    }
+    static bool wait(const std::function<bool()>& holds) {
+        return test::WindowedProgram::wait(holds);
+    }
+    void act(const std::vector<std::string>& arguments) const { display_.act(arguments); }
+    /// Waits until the screen shows something, and the same for a while.
+    bool settles() {
+        image::Image8 before = display_.screen();
+        int same = 0;
+        return wait([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(60));
+            image::Image8 now = display_.screen();
+            same = test::difference(now, before) < 1e-4 && brightness(now) > 30 ? same + 1 : 0;
+            before = std::move(now);
+            return same >= 6;
+        });
+    }
+    static double brightness(const image::Image8& picture) {
+        double sum = 0;
+        for (const std::uint8_t value : picture.values)
+            sum += value;
+        return sum / static_cast<double>(picture.values.size());
+    }
+    /// Whether doing it makes another picture, of which this share differs at least.
+    bool changes(const std::function<void()>& act, double share = 0.05) {
+        const image::Image8 before = display_.screen();
+        act();
+        if (!wait([&] { return test::difference(display_.screen(), before) > share; }))
+            return false;
+        return settles();
+    }
+    /// The scene as Ctrl+S saves it now.
+    nlohmann::json scene() {
+        const auto name = folder_ / fmt::format("relevo-{}.json", ++saved_);
+        act({"key", "ctrl+s"});
+        EXPECT_TRUE(wait([&] { return std::filesystem::exists(name); })) << program_->output();
+        return nlohmann::json::parse(read_text(name, "test"));
+    }
+    void drag(int button, int x, int y, int dx, int dy) {
+        act({"mousemove", std::to_string(x), std::to_string(y)});
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        act({"mousedown", std::to_string(button)});
+        for (int step = 1; step <= 5; ++step) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(60));
+            act({"mousemove", std::to_string(x + dx * step / 5),
+                 std::to_string(y + dy * step / 5)});
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(60));
+        act({"mouseup", std::to_string(button)});
+    }
+
+    /// Writes a plugin of the test's own that changes the light of the ground.
+    void paint(const std::string& body) const {
+        std::filesystem::create_directories(plugins_ / "paint");
+        std::ofstream(plugins_ / "paint/plugin.json")
+            << R"({"format": 1, "id": "paint", "name": "Paint", "description": "One colour",)"
+               R"( "version": "1.0.0"})";
+        std::ofstream(plugins_ / "paint/paint.glsl")
+            << "void paint_on_lit(in Surface s, inout vec3 radiance) { " << body << " }\n";
+    }
+
+    const std::filesystem::path folder_ = test::scratch_dir("viewer");
+    const std::filesystem::path plugins_ = folder_ / "plugins";
+    const std::string dem_ = (test::source_dir() / "data/dem/jacksboro.tif").string();
+    test::Display display_{1280, 800};
+    std::optional<test::WindowedProgram> program_;
+    int saved_ = 0;
+    static constexpr int tab_y_ = 477;  // of the tabs of the point's charts
+};
+
+/// What an area of the screen has of a colour, by less than `by` in each channel.
+inline int count_near(const image::Image8& screen, glm::ivec4 area, glm::ivec3 colour,
+                      int by = 12) {
+    int count = 0;
+    for (int y = area.y; y < area.y + area.w; ++y)
+        for (int x = area.x; x < area.x + area.z; ++x) {
+            const std::uint8_t* at = screen.row(y) + 3 * x;
+            count += std::abs(at[0] - colour.x) < by && std::abs(at[1] - colour.y) < by &&
+                     std::abs(at[2] - colour.z) < by;
+        }
+    return count;
+}
+
+}  // namespace relevo
