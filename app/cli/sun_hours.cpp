@@ -47,28 +47,39 @@ std::vector<light::RasterBand> bands_of(const std::vector<std::string>& wanted,
     return bands;
 }
 
-void check_bands(const std::vector<std::string>& bands) {
+bool has_spells(const std::vector<std::string>& bands) {
+    return bands != std::vector<std::string>{"hours"};
+}
+
+sun::TimeSpan time_of(const DaysArguments::Days& days) {
+    return {days.zone.day(days.first).begin, days.zone.day(days.last).end};
+}
+
+/// What can be said before the DEM is read.
+void check(const Arguments& arguments) {
+    const std::vector<std::string>& bands = arguments.bands;
     for (std::size_t i = 0; i < bands.size(); ++i)
         if (std::find(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(i), bands[i]) !=
             bands.begin() + static_cast<std::ptrdiff_t>(i))
             bad_usage(fmt::format("--bands: {} is named twice", bands[i]));
+    const auto [begin, end] = time_of(arguments.days.parse({}, false));
+    if (has_spells(bands) && end - begin > 86400 * light::SunHoursOptions::kMostDays)
+        bad_usage(fmt::format("--bands: first, last and spells are known of {:.10g} days at most",
+                              light::SunHoursOptions::kMostDays));
 }
 
 void run(const Arguments& arguments) {
-    check_bands(arguments.bands);
+    check(arguments);
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
     const dem::Posts posts = arguments.raster.load();
     const DaysArguments::Days days = arguments.days.parse(posts.grid().center());
-    const sun::Instant begin = days.zone.day(days.first).begin, end = days.zone.day(days.last).end;
+    const auto [begin, end] = time_of(days);
     light::SunHoursOptions options;
     options.refraction = arguments.raster.terrestrial_refraction;
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
     options.step_s = 60 * arguments.step_min;
-    options.spells = arguments.bands != std::vector<std::string>{"hours"};
-    if (options.spells && end - begin > 86400 * light::SunHoursOptions::kMostDays)
-        bad_usage(fmt::format("--bands: first, last and spells are known of {:.10g} days at most",
-                              light::SunHoursOptions::kMostDays));
+    options.spells = has_spells(arguments.bands);
     light::SunHours hours = light::sun_hours(posts, begin, end, options);
     warn_of_holes(hours.holes);
     const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);

@@ -23,6 +23,11 @@ void RasterArguments::add_to(CLI::App& verb) {
         ->allow_extra_args(false);
 }
 
+OutputFile& RasterArguments::open(FilesInUse& files) const {
+    light::check_creation_options(creation_options);
+    return *output.open(files, dem);
+}
+
 light::RasterFile RasterArguments::about(const dem::Posts& posts, const std::string& definition,
                                          std::int64_t holes, light::RasterMetadata more) const {
     light::RasterFile about;

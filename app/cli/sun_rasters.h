@@ -17,7 +17,9 @@ struct RasterArguments {
     std::vector<std::string> creation_options;
 
     void add_to(CLI::App& verb);
-    OutputFile& open(FilesInUse& files) const { return *output.open(files, dem); }
+    /// Opens the result, before any work is done. @throws Error as OutputArguments::open, (Usage)
+    /// for creation options that there are not
+    OutputFile& open(FilesInUse& files) const;
     dem::Posts load() const { return dem::Posts::load(dem.paths, dem.options); }
     /// What every such file says of itself; `more` besides.
     light::RasterFile about(const dem::Posts& posts, const std::string& definition,

@@ -86,25 +86,29 @@ bool put(GDALRasterBand& to, const dem::Grid& grid, const RasterBand& band) {
 }
 
 /// The driver's options: ours, and over them the user's.
-CPLStringList creation_options(GDALDriver& cog, const RasterFile& about, GDALDataType type,
-                               const dem::GdalMessages& messages) {
+CPLStringList creation_options(const std::vector<std::string>& given, GDALDataType type) {
     CPLStringList options;
     options.SetNameValue("COMPRESS", "DEFLATE");
     options.SetNameValue("OVERVIEW_RESAMPLING", type == GDT_Byte ? "NEAREST" : "AVERAGE");
     options.SetNameValue("BIGTIFF", "IF_SAFER");
-    for (const std::string& option : about.creation_options) {
+    for (const std::string& option : given) {
         const std::size_t equals = option.find('=');
         if (equals == std::string::npos || equals == 0)
             bad_usage(fmt::format("--co: {}: expected NAME=VALUE, such as COMPRESS=ZSTD",
                                   printable(option)));
         options.SetNameValue(option.substr(0, equals).c_str(), option.substr(equals + 1).c_str());
     }
-    if (!GDALValidateCreationOptions(&cog, options.List()))
-        bad_usage(fmt::format("--co: GDAL's COG driver says: {}", messages.failure("--co")));
     return options;
 }
 
 }  // namespace
+
+void check_creation_options(const std::vector<std::string>& given) {
+    dem::prepare_gdal();
+    const dem::GdalMessages messages;
+    if (!GDALValidateCreationOptions(driver("COG"), creation_options(given, GDT_Byte).List()))
+        bad_usage(fmt::format("--co: GDAL's COG driver says: {}", messages.failure("--co")));
+}
 
 void write_raster(OutputFile& file, const dem::Grid& grid, const std::vector<RasterBand>& bands,
                   const RasterFile& about) {
@@ -120,7 +124,7 @@ void write_raster(OutputFile& file, const dem::Grid& grid, const std::vector<Ras
     {
         const GDALDataType type = type_of(bands.front());
         GDALDriver& cog = *driver("COG");
-        const CPLStringList wanted = creation_options(cog, about, type, messages);
+        const CPLStringList wanted = creation_options(about.creation_options, type);
         CPLStringList options;
         options.SetNameValue("COMPRESS", "LZW");
         options.SetNameValue("TILED", "YES");

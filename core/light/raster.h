@@ -30,6 +30,9 @@ struct RasterFile {
     std::vector<std::string> creation_options{};
 };
 
+/// @throws Error (Usage) for one that GDAL's COG driver does not have
+void check_creation_options(const std::vector<std::string>& options);
+
 /// Writes bands of one type on a grid as a cloud-optimised GeoTIFF, in the grid's CRS, and gives it
 /// its name. Until it is whole it is in memory: nothing is left beside it, however the program
 /// ends.

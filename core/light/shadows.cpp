@@ -17,10 +17,11 @@ namespace {
 void light_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double radius_rad,
                 Array2d<float>& lit) {
     const bool soft = radius_rad > 0;
-    TileValues values(tile.window, 0), upper(soft ? tile.window : SweepWindow{}, 0);
-    for (TileValues* const each : {&values, &upper})
+    TileValues values(tile.window, 0), upper(soft ? tile.window : SweepWindow{}, 0),
+        scratch(sky.levels() > 1 ? tile.window : SweepWindow{}, 0);
+    for (TileValues* const each : {&values, &upper, &scratch})
         each->turn(tile.path.along_columns());
-    each_edge(sky, sweep, tile, radius_rad, [&](const SweepRun& run) {
+    each_edge(sky, sweep, tile, radius_rad, scratch, [&](const SweepRun& run) {
         if (soft) std::copy_n(run.found, run.count, upper.of(run));
         float* const out = values.of(run);
         for (int i = 0; i < run.count; ++i) {
@@ -29,7 +30,7 @@ void light_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doub
         }
     });
     if (soft)
-        each_edge(sky, sweep, tile, -radius_rad, [&](const SweepRun& run) {
+        each_edge(sky, sweep, tile, -radius_rad, scratch, [&](const SweepRun& run) {
             const float* const edge = upper.of(run);
             float* const out = values.of(run);
             for (int i = 0; i < run.count; ++i) {

@@ -335,7 +335,7 @@ void each_window(const std::vector<SweepWindow>& windows,
 }
 
 void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
-               const Sweep::Use& use) {
+               TileValues& scratch, const Sweep::Use& use) {
     const DemSky& dem = sky.dem();
     const SweepWindow& w = tile.window;
     const SweepSun lower = sky.sun(tile, 0, offset_rad);
@@ -348,11 +348,10 @@ void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doubl
     const bool two = sky.levels() == 2;
     if (over_earth && !two) return sweep.each_edge(lower, w, use);
 
-    TileValues low(two ? w : SweepWindow{}, 0);
-    low.turn(tile.path.along_columns());
     if (two)
-        sweep.each_edge(
-            lower, w, [&](const SweepRun& run) { std::copy_n(run.found, run.count, low.of(run)); });
+        sweep.each_edge(lower, w, [&](const SweepRun& run) {
+            std::copy_n(run.found, run.count, scratch.of(run));
+        });
     const SweepSun sun = two ? sky.sun(tile, 1, offset_rad) : lower;
     const double low_m = dem.level_height_m(0), span_m = dem.level_height_m(1) - low_m;
     sweep.each_edge(sun, w, [&](const SweepRun& run) {
@@ -366,7 +365,7 @@ void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doubl
             part.found = edge.data();
             add_earth(sun, part, sweep.lowest_m(), dem.curvature(), edge.data());
             if (two) {
-                float* const other = low.of(part);
+                float* const other = scratch.of(part);
                 add_earth(lower, part, sweep.lowest_m(), dem.curvature(), other);
                 mix(part, other, low_m, span_m, edge.data());
             }

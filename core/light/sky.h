@@ -121,17 +121,6 @@ inline SweepWindow whole(const dem::Grid& grid) {
     return {0, 0, grid.columns(), grid.rows()};
 }
 
-/// Calls `use` with all posts of a tile and the edge of the shadow over each, the post's own air
-/// and the smooth Earth around the DEM considered, on several threads.
-/// @param offset_rad  of the part of the disc over its centre
-void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
-               const Sweep::Use& use);
-
-/// Likewise with the tangent of the horizon's elevation from the ground at each post, the smooth
-/// Earth around the DEM being seen where nothing of it is higher.
-void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& tile,
-                  const Sweep::Use& use);
-
 /// A figure for each post of a window, in the order in which sweeps come to them.
 class TileValues {
   public:
@@ -153,5 +142,17 @@ class TileValues {
     bool along_columns_ = false;
     std::vector<float> values_;
 };
+
+/// Calls `use` with all posts of a tile and the edge of the shadow over each, the post's own air
+/// and the smooth Earth around the DEM considered, on several threads.
+/// @param offset_rad  of the part of the disc over its centre
+/// @param scratch     of a window that holds the tile's, turned as the sun's sweeps go
+void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
+               TileValues& scratch, const Sweep::Use& use);
+
+/// Likewise with the tangent of the horizon's elevation from the ground at each post, the smooth
+/// Earth around the DEM being seen where nothing of it is higher.
+void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& tile,
+                  const Sweep::Use& use);
 
 }  // namespace relevo::light

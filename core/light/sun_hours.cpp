@@ -67,17 +67,18 @@ Moments moments(const DemSky& dem, sun::Instant begin, double length_s, double s
 
 /// What is known of each post so far.
 struct PostLight {
-    TileValues margin_m, lit_h, first_h, last_h, spells;
+    TileValues margin_m, lit_h, first_h, last_h, spells, scratch;
 
     PostLight(const SweepWindow& window, bool with_spells)
         : margin_m(window, -1),
           lit_h(window, 0),
           first_h(with_spells ? window : SweepWindow{}, kNaN),
           last_h(with_spells ? window : SweepWindow{}, kNaN),
-          spells(with_spells ? window : SweepWindow{}, 0) {}
+          spells(with_spells ? window : SweepWindow{}, 0),
+          scratch(window, 0) {}
 
     void turn(bool along_columns) {
-        for (TileValues* const each : {&margin_m, &lit_h, &first_h, &last_h, &spells})
+        for (TileValues* const each : {&margin_m, &lit_h, &first_h, &last_h, &spells, &scratch})
             each->turn(along_columns);
     }
 };
@@ -93,56 +94,77 @@ void measure(const SweepRun& run, float* margin_m) {
         margin_m[i] = std::min(run.height_m[i] - run.found[i], kOpen_m);
 }
 
-/// Some numbers at once, as sweep.cpp has them.
-using Numbers [[gnu::vector_size(16 * sizeof(float))]] = float;
+/// The light since the moment before, margins being linear: where it comes it is taken away up to
+/// then, where it goes it is added, so that only posts at which it does either are touched.
+/// `margin_m` of 16 posts at once, as of one.
+struct Light {
+    float from_h, hours;  // the moment before, and how long ago
+    const float *height_m, *edge_m;
+    float *margin_m, *lit_h;
+};
 
-/// The light since the moment before: a share of the step, margins being linear.
-template <typename V>
-[[gnu::always_inline]] inline void add_light_of(const float* height_m, const float* edge_m,
-                                                float hours, float* margin_m, float* lit_h) {
-    V height, edge, before, lit;
-    std::memcpy(&height, height_m, sizeof(V));
-    std::memcpy(&edge, edge_m, sizeof(V));
-    std::memcpy(&before, margin_m, sizeof(V));
-    std::memcpy(&lit, lit_h, sizeof(V));
-    V now = height - edge;
-    now = now > kOpen_m ? V{} + kOpen_m : now;
-    const V over_before = before > 0 ? before : V{}, over_now = now > 0 ? now : V{};
-    const V under_before = before > 0 ? V{} : -before, under_now = now > 0 ? V{} : -now;
-    const V over = over_before + over_now, all = over + (under_before + under_now);
-    lit += hours * (all > 0 ? over / all : V{} + 1);
-    std::memcpy(margin_m, &now, sizeof(V));
-    std::memcpy(lit_h, &lit, sizeof(V));
+[[gnu::always_inline]] inline void add_light_of_one(const Light& light, int i) {
+    const float before = light.margin_m[i];
+    const float open = light.height_m[i] - light.edge_m[i];
+    const float now = open > kOpen_m ? kOpen_m : open;
+    light.margin_m[i] = now;
+    if ((before >= 0) == (now >= 0)) return;
+    const float when_h = light.from_h + light.hours * (before / (before - now));
+    light.lit_h[i] += now >= 0 ? -when_h : when_h;
 }
 
-[[gnu::always_inline]] inline void add_light_everywhere(const SweepRun& run, float hours,
-                                                        float* margin_m, float* lit_h) {
-    constexpr int kTogether = sizeof(Numbers) / sizeof(float);
+constexpr int kTogether = 16;
+using Numbers [[gnu::vector_size(kTogether * sizeof(float))]] = float;
+
+[[gnu::always_inline]] inline void add_light_of_some(const Light& light, int i) {
+    Numbers height, edge, before;
+    std::memcpy(&height, light.height_m + i, sizeof height);
+    std::memcpy(&edge, light.edge_m + i, sizeof edge);
+    std::memcpy(&before, light.margin_m + i, sizeof before);
+    Numbers now = height - edge;
+    now = now > kOpen_m ? Numbers{} + kOpen_m : now;
+    const auto changes = (before >= 0) ^ (now >= 0);
+    bool any = false;
+    for (int k = 0; k < kTogether; ++k)
+        any |= changes[k] != 0;
+    if (any)
+        for (int k = 0; k < kTogether; ++k)
+            add_light_of_one(light, i + k);
+    else
+        std::memcpy(light.margin_m + i, &now, sizeof now);
+}
+
+[[gnu::always_inline]] inline void add_light_to_all(const Light& light, int count) {
     int i = 0;
-    for (; i + kTogether <= run.count; i += kTogether)
-        add_light_of<Numbers>(run.height_m + i, run.found + i, hours, margin_m + i, lit_h + i);
-    for (; i < run.count; ++i)
-        add_light_of<float>(run.height_m + i, run.found + i, hours, margin_m + i, lit_h + i);
+    for (; i + kTogether <= count; i += kTogether)
+        add_light_of_some(light, i);
+    for (; i < count; ++i)
+        add_light_of_one(light, i);
 }
 
 #if defined(__x86_64__)
-[[gnu::target("avx512f")]] void add_light_16(const SweepRun& run, float hours, float* margin_m,
-                                             float* lit_h) {
-    add_light_everywhere(run, hours, margin_m, lit_h);
+[[gnu::target("avx512f")]] void add_light_512(const Light& light, int count) {
+    add_light_to_all(light, count);
 }
-[[gnu::target("avx2")]] void add_light_8(const SweepRun& run, float hours, float* margin_m,
-                                         float* lit_h) {
-    add_light_everywhere(run, hours, margin_m, lit_h);
+[[gnu::target("avx2")]] void add_light_256(const Light& light, int count) {
+    add_light_to_all(light, count);
 }
 #endif
 
 /// All ways have the same bits.
-void add_light(const SweepRun& run, float hours, float* margin_m, float* lit_h) {
+void add_light(const Light& light, int count) {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f")) return add_light_16(run, hours, margin_m, lit_h);
-    if (__builtin_cpu_supports("avx2")) return add_light_8(run, hours, margin_m, lit_h);
+    if (__builtin_cpu_supports("avx512f")) return add_light_512(light, count);
+    if (__builtin_cpu_supports("avx2")) return add_light_256(light, count);
 #endif
-    add_light_everywhere(run, hours, margin_m, lit_h);
+    add_light_to_all(light, count);
+}
+
+/// Posts that are lit: light comes, or goes.
+void add_lit(const SweepRun& run, double at_h, bool comes, const float* margin_m, float* lit_h) {
+    const auto when_h = static_cast<float>(comes ? -at_h : at_h);
+    for (int i = 0; i < run.count; ++i)
+        if (margin_m[i] >= 0) lit_h[i] += when_h;
 }
 
 /// Where light comes or goes between two moments. Call before add_light().
@@ -219,19 +241,25 @@ class FewDays {
     void add(const SweepWindow& window, std::size_t k, PostLight& posts) const {
         const SunTile tile = *skies_[k].tile(window);
         // A night leaves all posts in the shade.
-        const bool is_first = k == 0 || night_[k - 1], is_last = k + 1 == skies_.size();
+        const bool is_first = k == 0 || night_[k - 1],
+                   is_last = k + 1 == skies_.size() || night_[k + 1];
+        const double now_h = moments_.at_s[k] / kHour_s;
         const Step step{k == 0 ? 0 : moments_.at_s[k - 1] / kHour_s,
                         k == 0 ? 0 : (moments_.at_s[k] - moments_.at_s[k - 1]) / kHour_s};
-        each_edge(skies_[k], sweep_, tile, 0, [&](const SweepRun& run) {
+        each_edge(skies_[k], sweep_, tile, 0, posts.scratch, [&](const SweepRun& run) {
+            float *const margin_m = posts.margin_m.of(run), *const lit_h = posts.lit_h.of(run);
             if (is_first) {
-                measure(run, posts.margin_m.of(run));
+                measure(run, margin_m);
+                add_lit(run, now_h, true, margin_m, lit_h);
                 if (spells_ && k == 0) add_end(run, 0, true, posts);
             } else {
                 if (spells_) add_spells(run, step, posts);
-                add_light(run, static_cast<float>(step.hours), posts.margin_m.of(run),
-                          posts.lit_h.of(run));
+                add_light({static_cast<float>(step.from_h), static_cast<float>(step.hours),
+                           run.height_m, run.found, margin_m, lit_h},
+                          run.count);
             }
-            if (spells_ && is_last) add_end(run, moments_.at_s[k] / kHour_s, false, posts);
+            if (is_last) add_lit(run, now_h, false, margin_m, lit_h);
+            if (spells_ && k + 1 == skies_.size()) add_end(run, now_h, false, posts);
         });
     }
 

@@ -94,7 +94,9 @@ template <typename V, int kVectors>
 
 template <typename V>
 [[gnu::always_inline]] inline void raise_all(const Lift& lift) {
-    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float)), kTogether = 4;
+    // As many as there are registers for.
+    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float)),
+                  kTogether = kWidth == 4 ? 2 : 4;
     V lane{};
     for (int k = 0; k < kWidth; ++k)
         lane[k] = static_cast<float>(k);
@@ -147,7 +149,9 @@ template <typename V, int kVectors>
 
 template <typename V>
 [[gnu::always_inline]] inline void look_all(const Sight& sight) {
-    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float)), kTogether = 4;
+    // As many as there are registers for.
+    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float)),
+                  kTogether = kWidth == 4 ? 2 : 4;
     int i = 0;
     for (; i + kTogether * kWidth <= sight.posts; i += kTogether * kWidth)
         look_some<V, kTogether>(sight, i);
