@@ -126,7 +126,6 @@ void write_raster(OutputFile& file, const dem::Grid& grid, const std::vector<Ras
         GDALDriver& cog = *driver("COG");
         const CPLStringList wanted = creation_options(about.creation_options, type);
         CPLStringList options;
-        options.SetNameValue("COMPRESS", "LZW");
         options.SetNameValue("TILED", "YES");
         options.SetNameValue("INTERLEAVE", "BAND");
         options.SetNameValue("BIGTIFF", "IF_SAFER");

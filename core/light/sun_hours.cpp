@@ -482,6 +482,7 @@ void sum_up(const dem::Posts::View& heights, SunHours& result) {
                 ++result.holes;
                 continue;
             }
+            hours = std::max(hours, 0.0F);  // sums of comings and goings end near 0
             result.mean_hours += double{hours};
             ++posts;
         }

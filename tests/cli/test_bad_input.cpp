@@ -200,8 +200,8 @@ TEST(BadUsage, EachHasItsMessage) {
     expect_no_picture({"sun", "carpt"}, 2, "carpt: no such command; did you mean carpet?");
     expect_no_picture(
         {"sun"}, 2,
-        "sun: which command? There are position, day, horizon, carpet, when, shadow, along; "
-        "each has --help");
+        "sun: which command? There are position, day, horizon, carpet, when, shadow, hours, "
+        "sky-view, horizons, along; each has --help");
     expect_no_picture({"plugins", "x"}, 2, "x: no such command; there are list, info");
     expect_no_picture({"capture"}, 2, "DEM is required; see relevo capture --help");
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--fov", "500"}, 2,
