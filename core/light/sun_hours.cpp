@@ -21,9 +21,9 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kDay_s = 86400, kHour_s = 3600;
-constexpr float kOpen_m = 1e6F;  // margin where nothing of the DEM lies towards the sun
-constexpr double kLow_rad = radians(1.5);
-constexpr int kFiner = 6;
+constexpr float kOpen_m = 1e6F;            // margin where nothing of the DEM lies towards the sun
+constexpr double kLow_rad = radians(1.5);  // a sun under that is near the horizon
+constexpr int kFiner = 6;                  // as many steps there as one elsewhere
 constexpr double kPeriodTolerance_rad = radians(0.1);  // of suns that are put together anyway
 
 /// Moments of a time, each with the sun.
@@ -94,9 +94,11 @@ void measure(const SweepRun& run, float* margin_m) {
         margin_m[i] = std::min(run.height_m[i] - run.found[i], kOpen_m);
 }
 
-/// The light since the moment before, margins being linear: where it comes it is taken away up to
-/// then, where it goes it is added, so that only posts at which it does either are touched.
-/// `margin_m` of 16 posts at once, as of one.
+/// Posts next to each other at a moment, and what is known of them from the moment before.
+///
+/// Margins are linear between the two. Where light comes, the time of that is taken away from the
+/// post's hours, and where it goes, it is added, so that only posts at which it does either have
+/// their hours touched.
 struct Light {
     float from_h, hours;  // the moment before, and how long ago
     const float *height_m, *edge_m;
@@ -113,8 +115,8 @@ struct Light {
     light.lit_h[i] += now >= 0 ? -when_h : when_h;
 }
 
-constexpr int kTogether = 16;
-using Numbers [[gnu::vector_size(kTogether * sizeof(float))]] = float;
+constexpr int kPosts = 16;  // at once
+using Numbers [[gnu::vector_size(kPosts * sizeof(float))]] = float;
 
 [[gnu::always_inline]] inline void add_light_of_some(const Light& light, int i) {
     Numbers height, edge, before;
@@ -125,10 +127,10 @@ using Numbers [[gnu::vector_size(kTogether * sizeof(float))]] = float;
     now = now > kOpen_m ? Numbers{} + kOpen_m : now;
     const auto changes = (before >= 0) ^ (now >= 0);
     bool any = false;
-    for (int k = 0; k < kTogether; ++k)
+    for (int k = 0; k < kPosts; ++k)
         any |= changes[k] != 0;
     if (any)
-        for (int k = 0; k < kTogether; ++k)
+        for (int k = 0; k < kPosts; ++k)
             add_light_of_one(light, i + k);
     else
         std::memcpy(light.margin_m + i, &now, sizeof now);
@@ -136,7 +138,7 @@ using Numbers [[gnu::vector_size(kTogether * sizeof(float))]] = float;
 
 [[gnu::always_inline]] inline void add_light_to_all(const Light& light, int count) {
     int i = 0;
-    for (; i + kTogether <= count; i += kTogether)
+    for (; i + kPosts <= count; i += kPosts)
         add_light_of_some(light, i);
     for (; i < count; ++i)
         add_light_of_one(light, i);
@@ -214,7 +216,7 @@ class FewDays {
         std::vector<SweepWindow> windows;
         for (std::size_t k = 0; k < skies_.size(); ++k) {
             if (night_[k]) continue;
-            if (windows.empty() || k % kTogether == 0) windows = windows_from(k);
+            if (k == 0 || night_[k - 1] || k % kTogether == 0) windows = windows_from(k);
             result.windows = std::max(result.windows, static_cast<int>(windows.size()));
             posts.turn(skies_[k].along_columns());
             each_window(windows, [&](const SweepWindow& window) { add(window, k, posts); });
