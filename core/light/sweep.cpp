@@ -518,7 +518,9 @@ class HullStrip {
     HullStrip(const Sheet& sheet, const Steps& steps, const Kernel& kernel, double curvature,
               int line)
         : sheet_(sheet), steps_(steps), kernel_(kernel), curvature_(curvature), line_(line) {
-        const std::size_t most = 2 * steps.rows.size() + 2;
+        std::size_t most = 0;  // no line meets more, and no memory is touched before it does
+        for (const Steps::Row& row : steps.rows)
+            most += row.posts() - row.lines[0];
         points_ = std::make_unique_for_overwrite<Hull::Point[]>(kLineSets * (kLines + 1) * most);
         for (std::size_t i = 0; i < kLineSets * (kLines + 1); ++i)
             hulls_[i / (kLines + 1)][i % (kLines + 1)] = Hull(points_.get() + i * most);

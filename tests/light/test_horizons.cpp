@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include <fmt/format.h>
@@ -62,6 +63,36 @@ Array2d<float> horizon_deg(const Array2d<float>& height_m, const GridPair& spaci
                            double azimuth_deg, int lanes = Sweep::kMostLanes) {
     return horizon_deg(height_m, spacing_m, azimuth_deg, 0,
                        {0, 0, height_m.width(), height_m.height()}, lanes);
+}
+
+TEST(Horizons, AreTheSameWhicheverWayASweepGoes) {
+    // A dome, all of which is its own hull, swept from row to row towards a sun that stands beside
+    // the rows: eight columns are crossed from one row to the next.
+    Array2d<float> dome(900, 150);
+    for (int row = 0; row < dome.height(); ++row)
+        for (int column = 0; column < dome.width(); ++column)
+            dome.at(column, row) = static_cast<float>(
+                3000 - 0.02 * (std::pow(column - 450, 2) + std::pow(row - 75, 2)));
+    const Sweep sweep(dome.data(), dome.width(), dome.height(), dome.width());
+    const auto found = [&](std::optional<bool> columns_set) {
+        SweepSun way = way_over({30, 30}, 83, {450, 75});
+        way.columns_set = columns_set;
+        Array2d<float> tangent(dome.width(), dome.height());
+        sweep.each_horizon(
+            way, 0, 1e9, {0, 0, dome.width(), dome.height()}, [&](const SweepRun& run) {
+                for (int i = 0; i < run.count; ++i)
+                    (run.along_column ? tangent.at(run.line, run.first + i)
+                                      : tangent.at(run.first + i, run.line)) = run.found[i];
+            });
+        return tangent;
+    };
+    const Array2d<float> free = found({}), against = found(false);
+    double worst = 0;
+    for (int row = 1; row < dome.height() - 1; ++row)
+        for (int column = 1; column < dome.width() - 1; ++column)
+            worst =
+                std::max(worst, std::abs(double{free.at(column, row)} - against.at(column, row)));
+    EXPECT_LT(worst, 0.02);
 }
 
 /// The largest of a share of numbers.
