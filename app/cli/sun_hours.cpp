@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -18,7 +19,7 @@ struct Arguments {
     RasterArguments raster;
     DaysArguments days;
     RefractionArguments refraction;
-    double step_min = 3;
+    std::optional<double> step_min;
     std::vector<std::string> bands{"hours"};
 };
 
@@ -63,7 +64,13 @@ void check(const Arguments& arguments) {
             bands.begin() + static_cast<std::ptrdiff_t>(i))
             bad_usage(fmt::format("--bands: {} is named twice", bands[i]));
     const auto [begin, end] = time_of(arguments.days.parse({}, false));
-    if (has_spells(bands) && end - begin > 86400 * light::SunHoursOptions::kMostDays)
+    if (end - begin <= 86400 * light::SunHoursOptions::kMostDays) return;
+    if (arguments.step_min)
+        bad_usage(
+            fmt::format("--step: is of {:.10g} days at most; a longer time has directions of "
+                        "the sun instead",
+                        light::SunHoursOptions::kMostDays));
+    if (has_spells(bands))
         bad_usage(fmt::format("--bands: first, last and spells are known of {:.10g} days at most",
                               light::SunHoursOptions::kMostDays));
 }
@@ -78,7 +85,7 @@ void run(const Arguments& arguments) {
     light::SunHoursOptions options;
     options.refraction = arguments.raster.terrestrial_refraction;
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
-    options.step_s = 60 * arguments.step_min;
+    options.step_s = 60 * arguments.step_min.value_or(3);
     options.spells = has_spells(arguments.bands);
     light::SunHours hours = light::sun_hours(posts, begin, end, options);
     warn_of_holes(hours.holes);

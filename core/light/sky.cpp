@@ -74,6 +74,23 @@ void mix(const SweepRun& run, const float* low_edge_m, double low_m, double span
     }
 }
 
+/// Calls `use` with parts of a run, figures for which `fill` puts into an array of the part's
+/// length.
+template <typename Fill>
+void each_part(const SweepRun& run, const Fill& fill, const Sweep::Use& use) {
+    std::array<float, kRun> figures;
+    for (int done = 0; done < run.count; done += kRun) {
+        SweepRun part = run;
+        part.first += done;
+        part.count = std::min(run.count - done, kRun);
+        part.height_m += done;
+        part.found += done;
+        fill(part, figures.data());
+        part.found = figures.data();
+        use(part);
+    }
+}
+
 /// How far off the suns of a window are at most [rad].
 double error_rad(const std::vector<SunSky>& suns, const SweepWindow& window) {
     double worst = 0;
@@ -354,24 +371,15 @@ void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doubl
         });
     const SweepSun sun = two ? sky.sun(tile, 1, offset_rad) : lower;
     const double low_m = dem.level_height_m(0), span_m = dem.level_height_m(1) - low_m;
-    sweep.each_edge(sun, w, [&](const SweepRun& run) {
-        std::array<float, kRun> edge;
-        for (int done = 0; done < run.count; done += kRun) {
-            SweepRun part = run;
-            part.first += done;
-            part.count = std::min(run.count - done, kRun);
-            part.height_m += done;
-            std::copy_n(run.found + done, part.count, edge.begin());
-            part.found = edge.data();
-            add_earth(sun, part, sweep.lowest_m(), dem.curvature(), edge.data());
-            if (two) {
-                float* const other = scratch.of(part);
-                add_earth(lower, part, sweep.lowest_m(), dem.curvature(), other);
-                mix(part, other, low_m, span_m, edge.data());
-            }
-            use(part);
-        }
-    });
+    const auto fill = [&](const SweepRun& part, float* edge_m) {
+        std::copy_n(part.found, part.count, edge_m);
+        add_earth(sun, part, sweep.lowest_m(), dem.curvature(), edge_m);
+        if (!two) return;
+        float* const other_m = scratch.of(part);
+        add_earth(lower, part, sweep.lowest_m(), dem.curvature(), other_m);
+        mix(part, other_m, low_m, span_m, edge_m);
+    };
+    sweep.each_edge(sun, w, [&](const SweepRun& run) { each_part(run, fill, use); });
 }
 
 void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& tile,
@@ -379,23 +387,15 @@ void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& ti
     const DemSky& dem = direction.dem();
     const auto curvature = static_cast<float>(dem.curvature());
     const float lowest_m = sweep.lowest_m();
-    sweep.each_horizon(
-        tile.path, dem.curvature(), direction.reach_m(0), tile.window, [&](const SweepRun& run) {
-            std::array<float, kRun> tangent;
-            for (int done = 0; done < run.count; done += kRun) {
-                SweepRun part = run;
-                part.first += done;
-                part.count = std::min(run.count - done, kRun);
-                part.height_m += done;
-                for (int i = 0; i < part.count; ++i) {
-                    const float dip =
-                        -std::sqrt(2 * curvature * std::max(0.0F, part.height_m[i] - lowest_m));
-                    tangent[static_cast<std::size_t>(i)] = std::max(run.found[done + i], dip);
-                }
-                part.found = tangent.data();
-                use(part);
-            }
-        });
+    const auto fill = [&](const SweepRun& part, float* tangent) {
+        for (int i = 0; i < part.count; ++i) {
+            const float dip =
+                -std::sqrt(2 * curvature * std::max(0.0F, part.height_m[i] - lowest_m));
+            tangent[i] = std::max(part.found[i], dip);
+        }
+    };
+    sweep.each_horizon(tile.path, dem.curvature(), direction.reach_m(0), tile.window,
+                       [&](const SweepRun& run) { each_part(run, fill, use); });
 }
 
 TileValues::TileValues(const SweepWindow& window, float value)

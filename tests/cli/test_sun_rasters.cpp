@@ -10,22 +10,13 @@
 
 #include "base/units.h"
 #include "cli/program.h"
+#include "cli/raster.h"
 #include "dem/fixture.h"
 #include "support/support.h"
 
 /// `relevo sun hours`, `sky-view` and `horizons`, from file to file.
 namespace relevo::test {
 namespace {
-
-struct Close {
-    void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<GDALDataset, Close>;
-
-Dataset opened(const std::string& path) {
-    GDALAllRegister();
-    return Dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
-}
 
 double value_at(GDALDataset& dataset, int band, int column, int row) {
     float value = 0;
@@ -150,6 +141,8 @@ TEST(SunRasters, WhatMeansNothingIsRefused) {
                    "--bands: first is named twice");
     expect_failure(hours({"--year", "2026", "--bands", "first"}), 2,
                    "--bands: first, last and spells are known of 4 days at most");
+    expect_failure(hours({"--year", "2026", "--step", "1"}), 2,
+                   "--step: is of 4 days at most; a longer time has directions of the sun instead");
     expect_failure({"sun", "sky-view", dem, "-o", out("x.tif"), "--co", "ZSTD"}, 2,
                    "--co: ZSTD: expected NAME=VALUE, such as COMPRESS=ZSTD");
     const Result odd =

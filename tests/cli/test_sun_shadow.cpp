@@ -13,22 +13,13 @@
 #include <sched.h>
 
 #include "cli/program.h"
+#include "cli/raster.h"
 #include "dem/fixture.h"
 #include "support/support.h"
 
 /// `relevo sun shadow`, from file to file.
 namespace relevo::test {
 namespace {
-
-struct Close {
-    void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<GDALDataset, Close>;
-
-Dataset opened(const std::string& path) {
-    GDALAllRegister();
-    return Dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR));
-}
 
 std::vector<float> values_of(GDALDataset& dataset) {
     const int columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
