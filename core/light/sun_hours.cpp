@@ -21,9 +21,8 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kDay_s = 86400, kHour_s = 3600;
-constexpr float kOpen_m = 1e6F;            // margin where nothing of the DEM lies towards the sun
-constexpr double kLow_rad = radians(1.5);  // a sun under that is near the horizon
-constexpr int kFiner = 6;                  // as many steps there as one elsewhere
+constexpr double kLow_rad = radians(1.5);              // a sun under that is near the horizon
+constexpr int kFiner = 3;                              // as many steps there as one elsewhere
 constexpr double kPeriodTolerance_rad = radians(0.1);  // of suns that are put together anyway
 
 /// Moments of a time, each with the sun.
@@ -89,9 +88,10 @@ struct Step {
 };
 
 /// Margins now; a hole has none.
-void measure(const SweepRun& run, float* margin_m) {
+/// @param floor_m  under which it does not matter where an edge is
+void measure(const SweepRun& run, float floor_m, float* margin_m) {
     for (int i = 0; i < run.count; ++i)
-        margin_m[i] = std::min(run.height_m[i] - run.found[i], kOpen_m);
+        margin_m[i] = run.height_m[i] - std::max(run.found[i], floor_m);
 }
 
 /// Posts next to each other at a moment, and what is known of them from the moment before.
@@ -101,14 +101,15 @@ void measure(const SweepRun& run, float* margin_m) {
 /// their hours touched.
 struct Light {
     float from_h, hours;  // the moment before, and how long ago
+    float floor_m;        // as in measure()
     const float *height_m, *edge_m;
     float *margin_m, *lit_h;
 };
 
 [[gnu::always_inline]] inline void add_light_of_one(const Light& light, int i) {
     const float before = light.margin_m[i];
-    const float open = light.height_m[i] - light.edge_m[i];
-    const float now = open > kOpen_m ? kOpen_m : open;
+    const float edge_m = light.edge_m[i];
+    const float now = light.height_m[i] - (edge_m > light.floor_m ? edge_m : light.floor_m);
     light.margin_m[i] = now;
     if ((before >= 0) == (now >= 0)) return;
     const float when_h = light.from_h + light.hours * (before / (before - now));
@@ -123,8 +124,7 @@ using Numbers [[gnu::vector_size(kPosts * sizeof(float))]] = float;
     std::memcpy(&height, light.height_m + i, sizeof height);
     std::memcpy(&edge, light.edge_m + i, sizeof edge);
     std::memcpy(&before, light.margin_m + i, sizeof before);
-    Numbers now = height - edge;
-    now = now > kOpen_m ? Numbers{} + kOpen_m : now;
+    const Numbers now = height - (edge > light.floor_m ? edge : Numbers{} + light.floor_m);
     const auto changes = (before >= 0) ^ (now >= 0);
     bool any = false;
     for (int k = 0; k < kPosts; ++k)
@@ -170,13 +170,13 @@ void add_lit(const SweepRun& run, double at_h, bool comes, const float* margin_m
 }
 
 /// Where light comes or goes between two moments. Call before add_light().
-void add_spells(const SweepRun& run, const Step& step, PostLight& posts) {
+void add_spells(const SweepRun& run, const Step& step, float floor_m, PostLight& posts) {
     const float* const margin_m = posts.margin_m.of(run);
     float *const first_h = posts.first_h.of(run), *const last_h = posts.last_h.of(run),
                  *const spells = posts.spells.of(run);
     for (int i = 0; i < run.count; ++i) {
         const float before = margin_m[i];
-        const float now = std::min(run.height_m[i] - run.found[i], kOpen_m);
+        const float now = run.height_m[i] - std::max(run.found[i], floor_m);
         if ((before >= 0) == (now >= 0)) continue;
         const auto when =
             static_cast<float>(step.from_h + step.hours * before / (double{before} - now));
@@ -251,13 +251,13 @@ class FewDays {
         each_edge(skies_[k], sweep_, tile, 0, posts.scratch, [&](const SweepRun& run) {
             float *const margin_m = posts.margin_m.of(run), *const lit_h = posts.lit_h.of(run);
             if (is_first) {
-                measure(run, margin_m);
+                measure(run, sweep_.floor_m(), margin_m);
                 add_lit(run, now_h, true, margin_m, lit_h);
                 if (spells_ && k == 0) add_end(run, 0, true, posts);
             } else {
-                if (spells_) add_spells(run, step, posts);
+                if (spells_) add_spells(run, step, sweep_.floor_m(), posts);
                 add_light({static_cast<float>(step.from_h), static_cast<float>(step.hours),
-                           run.height_m, run.found, margin_m, lit_h},
+                           sweep_.floor_m(), run.height_m, run.found, margin_m, lit_h},
                           run.count);
             }
             if (is_last) add_lit(run, now_h, false, margin_m, lit_h);

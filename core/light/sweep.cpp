@@ -202,38 +202,59 @@ struct Sheet {
 
 /// Lines at a row. Line i is the ray through the reference, which is a post, moved by i columns.
 struct RowPlan {
-    double shift = 0;  // column of line 0
-    double fall = 0;   // of line 0, from the first row on
-    double ramp = 0;   // likewise, more for each line
+    double distance_m = 0;  // from the reference towards the sun
+    double shift = 0;       // column of line 0
+    double fall = 0;        // of line 0, from the first row on
+    double ramp = 0;        // likewise, more for each line
 };
 
 /// The rows that matter to a window, and all that is the same for their posts.
 class Plan {
   public:
-    Plan(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double relief_m)
+    /// @param height_m  through which shade falls, and is looked for
+    Plan(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double height_m)
         : sheet_(sheet), sun_(sun) {
-        begin_ = find_begin(window, relief_m);
+        find_begin(window, height_m);
         const int end_row = window.row + window.rows;
         rows_.resize(static_cast<std::size_t>(end_row - begin_));
-        double before_m = 0, before_tangent = 0;
+        double before_tangent = 0;
         for (int row = begin_; row < end_row; ++row) {
             RowPlan& at = rows_[static_cast<std::size_t>(row - begin_)];
-            const double s = sun.distance_m(row);
-            at.shift = sun.reference.column + sun.way(s).column;
+            at.distance_m = sun.distance_m(row);
+            at.shift = sun.reference.column + sun.way(at.distance_m).column;
             const double tangent = sun.tangent_at(at.shift, row);
             if (row > begin_) {
                 const RowPlan& last = rows_[static_cast<std::size_t>(row - begin_ - 1)];
-                const double step_m = before_m - s;
+                const double step_m = last.distance_m - at.distance_m;
                 at.fall = last.fall + step_m * (before_tangent + tangent) / 2;
                 at.ramp = last.ramp + step_m * sun.tangent_a_post.column;
             }
-            before_m = s;
             before_tangent = tangent;
         }
     }
 
     int begin() const { return begin_; }
     const RowPlan& row(int row) const { return rows_[static_cast<std::size_t>(row - begin_)]; }
+
+    /// Lines never turn back over the columns that they came from.
+    bool is_monotonic() const {
+        bool falls = true, rises = true;
+        for (std::size_t k = 1; k < rows_.size(); ++k) {
+            falls &= rows_[k].shift <= rows_[k - 1].shift;
+            rises &= rows_[k].shift >= rows_[k - 1].shift;
+        }
+        return falls || rises;
+    }
+
+    /// The last row which the shade of a row reaches, or the next one; of the window.
+    /// @param from  such a row of one that is nearer to the sun
+    int reached(int at, int from) const {
+        int last = std::max(at, from);
+        while (last + 1 < begin_ + static_cast<int>(rows_.size()) &&
+               row(at).distance_m - row(last).distance_m <= reach_m_)
+            ++last;
+        return last;
+    }
 
     /// The ground of a row, for rays that are at `shift` there, and fall from there to `to`.
     Term row_term(int at, double shift, const RowPlan& to) const {
@@ -280,26 +301,26 @@ class Plan {
     }
 
   private:
-    /// The first row from which shade can reach the window.
-    int find_begin(const SweepWindow& window, double relief_m) const {
+    /// How far shade can reach over the window, and the first row from which it can.
+    void find_begin(const SweepWindow& window, double height_m) {
         const GridPair& more = sun_.tangent_a_post;
         const int right = window.column + window.columns - 1, end = window.row + window.rows - 1;
         const double tangent = sun_.tangent_at(more.column > 0 ? window.column : right,
                                                more.row > 0 ? window.row : end);
         // Towards the sun it stands higher still.
         const bool higher = more.column * sun_.towards.column + more.row * sun_.towards.row >= 0;
-        const double reach_m =
-            tangent > 0 && higher ? relief_m / tangent : std::numeric_limits<double>::infinity();
+        reach_m_ =
+            tangent > 0 && higher ? height_m / tangent : std::numeric_limits<double>::infinity();
         const double from_m = sun_.distance_m(window.row);
-        int begin = window.row;
-        while (begin > 0 && sun_.distance_m(begin) - from_m <= reach_m &&
-               !std::isnan(sun_.distance_m(begin - 1)))
-            --begin;
-        return begin;
+        begin_ = window.row;
+        while (begin_ > 0 && sun_.distance_m(begin_) - from_m <= reach_m_ &&
+               !std::isnan(sun_.distance_m(begin_ - 1)))
+            --begin_;
     }
 
     const Sheet& sheet_;
     const SweepSun& sun_;
+    double reach_m_ = 0;
     int begin_ = 0;
     std::vector<RowPlan> rows_;
 };
@@ -309,11 +330,12 @@ struct Steps {
     struct Row {
         std::array<std::size_t, kLineSets + 1> lines{};  // where terms begin, and of the posts
         std::size_t end = 0;
-        int column = 0;     // of the post that belongs to line 0
-        float between = 0;  // how far on towards the next line each post stands
-        Slope slope;        // of lines, from the row before
-        double fallen = 0;  // line 0 from the first row on
-        Slope far_slope;    // of posts' rays, from the last row that is not near
+        int column = 0;                    // of the post that belongs to line 0
+        float between = 0;                 // how far on towards the next line each post stands
+        Slope slope;                       // of lines, from the row before
+        double fallen = 0;                 // line 0 from the first row on
+        Slope far_slope;                   // of posts' rays, from the last row that is not near
+        int first_line = 0, end_line = 0;  // which come over posts of the window that it shades
 
         std::size_t& posts() { return lines[kLineSets]; }
         std::size_t posts() const { return lines[kLineSets]; }
@@ -327,7 +349,38 @@ struct Steps {
     double distance_m(int at) const { return row(at).fallen; }
 };
 
-Steps steps_of(const Plan& plan, int first_row, int end_row) {
+/// Which lines matter at each row to the posts of the window. Before a line comes over the grid
+/// nothing is under it, and behind the window nobody looks at it.
+void set_lines(const Plan& plan, const SweepWindow& window, Steps& steps) {
+    const auto over = [&](int row) {
+        const int column = steps.row(row).column;
+        return std::pair(window.column - column, window.column + window.columns - column + 1);
+    };
+    const int last_row = window.row + window.rows - 1;
+    const bool is_monotonic = plan.is_monotonic();
+    std::pair<int, int> all{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
+    for (int row = window.row; row <= last_row; ++row)
+        all = {std::min(all.first, over(row).first), std::max(all.second, over(row).second)};
+    int reached = plan.begin();
+    for (int row = plan.begin(); row <= last_row; ++row) {
+        Steps::Row& step = steps.rows[static_cast<std::size_t>(row - steps.begin)];
+        step.first_line = all.first, step.end_line = all.second;
+        if (!is_monotonic) continue;
+        reached = plan.reached(row, reached);
+        const int next = std::max(row, window.row);
+        const auto near = over(next), far = over(std::max(next, reached));
+        int on_first = all.second, on_end = all.first;
+        for (std::size_t k = step.lines[0]; k < step.posts(); ++k) {
+            on_first = std::min(on_first, steps.terms[k].begin);
+            on_end = std::max(on_end, steps.terms[k].end);
+        }
+        step.first_line = std::max(std::min(near.first, far.first), on_first);
+        step.end_line = std::min(std::max(near.second, far.second), on_end);
+    }
+}
+
+Steps steps_of(const Plan& plan, const SweepWindow& window) {
+    const int first_row = window.row, end_row = window.row + window.rows;
     Steps steps;
     steps.begin = plan.begin();
     for (int row = plan.begin(); row < end_row; ++row) {
@@ -369,6 +422,7 @@ Steps steps_of(const Plan& plan, int first_row, int end_row) {
         }
         steps.rows.push_back(step);
     }
+    set_lines(plan, window, steps);
     return steps;
 }
 
@@ -385,13 +439,16 @@ class Strip {
     /// To the next row, and the ground there.
     void advance(int row) {
         const Steps::Row& step = steps_.row(row);
+        const int from = std::max(line_, step.first_line),
+                  to = std::min(line_ + kLines, step.end_line);
+        if (from >= to) return;
         for (std::size_t set = 0; set < kLineSets; ++set) {
-            float* const lines = height_m_[set].data();
+            float* const lines = height_m_[set].data() + (from - line_);
             const float offset = static_cast<float>(set) / kLineSets;
             raise({.e = lines,
                    .before = lines,
-                   .line = line_,
-                   .lines = kLines,
+                   .line = from,
+                   .lines = to - from,
                    .slope = {step.slope.fall + offset * step.slope.ramp, step.slope.ramp}},
                   nullptr, step.lines[set], step.lines[set + 1]);
         }
@@ -531,7 +588,7 @@ class HullStrip {
         const Steps::Row& step = steps_.row(row);
         for (std::size_t set = 0; set < kLineSets; ++set)
             for (std::size_t k = step.lines[set]; k < step.lines[set + 1]; ++k)
-                add(set, steps_.terms[k], steps_.distance_m(row));
+                add(set, steps_.terms[k], step);
     }
 
     template <typename Use>
@@ -559,11 +616,12 @@ class HullStrip {
     }
 
   private:
-    void add(std::size_t set, const Term& term, double row_m) {
-        const double s = row_m - term.slope.fall;
+    void add(std::size_t set, const Term& term, const Steps::Row& step) {
+        const double s = step.fallen - term.slope.fall;
         const float distance_m = static_cast<float>(s),
                     sunk_m = static_cast<float>(curvature_ * s * s / 2);
-        const int from = std::max(line_, term.begin), to = std::min(line_ + kLines + 1, term.end);
+        const int from = std::max({line_, term.begin, step.first_line}),
+                  to = std::min({line_ + kLines + 1, term.end, step.end_line});
         const float *const p = sheet_.first + term.p, *const q = sheet_.first + term.q;
         for (int i = from; i < to; ++i) {
             const float height_m = p[i] + term.part * (q[i] - p[i]);
@@ -808,8 +866,8 @@ void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Us
         sun.tangent_a_post = {};
     }
     const SweepWindow& w = view.window;
-    const double relief_m = highest_m_ > lowest_m_ ? double{highest_m_} - lowest_m_ : 0;
-    const Steps steps = steps_of(Plan(view.sheet, sun, w, relief_m), w.row, w.row + w.rows);
+    const double height_m = highest_m_ > floor_m() ? double{highest_m_} - floor_m() : 0;
+    const Steps steps = steps_of(Plan(view.sheet, sun, w, height_m), w);
     const Kernel kernel = widest_kernel(lanes);
     sweep_strips(
         steps, w, kStripLines,
@@ -828,7 +886,7 @@ void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
     view.sun.tangent = 1;
     view.sun.tangent_a_post = {};
     const SweepWindow& w = view.window;
-    const Steps steps = steps_of(Plan(view.sheet, view.sun, w, reach_m), w.row, w.row + w.rows);
+    const Steps steps = steps_of(Plan(view.sheet, view.sun, w, reach_m), w);
     const Kernel kernel = widest_kernel(lanes);
     sweep_strips(
         steps, w, HullStrip::kLines,

@@ -129,6 +129,11 @@ class Sweep {
 
     float lowest_m() const { return lowest_m_; }    ///< infinity where there are only holes
     float highest_m() const { return highest_m_; }  ///< minus infinity likewise
+    /// Edges over it are the same whatever the window; those under it may be lower than they are.
+    /// As far below the lowest post as half of the relief; infinity where there are only holes.
+    float floor_m() const {
+        return lowest_m_ < highest_m_ ? lowest_m_ - (highest_m_ - lowest_m_) / 2 : lowest_m_;
+    }
 
   private:
     struct View;
