@@ -3,6 +3,7 @@
 //! writes    with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB; in
 //!           alpha of either 0 where effects made what is no number, or infinite
 
+//@ include lib/drape.glsl
 //@ include lib/exposed.glsl
 //@ include lib/finite.glsl
 //@ include lib/ground.glsl
@@ -124,6 +125,10 @@ void main() {
     hook_atmosphere(s, view, radiance);
     vec4 over = vec4(0.0);
     hook_display(s, over);
+#ifdef DRAPED
+    over += (1.0 - over.a) * draped(uintBitsToFloat(what.xy), length(frame.pixel_ray_dx.xyz) * depth *
+                                                                  frame.normal_texels_per_m);
+#endif
     // What is stored may be clamped to a number.
     float numbers = finite(vec4(radiance, s.height_m)) * finite(over);
     radiance = exposed(radiance);

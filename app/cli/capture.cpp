@@ -24,7 +24,7 @@ struct Arguments {
     std::string output, device = "auto", timings, dump_shaders, save_scene;
     std::vector<std::string> ab;
     int repeat = 0;
-    bool overwrite = false;
+    bool overwrite = false, no_legend = false;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -93,6 +93,15 @@ void write_picture(OutputFile& file, const image::Metadata& metadata, Timings& t
     timings.add("write", milliseconds_since(write_began));
 }
 
+/// Into the upper right corner, as large as the picture has room for.
+void add_legend(const chart::Legend& about, image::Image8& picture) {
+    constexpr double kUsual_px = 1024, kMargin = 12;
+    const chart::Drawing drawing = chart::legend(about);
+    const double scale = std::clamp(std::min(picture.width, picture.height) / kUsual_px, 0.5, 8.0);
+    const int x = static_cast<int>(picture.width - scale * (drawing.width() + kMargin));
+    chart::paint(drawing, x, static_cast<int>(scale * kMargin), scale, picture);
+}
+
 void capture(const Arguments& arguments) {
     const std::filesystem::path output = arguments.output;
     const scene::Scene scene = arguments.scene.scene();
@@ -134,7 +143,11 @@ void capture(const Arguments& arguments) {
     if (options.radiance)
         write_picture(picture_file, metadata, timings, [&] { return session.radiance(); });
     else
-        write_picture(picture_file, metadata, timings, [&] { return session.picture(); });
+        write_picture(picture_file, metadata, timings, [&] {
+            image::Image8 picture = session.picture();
+            if (session.legend() && !arguments.no_legend) add_legend(*session.legend(), picture);
+            return picture;
+        });
     if (scene_file)
         scene_file->write(scene::scene_text(
             session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));
@@ -152,6 +165,8 @@ void add_capture(CLI::App& app) {
                     "Picture to write: png, jpg, webp, tif, or exr in linear light")
         ->required();
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
+    verb.add_flag("--no-legend", arguments->no_legend, "Leave the overlay's legend out")
+        ->group("Overlay");
     verb.add_option("--save-scene", arguments->save_scene, "Write what is drawn as a scene, JSON");
     verb.add_option("--ab", arguments->ab,
                     "Compare: the left half with these effects, the right half without them")

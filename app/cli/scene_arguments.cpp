@@ -1,6 +1,54 @@
 #include "cli/scene_arguments.h"
 
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/text.h"
+
 namespace relevo::cli {
+
+void OverlayArguments::add_to(CLI::App& verb) {
+    verb.add_option("--overlay", file,
+                    "Raster to lay on the ground in true colours, with a legend: of relevo sun, or "
+                    "any that GDAL reads")
+        ->group("Overlay");
+    verb.add_option("--overlay-band", band, "Its band, from 1")
+        ->check(whole_number())
+        ->check(CLI::PositiveNumber)
+        ->group("Overlay");
+    verb.add_option("--overlay-colours", colours,
+                    "Its colours: sun, shade, sky, viridis, inferno, grey, or a colour file of "
+                    "gdaldem's, a path with a slash or a dot; by default as the band is")
+        ->group("Overlay");
+    verb.add_option("--overlay-range", range,
+                    "Values of the first and the last colour, LOW,HIGH; by default the raster's")
+        ->group("Overlay");
+    verb.add_option("--overlay-opacity", opacity, "0 to 1")
+        ->check(in_range(0.0, 1.0))
+        ->group("Overlay");
+    verb.add_option("--overlay-title", title, "Of the legend; by default the band's name")
+        ->group("Overlay");
+}
+
+void OverlayArguments::apply_to(scene::Scene& scene) const {
+    if (!file.empty()) scene.overlay = scene::Overlay{.file = file};
+    const bool more = band || opacity || !colours.empty() || !range.empty() || !title.empty();
+    if (more && !scene.overlay)
+        bad_usage("--overlay: what its colours, range, band, opacity and title are of, is missing");
+    if (band) scene.overlay->band = *band;
+    if (opacity) scene.overlay->opacity = *opacity;
+    if (!colours.empty()) scene.overlay->colours = colours;
+    if (!title.empty()) scene.overlay->title = printable(title);
+    if (range.empty()) return;
+    const std::vector<std::string> ends = split(range, ',');
+    const std::optional<double> low = ends.size() == 2 ? parse_number(ends[0]) : std::nullopt,
+                                high = ends.size() == 2 ? parse_number(ends[1]) : std::nullopt;
+    if (!low || !high || !(*high > *low))
+        bad_usage(fmt::format(
+            "--overlay-range: {}: expected LOW,HIGH, the second over the first, such as 0,14",
+            printable(range)));
+    scene.overlay->range = {*low, *high};
+}
 
 void SceneArguments::add_to(CLI::App& verb) {
     dem.add_to(verb);
@@ -16,6 +64,7 @@ void SceneArguments::add_to(CLI::App& verb) {
     refraction.add_to(verb);
     view.add_to(verb);
     effects.add_to(verb);
+    overlay.add_to(verb);
     verb.add_option("--exposure", exposure_ev, "Stops brighter than natural, EV")
         ->check(in_range(-20.0, 20.0));
     verb.add_option("--pixel-error", pixel_error,
@@ -32,6 +81,7 @@ scene::Scene SceneArguments::scene() const {
     if (refraction.given()) result.refraction = refraction.name();
     view.apply_to(result);
     effects.apply_to(result.effects);
+    overlay.apply_to(result);
     if (!size.empty()) {
         const glm::ivec2 sides = parse_size(size);
         result.width_px = sides.x;

@@ -9,6 +9,17 @@
 
 namespace relevo::cli {
 
+/// A raster on the ground: --overlay and how it is shown.
+struct OverlayArguments {
+    std::string file, colours, range, title;
+    std::optional<int> band;
+    std::optional<double> opacity;
+
+    void add_to(CLI::App& verb);
+    /// Puts what was given in the place of what a scene says. @throws Error (Usage)
+    void apply_to(scene::Scene& scene) const;
+};
+
 /// Everything that a scene is made of: DEM..., --scene, and what else decides about a picture.
 struct SceneArguments {
     DemArguments dem;
@@ -16,6 +27,7 @@ struct SceneArguments {
     RefractionArguments refraction;
     ViewArguments view;
     EffectArguments effects;
+    OverlayArguments overlay;
     std::string file, size;
     std::optional<double> exposure_ev, pixel_error;
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -93,47 +94,91 @@ class Painter {
     cairo_t* cairo_;
 };
 
+/// A rectangle of pixels that Cairo draws on.
+class Canvas {
+  public:
+    Canvas(int width, int height)
+        : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)) {}
+
+    std::uint8_t* row(int y) {
+        unsigned char* const data = cairo_image_surface_get_data(surface_.get());
+        return data ? data + y * cairo_image_surface_get_stride(surface_.get()) : nullptr;
+    }
+
+    void draw(const Drawing& drawing, double scale) {
+        cairo_surface_mark_dirty(surface_.get());
+        const std::unique_ptr<cairo_t, Destroy> cairo(cairo_create(surface_.get()));
+        cairo_scale(cairo.get(), scale, scale);
+        cairo_set_line_join(cairo.get(), CAIRO_LINE_JOIN_ROUND);
+        cairo_set_line_cap(cairo.get(), CAIRO_LINE_CAP_ROUND);
+        // Letters as they are drawn at any size, not pulled to the pixels of one.
+        const std::unique_ptr<cairo_font_options_t, decltype(&cairo_font_options_destroy)> font(
+            cairo_font_options_create(), cairo_font_options_destroy);
+        cairo_font_options_set_antialias(font.get(), CAIRO_ANTIALIAS_GRAY);
+        cairo_font_options_set_hint_style(font.get(), CAIRO_HINT_STYLE_NONE);
+        cairo_font_options_set_hint_metrics(font.get(), CAIRO_HINT_METRICS_OFF);
+        cairo_set_font_options(cairo.get(), font.get());
+        for (const Drawing::Item& item : drawing.items())
+            std::visit(Painter(cairo.get()), item);
+        cairo_surface_flush(surface_.get());
+        if (cairo_status(cairo.get()) != CAIRO_STATUS_SUCCESS) refuse(cairo_status(cairo.get()));
+    }
+
+    void check() const {
+        if (cairo_surface_status(surface_.get()) != CAIRO_STATUS_SUCCESS)
+            refuse(cairo_surface_status(surface_.get()));
+    }
+
+  private:
+    [[noreturn]] void refuse(cairo_status_t status) const {
+        failed(fmt::format(
+            "chart: {} x {} pixels: {}", cairo_image_surface_get_width(surface_.get()),
+            cairo_image_surface_get_height(surface_.get()), cairo_status_to_string(status)));
+    }
+
+    std::unique_ptr<cairo_surface_t, Destroy> surface_;
+};
+
 }  // namespace
 
 image::Image8 to_image(const Drawing& drawing, double scale) {
-    const int width = static_cast<int>(std::lround(drawing.width() * scale));
-    const int height = static_cast<int>(std::lround(drawing.height() * scale));
-    const std::unique_ptr<cairo_surface_t, Destroy> surface(
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height));
-    const std::unique_ptr<cairo_t, Destroy> cairo(cairo_create(surface.get()));
-    cairo_set_source_rgb(cairo.get(), 1, 1, 1);
-    cairo_paint(cairo.get());
-    cairo_scale(cairo.get(), scale, scale);
-    cairo_set_line_join(cairo.get(), CAIRO_LINE_JOIN_ROUND);
-    cairo_set_line_cap(cairo.get(), CAIRO_LINE_CAP_ROUND);
-    // Letters as they are drawn at any size, not pulled to the pixels of one.
-    const std::unique_ptr<cairo_font_options_t, decltype(&cairo_font_options_destroy)> font(
-        cairo_font_options_create(), cairo_font_options_destroy);
-    cairo_font_options_set_antialias(font.get(), CAIRO_ANTIALIAS_GRAY);
-    cairo_font_options_set_hint_style(font.get(), CAIRO_HINT_STYLE_NONE);
-    cairo_font_options_set_hint_metrics(font.get(), CAIRO_HINT_METRICS_OFF);
-    cairo_set_font_options(cairo.get(), font.get());
-    for (const Drawing::Item& item : drawing.items())
-        std::visit(Painter(cairo.get()), item);
-    cairo_surface_flush(surface.get());
-    if (cairo_status(cairo.get()) != CAIRO_STATUS_SUCCESS)
-        failed(fmt::format("light::to_image: {} x {} pixels: {}", width, height,
-                           cairo_status_to_string(cairo_status(cairo.get()))));
+    image::Image8 image(static_cast<int>(std::lround(drawing.width() * scale)),
+                        static_cast<int>(std::lround(drawing.height() * scale)), 3);
+    std::fill(image.values.begin(), image.values.end(), std::uint8_t{255});
+    paint(drawing, 0, 0, scale, image);
+    return image;
+}
 
-    image::Image8 image(width, height, 3);
-    const unsigned char* data = cairo_image_surface_get_data(surface.get());
-    const int stride = cairo_image_surface_get_stride(surface.get());
-    for (int y = 0; y < height; ++y) {
-        std::uint8_t* row = image.row(y);
-        for (int x = 0; x < width; ++x) {
-            std::uint32_t pixel;
-            std::memcpy(&pixel, data + y * stride + 4 * x, 4);
-            *row++ = static_cast<std::uint8_t>(pixel >> 16);
-            *row++ = static_cast<std::uint8_t>(pixel >> 8);
-            *row++ = static_cast<std::uint8_t>(pixel);
+void paint(const Drawing& drawing, int x, int y, double scale, image::Image8& picture) {
+    const int left = std::max(x, 0), top = std::max(y, 0);
+    const int width =
+        std::min(picture.width, x + static_cast<int>(std::lround(drawing.width() * scale))) - left;
+    const int height =
+        std::min(picture.height, y + static_cast<int>(std::lround(drawing.height() * scale))) - top;
+    if (width <= 0 || height <= 0) return;
+    Canvas canvas(width, height);
+    canvas.check();
+    for (int row = 0; row < height; ++row) {
+        const std::uint8_t* from = picture.row(top + row) + 3 * left;
+        std::uint8_t* const to = canvas.row(row);
+        for (int column = 0; column < width; ++column, from += 3) {
+            const std::uint32_t pixel =
+                std::uint32_t{from[0]} << 16 | std::uint32_t{from[1]} << 8 | from[2];
+            std::memcpy(to + 4 * column, &pixel, 4);
         }
     }
-    return image;
+    canvas.draw(drawing, scale);
+    for (int row = 0; row < height; ++row) {
+        std::uint8_t* to = picture.row(top + row) + 3 * left;
+        const std::uint8_t* const from = canvas.row(row);
+        for (int column = 0; column < width; ++column) {
+            std::uint32_t pixel;
+            std::memcpy(&pixel, from + 4 * column, 4);
+            *to++ = static_cast<std::uint8_t>(pixel >> 16);
+            *to++ = static_cast<std::uint8_t>(pixel >> 8);
+            *to++ = static_cast<std::uint8_t>(pixel);
+        }
+    }
 }
 
 }  // namespace relevo::chart

@@ -25,8 +25,8 @@ bool answers(const shader::StitchInput& input, std::string_view hook) {
 
 }  // namespace
 
-bool has_overlay(const shader::StitchInput& input) {
-    return answers(input, "display");
+bool has_overlay(const shader::StitchInput& input, bool draped) {
+    return draped || answers(input, "display");
 }
 
 namespace {
@@ -83,10 +83,11 @@ std::vector<ProgramText> stitch_all(const shader::CoreTexts& core, const shader:
         terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
     }
     if (answers(input, "displace")) geometry.defines.push_back({"DISPLACED", ""});
+    if (options.draped) terrain.defines.push_back({"DRAPED", ""});
     std::vector<shader::Define> ends;  // what the shading programs end in
     if (options.shown)
         ends.push_back({"SHOWN", ""});
-    else if (has_overlay(input))
+    else if (has_overlay(input, options.draped))
         ends.push_back({"DISPLAY_OVERLAY", ""});
     terrain.defines.insert(terrain.defines.end(), ends.begin(), ends.end());
     std::vector<ProgramText> programs;

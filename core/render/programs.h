@@ -20,6 +20,7 @@ struct ProgramText {
 struct ProgramOptions {
     bool vertex_normals = false;  ///< per vertex instead of per fragment
     bool depth = false;           ///< also "depth": the terrain as an orthographic view sees it
+    bool draped = false;          ///< colours lie on the ground: Terrain::drape
     /// Shading ends in the colours of the picture, without a stored radiance and the program
     /// "post".
     bool shown = false;
@@ -36,8 +37,8 @@ inline constexpr double kNight_deg = -3;
 inline constexpr const char* kHeightStepsTexture = "height_steps";
 inline constexpr const char* kHeightStepsDefine = "HEIGHT_STEPS";
 
-/// Whether any of the effects draws over the finished picture.
-bool has_overlay(const shader::StitchInput& input);
+/// Whether anything is drawn over the finished picture: by effects, or what is draped.
+bool has_overlay(const shader::StitchInput& input, bool draped);
 
 /// Stitches all programs of a frame. @throws Error as shader::stitch
 std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,

@@ -109,7 +109,7 @@ struct Renderer::Impl {
           effect_textures(effects.textures, anisotropy),
           frame_block(sizeof(FrameBlock), "frame block"),
           displaces(effects.displaces),
-          has_overlay(render::has_overlay(effects.stitch)) {
+          has_overlay(render::has_overlay(effects.stitch, o.draped)) {
         if (effects.stitch.values) {
             values = *effects.stitch.values;
             const std::vector<std::byte> params =
@@ -181,9 +181,15 @@ struct Renderer::Impl {
         const shader::FolderTexts core(share_dir() / "shaders");
         const bool vertex_normals = input.values && input.values->find(kNormalAddress) &&
                                     input.values->value(kNormalAddress)[0] == 1;
+        if (vertex_normals && options.draped)
+            bad_input(fmt::format(
+                "render: {}: expected fragment, with which rasters lie on the ground, but got "
+                "vertex; leave the overlay out or pass --set {}=fragment",
+                kNormalAddress, kNormalAddress));
         std::vector<ProgramText> texts = stitch_programs(core, input,
                                                          {.vertex_normals = vertex_normals,
                                                           .depth = !effects.modules.empty(),
+                                                          .draped = options.draped,
                                                           .shown = !options.radiance});
         if (options.stitched) options.stitched(texts);
         for (const ProgramText& text : texts)

@@ -24,6 +24,8 @@ struct RendererOptions {
     /// Keep the linear radiance for read_radiance(). Without it shading ends in the colours of the
     /// picture at once, which saves a pass over it.
     bool radiance = true;
+    /// Draw what lies on the ground: Terrain::drape. Not with normals per vertex.
+    bool draped = false;
     /// Called with the programs' texts before a driver sees them, if there is one.
     std::function<void(const std::vector<ProgramText>&)> stitched{};
 };

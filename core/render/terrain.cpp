@@ -183,7 +183,18 @@ void Terrain::clear_surface() {
                           [this](const TileKey& key) {
                               return bytes_of(surface_page(pyramid_, key.level, key.at));
                           }});
+    if (drape_)
+        layers.push_back({"drape_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
+                          [this, drape = drape_](const TileKey& key) {
+                              return bytes_of(drape_page(*drape, pyramid_, key.level, key.at));
+                          }});
     surface_ = PageCache(std::move(layers), normal_layers_);
+}
+
+void Terrain::drape(std::shared_ptr<const Drape> drape) {
+    if (drape == drape_) return;
+    drape_ = std::move(drape);
+    clear_surface();
 }
 
 void Terrain::keep_surface() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "gl/buffer.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "render/drape.h"
 #include "render/loading.h"
 #include "render/lod.h"
 #include "render/page_cache.h"
@@ -95,6 +97,10 @@ class Terrain {
     /// them.
     void keep_surface();
 
+    /// From now on the ground of pictures has these colours, for programs that read them; null:
+    /// none.
+    void drape(std::shared_ptr<const Drape> drape);
+
     /// What shaders read of the ground, by the sampler's name: a PageLayer's, or "page_table", the
     /// slot and level of the finest page of the picture there is. Null for others.
     const gl::Texture* texture(std::string_view name) const;
@@ -129,6 +135,7 @@ class Terrain {
     int normal_layers_ = 1;
 
     bool keeps_surface_ = false;
+    std::shared_ptr<const Drape> drape_;
     bool complete_ = true;
     gl::Texture page_table_;
     gl::Buffer grid_vertices_, grid_indices_, instances_;

@@ -55,6 +55,7 @@ class SceneReader {
         camera(object);
         scene_.exaggeration = object.number("exaggeration", 1, 0.01, 1000, false);
         effects(object);
+        overlay(object);
         picture(object);
         object.finish();
         return std::move(scene_);
@@ -230,6 +231,29 @@ class SceneReader {
         object.finish();
     }
 
+    void overlay(ObjectReader& top) {
+        const Json* const value = top.take("overlay");
+        if (!value) return;
+        ObjectReader object = inside(*value, "overlay");
+        Overlay& overlay = scene_.overlay.emplace();
+        overlay.file = beside(object.string("file"));
+        overlay.band =
+            static_cast<int>(object.number("band", 1, 1, std::numeric_limits<int>::max(), true));
+        overlay.colours = object.string("colours", "");
+        if (overlay.colours.find_first_of("/.") != std::string::npos)
+            overlay.colours = beside(overlay.colours);
+        if (const Json* const range = object.take("range")) {
+            const std::vector<double> v = numbers(object, *range, "range", 2, 2,
+                                                  "the values of the first and the last colour");
+            if (!(v[1] > v[0]))
+                object.fail(range->line, "range", "expected a second value over the first one");
+            overlay.range = {v[0], v[1]};
+        }
+        overlay.opacity = object.number("opacity", 1, 0, 1, false);
+        overlay.title = object.string("title", "");
+        object.finish();
+    }
+
     void picture(ObjectReader& top) {
         const Json* const value = top.take("picture");
         if (!value) return;
@@ -334,6 +358,17 @@ ordered_json effects_json(const Effects& effects, const fs::path& folder) {
     return json;
 }
 
+ordered_json overlay_json(const Overlay& overlay, const fs::path& folder) {
+    ordered_json json;
+    json["file"] = from_folder(overlay.file, folder);
+    json["band"] = overlay.band;
+    if (!overlay.colours.empty()) json["colours"] = from_folder(overlay.colours, folder);
+    if (overlay.range) json["range"] = {overlay.range->first, overlay.range->second};
+    json["opacity"] = overlay.opacity;
+    if (!overlay.title.empty()) json["title"] = overlay.title;
+    return json;
+}
+
 }  // namespace
 
 Scene read_scene(const fs::path& path) {
@@ -353,6 +388,7 @@ std::string scene_text(const Scene& scene, const fs::path& folder) {
     json["camera"] = camera_json(scene.view);
     json["exaggeration"] = scene.exaggeration;
     json["effects"] = effects_json(scene.effects, folder);
+    if (scene.overlay) json["overlay"] = overlay_json(*scene.overlay, folder);
     json["picture"] = {{"size", {scene.width_px, scene.height_px}},
                        {"exposure", scene.exposure_ev},
                        {"pixel_error", scene.pixel_error}};

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "dem/source.h"
@@ -26,6 +28,16 @@ struct Effects {
     std::vector<std::string> plugin_path;  ///< folders of further plugins
 };
 
+/// A raster that lies on the ground in true colours.
+struct Overlay {
+    std::string file;     ///< a name that GDAL opens
+    int band = 1;         ///< from 1
+    std::string colours;  ///< a ramp's name or a colour file; empty: by what the band says it is
+    std::optional<std::pair<double, double>> range;  ///< of a ramp's ends; none: the raster's
+    double opacity = 1;                              ///< 0 to 1
+    std::string title;                               ///< of the legend; empty: the band's name
+};
+
 /// Everything that decides about a picture but the device it is drawn on: a value, which the
 /// command line, files and windows make, and a session draws.
 struct Scene {
@@ -34,6 +46,7 @@ struct Scene {
     Moment moment;
     std::string refraction = "standard";  ///< standard, saemundsson or none
     View view;
+    std::optional<Overlay> overlay;
     double exaggeration = 1;  ///< 0.01 to 1000
     Effects effects;
     int width_px = 1280, height_px = 1024;  ///< 1 to kMaxSide_px

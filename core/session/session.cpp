@@ -18,6 +18,7 @@
 #include "scene/moment.h"
 #include "session/active_effects.h"
 #include "session/not_numbers.h"
+#include "session/overlay.h"
 #include "session/words.h"
 #include "sun/celestial.h"
 #include "sun/position.h"
@@ -80,6 +81,9 @@ struct Session::Impl {
     std::optional<render::Ground> ground;
     std::optional<render::Terrain> terrain;
 
+    std::shared_ptr<const render::Drape> drape;
+    std::optional<chart::Legend> legend;
+
     sun::Instant utc;
     sun::Position position;
     sun::Refraction air = sun::Refraction::none();
@@ -89,6 +93,7 @@ struct Session::Impl {
     Impl(scene::Scene given, Options o, FilesInUse& files)
         : scene(std::move(given)), options(std::move(o)) {
         dem::add_all(scene.dems, files);
+        if (scene.overlay) add_files(*scene.overlay, files);
         std::optional<sun::ParsedTime> time;
         const bool timed = !scene.moment.time.empty();
         if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
@@ -143,8 +148,10 @@ struct Session::Impl {
     }
 
     render::RendererOptions renderer_options() const {
-        return {
-            .width_px = scene.width_px, .height_px = scene.height_px, .radiance = options.radiance};
+        return {.width_px = scene.width_px,
+                .height_px = scene.height_px,
+                .radiance = options.radiance,
+                .draped = drape || (scene.overlay && !terrain)};
     }
 
     void compile(DrawnEffects& drawing) {
@@ -178,10 +185,31 @@ struct Session::Impl {
             render::TerrainOptions{.pixel_error = scene.pixel_error,
                                    .max_array_layers = context->info().max_array_layers},
             &loaded->source);
+        if (scene.overlay) {
+            Overlay overlay = read_overlay(*scene.overlay, terrain->grid());
+            drape = overlay.drape;
+            legend = std::move(overlay.legend);
+            terrain->drape(drape);
+        }
         stages.emplace_back("upload", milliseconds_since(began));
         inputs.exaggeration = scene.exaggeration;
         inputs.exposure_ev = scene.exposure_ev;
         points = render::points_to_show(loaded->field, *ground, scene.exaggeration);
+    }
+
+    void lay(std::shared_ptr<const render::Drape> wanted) {
+        const bool other_program = bool(drape) != bool(wanted);
+        std::swap(drape, wanted);
+        context->make_current();
+        if (other_program) {
+            try {
+                compile(drawn);
+            } catch (...) {
+                std::swap(drape, wanted);
+                throw;
+            }
+        }
+        terrain->drape(drape);
     }
 
     void set_moment(sun::Instant instant) {
@@ -306,6 +334,14 @@ void Session::resize(int width_px, int height_px) {
 
 void Session::draw(render::PassTimes* times) {
     impl_->draw(render::Loading::Wait, times);
+}
+
+void Session::drape(std::shared_ptr<const render::Drape> drape) {
+    impl_->lay(std::move(drape));
+}
+
+const std::optional<chart::Legend>& Session::legend() const {
+    return impl_->legend;
 }
 
 void Session::keep_native(bool keep) {

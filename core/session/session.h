@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/files_in_use.h"
+#include "chart/legend.h"
 #include "dem/heightfield.h"
 #include "dem/source.h"
 #include "gl/context.h"
@@ -77,6 +78,11 @@ class Session {
     void set(const std::string& address, const std::string& value);
     /// Sides of the picture [px].
     void resize(int width_px, int height_px);
+    /// Lays colours on the ground from the next frame on; null: none. The first ones are another
+    /// program.
+    void drape(std::shared_ptr<const render::Drape> drape);
+    /// What the colours of the scene's overlay mean.
+    const std::optional<chart::Legend>& legend() const;
     /// Whether native effects leave what they have made as it is, such as shadows while the sun is
     /// dragged, which cost more than the frame.
     void keep_native(bool keep);

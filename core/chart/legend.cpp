@@ -1,0 +1,101 @@
+#include "chart/legend.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace relevo::chart {
+namespace {
+
+constexpr double kPadding = 10, kBarWidth = 16, kBarHeight = 150, kGap = 6, kLetters = 11,
+                 kTitle = 12, kLeastWidth = 92, kMostTitle = 220;
+constexpr int kSteps = 75;  // of a continuous ramp
+constexpr int kLabels = 6;  // at most
+
+/// As few digits as tell neighbours apart.
+std::string text_of(double value, double step) {
+    const int digits =
+        step >= 1 ? 0 : std::min(6, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+    const std::string text = fmt::format("{:.{}f}", value, digits);
+    return text.find_first_not_of("-0.") == std::string::npos ? fmt::format("{:.{}f}", 0.0, digits)
+                                                              : text;
+}
+
+struct Label {
+    double y;  // of its middle, from the top of the bar
+    std::string text;
+};
+
+/// Labels beside a bar from the lowest value to the highest one.
+std::vector<Label> labels_of(const Ramp& ramp, const std::string& unit) {
+    const double low = ramp.stops.front().value, high = ramp.stops.back().value;
+    std::vector<Label> labels;
+    const std::vector<double> values = round_values(low, high, kLabels);
+    const double step = values.size() > 1 ? values[1] - values[0] : std::max(high - low, 1.0);
+    for (const double value : values)
+        labels.push_back({kBarHeight * (high - value) / (high - low), text_of(value, step)});
+    if (!labels.empty() && !unit.empty() && unit != "1") labels.back().text += " " + unit;
+    return labels;
+}
+
+void draw_bar(const Ramp& ramp, double left, double top, Drawing& drawing) {
+    const double low = ramp.stops.front().value, high = ramp.stops.back().value;
+    for (int k = 0; k < kSteps; ++k) {
+        const double share = (k + 0.5) / kSteps;
+        Color color = ramp.at(high - share * (high - low));
+        drawing.rect({left, top + kBarHeight * k / kSteps, kBarWidth, kBarHeight / kSteps + 0.5},
+                     {.fill = color, .crisp = true});
+    }
+    drawing.rect({left, top, kBarWidth, kBarHeight},
+                 {.stroke = Color{0x303030, 0.6}, .width = 0.8});
+}
+
+}  // namespace
+
+std::vector<double> round_values(double from, double to, int most) {
+    std::vector<double> values;
+    if (!(to > from) || most < 2) return values;
+    double step = std::pow(10, std::floor(std::log10((to - from) / most)));
+    for (const double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
+        const double first = std::ceil(from / (step * factor) - 1e-9);
+        const double last = std::floor(to / (step * factor) + 1e-9);
+        if (last - first + 1 > most) continue;
+        for (double k = first; k <= last; ++k)
+            values.push_back(k * step * factor);
+        return values;
+    }
+    return values;
+}
+
+Drawing legend(const Legend& about) {
+    const std::vector<std::string> lines = wrapped(about.title, kTitle, kMostTitle);
+    const bool is_range = about.ramp.stops.size() > 1 &&
+                          about.ramp.stops.back().value > about.ramp.stops.front().value;
+    const std::vector<Label> labels =
+        is_range ? labels_of(about.ramp, about.unit) : std::vector<Label>{};
+    double width = kLeastWidth;
+    for (const std::string& line : lines)
+        width = std::max(width, text_width(line, kTitle, true) + 2 * kPadding);
+    for (const Label& label : labels)
+        width =
+            std::max(width, kBarWidth + kGap + text_width(label.text, kLetters) + 2 * kPadding + 4);
+    const double top = kPadding + static_cast<double>(lines.size()) * (kTitle + 4) + 4;
+    Drawing drawing(std::ceil(width),
+                    std::ceil(top + (is_range ? kBarHeight : kLetters) + kPadding + 2));
+    drawing.rect({0, 0, drawing.width(), drawing.height()}, {.fill = Color{0xffffff, 0.82}});
+    for (std::size_t k = 0; k < lines.size(); ++k)
+        drawing.text({kPadding, kPadding + kTitle * 0.85 + static_cast<double>(k) * (kTitle + 4)},
+                     lines[k], {.size = kTitle, .color = {0x202020}, .bold = true});
+    if (!is_range) return drawing;
+    draw_bar(about.ramp, kPadding, top, drawing);
+    for (const Label& label : labels) {
+        const double y = top + label.y, right = kPadding + kBarWidth;
+        drawing.line({right, y}, {right + 4, y}, {.stroke = Color{0x303030}, .width = 0.8});
+        drawing.text({right + kGap + 2, y + kLetters * 0.36}, label.text,
+                     {.size = kLetters, .color = {0x202020}});
+    }
+    return drawing;
+}
+
+}  // namespace relevo::chart

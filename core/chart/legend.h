@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "chart/drawing.h"
+#include "chart/ramp.h"
+
+namespace relevo::chart {
+
+/// What colours of a map mean.
+struct Legend {
+    std::string title;  ///< "Sun hours, 21 December 2026"
+    std::string unit;   ///< "h"; empty or "1": none
+    Ramp ramp;
+};
+
+/// A panel that stands alone on any picture: the title, the ramp and its values, of which round
+/// ones are written.
+Drawing legend(const Legend& legend);
+
+/// Round values from one to another, at most so many: 0, 2, 4, ... 14.
+std::vector<double> round_values(double from, double to, int most);
+
+}  // namespace relevo::chart

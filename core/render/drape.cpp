@@ -1,0 +1,73 @@
+#include "render/drape.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/common.hpp>
+
+#include "render/pages.h"
+
+namespace relevo::render {
+namespace {
+
+/// Along a side: where the texels lie that are nearest to a node, [first, end).
+struct Span {
+    int first, end;
+};
+
+/// @param post, level  of the node
+/// @param posts        of the DEM along the side
+Span span_of(int post, int level, int posts, int texels) {
+    const double scale = posts > 1 ? (texels - 1.0) / (posts - 1.0) : 0;
+    const double middle = post * scale, half = scale * (1 << level) / 2;
+    const int nearest = std::clamp(static_cast<int>(std::lround(middle)), 0, texels - 1);
+    const int first = std::clamp(static_cast<int>(std::ceil(middle - half)), 0, nearest);
+    const int end = std::clamp(static_cast<int>(std::ceil(middle + half)), nearest + 1, texels);
+    return {first, end};
+}
+
+std::uint32_t mean(const Array2d<std::uint32_t>& rgba, const Span& columns, const Span& rows) {
+    if (columns.end - columns.first == 1 && rows.end - rows.first == 1)
+        return rgba.at(columns.first, rows.first);
+    std::array<std::uint64_t, 4> sums{};
+    for (int row = rows.first; row < rows.end; ++row)
+        for (int column = columns.first; column < columns.end; ++column)
+            for (unsigned k = 0; k < 4; ++k)
+                sums[k] += rgba.at(column, row) >> 8 * k & 255;
+    const auto count = static_cast<std::uint64_t>(columns.end - columns.first) *
+                       static_cast<std::uint64_t>(rows.end - rows.first);
+    std::uint32_t texel = 0;
+    for (unsigned k = 0; k < 4; ++k)
+        texel |= static_cast<std::uint32_t>((sums[k] + count / 2) / count) << 8 * k;
+    return texel;
+}
+
+}  // namespace
+
+std::uint32_t drape_texel(double red, double green, double blue, double alpha) {
+    const auto byte = [](double value) {
+        return static_cast<std::uint32_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
+    };
+    return byte(red * alpha) | byte(green * alpha) << 8 | byte(blue * alpha) << 16 |
+           byte(alpha) << 24;
+}
+
+std::vector<std::uint32_t> drape_page(const Drape& drape, const dem::Pyramid& pyramid, int level,
+                                      glm::ivec2 page) {
+    const glm::ivec2 first = page * kNormalNodes - 1, last = pyramid.size(level) - 1;
+    std::vector<Span> columns, rows;
+    for (int i = 0; i < kNormalPage_px; ++i) {
+        const glm::ivec2 post = pyramid.post(level, glm::clamp(first + i, glm::ivec2(0), last));
+        columns.push_back(span_of(post.x, level, pyramid.columns(), drape.rgba.width()));
+        rows.push_back(span_of(post.y, level, pyramid.rows(), drape.rgba.height()));
+    }
+    std::vector<std::uint32_t> texels;
+    texels.reserve(std::size_t{kNormalPage_px} * kNormalPage_px);
+    for (const Span& row : rows)
+        for (const Span& column : columns)
+            texels.push_back(mean(drape.rgba, column, row));
+    return texels;
+}
+
+}  // namespace relevo::render

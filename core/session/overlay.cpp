@@ -1,0 +1,99 @@
+#include "session/overlay.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "base/parallel_for.h"
+#include "base/text.h"
+#include "dem/band_over.h"
+#include "dem/files_of.h"
+
+namespace relevo::session {
+namespace {
+
+std::pair<double, double> range_of(const Array2d<float>& values) {
+    float low = std::numeric_limits<float>::infinity(), high = -low;
+    for (const float value : values) {
+        low = value < low ? value : low;
+        high = value > high ? value : high;
+    }
+    if (!(low < high)) high = low + 1;
+    return {double{low}, double{high}};
+}
+
+/// Of a band that has a colour table of its own.
+chart::Ramp ramp_of(const std::vector<std::array<std::uint8_t, 4>>& colors) {
+    chart::Ramp ramp;
+    ramp.continuous = false;
+    for (std::size_t k = 0; k < colors.size(); ++k) {
+        const auto& [red, green, blue, alpha] = colors[k];
+        ramp.stops.push_back(
+            {static_cast<double>(k),
+             {std::uint32_t{red} << 16 | std::uint32_t{green} << 8 | blue, alpha / 255.0}});
+    }
+    return ramp;
+}
+
+chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band) {
+    if (asked.colours.empty() && !asked.range)
+        return band.colors.empty() ? usual_ramp(band.values, band.name, band.unit)
+                                   : ramp_of(band.colors);
+    const auto [from, to] = asked.range.value_or(range_of(band.values));
+    if (asked.colours.empty()) {
+        chart::Ramp ramp = usual_ramp(band.values, band.name, band.unit);
+        const double low = ramp.stops.front().value, high = ramp.stops.back().value;
+        for (chart::Ramp::Stop& stop : ramp.stops)
+            stop.value = from + (stop.value - low) / (high - low) * (to - from);
+        return ramp;
+    }
+    return chart::is_ramp_file(asked.colours) ? chart::read_ramp(asked.colours, from, to)
+                                              : chart::named_ramp(asked.colours, from, to);
+}
+
+}  // namespace
+
+Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double opacity) {
+    auto drape = std::make_shared<render::Drape>();
+    drape->rgba = Array2d<std::uint32_t>(values.width(), values.height());
+    parallel_for(0, values.height(), 16, [&](int first, int end) {
+        for (int row = first; row < end; ++row)
+            for (int column = 0; column < values.width(); ++column) {
+                const chart::Color color = legend.ramp.at(double{values.at(column, row)});
+                drape->rgba.at(column, row) = render::drape_texel(
+                    (color.rgb >> 16 & 255) / 255.0, (color.rgb >> 8 & 255) / 255.0,
+                    (color.rgb & 255) / 255.0, color.opacity * opacity);
+            }
+    });
+    return {std::move(drape), std::move(legend)};
+}
+
+chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
+                       const std::string& unit) {
+    const auto [low, high] = range_of(values);
+    if (name == "direct sun" || name == "share of the sun's disc")
+        return chart::named_ramp("shade", 0, 1);
+    if (name == "sky-view factor") return chart::named_ramp("sky", std::min(low, 0.5), 1);
+    if (unit == "h") return chart::named_ramp("sun", 0, std::max(high, 1.0));
+    return chart::named_ramp("viridis", low, high);
+}
+
+Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {
+    const dem::BandOver band = dem::read_band_over(grid, asked.file, asked.band);
+    chart::Legend legend{asked.title.empty() ? printable(band.name) : asked.title,
+                         printable(band.unit), ramp_of(asked, band)};
+    if (legend.title.empty())
+        legend.title = printable(std::filesystem::path(asked.file).filename().string());
+    return overlay_of(band.values, std::move(legend), asked.opacity);
+}
+
+void add_files(const scene::Overlay& overlay, FilesInUse& files) {
+    dem::add_all(std::span(&overlay.file, 1), files);
+    if (chart::is_ramp_file(overlay.colours)) files.add_input(overlay.colours, "the colours");
+}
+
+}  // namespace relevo::session

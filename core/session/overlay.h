@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+
+#include "base/array2d.h"
+#include "base/files_in_use.h"
+#include "chart/legend.h"
+#include "dem/grid.h"
+#include "render/drape.h"
+#include "scene/scene.h"
+
+/// Rasters that lie on the ground, with what their colours mean.
+namespace relevo::session {
+
+struct Overlay {
+    std::shared_ptr<const render::Drape> drape;
+    chart::Legend legend;
+};
+
+/// @param values  over the DEM's grid, as dem::BandOver has them
+Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double opacity);
+
+/// The ramp for values of a kind where nobody names one: hours from 0 on, shares from 0 to 1, else
+/// from the least value to the greatest.
+/// @param name, unit  of the band, as ours and GDAL's have them
+chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
+                       const std::string& unit);
+
+/// Reads the raster of a scene's overlay.
+/// @param grid  of the DEM's posts
+/// @throws Error (BadInput) as dem::read_band_over(), chart::named_ramp() and read_ramp()
+Overlay read_overlay(const scene::Overlay& overlay, const dem::Grid& grid);
+
+/// Adds what an overlay is read from to what a run reads.
+void add_files(const scene::Overlay& overlay, FilesInUse& files);
+
+}  // namespace relevo::session

@@ -1,0 +1,137 @@
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "cli/program.h"
+#include "image/image.h"
+#include "support/support.h"
+
+namespace relevo::test {
+namespace {
+
+/// Pictures of the bundled DEM from straight above, with a raster on it.
+class OverlayOption : public testing::Test {
+  protected:
+    Result capture(const std::string& name, std::vector<std::string> more) {
+        more.insert(more.begin(), {"-q", "capture", bundled_dem(), "-o", (dir_ / name).string(),
+                                   "--size", "320x256", "--overwrite", "--view", "az=180,el=89.9"});
+        return relevo(more);
+    }
+    image::Image8 taken(const std::string& name, const std::vector<std::string>& more) {
+        const Result run = capture(name, more);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return image::read(dir_ / name);
+    }
+    std::string raster(const std::string& name, std::vector<std::string> verb) {
+        const std::string path = (dir_ / name).string();
+        verb.insert(verb.begin(), "sun");
+        verb.insert(verb.end(), {bundled_dem(), "-o", path, "--overwrite", "-q"});
+        const Result run = relevo(verb);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return path;
+    }
+
+    std::filesystem::path dir_ = scratch_dir("cli_overlay");
+};
+
+TEST_F(OverlayOption, ColoursAreThoseOfTheRampWhateverLightFallsOnThem) {
+    const std::string shadow = raster("shadow.tif", {"shadow", "--sun", "110,20"});
+    const std::string colours = (dir_ / "two.txt").string();
+    std::ofstream(colours) << "0 20 60 200\n1 250 200 10\n";
+    for (const char* time : {"2026-06-21T12:00", "2026-12-21T08:30", "2026-06-21T02:00"}) {
+        const image::Image8 picture = taken(
+            "colours.png",
+            {"--overlay", shadow, "--overlay-colours", colours, "--no-legend", "--time", time});
+        int blue = 0, yellow = 0, other = 0;
+        for (int y = 100; y < 156; ++y)
+            for (int x = 130; x < 190; ++x) {
+                const auto is = [&](int r, int g, int b) {
+                    return std::abs(picture.at(x, y, 0) - r) <= 1 &&
+                           std::abs(picture.at(x, y, 1) - g) <= 1 &&
+                           std::abs(picture.at(x, y, 2) - b) <= 1;
+                };
+                // Between posts colours are mixed.
+                (is(20, 60, 200) ? blue : is(250, 200, 10) ? yellow : other)++;
+            }
+        EXPECT_GT(yellow, 300) << time;
+        EXPECT_GT(blue, 30) << time;
+    }
+}
+
+TEST_F(OverlayOption, LiesWhereItsPostsAre) {
+    // The sun's own shadow in the picture and the raster of the same sun: what the raster calls
+    // shade is darker in the picture.
+    const std::vector<std::string> time{"--time", "2026-12-21T09:30"};
+    const std::string shadow = raster("mask.tif", {"shadow", time[0], time[1]});
+    const std::string colours = (dir_ / "mask.txt").string();
+    std::ofstream(colours) << "0 0 0 0\n1 255 255 255\n";
+    const image::Image8 mask = taken("mask.png", {"--overlay", shadow, "--overlay-colours", colours,
+                                                  "--no-legend", time[0], time[1]});
+    const image::Image8 picture = taken("lit.png", {"--disable", "haze", time[0], time[1]});
+    double lit = 0, shaded = 0;
+    int lit_count = 0, shaded_count = 0;
+    for (int y = 90; y < 166; ++y)
+        for (int x = 120; x < 200; ++x) {
+            const double light = picture.at(x, y, 1);
+            if (mask.at(x, y, 0) == 255) lit += light, ++lit_count;
+            if (mask.at(x, y, 0) == 0) shaded += light, ++shaded_count;
+        }
+    ASSERT_GT(lit_count, 500);
+    ASSERT_GT(shaded_count, 200);
+    fmt::print("[ accuracy ] brightness where the raster has light {:.1f}, shade {:.1f}\n",
+               lit / lit_count, shaded / shaded_count);
+    EXPECT_GT(lit / lit_count, 1.5 * shaded / shaded_count);
+}
+
+TEST_F(OverlayOption, HasALegendUnlessNoneIsWanted) {
+    const std::string hours =
+        raster("hours.tif", {"hours", "--date", "2026-06-21", "--step", "30"});
+    const image::Image8 with = taken("with.png", {"--overlay", hours}),
+                        without = taken("without.png", {"--overlay", hours, "--no-legend"}),
+                        titled = taken("titled.png", {"--overlay", hours, "--overlay-title", "x"});
+    EXPECT_GT(image::compare(with, without).share_over_1, 0.01);
+    EXPECT_GT(image::compare(with, titled).share_over_1, 0);
+    EXPECT_EQ(std::vector<std::uint8_t>(with.row(200), with.row(201)),
+              std::vector<std::uint8_t>(without.row(200), without.row(201)));
+}
+
+TEST_F(OverlayOption, OfASceneIsThatOfItsFile) {
+    const std::string sky = raster("sky.tif", {"sky-view", "--directions", "8"});
+    const std::string scene = (dir_ / "scene.json").string();
+    const image::Image8 first =
+        taken("first.png", {"--overlay", sky, "--overlay-opacity", "0.6", "--overlay-range",
+                            "0.7,1", "--save-scene", scene});
+    const Result again =
+        relevo({"-q", "capture", "--scene", scene, "-o", (dir_ / "again.png").string()});
+    EXPECT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(image::read(dir_ / "again.png").values, first.values);
+}
+
+TEST_F(OverlayOption, WhatIsNoneIsRefused) {
+    const auto said = [&](const std::vector<std::string>& more) {
+        const Result run = capture("refused.png", more);
+        EXPECT_NE(run.status, 0);
+        EXPECT_FALSE(std::filesystem::exists(dir_ / "refused.png"));
+        return run.err;
+    };
+    EXPECT_EQ(said({"--overlay-opacity", "0.5"}),
+              "relevo: error: --overlay: what its colours, range, band, opacity and title are of, "
+              "is missing\n");
+    EXPECT_EQ(said({"--overlay", bundled_dem(), "--overlay-range", "5,5"}),
+              "relevo: error: --overlay-range: 5,5: expected LOW,HIGH, the second over the first, "
+              "such as 0,14\n");
+    EXPECT_EQ(said({"--overlay", bundled_dem(), "--overlay-band", "2"}),
+              "relevo: error: dem::load: " + bundled_dem() + ": band 2: expected 1 to 1\n");
+    const std::string elsewhere = (source_dir() / "data" / "dem" / "vancouver-island.tif").string();
+    EXPECT_EQ(said({"--overlay", elsewhere}),
+              "relevo: error: dem::load: " + elsewhere +
+                  ": has no value over the DEM, expected a raster that lies there\n");
+    EXPECT_EQ(said({"--overlay", bundled_dem(), "--preset", "paper"}),
+              "relevo: error: render: terrain.normal: expected fragment, with which rasters lie on "
+              "the ground, but got vertex; leave the overlay out or pass --set "
+              "terrain.normal=fragment\n");
+}
+
+}  // namespace
+}  // namespace relevo::test
