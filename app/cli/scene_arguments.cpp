@@ -17,7 +17,7 @@ void OverlayArguments::add_to(CLI::App& verb) {
         ->check(CLI::PositiveNumber)
         ->group("Overlay");
     verb.add_option("--overlay-colours", colours,
-                    "Its colours: sun, shade, sky, viridis, inferno, grey, or a colour file of "
+                    "Its colours: sun, shade, steel, viridis, inferno, grey, or a colour file of "
                     "gdaldem's, a path with a slash or a dot; by default as the band is")
         ->group("Overlay");
     verb.add_option("--overlay-range", range,

@@ -37,7 +37,7 @@ const std::vector<Named>& built_in() {
           {0xfdf3a8}}},
         // What is lit stays as it is.
         {"shade", {{0x14224d, 0.62}, {0x14224d, 0}}},
-        {"sky", {{0x10151f}, {0x35455c}, {0x6d86a3}, {0xb0c6d8}, {0xf4f8fa}}},
+        {"steel", {{0x10151f}, {0x35455c}, {0x6d86a3}, {0xb0c6d8}, {0xf4f8fa}}},
         {"viridis",
          {{0x440154},
           {0x472d7b},

@@ -24,7 +24,7 @@ struct Ramp {
     Color at(double value) const;
 };
 
-/// Names of the built-in ramps: "sun", "shade", "sky", "viridis", "inferno", "grey".
+/// Names of the built-in ramps: "sun", "shade", "steel", "viridis", "inferno", "grey".
 std::vector<std::string> ramp_names();
 
 /// A built-in ramp from one value to another.

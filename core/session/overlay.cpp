@@ -77,7 +77,7 @@ chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
     const auto [low, high] = range_of(values);
     if (name == "direct sun" || name == "share of the sun's disc")
         return chart::named_ramp("shade", 0, 1);
-    if (name == "sky-view factor") return chart::named_ramp("sky", std::min(low, 0.5), 1);
+    if (name == "sky-view factor") return chart::named_ramp("steel", std::min(low, 0.5), 1);
     if (unit == "h") return chart::named_ramp("sun", 0, std::max(high, 1.0));
     return chart::named_ramp("viridis", low, high);
 }
