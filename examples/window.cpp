@@ -35,9 +35,9 @@ void orbit(Session& session) {
     if (io.WantCaptureMouse) return;
     view.orbit.zoom *= 1 + 0.2 * io.MouseWheel;
     if (io.MouseDown[0]) {
-        view.orbit.azimuth_deg += 0.3 * io.MouseDelta.x;
+        view.orbit.azimuth_deg = *view.orbit.azimuth_deg + 0.3 * io.MouseDelta.x;
         view.orbit.elevation_deg =
-            std::clamp(view.orbit.elevation_deg + 0.3 * io.MouseDelta.y, 1.0, 89.0);
+            std::clamp(*view.orbit.elevation_deg + 0.3 * io.MouseDelta.y, 1.0, 89.0);
     }
     session.look(view);
 }

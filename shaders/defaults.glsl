@@ -1,5 +1,7 @@
 //! provides  what exclusive hooks do when no enabled plugin provides them
 
+//@ include lib/ground.glsl
+
 /// Phong's reflection of direct light. @returns radiance for an irradiance of 1
 /// source: B. T. Phong, Illumination for computer generated pictures, CACM 18 (1975), eq. 1
 vec3 core_on_brdf(in Surface s, in vec3 to_sun, in vec3 to_eye) {
@@ -31,4 +33,17 @@ void core_on_tonemap(inout vec3 colour) {
         float white = 1.0 - 1.0 / (desaturation * (peak - bent) + 1.0);
         colour = mix(colour * (bent / peak), vec3(bent), white);
     }
+}
+
+/// A matt grey wall.
+vec3 core_on_side(in Surface s, in float down) {
+    vec3 to_sun;
+    vec3 irradiance = sun_light(s.up, to_sun);
+    vec3 sky = frame.sky_irradiance.rgb * (0.5 + 0.5 * dot(s.normal, s.up));
+    return 0.3 * (irradiance * max(dot(s.normal, to_sun), 0.0) + sky);
+}
+
+/// The sky, as from within.
+vec3 core_on_backdrop(in vec3 direction, in vec2 at) {
+    return background_radiance(direction, true);
 }

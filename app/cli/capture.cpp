@@ -130,9 +130,11 @@ void capture(const Arguments& arguments) {
 
     const std::string where = session.place_text(), when = sun::to_iso(session.moment());
     const std::string sun = session.sun_text();
-    log::info(fmt::format(
-        "{}, {}: sun at {}{}", where, when, sun,
-        scene.moment.time.empty() ? "; no --time given, so a summer morning was taken" : ""));
+    std::string chosen = session.moment_reason();
+    if (!chosen.empty()) chosen = "; no --time given" + chosen;
+    if (const std::string view = session.view_reason(); !view.empty())
+        chosen += "; by its relief " + view;
+    log::info(fmt::format("{}, {}: sun at {}{}", where, when, sun, chosen));
     const auto passes_began = Clock::now();
     session.draw(timings.passes());
     timings.add("passes", milliseconds_since(passes_began));

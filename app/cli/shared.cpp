@@ -114,7 +114,8 @@ void RefractionArguments::add_to(CLI::App& verb) {
 void ViewArguments::add_to(CLI::App& verb) {
     verb.add_option(
             "--view", view,
-            "Orbit: where the camera stands as seen from the DEM's centre, az=210,el=30,zoom=1")
+            "Orbit: where the camera stands as seen from the DEM's centre, az=210,el=30,zoom=1, or "
+            "top, north, north-east, ...; without it where relief stands up")
         ->group("View");
     verb.add_option("--eye", eye,
                     "Camera at LAT,LON[,H]; H in metres, with suffix agl above the ground")
@@ -155,7 +156,13 @@ void ViewArguments::apply_to(scene::Scene& scene) const {
         result.fov_y_rad = before.fov_y_rad;
         result.focal_length_mm = before.focal_length_mm;
     }
-    if (!view.empty()) result.orbit = scene::parse_orbit(view);
+    if (!view.empty()) {
+        const scene::View asked = scene::parse_view(view);
+        result.orbit = asked.orbit;
+        // A scene's own lens stays.
+        if (result.fov_y_rad == 0 && result.focal_length_mm == 0)
+            result.fov_y_rad = asked.fov_y_rad;
+    }
     const auto standpoint = [](const std::string& text, const char* option, double height_agl_m) {
         const geo::PlaceText parsed = geo::parse_place(text, option);
         scene::Standpoint at{parsed.place, parsed.above_ground};

@@ -89,8 +89,11 @@ void add_view(Command& command, const scene::Scene& scene) {
             command.option("--pitch", fmt::format("{:.6f}", view.pitch_deg));
         }
     } else {
-        command.option("--view", fmt::format("az={},el={},zoom={}", view.orbit.azimuth_deg,
-                                             view.orbit.elevation_deg, view.orbit.zoom));
+        std::string orbit = fmt::format("zoom={}", view.orbit.zoom);
+        if (view.orbit.elevation_deg)
+            orbit = fmt::format("el={},{}", *view.orbit.elevation_deg, orbit);
+        if (view.orbit.azimuth_deg) orbit = fmt::format("az={},{}", *view.orbit.azimuth_deg, orbit);
+        command.option("--view", orbit);
     }
     if (view.fov_y_rad > 0) command.option("--fov", fmt::format("{:.6g}", degrees(view.fov_y_rad)));
     if (view.focal_length_mm > 0)

@@ -17,15 +17,16 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and what its shaders' globals begin with.
-constexpr std::array<std::string_view, 40> kReserved = {
-    "all",    "antialias", "background", "camera",  "colour",   "core",   "data",     "depth",
-    "east",   "edges",     "frame",      "gbuffer", "geometry", "gl",     "ground",   "height",
-    "hook",   "light",     "load",       "net",     "none",     "normal", "overlay",  "page",
-    "place",  "post",      "scene",      "select",  "slope",    "srgb",   "steps",    "store",
-    "stored", "sun",       "surface",    "tangent", "terrain",  "up",     "varyings", "vertex"};
+constexpr std::array<std::string_view, 43> kReserved = {
+    "all",     "antialias", "backdrop", "background", "camera", "colour",  "core",     "data",
+    "depth",   "east",      "edges",    "floor",      "frame",  "gbuffer", "geometry", "gl",
+    "ground",  "height",    "hook",     "light",      "load",   "net",     "none",     "normal",
+    "overlay", "page",      "place",    "post",       "scene",  "select",  "side",     "slope",
+    "srgb",    "steps",     "store",    "stored",     "sun",    "surface", "tangent",  "terrain",
+    "up",      "varyings",  "vertex"};
 
-// A capability that core provides itself: render/programs.h.
-constexpr std::string_view kNightWord = "night";
+// Capabilities that core provides itself: render/programs.h.
+constexpr std::array<std::string_view, 2> kCoreWords = {"night", "outside"};
 
 bool is_lower(char c) {
     return c >= 'a' && c <= 'z';
@@ -101,10 +102,11 @@ class ManifestReader {
                                     kFormat, describe(format)));
         identity(object);
         manifest_.provides = words(object, "provides");
-        if (std::find(manifest_.provides.begin(), manifest_.provides.end(), kNightWord) !=
-            manifest_.provides.end())
-            object.fail(object.line_of("provides"), "provides",
-                        fmt::format("\"{}\" is core's own word; expected another", kNightWord));
+        for (const std::string_view word : kCoreWords)
+            if (std::find(manifest_.provides.begin(), manifest_.provides.end(), word) !=
+                manifest_.provides.end())
+                object.fail(object.line_of("provides"), "provides",
+                            fmt::format("\"{}\" is core's own word; expected another", word));
         manifest_.needs = words(object, "requires");
         manifest_.wants = words(object, "wants");
         manifest_.after = words(object, "after");

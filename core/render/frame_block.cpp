@@ -163,6 +163,14 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     const glm::dmat3 rows = glm::transpose(inputs.stars.axes);
     for (int i = 0; i < 3; ++i)
         block.celestial[static_cast<std::size_t>(i)] = glm::vec4(rows[i], inputs.stars.velocity[i]);
+    const double base_m = ground.base_m(inputs.exaggeration);
+    // On the round Earth the lowest of the rim has a vertical of its own, and so less of its depth.
+    const double floor_m = ground.floor_m + base_m * (1 + ground.floor_m / kEquatorialRadius_m);
+    block.block = {base_m / inputs.exaggeration, floor_m, ground.block_m, 0};
+    const Footprint& footprint = ground.footprint;
+    const glm::dvec2 sides_m =
+        footprint.square_m * glm::dvec2(footprint.share.width(), footprint.share.height());
+    block.footprint_area = glm::vec4(footprint.south_west_m, 1.0 / glm::max(sides_m, 1.0));
     return block;
 }
 

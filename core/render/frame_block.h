@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include "base/array2d.h"
 #include "geo/local_frame.h"
 #include "render/displacement.h"
 #include "render/frame_block.gen.h"
@@ -52,6 +53,17 @@ struct FrameInputs {
     double unix_s = 0;  ///< the sun's moment, since 1970-01-01T00:00Z, for native modules
 };
 
+/// Where a DEM has ground, as seen from above: shares of squares of the local frame's plane, with
+/// room around.
+struct Footprint {
+    Array2d<float> share;           ///< 0 to 1, row 0 in the south
+    glm::dvec2 south_west_m{0, 0};  ///< corner of the first square
+    double square_m = 1;            ///< side of a square
+
+    /// 0 beside it.
+    double at(const glm::dvec2& point_m) const;
+};
+
 /// What does not change from frame to frame.
 struct Ground {
     geo::LocalFrame frame;
@@ -63,7 +75,19 @@ struct Ground {
 
     glm::dvec2 south_west_m{-1, -1};  ///< corner of the DEM's posts in the local frame
     glm::dvec2 north_east_m{1, 1};    ///< likewise
+    Footprint footprint;
+    /// How far the block that a DEM is seen as from outside reaches below its lowest post [m]; 0
+    /// where it goes round the Earth.
+    double block_m = 0;
+    double floor_m = 0;  ///< z of the lowest of the rim at height 0, in the local frame
+
+    /// Height of the block's lower side as it is drawn, above the DEM's zero [m].
+    double base_m(double exaggeration) const { return lowest_m * exaggeration - block_m; }
 };
+
+/// Whether the eye is outside of the DEM: beside its ground, or above it by more than a third of
+/// its width.
+bool is_outside(const Ground& ground, const glm::dvec3& eye_m, double exaggeration);
 
 /// Nothing nearer is drawn; reversed depth, so that nothing is lost by a small one.
 inline constexpr double kNear_m = 0.5;

@@ -6,10 +6,79 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "geo/ellipsoid.h"
+
 namespace relevo::render {
 namespace {
 
 constexpr int kPiecesAcross = 48;  // of a DEM, when it is thinned out for the camera
+constexpr int kRimLines = 256;     // rows and columns whose ends are kept then
+/// Squares of a footprint along its longer side, and of them beside the ground on each side.
+constexpr int kFootprintSquares = 96, kFootprintRoom = 16;
+constexpr int kFootprintSamples = 192;  // of the grid along each side
+/// The block's depth, as a share of the DEM's width.
+constexpr double kBlockShare = 0.07;
+/// Wider DEMs go round the Earth; they have no sides [m].
+constexpr double kWidestBlock_m = 8e6;
+
+/// Which squares hold ground, by samples of the grid that are less than a square apart.
+Footprint make_footprint(const dem::Heightfield& dem, const Ground& ground) {
+    const glm::dvec2 sides_m = ground.north_east_m - ground.south_west_m;
+    Footprint footprint;
+    footprint.square_m =
+        std::max({sides_m.x, sides_m.y, 1.0}) / (kFootprintSquares - 2 * kFootprintRoom);
+    const auto squares = [&](double side_m) {
+        return static_cast<int>(std::ceil(side_m / footprint.square_m)) + 2 * kFootprintRoom;
+    };
+    footprint.share = Array2d<float>(squares(sides_m.x), squares(sides_m.y), 0);
+    footprint.south_west_m = ground.south_west_m - kFootprintRoom * footprint.square_m;
+    Array2d<float> samples(footprint.share.width(), footprint.share.height(), 0);
+    const int columns = dem.grid.columns(), rows = dem.grid.rows();
+    std::vector<glm::dvec2> posts(kFootprintSamples);
+    std::vector<geo::Geodetic> places(kFootprintSamples);
+    for (int j = 0; j < kFootprintSamples; ++j) {
+        const double row = (rows - 1.0) * j / (kFootprintSamples - 1);
+        for (int i = 0; i < kFootprintSamples; ++i)
+            posts[static_cast<std::size_t>(i)] = {(columns - 1.0) * i / (kFootprintSamples - 1),
+                                                  row};
+        dem.grid.place(posts, places);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            if (!std::isfinite(places[i].lat_rad)) continue;
+            const glm::dvec2 at(ground.frame.to_local(places[i]));
+            const glm::dvec2 square = floor((at - footprint.south_west_m) / footprint.square_m);
+            const int x = static_cast<int>(square.x), y = static_cast<int>(square.y);
+            if (x < 0 || y < 0 || x >= samples.width() || y >= samples.height()) continue;
+            samples.at(x, y) += 1;
+            const bool there =
+                !std::isnan(dem.height_m.at(static_cast<int>(std::lround(posts[i].x)),
+                                            static_cast<int>(std::lround(posts[i].y))));
+            footprint.share.at(x, y) += there ? 1 : 0;
+        }
+    }
+    for (int y = 0; y < samples.height(); ++y)
+        for (int x = 0; x < samples.width(); ++x)
+            if (samples.at(x, y) > 0) footprint.share.at(x, y) /= samples.at(x, y);
+    return footprint;
+}
+
+/// What the DEM is as a body seen from outside.
+void make_block(const dem::Heightfield& dem, Ground& ground) {
+    const glm::dvec2 sides_m = ground.north_east_m - ground.south_west_m;
+    ground.footprint = make_footprint(dem, ground);
+    if (std::max(sides_m.x, sides_m.y) > kWidestBlock_m) return;
+    ground.block_m = kBlockShare * std::sqrt(sides_m.x * sides_m.y);
+    // On the round Earth the rim lies lower than the middle.
+    double lowest = 0;
+    const double columns = dem.grid.columns() - 1, rows = dem.grid.rows() - 1;
+    for (int j = 0; j <= kPiecesAcross; ++j)
+        for (int i = 0; i <= kPiecesAcross; ++i) {
+            const geo::Geodetic place =
+                dem.grid.place(columns * i / kPiecesAcross, rows * j / kPiecesAcross);
+            if (std::isfinite(place.lat_rad))
+                lowest = std::min(lowest, ground.frame.to_local(place).z);
+        }
+    ground.floor_m = lowest;
+}
 
 }  // namespace
 
@@ -35,25 +104,84 @@ Ground make_ground(const dem::Heightfield& dem) {
         }
         if (all_on_earth) break;
     }
+    make_block(dem, ground);
     return ground;
 }
 
-std::vector<glm::dvec3> points_to_show(const dem::Heightfield& dem, const Ground& ground,
-                                       double exaggeration) {
+namespace {
+
+/// Collects posts of a DEM as they are drawn.
+class Collector {
+  public:
+    Collector(const dem::Heightfield& dem, const Ground& ground, double exaggeration)
+        : dem_(dem), ground_(ground), exaggeration_(exaggeration) {}
+
+    bool has(int column, int row) const { return !std::isnan(dem_.height_m.at(column, row)); }
+
+    glm::dvec3 at(int column, int row) const {
+        geo::Geodetic place = dem_.grid.place(column, row);
+        if (!std::isfinite(place.lat_rad)) return glm::dvec3(std::nan(""));
+        place.height_m = dem_.height_m.at(column, row) * exaggeration_;
+        return ground_.frame.to_local(place);
+    }
+
+    void add(int column, int row, std::vector<glm::dvec3>& points) const {
+        const glm::dvec3 point = at(column, row);
+        if (!std::isnan(point.x)) points.push_back(point);
+    }
+
+    /// The first and the last post of rows or columns that have a height.
+    void add_ends(std::vector<glm::dvec3>& rim) const {
+        const int width = dem_.height_m.width(), height = dem_.height_m.height();
+        const auto ends = [&](int lines, int length, const auto& place) {
+            const int step = std::max(1, lines / kRimLines);
+            for (int next = 0; next < lines + step - 1; next += step) {
+                const int line = std::min(next, lines - 1);  // the last one too
+                const auto there = [&](int along) {
+                    const glm::ivec2 post = place(line, along);
+                    return has(post.x, post.y);
+                };
+                int first = 0, last = length - 1;
+                while (first < length && !there(first))
+                    ++first;
+                if (first == length) continue;
+                while (!there(last))
+                    --last;
+                for (const int along : {first, last}) {
+                    const glm::ivec2 post = place(line, along);
+                    add(post.x, post.y, rim);
+                }
+            }
+        };
+        ends(height, width, [](int row, int column) { return glm::ivec2(column, row); });
+        ends(width, height, [](int column, int row) { return glm::ivec2(column, row); });
+    }
+
+  private:
+    const dem::Heightfield& dem_;
+    const Ground& ground_;
+    double exaggeration_;
+};
+
+}  // namespace
+
+GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground,
+                            double exaggeration) {
     const Array2d<float>& height_m = dem.height_m;
-    std::vector<glm::dvec3> points;
-    const auto add = [&](int column, int row) {
-        geo::Geodetic place = dem.grid.place(column, row);
-        place.height_m = height_m.at(column, row) * exaggeration;
-        points.push_back(ground.frame.to_local(place));
-    };
+    const Collector collector(dem, ground, exaggeration);
+    GroundToShow result;
     const int step_x = std::max(1, height_m.width() / kPiecesAcross);
     const int step_y = std::max(1, height_m.height() / kPiecesAcross);
+    result.net =
+        scene::GroundNet((height_m.width() + step_x - 1) / step_x,
+                         (height_m.height() + step_y - 1) / step_y, glm::dvec3(std::nan("")));
     for (int y0 = 0; y0 < height_m.height(); y0 += step_y) {
         for (int x0 = 0; x0 < height_m.width(); x0 += step_x) {
+            const int x1 = std::min(x0 + step_x, height_m.width());
+            const int y1 = std::min(y0 + step_y, height_m.height());
             glm::ivec2 lowest(-1), highest(-1);
-            for (int y = y0; y < std::min(y0 + step_y, height_m.height()); ++y) {
-                for (int x = x0; x < std::min(x0 + step_x, height_m.width()); ++x) {
+            for (int y = y0; y < y1; ++y) {
+                for (int x = x0; x < x1; ++x) {
                     const float h = height_m.at(x, y);
                     if (std::isnan(h)) continue;
                     if (lowest.x < 0 || h < height_m.at(lowest.x, lowest.y)) lowest = {x, y};
@@ -61,11 +189,53 @@ std::vector<glm::dvec3> points_to_show(const dem::Heightfield& dem, const Ground
                 }
             }
             if (lowest.x < 0) continue;
-            add(lowest.x, lowest.y);
-            add(highest.x, highest.y);
+            collector.add(lowest.x, lowest.y, result.points);
+            collector.add(highest.x, highest.y, result.points);
+            const glm::ivec2 middle((x0 + x1) / 2, (y0 + y1) / 2);
+            const glm::ivec2 post = collector.has(middle.x, middle.y) ? middle : highest;
+            result.net.at(x0 / step_x, y0 / step_y) = collector.at(post.x, post.y);
         }
     }
-    return points;
+    collector.add_ends(result.rim);
+    result.points.insert(result.points.end(), result.rim.begin(), result.rim.end());
+    return result;
+}
+
+std::vector<glm::dvec3> points_to_show(const dem::Heightfield& dem, const Ground& ground,
+                                       double exaggeration) {
+    return ground_to_show(dem, ground, exaggeration).points;
+}
+
+std::vector<glm::dvec3> block_below(std::span<const glm::dvec3> rim, const Ground& ground,
+                                    double exaggeration) {
+    std::vector<glm::dvec3> base;
+    if (ground.block_m <= 0) return base;
+    for (const glm::dvec3& point : rim) {
+        geo::Geodetic place = ground.frame.to_geodetic(point);
+        place.height_m = ground.base_m(exaggeration);
+        base.push_back(ground.frame.to_local(place));
+    }
+    return base;
+}
+
+double Footprint::at(const glm::dvec2& point_m) const {
+    const glm::dvec2 square = floor((point_m - south_west_m) / square_m);
+    if (!(square.x >= 0 && square.y >= 0 && square.x < share.width() && square.y < share.height()))
+        return 0;
+    return share.at(static_cast<int>(square.x), static_cast<int>(square.y));
+}
+
+bool is_outside(const Ground& ground, const glm::dvec3& eye_m, double exaggeration) {
+    const glm::dvec2 sides_m = ground.north_east_m - ground.south_west_m;
+    const double above_m =
+        ground.frame.to_geodetic(eye_m).height_m - ground.highest_m * exaggeration;
+    constexpr double kHigh = 0.35;  // of the DEM's width
+    // The extent of what goes round the Earth is no width.
+    const double width_m =
+        ground.block_m > 0 ? std::min(sides_m.x, sides_m.y) : 2 * geo::kEquatorialRadius_m;
+    if (above_m > kHigh * width_m) return true;
+    // What goes round the Earth has no side to stand beside.
+    return ground.block_m > 0 && ground.footprint.at(glm::dvec2(eye_m)) < 0.5;
 }
 
 std::vector<glm::dvec3> points_moved_to(std::span<const glm::dvec3> points, const Ground& ground,

@@ -9,6 +9,7 @@
 #include "dem/heightfield.h"
 #include "geo/local_frame.h"
 #include "render/frame_block.h"
+#include "scene/framing.h"
 #include "sun/position.h"
 #include "sun/refraction.h"
 
@@ -18,10 +19,24 @@ namespace relevo::render {
 /// extent.
 Ground make_ground(const dem::Heightfield& dem);
 
-/// Points that a camera has to see to see the DEM: its valid posts, thinned out to some thousands
-/// with the highest and the lowest of each piece kept, in the local frame [m].
+/// What a camera has to see to see the DEM, in the local frame [m].
+struct GroundToShow {
+    /// Its valid posts, thinned out to some thousands, with the highest and the lowest of each
+    /// piece and the ends of rows and columns kept: their outline in a picture is that of the posts
+    /// within half a percent of the picture (tests/render/test_ground.cpp).
+    std::vector<glm::dvec3> points;
+    std::vector<glm::dvec3> rim;  ///< of them, ends of rows and columns
+    scene::GroundNet net;         ///< a post of each piece that has one
+};
+GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground, double exaggeration);
+
+/// The points alone.
 std::vector<glm::dvec3> points_to_show(const dem::Heightfield& dem, const Ground& ground,
                                        double exaggeration);
+
+/// The lower rim of the block below ground that is seen from outside; none where there is no block.
+std::vector<glm::dvec3> block_below(std::span<const glm::dvec3> rim, const Ground& ground,
+                                    double exaggeration);
 
 /// Points to show where effects move the ground beyond these at most.
 std::vector<glm::dvec3> points_moved_to(std::span<const glm::dvec3> points, const Ground& ground,

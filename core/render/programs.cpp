@@ -25,17 +25,21 @@ bool answers(const shader::StitchInput& input, std::string_view hook) {
 
 }  // namespace
 
+bool shows_block(const shader::StitchInput& input) {
+    return answers(input, "side") || answers(input, "backdrop");
+}
+
 bool has_overlay(const shader::StitchInput& input, bool draped) {
     return draped || answers(input, "display");
 }
 
 namespace {
 
-bool wants_night(const shader::StitchInput& input) {
+bool wants(const shader::StitchInput& input, std::string_view word) {
     return std::any_of(
-        input.snippets.begin(), input.snippets.end(), [](const shader::Snippet* snippet) {
+        input.snippets.begin(), input.snippets.end(), [&](const shader::Snippet* snippet) {
             return std::any_of(snippet->wanted.begin(), snippet->wanted.end(),
-                               [](const auto& wanted) { return wanted.word == kNightWord; });
+                               [&](const auto& wanted) { return wanted.word == word; });
         });
 }
 
@@ -70,56 +74,94 @@ shader::Define height_steps_define(const shader::Stitched& geometry) {
 
 namespace {
 
-std::vector<ProgramText> stitch_all(const shader::CoreTexts& core, const shader::StitchInput& input,
-                                    const ProgramOptions& options) {
-    shader::ProgramRecipe geometry{.vertex_main = "terrain.vert.glsl",
-                                   .fragment_main = "geometry.frag.glsl",
-                                   .shaded_by = "terrain.frag.glsl"};
-    shader::ProgramRecipe terrain{.vertex_main = "fullscreen.vert.glsl",
-                                  .fragment_main = "terrain.frag.glsl",
-                                  .geometry_of = "terrain.vert.glsl"};
-    if (options.vertex_normals) {
-        geometry.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
-        terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
+/// The recipes of one frame's programs, and what they have in common.
+class Stitcher {
+  public:
+    Stitcher(const shader::CoreTexts& core, const shader::StitchInput& input,
+             const ProgramOptions& options)
+        : core_(core), input_(input), options_(options), displaced_(answers(input, "displace")) {
+        if (options.shown)
+            ends_.push_back({"SHOWN", ""});
+        else if (has_overlay(input, options.draped))
+            ends_.push_back({"DISPLAY_OVERLAY", ""});
     }
-    if (answers(input, "displace")) geometry.defines.push_back({"DISPLACED", ""});
-    if (options.draped) terrain.defines.push_back({"DRAPED", ""});
-    std::vector<shader::Define> ends;  // what the shading programs end in
-    if (options.shown)
-        ends.push_back({"SHOWN", ""});
-    else if (has_overlay(input, options.draped))
-        ends.push_back({"DISPLAY_OVERLAY", ""});
-    terrain.defines.insert(terrain.defines.end(), ends.begin(), ends.end());
-    std::vector<ProgramText> programs;
-    if (reads_height_steps(input)) {
-        const shader::Define define = height_steps_define(shader::stitch(core, geometry, input));
-        geometry.defines.push_back(define);
-        terrain.defines.push_back(define);
-    }
-    programs.push_back({"geometry", shader::stitch(core, geometry, input)});
-    programs.push_back({"terrain", shader::stitch(core, terrain, input)});
-    std::vector<shader::Define> depth_defines{{"TERRAIN_DEPTH", ""}};
-    if (answers(input, "displace")) depth_defines.push_back({"DISPLACED", ""});
-    if (options.depth)
-        programs.push_back({"depth", shader::stitch(core,
-                                                    {.vertex_main = "terrain.vert.glsl",
-                                                     .fragment_main = "depth.frag.glsl",
-                                                     .defines = depth_defines},
-                                                    input)});
-    for (const std::string name : {"background", "post", "edges", "antialias"}) {
-        if (name == "post" && options.shown) continue;
-        shader::ProgramRecipe recipe{.vertex_main = "fullscreen.vert.glsl",
-                                     .fragment_main = name + ".frag.glsl"};
-        if (name == "background" || name == "post") recipe.defines = ends;
-        programs.push_back({name, shader::stitch(core, recipe, input)});
-        if (name == "background" && wants_night(input)) {
-            shader::StitchInput night = input;
-            night.capabilities.push_back(kNightWord);
-            programs.push_back({"background_night", shader::stitch(core, recipe, night)});
+
+    std::vector<ProgramText> run() {
+        ground(input_, "");
+        if (shows_block(input_)) block();
+        if (options_.depth) {
+            std::vector<shader::Define> defines{{"TERRAIN_DEPTH", ""}};
+            if (displaced_) defines.push_back({"DISPLACED", ""});
+            add("depth", {.vertex_main = "terrain.vert.glsl",
+                          .fragment_main = "depth.frag.glsl",
+                          .defines = defines});
         }
+        for (const std::string name : {"background", "post", "edges", "antialias"}) {
+            if (name == "post" && options_.shown) continue;
+            shader::ProgramRecipe recipe{.vertex_main = "fullscreen.vert.glsl",
+                                         .fragment_main = name + ".frag.glsl"};
+            if (name == "background" || name == "post") recipe.defines = ends_;
+            add(name, recipe);
+            if (name == "background" && wants(input_, kNightWord)) {
+                shader::StitchInput night = input_;
+                night.capabilities.push_back(kNightWord);
+                programs_.push_back({"background_night", shader::stitch(core_, recipe, night)});
+            }
+        }
+        return std::move(programs_);
     }
-    return programs;
-}
+
+  private:
+    void add(const std::string& name, const shader::ProgramRecipe& recipe) {
+        programs_.push_back({name, shader::stitch(core_, recipe, input_)});
+    }
+
+    /// The two programs of the ground.
+    void ground(const shader::StitchInput& input, const std::string& ending) {
+        shader::ProgramRecipe geometry{.vertex_main = "terrain.vert.glsl",
+                                       .fragment_main = "geometry.frag.glsl",
+                                       .shaded_by = "terrain.frag.glsl"};
+        shader::ProgramRecipe terrain{.vertex_main = "fullscreen.vert.glsl",
+                                      .fragment_main = "terrain.frag.glsl",
+                                      .geometry_of = "terrain.vert.glsl"};
+        if (options_.vertex_normals) {
+            geometry.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
+            terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
+        }
+        if (displaced_) geometry.defines.push_back({"DISPLACED", ""});
+        if (options_.draped) terrain.defines.push_back({"DRAPED", ""});
+        terrain.defines.insert(terrain.defines.end(), ends_.begin(), ends_.end());
+        if (reads_height_steps(input)) {
+            const shader::Define define =
+                height_steps_define(shader::stitch(core_, geometry, input));
+            geometry.defines.push_back(define);
+            terrain.defines.push_back(define);
+        }
+        programs_.push_back({"geometry" + ending, shader::stitch(core_, geometry, input)});
+        programs_.push_back({"terrain" + ending, shader::stitch(core_, terrain, input)});
+    }
+
+    /// What is seen from outside alone.
+    void block() {
+        if (wants(input_, kOutsideWord)) {
+            shader::StitchInput outside = input_;
+            outside.capabilities.push_back(kOutsideWord);
+            ground(outside, kOutsideEnding);
+        }
+        add("side",
+            {.vertex_main = "side.vert.glsl", .fragment_main = "side.frag.glsl", .defines = ends_});
+        add("backdrop", {.vertex_main = "fullscreen.vert.glsl",
+                         .fragment_main = "backdrop.frag.glsl",
+                         .defines = ends_});
+    }
+
+    const shader::CoreTexts& core_;
+    const shader::StitchInput& input_;
+    const ProgramOptions& options_;
+    bool displaced_;
+    std::vector<shader::Define> ends_;  // what the shading programs end in
+    std::vector<ProgramText> programs_;
+};
 
 /// How to go on without what a driver refuses.
 std::string remedy(const shader::Stitched& stitched, const std::string& blamed) {
@@ -141,7 +183,7 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
                                          const shader::StitchInput& input,
                                          const ProgramOptions& options) {
     try {
-        return stitch_all(core, input, options);
+        return Stitcher(core, input, options).run();
     } catch (const shader::AuthorError& error) {
         if (error.owner() == "core") throw;
         throw Error(error.code(), fmt::format("{}; --disable {} goes on without it", error.what(),

@@ -12,7 +12,8 @@ namespace relevo::render {
 /// One of the programs of a frame as text.
 struct ProgramText {
     /// "geometry", "terrain", "background", "background_night" (if an effect wants `night`), "post"
-    /// (not if shown), "edges", "antialias"
+    /// (not if shown), "edges", "antialias"; where effects show the DEM from outside as a block:
+    /// "side", "backdrop", and if an effect wants `outside` "geometry_outside", "terrain_outside"
     std::string name;
     shader::Stitched stitched;
 };
@@ -32,6 +33,12 @@ inline constexpr const char* kNightWord = "night";
 /// Elevation of the sun, seen from the eye, below which it is night [deg].
 inline constexpr double kNight_deg = -3;
 
+/// A capability word that core provides to the ground's programs while it is seen from outside as a
+/// block: what is only within, such as air, costs a picture from outside nothing.
+inline constexpr const char* kOutsideWord = "outside";
+/// Of the names of the programs that have it.
+inline constexpr const char* kOutsideEnding = "_outside";
+
 /// The stored steps of the height, from the geometry to the terrain program: their sampler, and the
 /// define that has the number of their output. There where a hook reads them.
 inline constexpr const char* kHeightStepsTexture = "height_steps";
@@ -39,6 +46,9 @@ inline constexpr const char* kHeightStepsDefine = "HEIGHT_STEPS";
 
 /// Whether anything is drawn over the finished picture: by effects, or what is draped.
 bool has_overlay(const shader::StitchInput& input, bool draped);
+
+/// Whether any of the effects shows the DEM as a block where it is seen from outside.
+bool shows_block(const shader::StitchInput& input);
 
 /// Stitches all programs of a frame. @throws Error as shader::stitch
 std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include <epoxy/gl.h>
@@ -51,6 +53,40 @@ constexpr const char* kVaryings = shader::StoredVaryings::kTexture;
 
 constexpr const char* kNormalAddress = "terrain.normal";
 
+/// Means of a footprint over squares of so many, three times over, which is nearly a Gaussian.
+Array2d<float> blurred(const Array2d<float>& sharp, int reach) {
+    Array2d<float> from = sharp, to = sharp;
+    for (int turn = 0; turn < 6; ++turn) {
+        const bool along = turn % 2 == 0;
+        for (int y = 0; y < from.height(); ++y)
+            for (int x = 0; x < from.width(); ++x) {
+                float sum = 0;
+                for (int i = -reach; i <= reach; ++i) {
+                    const int u = along ? x + i : x, v = along ? y : y + i;
+                    if (u >= 0 && v >= 0 && u < from.width() && v < from.height())
+                        sum += from.at(u, v);
+                }
+                to.at(x, y) = sum / static_cast<float>(2 * reach + 1);
+            }
+        std::swap(from, to);
+    }
+    return from;
+}
+
+/// What lib/floor.glsl reads.
+gl::Texture footprint_texture(const Footprint& footprint) {
+    const Array2d<float> near = blurred(footprint.share, 1), far = blurred(footprint.share, 4);
+    std::vector<std::uint8_t> texels;
+    for (std::size_t i = 0; i < near.size(); ++i)
+        for (const float share : {near.data()[i], far.data()[i]})
+            texels.push_back(static_cast<std::uint8_t>(std::lround(255 * std::min(share, 1.0f))));
+    const gl::Extent size{near.width(), near.height(), 1};
+    gl::Texture texture(gl::TextureKind::D2, gl::Format::RG8, size, 1, "floor_ground");
+    texture.set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
+    texture.write(0, {0, 0, 0}, size, std::as_bytes(std::span(texels)));
+    return texture;
+}
+
 }  // namespace
 
 std::vector<shader::Param> core_params() {
@@ -70,11 +106,10 @@ struct Renderer::Impl {
     RendererOptions options;
     double anisotropy;
     std::vector<ProgramText> texts;
-    std::optional<DrawWatch> watch;  // until the first frame is drawn
-    LinkedProgram geometry, terrain, background;
-    std::optional<LinkedProgram> background_night;  // from the first night on
-    std::optional<LinkedProgram> post;
-    LinkedProgram edges, antialias, depth_only;
+    std::optional<DrawWatch> watch;               // until the first frame is drawn
+    std::map<std::string, LinkedProgram> linked;  // by name, as they are needed
+    LinkedProgram depth_only;
+    bool outside;  // of the DEM, and that makes a difference
     EffectTextures effect_textures;
     gl::Buffer frame_block;
     std::vector<effect::DisplaceSpec> displaces;
@@ -88,6 +123,8 @@ struct Renderer::Impl {
 
     gl::Texture gbuffer, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     gl::Texture varyings, height_steps;
+    gl::Texture footprint;           // of the ground that was last seen from outside ...
+    std::uint64_t footprint_of = 0;  // ... which is Terrain::serial()
     // Light is the radiance, or at once the picture's colours.
     gl::Framebuffer geometry_target, light_target, overlaid_target, post_target, picture_target;
     std::vector<NativeHost> natives;
@@ -100,12 +137,7 @@ struct Renderer::Impl {
           anisotropy(c.info().device.software ? 1 : std::min(kAnisotropy, c.info().max_anisotropy)),
           texts(stitch(effects, c.info().max_texture_units, o)),
           watch(std::in_place, effects.stitch.snippets),
-          geometry(link("geometry")),
-          terrain(link("terrain")),
-          background(link("background")),
-          post(o.radiance ? std::optional(link("post")) : std::nullopt),
-          edges(link("edges")),
-          antialias(link("antialias")),
+          outside(o.outside && render::shows_block(effects.stitch)),
           effect_textures(effects.textures, anisotropy),
           frame_block(sizeof(FrameBlock), "frame block"),
           displaces(effects.displaces),
@@ -116,9 +148,11 @@ struct Renderer::Impl {
                 shader::pack(texts.front().stitched.params, values);
             if (!params.empty()) params_block = gl::Buffer(params, "parameters");
         }
-
+        for (const char* name : {"geometry", "terrain", "background"})
+            program(here(name));
+        for (const char* name : {"side", "post", "edges", "antialias"})
+            if (find_text(name) && (outside || std::string_view(name) != "side")) program(name);
         make_targets();
-        reads_surface = reads("surface_pages");
         if (!effects.modules.empty()) depth_only = link("depth");
         for (const effect::NativeModule* module : effects.modules)
             natives.emplace_back(
@@ -126,8 +160,30 @@ struct Renderer::Impl {
                 values, options.width_px, options.height_px);
     }
 
+    bool shows_block() const { return find_text("side") != nullptr; }
+
+    /// The name of a pass's program where the eye is.
+    std::string here(const char* pass) const {
+        if (outside && std::string_view(pass) == "background") return "backdrop";
+        const std::string name = std::string(pass) + kOutsideEnding;
+        return outside && find_text(name) ? name : pass;
+    }
+
+    const LinkedProgram& program(const std::string& name) {
+        const auto known = linked.find(name);
+        if (known != linked.end()) return known->second;
+        return linked.emplace(name, link(text(name))).first->second;
+    }
+
+    void move(bool is_outside) {
+        if (outside == (is_outside && shows_block())) return;
+        outside = !outside;
+        make_targets();
+    }
+
     /// What is drawn into, in the picture's size.
     void make_targets() {
+        reads_surface = reads("surface_pages");
         const gl::Extent size{options.width_px, options.height_px, 1};
         const auto target = [&](gl::Format format, const char* label) {
             gl::Texture texture(gl::TextureKind::D2, format, size, 1, label);
@@ -143,7 +199,7 @@ struct Renderer::Impl {
         depth.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
         picture = target(gl::Format::RGBA8, "picture");
         std::vector<const gl::Texture*> outputs{&gbuffer};
-        if (const int layers = text("geometry").stitched.varying_targets; layers > 0) {
+        if (const int layers = text(here("geometry")).stitched.varying_targets; layers > 0) {
             varyings = gl::Texture(gl::TextureKind::D2Array, gl::Format::RGBA32F,
                                    {size.width, size.height, layers}, 1, kVaryings);
             varyings.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
@@ -169,9 +225,10 @@ struct Renderer::Impl {
 
     /// Whether the terrain program reads a texture.
     bool reads(std::string_view resource) const {
-        return std::any_of(
-            terrain.textures.begin(), terrain.textures.end(),
-            [&](const shader::TextureUnit& unit) { return unit.resource == resource; });
+        const std::vector<shader::TextureUnit>& textures = text(here("terrain")).stitched.textures;
+        return std::any_of(textures.begin(), textures.end(), [&](const shader::TextureUnit& unit) {
+            return unit.resource == resource;
+        });
     }
 
     static std::vector<ProgramText> stitch(const EffectInputs& effects, int max_texture_units,
@@ -222,11 +279,9 @@ struct Renderer::Impl {
     }
 
     /// @param block  of the frame
-    const LinkedProgram& background_of(const FrameBlock& block) {
-        const ProgramText* const night = find_text("background_night");
-        if (!night || block.eye_sun.w >= radians(kNight_deg)) return background;
-        if (!background_night) background_night = link(*night);
-        return *background_night;
+    std::string background_of(const FrameBlock& block) const {
+        const bool night = !outside && block.eye_sun.w < radians(kNight_deg);
+        return night && find_text("background_night") ? "background_night" : here("background");
     }
 
     LinkedProgram link(const char* name) { return link(text(name)); }
@@ -239,7 +294,7 @@ struct Renderer::Impl {
     /// Draws, in the first frame under a watch.
     /// @param parts  pixels and triangles
     template <typename Draw>
-    void watched(const char* name, double parts, const Draw& draw) {
+    void watched(const std::string& name, double parts, const Draw& draw) {
         const DrawWatch::Turn turn(watch, text(name), parts);
         draw();
         if (watch) context.finish();
@@ -253,13 +308,13 @@ struct Renderer::Impl {
         const auto draw_tiles = [&] { ground.draw(tiles, inputs.camera.eye_m); };
         if (watch && pixels() > kMaxWatched_px) {
             const Scissor corner(0, 0, 1, 1);
-            watched("geometry", tiles.triangles(), draw_tiles);
+            watched(here("geometry"), tiles.triangles(), draw_tiles);
         }
-        watched("geometry", pixels() + tiles.triangles(), draw_tiles);
+        watched(here("geometry"), pixels() + tiles.triangles(), draw_tiles);
     }
 
     /// Draws a program over the picture, in the first frame piece by piece for the same reason.
-    void draw_picture(const char* name) {
+    void draw_picture(const std::string& name) {
         if (!watch || pixels() <= kMaxWatched_px)
             return watched(name, pixels(), [&] { draw_fullscreen(); });
         const int rows = std::max(1, static_cast<int>(kMaxWatched_px / options.width_px));
@@ -289,6 +344,7 @@ struct Renderer::Impl {
         if (name == kHeightStepsTexture) return &height_steps;
         if (name == "radiance") return &radiance;
         if (name == "overlay") return &overlay;
+        if (name == "floor_ground") return &footprint;
         if (name == "colour") return &tone_mapped;
         if (name == "depth") return &depth;
         if (const gl::Texture* const pages = ground.texture(name)) return pages;
@@ -320,6 +376,11 @@ struct Renderer::Impl {
             began = now;
         };
 
+        move(is_outside(about, inputs.camera.eye_m, inputs.exaggeration));
+        if (outside && footprint_of != ground.serial()) {
+            footprint = footprint_texture(about.footprint);
+            footprint_of = ground.serial();
+        }
         if (reads_surface) ground.keep_surface();
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
                                           inputs.exaggeration, inputs.loading);
@@ -347,7 +408,7 @@ struct Renderer::Impl {
         geometry_target.clear_depth(0);
         glDepthFunc(GL_GREATER);
         if (ground.has_holes()) glEnable(GL_CLIP_DISTANCE0);
-        bind(geometry, ground);
+        bind(program(here("geometry")), ground);
         draw_ground(ground, inputs);
         glDisable(GL_CLIP_DISTANCE0);
         passed("geometry");
@@ -359,19 +420,28 @@ struct Renderer::Impl {
         if (overlaid) overlaid_target.clear_colour(1, glm::vec4(0));
         glDepthMask(GL_FALSE);
         glDepthFunc(GL_LESS);
-        bind(terrain, ground);
-        draw_picture("terrain");
+        bind(program(here("terrain")), ground);
+        draw_picture(here("terrain"));
         passed("terrain");
+        if (outside) {
+            glDepthMask(GL_TRUE);
+            glDepthFunc(GL_GREATER);
+            bind(program("side"), ground);
+            watched("side", pixels(), [&] { ground.draw_sides(tiles, inputs.camera.eye_m); });
+            glDepthMask(GL_FALSE);
+            passed("side");
+        }
         light_target.bind();
         glDepthFunc(GL_EQUAL);
-        bind(background_of(block), ground);
-        draw_picture("background");
+        const std::string behind = background_of(block);
+        bind(program(behind), ground);
+        draw_picture(behind);
         glDisable(GL_DEPTH_TEST);
         passed("background");
 
-        if (post) {
+        if (find_text("post")) {
             post_target.bind();
-            bind(*post, ground);
+            bind(program("post"), ground);
             draw_picture("post");
             passed("post");
         }
@@ -384,12 +454,12 @@ struct Renderer::Impl {
             glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
             glStencilFunc(GL_ALWAYS, 1, 0xff);
             glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
-            bind(edges, ground);
+            bind(program("edges"), ground);
             draw_fullscreen();
             glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
             glStencilFunc(GL_EQUAL, 1, 0xff);
             glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-            bind(antialias, ground);
+            bind(program("antialias"), ground);
             draw_fullscreen();
             glDisable(GL_STENCIL_TEST);
             passed("antialias");
@@ -472,6 +542,10 @@ void Renderer::read_depths(std::vector<float>& depths_m) const {
 
 Displacement Renderer::displacement() const {
     return displacement_of(impl_->displaces, impl_->values);
+}
+
+bool Renderer::shows_block() const {
+    return impl_->shows_block();
 }
 
 const shader::ParamStore& Renderer::values() const {

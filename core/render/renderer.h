@@ -26,6 +26,9 @@ struct RendererOptions {
     bool radiance = true;
     /// Draw what lies on the ground: Terrain::drape. Not with normals per vertex.
     bool draped = false;
+    /// Whether the first frame is expected to be seen from outside the DEM: programs of the other
+    /// case are made when it comes.
+    bool outside = false;
     /// Called with the programs' texts before a driver sees them, if there is one.
     std::function<void(const std::vector<ProgramText>&)> stitched{};
 };
@@ -44,13 +47,14 @@ struct EffectInputs {
 std::vector<shader::Param> core_params();
 
 /// Milliseconds of the stages of one frame, by their names: "select", the id of each native effect,
-/// "geometry", "terrain", "background", "post", "antialias".
+/// "geometry", "terrain", "side", "background", "post", "antialias".
 using PassTimes = std::vector<std::pair<std::string, double>>;
 
 /// Draws frames with one selection of effects.
 ///
 /// A frame is a row of passes: geometry (what is where, once for every pixel), terrain (its light),
-/// background, post (tone mapping, sRGB; only with the radiance) and antialias.
+/// side (of a block, where one is seen from outside), background, post (tone mapping, sRGB; only
+/// with the radiance) and antialias.
 class Renderer {
   public:
     /// Stitches and compiles the programs, and loads the textures they read.
@@ -83,6 +87,8 @@ class Renderer {
 
     /// How far its effects move the ground.
     Displacement displacement() const;
+    /// Whether its effects show the DEM as a block where the eye is outside of it.
+    bool shows_block() const;
     /// Of all parameters, as the last frame was drawn.
     const shader::ParamStore& values() const;
     int triangles() const;  ///< of terrain in the last frame

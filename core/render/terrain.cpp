@@ -25,7 +25,6 @@ constexpr int kGridSide = kTileQuads + 3;
 constexpr int kGridVertices = kGridSide * kGridSide;
 constexpr int kQuadrantQuads = (kGridSide - 1) / 2;
 constexpr int kQuadrantIndices = kQuadrantQuads * kQuadrantQuads * 6;
-constexpr int kInstanceVectors = 12;  // inputs net_0 ... up_v of terrain.vert.glsl
 
 /// Rounding leaves up to a step of the rasteriser between the sides of two tiles. The skirt of each
 /// reaches this far [quads] under its neighbour.
@@ -120,7 +119,8 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),
       grid_vertices_(gl::Buffer::of<float>(grid_vertices(), "terrain grid")),
-      grid_indices_(gl::Buffer::of<std::uint16_t>(grid_indices(), "terrain grid indices")) {
+      grid_indices_(gl::Buffer::of<std::uint16_t>(grid_indices(), "terrain grid indices")),
+      sides_(pyramid_) {
     const glm::dvec2 spacing_m = grid_.post_spacing_m();
     normal_spacing_m_ = std::sqrt(spacing_m.x * spacing_m.y);
     normal_levels_ = std::max(1, pyramid_.levels() - kNormalPageLevels);
@@ -382,36 +382,89 @@ void Terrain::write_page_table() {
     }
 }
 
+Terrain::Instance Terrain::instance_of(const TileSelection::Tile& tile,
+                                       const glm::dvec3& origin_m) {
+    const auto with = [](const glm::dvec3& v, double w) { return glm::vec4(glm::vec3(v), w); };
+    const TileKey& key = tile.draw.key;
+    const PatchNet& net = tree_.net(key);
+    const auto& p = net.position_m;
+    const glm::ivec2 first_post = key.at * (kTileQuads << key.level);
+    const double posts_a_quad = 1 << key.level;
+    const glm::dvec2 quads =
+        glm::dvec2(span_on_dem(pyramid_, first_post, kTileQuads << key.level)) / posts_a_quad;
+    return {with(net.centre_m - origin_m + p[0], quads.x),
+            with(p[1], quads.y),
+            with(p[2], tile.height_layer),
+            with(p[3], first_post.x),
+            with(p[4], first_post.y),
+            with(p[5], posts_a_quad),
+            with(p[6], tile.morph_start_m),
+            with(p[7], tile.per_morph_m),
+            with(p[8], 0),
+            with(net.vertical[0], 0),
+            with(net.vertical[1], 0),
+            with(net.vertical[2], 0)};
+}
+
+void Terrain::draw_sides(const TileSelection& selection, const glm::dvec3& origin_m) {
+    std::vector<Instance> instances;
+    std::vector<glm::vec4> vertices;
+    std::vector<std::uint16_t> indices;
+    struct Batch {
+        std::size_t first_index, indices;
+        int first_vertex;
+    };
+    std::vector<Batch> batches;  // an instance each
+    for (const TileSelection::Tile& tile : selection.tiles_) {
+        const auto first_vertex = static_cast<int>(vertices.size()) / Sides::kVectors;
+        const std::size_t first = indices.size();
+        sides_.add(tile.draw.key, tile.draw.quadrants, vertices, indices);
+        if (indices.size() == first) continue;
+        batches.push_back({first, indices.size() - first, first_vertex});
+        instances.push_back(instance_of(tile, origin_m));
+    }
+    if (batches.empty()) return;
+    const auto vertex_bytes = std::as_bytes(std::span(vertices));
+    const auto index_bytes = std::as_bytes(std::span(indices));
+    const auto instance_bytes = std::as_bytes(std::span(instances));
+    if (!side_array_ || side_vertices_.size() < vertex_bytes.size() ||
+        side_indices_.size() < index_bytes.size() ||
+        side_instances_.size() < instance_bytes.size()) {
+        side_vertices_ = gl::Buffer(2 * vertex_bytes.size(), "terrain sides");
+        side_indices_ = gl::Buffer(2 * index_bytes.size(), "terrain sides indices");
+        side_instances_ = gl::Buffer(2 * instance_bytes.size(), "terrain sides' tiles");
+        side_array_.emplace();
+        side_array_->attributes(0, side_vertices_, 0, Sides::kVectors, 4, false);
+        side_array_->attributes(1, side_instances_, Sides::kVectors, kInstanceVectors, 4, true);
+        side_array_->indices(side_indices_);
+    }
+    side_vertices_.write(vertex_bytes);
+    side_indices_.write(index_bytes);
+    side_instances_.write(instance_bytes);
+    side_array_->bind();
+    for (std::size_t i = 0; i < batches.size(); ++i)
+        glDrawElementsInstancedBaseVertexBaseInstance(
+            GL_TRIANGLES, static_cast<GLsizei>(batches[i].indices), GL_UNSIGNED_SHORT,
+            reinterpret_cast<const void*>(sizeof(std::uint16_t) * batches[i].first_index), 1,
+            batches[i].first_vertex, static_cast<GLuint>(i));
+}
+
 void Terrain::draw(const TileSelection& selection, const glm::dvec3& origin_m) {
     if (selection.tiles_.empty()) return;
     // Whole tiles first, then each quadrant of those that are drawn in part.
-    std::vector<std::array<glm::vec4, kInstanceVectors>> instances;
+    std::vector<Instance> instances;
     struct Batch {
         int quadrant;  // -1: all
         unsigned first, count;
     };
     std::vector<Batch> batches;
-    const auto with = [](const glm::dvec3& v, double w) { return glm::vec4(glm::vec3(v), w); };
     for (int quadrant = -1; quadrant < 4; ++quadrant) {
         const auto first = static_cast<unsigned>(instances.size());
         for (const TileSelection::Tile& tile : selection.tiles_) {
             const bool whole = tile.draw.quadrants == 0xf;
             if (whole != (quadrant < 0)) continue;
             if (quadrant >= 0 && !(tile.draw.quadrants >> quadrant & 1)) continue;
-            const TileKey& key = tile.draw.key;
-            const PatchNet& net = tree_.net(key);
-            const auto& p = net.position_m;
-            const glm::ivec2 first_post = key.at * (kTileQuads << key.level);
-            const double posts_a_quad = 1 << key.level;
-            const glm::dvec2 quads =
-                glm::dvec2(span_on_dem(pyramid_, first_post, kTileQuads << key.level)) /
-                posts_a_quad;
-            instances.push_back({with(net.centre_m - origin_m + p[0], quads.x), with(p[1], quads.y),
-                                 with(p[2], tile.height_layer), with(p[3], first_post.x),
-                                 with(p[4], first_post.y), with(p[5], posts_a_quad),
-                                 with(p[6], tile.morph_start_m), with(p[7], tile.per_morph_m),
-                                 with(p[8], 0), with(net.vertical[0], 0), with(net.vertical[1], 0),
-                                 with(net.vertical[2], 0)});
+            instances.push_back(instance_of(tile, origin_m));
         }
         const auto count = static_cast<unsigned>(instances.size()) - first;
         if (count > 0) batches.push_back({quadrant, first, count});

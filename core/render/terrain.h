@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "render/loading.h"
 #include "render/lod.h"
 #include "render/page_cache.h"
+#include "render/sides.h"
 
 namespace relevo::render {
 
@@ -83,6 +85,9 @@ class Terrain {
     /// save where that keeps it.
     void draw(const TileSelection& selection, const glm::dvec3& origin_m);
 
+    /// Draws the walls below the edges of a selection's ground, likewise.
+    void draw_sides(const TileSelection& selection, const glm::dvec3& origin_m);
+
     /// Least and greatest product of the ground's points with each of three axes [m]: of the tiles
     /// of a selection that come nearer to its eye than a distance, or of the whole DEM without a
     /// selection. Boxes around tiles: a little more than the ground. Empty where no tile is.
@@ -122,6 +127,9 @@ class Terrain {
     void clear_surface();
     void write_page_table();
     std::vector<std::byte> make_normals(const TileKey& key) const;
+    static constexpr int kInstanceVectors = 12;  // inputs net_0 ... up_v of the vertex programs
+    using Instance = std::array<glm::vec4, kInstanceVectors>;
+    Instance instance_of(const TileSelection::Tile& tile, const glm::dvec3& origin_m);
 
     std::uint64_t serial_;
     TerrainOptions options_;
@@ -140,6 +148,9 @@ class Terrain {
     gl::Texture page_table_;
     gl::Buffer grid_vertices_, grid_indices_, instances_;
     std::optional<gl::VertexArray> vertex_array_;
+    Sides sides_;
+    gl::Buffer side_vertices_, side_indices_, side_instances_;
+    std::optional<gl::VertexArray> side_array_;
     // Last: threads make their pages from what stands above.
     PageCache heights_;  // of tiles
     PageCache surface_;  // of the picture: normals, and what else it reads by place

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
 
 #include "base/error.h"
 #include "base/units.h"
@@ -39,17 +37,33 @@ struct Fit {
     }
 };
 
-/// The nearest place from which all points are in the picture, with a little room around.
-/// @param middle  depth of the ground's middle, against the camera's direction [m]
-Fit fit_to(const Camera& camera, std::span<const glm::dvec3> points, double middle, double aspect) {
+/// Where a camera stands along an axis of its picture so that the points reach as far to one side
+/// of the middle as to the other, between two places from which all are seen.
+double centred(std::span<const glm::dvec3> points, const glm::dvec3& axis,
+               const glm::dvec3& to_camera, double distance_m, double low, double high) {
+    constexpr int kHalvings = 40;
+    for (int i = 0; i < kHalvings; ++i) {
+        const double middle = 0.5 * (low + high);
+        double least = 1e300, most = -1e300;
+        for (const glm::dvec3& point : points) {
+            const double at = (dot(point, axis) - middle) / (distance_m - dot(point, to_camera));
+            least = std::min(least, at);
+            most = std::max(most, at);
+        }
+        (least + most > 0 ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+/// The nearest place from which all points are within kFill of the picture's sides.
+Fit fit_to(const Camera& camera, std::span<const glm::dvec3> points, double aspect) {
     const glm::dvec3 to_camera = -camera.forward;
     const glm::dvec3 right = cross(camera.forward, camera.up);
 
     // Each point asks for a wedge: with the camera at target + d to_camera + a right + b up, the
     // point is inside while |x - a| <= (d - z) tan. The middle of the extremes of x + z tan and x -
     // z tan gives a, the larger of the two spreads gives d: the tightest view, no iteration.
-    const double margin = 1.04;
-    const double tan_y = std::tan(camera.fov_y_rad / 2) / margin;
+    const double tan_y = std::tan(camera.fov_y_rad / 2) * kFill;
     const double tan_x = tan_y * aspect;
     struct Spread {
         double highest = -1e300, lowest = 1e300;
@@ -69,20 +83,12 @@ Fit fit_to(const Camera& camera, std::span<const glm::dvec3> points, double midd
     fit.distance_m = std::max(fit.distance_m, nearest + 1);
     // That is the nearest place from which all is seen, but where one direction has room to spare
     // the ground need not lie in its middle: shift it there, as seen.
-    fit.a = (horizontal.highest + horizontal.lowest) / 2;
-    fit.b = (vertical.highest + vertical.lowest) / 2;
-    for (int turn = 0; turn < 30; ++turn) {
-        glm::dvec2 least(1e300), most(-1e300);
-        for (const glm::dvec3& point : points) {
-            const glm::dvec2 at =
-                glm::dvec2(dot(point, right) - fit.a, dot(point, camera.up) - fit.b) /
-                (fit.distance_m - dot(point, to_camera));
-            least = glm::min(least, at);
-            most = glm::max(most, at);
-        }
-        fit.a += 0.5 * (least.x + most.x) * (fit.distance_m - middle);
-        fit.b += 0.5 * (least.y + most.y) * (fit.distance_m - middle);
-    }
+    fit.a = centred(points, right, to_camera, fit.distance_m,
+                    horizontal.highest - fit.distance_m * tan_x,
+                    horizontal.lowest + fit.distance_m * tan_x);
+    fit.b = centred(points, camera.up, to_camera, fit.distance_m,
+                    vertical.highest - fit.distance_m * tan_y,
+                    vertical.lowest + fit.distance_m * tan_y);
     return fit;
 }
 
@@ -95,8 +101,8 @@ double fov_y_of_focal_length(double focal_length_mm, double aspect) {
 
 Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,
                     double aspect, std::span<const glm::dvec3> also) {
-    const double azimuth = radians(orbit.azimuth_deg);
-    const double elevation = radians(orbit.elevation_deg);
+    const double azimuth = radians(orbit.azimuth_deg.value());
+    const double elevation = radians(orbit.elevation_deg.value());
     const glm::dvec3 to_camera{std::sin(azimuth) * std::cos(elevation),
                                std::cos(azimuth) * std::cos(elevation), std::sin(elevation)};
     Camera camera;
@@ -107,11 +113,11 @@ Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, doub
     double middle = 0;  // depth of the ground's middle
     for (const glm::dvec3& point : points)
         middle += dot(point, to_camera) / static_cast<double>(points.size());
-    Fit fit = fit_to(camera, points, middle, aspect);
+    Fit fit = fit_to(camera, points, aspect);
     if (!fit.shows(camera, also, aspect)) {
         std::vector<glm::dvec3> all(points.begin(), points.end());
         all.insert(all.end(), also.begin(), also.end());
-        fit = fit_to(camera, all, middle, aspect);
+        fit = fit_to(camera, all, aspect);
     }
     // Zooming moves towards the ground's middle.
     camera.eye_m = cross(camera.forward, camera.up) * fit.a + camera.up * fit.b +

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include <glm/vec3.hpp>
@@ -20,19 +21,26 @@ struct Camera {
 
 inline constexpr double kDefaultFov_deg = 40;
 
+/// The share of the picture's width or height that the ground's outline fills in an orbit of
+/// zoom 1.
+inline constexpr double kFill = 0.95;
+
 /// A camera that circles a target.
 struct Orbit {
-    double azimuth_deg = 210;  ///< where the camera stands as seen from the target, from true north
-    double elevation_deg = 30;  ///< how high it stands, -90 to 90
-    double zoom = 1;            ///< 1 shows the whole of the ground; 2 from half as far
+    /// Where the camera stands as seen from the target, from true north; none: where relief stands
+    /// up (scene::frame_ground).
+    std::optional<double> azimuth_deg{};
+    std::optional<double> elevation_deg{};  ///< how high it stands, -90 to 90; none: likewise
+    double zoom = 1;                        ///< 1 shows the whole of the ground; 2 from half as far
 };
 
 /// Vertical field of view of a lens on 36 x 24 mm film, the long side of the film along the long
 /// side of the picture. @param focal_length_mm  above 0
 double fov_y_of_focal_length(double focal_length_mm, double aspect);
 
-/// Stands so that all `points` are in the picture, as near as that allows, and then nearer or
-/// farther by `zoom`.
+/// Stands so that all `points` are in the picture and their outline fills kFill of its width or
+/// height, and then nearer or farther by `zoom`.
+/// @param orbit    with both angles
 /// @param points   ground to show, in the local frame [m], at least one
 /// @param aspect   width / height of the picture
 /// @param also     has to be in the picture too; where it is, the camera stands as without it

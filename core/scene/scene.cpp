@@ -190,8 +190,12 @@ class SceneReader {
         if (orbit && eye) object.fail(eye->line, "eye", "expected an orbit or an eye but got both");
         if (orbit) {
             ObjectReader of = inside(*orbit, "camera.orbit");
-            view.orbit.azimuth_deg = of.number("azimuth", 210, -360, 360, false);
-            view.orbit.elevation_deg = of.number("elevation", 30, -90, 90, false);
+            const auto angle = [&](const char* key, double most) -> std::optional<double> {
+                if (!of.take(key)) return std::nullopt;
+                return of.number(key, 0, -most, most, false);
+            };
+            view.orbit.azimuth_deg = angle("azimuth", 360);
+            view.orbit.elevation_deg = angle("elevation", 90);
             view.orbit.zoom = of.number("zoom", 1, kMinZoom, kMaxZoom, false);
             of.finish();
         }
@@ -332,9 +336,9 @@ ordered_json camera_json(const View& view) {
             json["pitch"] = view.pitch_deg;
         }
     } else {
-        json["orbit"] = {{"azimuth", view.orbit.azimuth_deg},
-                         {"elevation", view.orbit.elevation_deg},
-                         {"zoom", view.orbit.zoom}};
+        if (view.orbit.azimuth_deg) json["orbit"]["azimuth"] = *view.orbit.azimuth_deg;
+        if (view.orbit.elevation_deg) json["orbit"]["elevation"] = *view.orbit.elevation_deg;
+        json["orbit"]["zoom"] = view.orbit.zoom;
     }
     if (view.fov_y_rad > 0)
         json["fov"] = written_deg(view.fov_y_rad);

@@ -1,6 +1,7 @@
 #include "scene/view.h"
 
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -41,9 +42,40 @@ double within_a_turn_deg(double angle_deg) {
     return std::abs(angle_deg) <= 360 ? angle_deg : std::fmod(angle_deg, 360.0);
 }
 
-Orbit parse_orbit(std::string_view text) {
-    Orbit orbit;
+namespace {
+
+struct Side {
+    std::string_view word;
+    double azimuth_deg;
+};
+constexpr Side kSides[] = {{"north", 0},   {"north-east", 45},  {"east", 90},  {"south-east", 135},
+                           {"south", 180}, {"south-west", 225}, {"west", 270}, {"north-west", 315}};
+
+/// Whether it is a word of --view, which is then in the view.
+bool read_side(std::string_view word, View& view) {
+    if (word == "top") {
+        // South of the middle, so that north is up.
+        view.orbit.azimuth_deg = 180;
+        view.orbit.elevation_deg = 90;
+        view.fov_y_rad = radians(kMapFov_deg);
+        return true;
+    }
+    for (const Side& side : kSides) {
+        if (word != side.word) continue;
+        view.orbit.azimuth_deg = side.azimuth_deg;
+        return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+View parse_view(std::string_view text) {
+    View view;
+    Orbit& orbit = view.orbit;
+    bool first = true;
     for (const std::string& piece : split(text, ',')) {
+        if (std::exchange(first, false) && read_side(piece, view)) continue;
         const std::size_t equals = piece.find('=');
         const std::string key = piece.substr(0, equals);
         const auto value = equals == std::string::npos
@@ -51,18 +83,20 @@ Orbit parse_orbit(std::string_view text) {
                                : parse_number(std::string_view(piece).substr(equals + 1));
         if (!value || (key != "az" && key != "el" && key != "zoom"))
             bad_usage(fmt::format(
-                "--view: {}: expected az=DEG, el=DEG or zoom=FACTOR but got \"{}\"", text, piece));
+                "--view: {}: expected az=DEG, el=DEG or zoom=FACTOR, or first of all top, north, "
+                "north-east, east, ... north-west, but got \"{}\"",
+                text, piece));
         if (key == "az") orbit.azimuth_deg = within_a_turn_deg(*value);
         if (key == "el") orbit.elevation_deg = *value;
         if (key == "zoom") orbit.zoom = *value;
     }
-    if (orbit.elevation_deg < -90 || orbit.elevation_deg > 90)
+    if (orbit.elevation_deg && (*orbit.elevation_deg < -90 || *orbit.elevation_deg > 90))
         bad_usage(fmt::format("--view: {}: expected an elevation of -90 to 90 degrees but got {}",
-                              text, orbit.elevation_deg));
+                              text, *orbit.elevation_deg));
     if (!(orbit.zoom >= kMinZoom && orbit.zoom <= kMaxZoom))
         bad_usage(fmt::format("--view: {}: expected a zoom of {} to {} but got {}", text, kMinZoom,
                               kMaxZoom, orbit.zoom));
-    return orbit;
+    return view;
 }
 
 Camera make_camera(const View& view, const GroundHeight& ground_height_m,

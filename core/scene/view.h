@@ -34,9 +34,15 @@ inline constexpr double kMinZoom = 0.001, kMaxZoom = 1000000;
 /// The same direction within one turn, -360 to 360, as scenes hold it.
 double within_a_turn_deg(double angle_deg);
 
-/// Reads `az=210,el=30,zoom=1`; what is left out stays as it is in Orbit.
+/// Vertical field of view of a map: from so far that ground leans by less than a hundredth of its
+/// height at the picture's edges, as good as parallel rays.
+inline constexpr double kMapFov_deg = 1;
+
+/// Reads `az=210,el=30,zoom=1`, or with a word in the place of the azimuth `north-east,el=45`: the
+/// side that the camera stands on, north, north-east, ... north-west; or `top`: from straight above
+/// with north up, as a map. What is left out stays as it is in Orbit.
 /// @throws Error (Usage) `--view: text: what, expected E but got G`
-Orbit parse_orbit(std::string_view text);
+View parse_view(std::string_view text);
 
 /// Height of the eye above the ground where none is given [m]: a person's.
 inline constexpr double kEyeHeight_m = 1.7;

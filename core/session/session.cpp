@@ -87,7 +87,10 @@ struct Session::Impl {
     sun::Instant utc;
     sun::Position position;
     sun::Refraction air = sun::Refraction::none();
-    std::vector<glm::dvec3> points;
+    render::GroundToShow to_show;
+    std::optional<scene::DefaultDay> day;
+    std::optional<scene::Framing> framing;  // of the last view that left an angle open
+    std::string moment_reason;
     render::FrameInputs inputs;
 
     Impl(scene::Scene given, Options o, FilesInUse& files)
@@ -108,8 +111,15 @@ struct Session::Impl {
         stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
         if (timed && !time) time = parse_over(scene.moment, loaded->source, loaded->field);
         upload();
-        set_moment(time ? time->utc : scene::default_moment(ground->frame.origin()));
         look(scene.view);
+        set_moment(time ? time->utc : default_moment());
+    }
+
+    /// Of the camera as it is.
+    sun::Instant default_moment() {
+        const scene::DefaultMoment moment = day->moment(scene::side_of_deg(inputs.camera));
+        moment_reason = moment.reason();
+        return moment.utc;
     }
 
     DrawnEffects load_effects(const scene::Effects& asked) const {
@@ -151,7 +161,8 @@ struct Session::Impl {
         return {.width_px = scene.width_px,
                 .height_px = scene.height_px,
                 .radiance = options.radiance,
-                .draped = drape || (scene.overlay && !terrain)};
+                .draped = drape || (scene.overlay && !terrain),
+                .outside = !scene.view.eye};
     }
 
     void compile(DrawnEffects& drawing) {
@@ -194,7 +205,8 @@ struct Session::Impl {
         stages.emplace_back("upload", milliseconds_since(began));
         inputs.exaggeration = scene.exaggeration;
         inputs.exposure_ev = scene.exposure_ev;
-        points = render::points_to_show(loaded->field, *ground, scene.exaggeration);
+        to_show = render::ground_to_show(loaded->field, *ground, scene.exaggeration);
+        day.emplace(ground->frame.origin(), ground->block_m <= 0);
     }
 
     void lay(std::shared_ptr<const render::Drape> wanted) {
@@ -223,11 +235,21 @@ struct Session::Impl {
         inputs.unix_s = static_cast<double>(utc.unix_us()) * 1e-6;
     }
 
-    void look(const scene::View& view) {
+    /// An orbit's open angles are filled in, so that the scene says which they are.
+    void look(scene::View view) {
+        if (!view.eye && (!view.orbit.azimuth_deg || !view.orbit.elevation_deg)) {
+            framing = scene::frame_ground(view.orbit, to_show.net, *day);
+            view.orbit = framing->orbit;
+        }
+        std::vector<glm::dvec3> points = to_show.points;
+        if (drawn.renderer->shows_block()) {
+            const auto base = render::block_below(to_show.rim, *ground, scene.exaggeration);
+            points.insert(points.end(), base.begin(), base.end());
+        }
         inputs.camera = scene::make_camera(
             view, [this](const geo::Geodetic& at) { return loaded->height_m(at); }, ground->frame,
             points, static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration,
-            render::points_moved_to(points, *ground, scene.exaggeration,
+            render::points_moved_to(to_show.points, *ground, scene.exaggeration,
                                     drawn.renderer->displacement()));
         scene.view = view;
     }
@@ -404,6 +426,14 @@ std::string Session::sun_text() const {
     const geo::Geodetic eye = impl_->eye();
     return session::sun_text(sun::position(impl_->utc, eye),
                              refraction_at(impl_->scene.refraction, eye));
+}
+
+std::string Session::view_reason() const {
+    return impl_->framing ? impl_->framing->reason() : std::string();
+}
+
+const std::string& Session::moment_reason() const {
+    return impl_->moment_reason;
 }
 
 const StageTimes& Session::stages() const {

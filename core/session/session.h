@@ -119,6 +119,11 @@ class Session {
     /// "azimuth 114.27, elevation 65.12 (65.13 with refraction)", as seen from there.
     std::string sun_text() const;
 
+    /// Why the ground is seen from where it is, and empty where all of that was given.
+    std::string view_reason() const;
+    /// Why it is that time, as scene::DefaultMoment::reason(), and empty where one was given.
+    const std::string& moment_reason() const;
+
     const StageTimes& stages() const;
     int triangles() const;  ///< of the last frame
     const gl::DeviceInfo& device() const;

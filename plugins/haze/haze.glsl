@@ -44,5 +44,8 @@ void haze_on_vertex(in VertexFrame v) {
 }
 
 void haze_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {
+    // What is seen from outside, as a model on a table, has no air before it.
+#if !HAS_outside
     radiance = mix(radiance, background_radiance(view, false), haze_strength);
+#endif
 }

@@ -267,7 +267,7 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     radiance += sun * frame.eye_sun_light.rgb;
     if (sky_earth) {
         // The light of the horizon comes from far away; what is seen lower has nearer air before it.
-        vec3 air_light = mix(radiance, sky_air_light(cosine), smoothstep(0.0, 0.02, -above));
+        vec3 air_light = mix(radiance, sky_air_light(cosine), smoothstep(0.0, 0.2, -above));
         radiance = with_disc && above < 0.0 ? sky_ground_seen(air_light, sun_sine, -above) : air_light;
     }
     return radiance;

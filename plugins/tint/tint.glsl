@@ -64,13 +64,18 @@ vec3 tint_of_aspect(in float aspect_deg, in float slope_deg) {
     return mix(tint_level, facing, smoothstep(0.5, 3.0, slope_deg));
 }
 
+/// Where ground faces whose normal leans so far to the east and to the north.
+float tint_aspect_deg(in vec2 leans) {
+    return degrees(atan(leans.x, leans.y + 1e-9));
+}
+
 vec3 tint_colour(in Surface s) {
     if (tint_by == 0) return tint_of_height(s.height_m);
     float slope_deg = degrees(acos(clamp(dot(s.ground_normal, s.up), 0.0, 1.0)));
     if (tint_by == 1) return tint_of_slope(slope_deg);
     vec3 east = east_at(s.up);
-    float aspect_deg = degrees(atan(dot(s.ground_normal, east), dot(s.ground_normal, cross(s.up, east)) + 1e-9));
-    return tint_of_aspect(aspect_deg, slope_deg);
+    vec2 leans = vec2(dot(s.ground_normal, east), dot(s.ground_normal, cross(s.up, east)));
+    return tint_of_aspect(tint_aspect_deg(leans), slope_deg);
 }
 
 /// sRGB to linear light.

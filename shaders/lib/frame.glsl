@@ -31,4 +31,7 @@ layout(std140, binding = 0) uniform Frame {
                               // bends light, 1 is 59.7 arcsec at an elevation of 45 degrees
     vec4 celestial[3];        // xyz: rows of the rotation from the local frame to the axes of star catalogues (ICRS);
                               // w: velocity of the place there, over that of light
+    vec4 block;               // of a DEM seen from outside; x: height of its lower side, before exaggeration [m], y: z of
+                              // the floor that it stands on, z: depth below its lowest post, both drawn [m]; z 0: none
+    vec4 footprint_area;      // of the texture floor_ground; xy: its south-west corner, zw: 1/its sides, in the local frame
 } frame;

@@ -65,7 +65,8 @@ def main():
         def frames(effects, count):
             """The fastest of further frames by the clock, and the process's processor time [ms]."""
             before = processor_ms()
-            subprocess.run([relevo, "-q", "capture", dem, "-o", folder / "out.png", "--overwrite", "--device",
+            subprocess.run([relevo, "-q", "capture", dem, "-o", folder / "out.png", "--overwrite", "--view",
+                            "az=210,el=30", "--device",
                             arguments.device, "--only", ",".join(effects), "--timings", timings, "--repeat",
                             str(count)], check=True)
             return json.loads(timings.read_text()), processor_ms() - before

@@ -38,10 +38,10 @@ TEST(Ramp, BuiltInOnesGoFromOneEndToTheOther) {
         EXPECT_NEAR(ramp.stops.back().value, 6, 1e-12) << name;
     }
     EXPECT_EQ(error_of([] { named_ramp("rainbow", 0, 1); }),
-              "--overlay-colours: rainbow: expected sun, shade, steel, viridis, inferno, grey or a "
+              "exit 3: --overlay-colours: rainbow: expected sun, shade, steel, viridis, inferno, grey or a "
               "colour file of GDAL's with a slash or a dot in its name");
     EXPECT_EQ(error_of([] { named_ramp("sun", 1, 1); }),
-              "--overlay-colours: 1 to 1: expected an end over the beginning");
+              "exit 3: --overlay-colours: 1 to 1: expected an end over the beginning");
 }
 
 class ColourFile : public testing::Test {
@@ -71,7 +71,7 @@ TEST_F(ColourFile, WhatIsNoneIsRefusedByItsLine) {
     const auto said = [&](const std::string& text) {
         const std::string path = write(text);
         const std::string what = error_of([&] { read_ramp(path, 0, 1); });
-        const std::string begin = "--overlay-colours: " + path + ": ";
+        const std::string begin = "exit 3: --overlay-colours: " + path + ": ";
         EXPECT_EQ(what.substr(0, begin.size()), begin);
         return what.substr(begin.size());
     };

@@ -55,7 +55,7 @@ TEST_F(OverlayOption, ColoursAreThoseOfTheRampWhateverLightFallsOnThem) {
                 (is(20, 60, 200) ? blue : is(250, 200, 10) ? yellow : other)++;
             }
         EXPECT_GT(yellow, 300) << time;
-        EXPECT_GT(blue, 30) << time;
+        EXPECT_GT(blue, 15) << time;
     }
 }
 
@@ -78,7 +78,7 @@ TEST_F(OverlayOption, LiesWhereItsPostsAre) {
             if (mask.at(x, y, 0) == 0) shaded += light, ++shaded_count;
         }
     ASSERT_GT(lit_count, 500);
-    ASSERT_GT(shaded_count, 200);
+    ASSERT_GT(shaded_count, 100);
     fmt::print("[ accuracy ] brightness where the raster has light {:.1f}, shade {:.1f}\n",
                lit / lit_count, shaded / shaded_count);
     EXPECT_GT(lit / lit_count, 1.5 * shaded / shaded_count);

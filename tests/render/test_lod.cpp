@@ -182,7 +182,7 @@ void expect_as_from_every_post(const std::string& path) {
         fmt::print(
             "[ lod ] {} from azimuth {}: {} of {} triangles, PSNR {:.1f} dB, silhouettes within "
             "{} px\n",
-            std::filesystem::path(path).filename().string(), orbit.azimuth_deg, flight.triangles(),
+            std::filesystem::path(path).filename().string(), *orbit.azimuth_deg, flight.triangles(),
             all_triangles, d.psnr_db, moved_px);
         EXPECT_GE(d.psnr_db, 40);
         EXPECT_LE(moved_px, 2);

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "base/units.h"
@@ -31,17 +32,24 @@ TEST(OrbitCamera, StandsWhereItsAzimuthSays) {
                 1e-9);  // looks north-east
 }
 
-TEST(OrbitCamera, ShowsTheWholeGroundAndLittleMore) {
-    for (const double azimuth : {0.0, 30.0, 135.0, 225.0, 300.0}) {
-        for (const double elevation : {5.0, 25.0, 60.0, 90.0}) {
-            const Camera camera = orbit_camera({azimuth, elevation, 1}, kGround, radians(40), 1.25);
-            double most = 0;
-            for (const glm::dvec3& point : kGround) {
-                const glm::dvec2 at = seen(camera, point, 1.25);
-                most = std::max({most, std::abs(at.x), std::abs(at.y)});
+TEST(OrbitCamera, FillsNineteenTwentiethsOfTheWidthOrTheHeight) {
+    for (const double aspect : {0.4, 1.0, 1.25, 3.0}) {
+        for (const double azimuth : {0.0, 30.0, 135.0, 225.0, 300.0}) {
+            for (const double elevation : {15.0, 25.0, 60.0, 90.0}) {
+                const Camera camera =
+                    orbit_camera({azimuth, elevation, 1}, kGround, radians(40), aspect);
+                glm::dvec2 least(1e300), most(-1e300);
+                for (const glm::dvec3& point : kGround) {
+                    least = min(least, seen(camera, point, aspect));
+                    most = max(most, seen(camera, point, aspect));
+                }
+                const glm::dvec2 filled = 0.5 * (most - least);
+                EXPECT_NEAR(std::max(filled.x, filled.y), kFill, 1e-3)
+                    << aspect << " " << azimuth << " " << elevation;
+                // In the middle both ways.
+                EXPECT_NEAR(least.x + most.x, 0, 2e-3);
+                EXPECT_NEAR(least.y + most.y, 0, 2e-3);
             }
-            EXPECT_LE(most, 1.0) << azimuth << " " << elevation;
-            EXPECT_GE(most, 0.85) << azimuth << " " << elevation;
         }
     }
 }

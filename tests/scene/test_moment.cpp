@@ -1,20 +1,78 @@
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "base/units.h"
 #include "scene/moment.h"
+#include "sun/position.h"
 
 namespace relevo::scene {
 namespace {
 
-TEST(DefaultMoment, IsNineOnTheLongestDayByTheSunsOwnTime) {
-    const auto at = [](double lat_deg, double lon_deg) {
-        return sun::to_iso(default_moment({radians(lat_deg), radians(lon_deg), 0}));
+DefaultMoment moment_at(double lat_deg, double lon_deg, double camera_deg) {
+    return DefaultDay({radians(lat_deg), radians(lon_deg), 0}).moment(camera_deg);
+}
+
+TEST(DefaultMoment, IsOnTheLongestDayOfThePlace) {
+    // By the sun's own time: the date of the clocks of Greenwich is another one in the far east.
+    EXPECT_EQ(sun::to_iso(moment_at(46.5, 8, 200).utc).substr(0, 10), "2026-06-21");
+    EXPECT_EQ(sun::to_iso(moment_at(-34, 20.5, 200).utc).substr(0, 10), "2026-12-21");
+}
+
+TEST(DefaultMoment, HasTheSunInItsBoundsFromSomeSidesAtAllLatitudes) {
+    for (int lat_deg = -80; lat_deg <= 80; lat_deg += 5) {
+        int sides = 0;
+        for (int camera_deg = 0; camera_deg < 360; camera_deg += 15) {
+            const DefaultMoment moment = moment_at(lat_deg, 30, camera_deg);
+            const sun::Position sun = sun::position(moment.utc, {radians(lat_deg), radians(30), 0});
+            EXPECT_NEAR(degrees(sun.elevation_rad), moment.elevation_deg, 1e-9);
+            const double aside = degrees(sun.azimuth_rad) - camera_deg;
+            EXPECT_NEAR(std::remainder(aside - moment.aside_deg, 360), 0, 1e-9);
+            // The height of the sun always is; where it stands hangs on the side.
+            EXPECT_GE(moment.elevation_deg, kLowestSun_deg) << lat_deg << " " << camera_deg;
+            EXPECT_LE(moment.elevation_deg, kHighestSun_deg) << lat_deg << " " << camera_deg;
+            const double away = std::abs(moment.aside_deg);
+            EXPECT_EQ(moment.within_bounds, away >= kLeastAside_deg && away <= kMostAside_deg);
+            sides += moment.within_bounds;
+        }
+        EXPECT_GE(sides, 6) << lat_deg;
+    }
+}
+
+TEST(DefaultMoment, HasTheSunAsHighAsItComesAtThePoles) {
+    for (const double lat_deg : {-90.0, 90.0}) {
+        const DefaultMoment moment = moment_at(lat_deg, 0, 200);
+        EXPECT_NEAR(moment.elevation_deg, 23.43, 0.1);  // the obliquity of the ecliptic
+        EXPECT_TRUE(moment.within_bounds);
+        EXPECT_NEAR(moment.aside_deg, 70, 2);
+    }
+}
+
+TEST(DefaultMoment, IsRatherLitFromTheLeft) {
+    EXPECT_GT(moment_at(46, 8, 190).aside_deg, 0);
+    EXPECT_GT(moment_at(-40, 8, 10).aside_deg, 0);
+}
+
+TEST(DefaultMoment, SaysWhatItIs) {
+    EXPECT_EQ(moment_at(46, 8, 200).reason(),
+              ", so 2026-06-21 was taken, at an hour when the sun stands 29 degrees high and 75 "
+              "degrees left of the camera's side, where it shows relief");
+    EXPECT_EQ(moment_at(0, 0, 90).reason(),
+              ", so 2026-06-21 was taken, at an hour when the sun stands 34 degrees high and 29 "
+              "degrees right of the camera's side, the nearest to 20 to 35 and 50 to 100 there is");
+    EXPECT_EQ(DefaultDay({0, 0, 0}, true).moment(0).reason(),
+              ", so 2026-06-21 was taken, at an hour when most of the globe's near side is lit");
+}
+
+TEST(SideOf, IsWhereTheLowerEdgeOfThePictureLies) {
+    const auto side_of = [](double azimuth_deg, double elevation_deg) {
+        return side_of_deg(orbit_camera({azimuth_deg, elevation_deg, 1},
+                                        std::vector<glm::dvec3>{{-1e3, -1e3, 0}, {1e3, 1e3, 0}}, 1,
+                                        1));
     };
-    EXPECT_EQ(at(46.5, 0), "2026-06-21T09:00:00Z");
-    EXPECT_EQ(at(46.5, 15), "2026-06-21T08:00:00Z");
-    EXPECT_EQ(at(36.4, -84), "2026-06-21T14:36:00Z");
-    EXPECT_EQ(at(-34, 20.5), "2026-12-21T07:38:00Z");
-    EXPECT_EQ(at(-34, -179.75), "2026-12-21T20:59:00Z");
+    for (const double azimuth_deg : {0.5, 90.0, 200.0, 359.0})
+        for (const double elevation_deg : {-20.0, 0.0, 30.0, 89.0, 90.0})
+            EXPECT_NEAR(side_of(azimuth_deg, elevation_deg), azimuth_deg, 1e-6) << elevation_deg;
 }
 
 }  // namespace

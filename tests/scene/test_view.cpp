@@ -58,11 +58,49 @@ TEST(View, AnOrbitInsideOfAMountainStandsOnItAsItIsDrawn) {
 
 TEST(View, AnglesBeyondATurnAreThoseWithin) {
     // A scene's file holds -360 to 360: what the command line takes has to be read again.
-    EXPECT_EQ(parse_orbit("az=400").azimuth_deg, 40);
-    EXPECT_EQ(parse_orbit("az=-725").azimuth_deg, -5);
+    EXPECT_EQ(parse_view("az=400").orbit.azimuth_deg, 40);
+    EXPECT_EQ(parse_view("az=-725").orbit.azimuth_deg, -5);
     for (const double kept : {-360.0, -0.5, 0.0, 210.0, 360.0})
         EXPECT_EQ(within_a_turn_deg(kept), kept);
     EXPECT_LE(std::abs(within_a_turn_deg(1e308)), 360);
+}
+
+TEST(View, WhatIsLeftOutIsLeftOpen) {
+    EXPECT_FALSE(parse_view("el=40").orbit.azimuth_deg);
+    EXPECT_EQ(parse_view("el=40").orbit.elevation_deg, 40);
+    EXPECT_FALSE(parse_view("az=10").orbit.elevation_deg);
+    EXPECT_FALSE(parse_view("zoom=2").orbit.azimuth_deg);
+}
+
+TEST(View, AWordIsTheSideThatTheCameraStandsOn) {
+    const char* const words[] = {"north", "north-east", "east", "south-east",
+                                 "south", "south-west", "west", "north-west"};
+    for (int i = 0; i < 8; ++i) {
+        const View view = parse_view(words[i]);
+        EXPECT_EQ(view.orbit.azimuth_deg, 45 * i);
+        EXPECT_FALSE(view.orbit.elevation_deg);
+        EXPECT_EQ(view.fov_y_rad, 0);
+    }
+    const View both = parse_view("west,el=20,zoom=3");
+    EXPECT_EQ(both.orbit.azimuth_deg, 270);
+    EXPECT_EQ(both.orbit.elevation_deg, 20);
+    EXPECT_EQ(both.orbit.zoom, 3);
+}
+
+TEST(View, TopIsAMap) {
+    const Camera camera = camera_of(parse_view("top"), 1);
+    EXPECT_NEAR(camera.forward.z, -1, 1e-12);
+    EXPECT_NEAR(camera.up.y, 1, 1e-12);
+    // A summit 1000 m high in the corner of ground 2 km wide leans out by its height times the
+    // tangent there: 11 m, a hundredth of it.
+    const glm::dvec3 foot{1000, 1000, 0}, summit{1000, 1000, 1000};
+    const auto seen_x = [&](const glm::dvec3& point) {
+        const glm::dvec3 to = point - camera.eye_m;
+        return dot(to, cross(camera.forward, camera.up)) / dot(to, camera.forward) *
+               dot(foot - camera.eye_m, camera.forward);
+    };
+    EXPECT_LT(seen_x(summit) - seen_x(foot), 12);
+    EXPECT_GT(seen_x(summit) - seen_x(foot), 0);
 }
 
 }  // namespace

@@ -34,6 +34,8 @@ TEST(Hooks, TheirNamesAndSignaturesAreAPromise) {
               "void lit(in Surface s, inout vec3 radiance)\n"
               "void atmosphere(in Surface s, in vec3 view, inout vec3 radiance)\n"
               "void display(in Surface s, inout vec4 overlay)\n"
+              "vec3 side(in Surface s, in float down)\n"
+              "vec3 backdrop(in vec3 direction, in vec2 at)\n"
               "void tonemap(inout vec3 colour)\n"
               "vec3 background_radiance(in vec3 direction, in bool with_disc)\n");
     for (const Hook& hook : hooks())
@@ -139,7 +141,7 @@ TEST_P(SnippetError, NamesFileAndLine) {
 
 constexpr const char* kAmongHooks =
     "; hooks are displace, vertex, albedo, normal, material, facing, visibility, brdf, ambient, "
-    "lit, atmosphere, display, tonemap, background_radiance";
+    "lit, atmosphere, display, side, backdrop, tonemap, background_radiance";
 const std::string kNoHook = std::string("1: haze_on_xyz: there is no hook xyz") + kAmongHooks;
 
 INSTANTIATE_TEST_SUITE_P(

@@ -26,10 +26,12 @@ TEST(Window, OrbitsMovesTheSunDragsASliderAndSurvivesABrokenShader) {
             << body << "\n}\n";
     };
     write("radiance.r += 0.2;");
-    std::ofstream(folder / "scene.json")
-        << "{\"format\": 1, \"dem\": {\"files\": ["
-        << (test::source_dir() / "data/dem/jacksboro.tif")
-        << "]}, \"effects\": {\"only\": [\"haze\", \"paint\"], \"plugin_path\": [\".\"]}}";
+    std::ofstream(folder / "scene.json") << "{\"format\": 1, \"dem\": {\"files\": ["
+                                         << (test::source_dir() / "data/dem/jacksboro.tif")
+                                         << "]}, \"time\": {\"at\": \"2026-06-21T14:36:59Z\"}, "
+                                            "\"camera\": {\"orbit\": {\"azimuth\": 210, "
+                                            "\"elevation\": 30}}, \"effects\": {\"only\": "
+                                            "[\"haze\", \"paint\"], \"plugin_path\": [\".\"]}}";
 
     const test::Display display;
     test::WindowedProgram window(display, test::build_dir() / "bin/example_window",

@@ -184,7 +184,8 @@ TEST_F(Viewer, NeverWaitsForADemThatIsStillBeingRead) {
     std::ofstream(folder_ / "bin/zenity")
         << "#!/bin/sh\ncat '" << (folder_ / "choice").string() << "'\n";
     std::filesystem::permissions(folder_ / "bin/zenity", std::filesystem::perms::owner_all);
-    open({dem_, "--only", "--memory", "64"});
+    open({dem_, "--only", "--memory", "64", "--view", "az=210,el=30", "--time",
+          "2026-06-21T14:36:59Z"});
     const auto choose = [&](const std::string& dem) {
         std::ofstream(folder_ / "choice") << dem << "\n";
         act({"key", "ctrl+o"});

@@ -39,16 +39,11 @@ TEST(Tint, AspectsAreARingThatBeginsInTheNorth) {
     expect_colour(results[9 + 4], 0.851, 0.851, 0.831);
 }
 
-TEST(Tint, ASurfaceFacesWhereItsNormalLeans) {
+TEST(Tint, GroundFacesWhereItsNormalLeans) {
     test::GpuSnippet gpu("tint");
-    gpu.values().set("tint.by", "aspect");
-    // Leaning by 30 degrees to the north, east, south and west, at the DEM's centre.
     const auto results = gpu.run(
-        "Surface s;\n"
-        "s.up = vec3(0.0, 0.0, 1.0);\n"
-        "float a = radians(90.0 * float(x)), t = radians(30.0);\n"
-        "s.ground_normal = vec3(sin(t) * sin(a), sin(t) * cos(a), cos(t));\n"
-        "result = vec4(tint_colour(s), 1.0);",
+        "float a = radians(90.0 * float(x));\n"
+        "result = vec4(tint_of_aspect(tint_aspect_deg(0.5 * vec2(sin(a), cos(a))), 30.0), 1.0);",
         4, 1);
     expect_colour(results[0], 0.290, 0.435, 0.690);
     expect_colour(results[1], 0.361, 0.722, 0.478);

@@ -1,0 +1,207 @@
+#include "scene/framing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "base/units.h"
+
+namespace relevo::scene {
+namespace {
+
+constexpr int kAzimuths = 24;
+constexpr double kFirstElevation_deg = 28, kElevationStep_deg = 3;
+/// A view that shows this much is not bettered by standing higher.
+constexpr double kEnoughInSight = 0.97, kEnoughFilled = 0.36;
+/// Standing higher for a fuller picture alone ends here, where relief still stands up.
+constexpr double kHighForFill_deg = 34;
+/// What fills more of the picture is no better for it.
+constexpr double kFilledWell = 0.4;
+/// Seen straight on a block shows one side and no depth: as good as the best from this far beside
+/// the grid's axes on.
+constexpr double kOblique_deg = 15;
+constexpr double kStraightOn = 0.8;
+constexpr double kPictureAspect = 1.25;
+/// A globe is seen from straight above the middle of its map, north up.
+constexpr double kGlobeAzimuth_deg = 180, kGlobeElevation_deg = 90;
+constexpr int kMostNodes = 36;  // of a net along a side that are looked at
+
+struct Node {
+    glm::dvec3 at_m, normal;  // as long as its area [m2]
+    double right, up, nearness;
+};
+
+glm::dvec3 towards(double azimuth_deg, double elevation_deg) {
+    const double azimuth = radians(azimuth_deg), elevation = radians(elevation_deg);
+    return {std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation),
+            std::sin(elevation)};
+}
+
+/// Nodes with their normals, which are turned away from the Earth.
+std::vector<Node> nodes_of(const GroundNet& net, double azimuth_deg, const glm::dvec3& to_camera) {
+    const int step = std::max({1, (net.width() + kMostNodes - 1) / kMostNodes,
+                               (net.height() + kMostNodes - 1) / kMostNodes});
+    const double azimuth = radians(azimuth_deg);
+    const glm::dvec3 right{-std::cos(azimuth), std::sin(azimuth), 0};
+    const glm::dvec3 up = cross(to_camera, right);
+    const auto there = [&](int x, int y) {
+        return x >= 0 && y >= 0 && x < net.width() && y < net.height() &&
+               !std::isnan(net.at(x, y).x);
+    };
+    constexpr double kEarth_m = 6371e3;
+    std::vector<Node> nodes;
+    for (int y = 0; y < net.height(); y += step) {
+        for (int x = 0; x < net.width(); x += step) {
+            if (!there(x, y)) continue;
+            const auto difference = [&](int dx, int dy) {
+                const bool on = there(x + dx, y + dy), back = there(x - dx, y - dy);
+                const glm::dvec3 here = net.at(x, y);
+                const glm::dvec3 a = on ? net.at(x + dx, y + dy) : here;
+                const glm::dvec3 b = back ? net.at(x - dx, y - dy) : here;
+                return on && back ? 0.5 * (a - b) : a - b;
+            };
+            Node node;
+            node.at_m = net.at(x, y);
+            node.normal = cross(difference(step, 0), difference(0, step));
+            if (dot(node.normal, node.at_m + glm::dvec3(0, 0, kEarth_m)) < 0)
+                node.normal = -node.normal;
+            node.right = dot(node.at_m, right);
+            node.up = dot(node.at_m, up);
+            node.nearness = dot(node.at_m, to_camera);
+            nodes.push_back(node);
+        }
+    }
+    return nodes;
+}
+
+/// Azimuth of the net's rows [deg], 90 where it has none.
+double row_azimuth_deg(const GroundNet& net) {
+    const int y = net.height() / 2;
+    const auto there = [&](int x) { return !std::isnan(net.at(x, y).x); };
+    int first = 0, last = net.width() - 1;
+    while (first < last && !there(first))
+        ++first;
+    while (last > first && !there(last))
+        --last;
+    if (first >= last) return 90;
+    // From the middle on: on the round Earth rows are bent.
+    const int middle = (first + last) / 2;
+    const int from = there(middle) ? middle : first;
+    const int to = there(std::min(from + 1, last)) ? std::min(from + 1, last) : last;
+    const glm::dvec3 along = net.at(to, y) - net.at(from, y);
+    return degrees(std::atan2(along.x, along.y));
+}
+
+/// How well a side shows depth, kStraightOn to 1.
+double obliqueness(double azimuth_deg, double row_deg) {
+    const double turned = azimuth_deg - row_deg;
+    const double beside = std::abs(turned - 90 * std::round(turned / 90));
+    return kStraightOn + (1 - kStraightOn) * std::min(beside / kOblique_deg, 1.0);
+}
+
+}  // namespace
+
+double Aspect::score() const {
+    return std::min(filled, kFilledWell) * in_sight * in_sight * (0.6 + std::min(contrast, 1.0));
+}
+
+Aspect aspect_from(const GroundNet& net, double azimuth_deg, double elevation_deg,
+                   const DefaultDay& day) {
+    const glm::dvec3 to_camera = towards(azimuth_deg, elevation_deg);
+    std::vector<Node> nodes = nodes_of(net, azimuth_deg, to_camera);
+    if (nodes.empty()) return {};
+    std::sort(nodes.begin(), nodes.end(),
+              [](const Node& a, const Node& b) { return a.nearness > b.nearness; });
+    glm::dvec2 least(1e300), most(-1e300);
+    for (const Node& node : nodes) {
+        least = glm::min(least, glm::dvec2(node.right, node.up));
+        most = glm::max(most, glm::dvec2(node.right, node.up));
+    }
+    const DefaultMoment moment = day.estimate(azimuth_deg);
+    const glm::dvec3 to_sun = towards(azimuth_deg + moment.aside_deg, moment.elevation_deg);
+
+    // A node is hidden where nearer ground in the same column of the picture stands higher in it.
+    const int columns = std::max(1, static_cast<int>(std::sqrt(nodes.size())));
+    std::vector<double> horizon(static_cast<std::size_t>(columns), -1e300);
+    const double per_m = columns / std::max(most.x - least.x, 1e-9);
+    double ground = 0, seen = 0, covered = 0, light = 0, light2 = 0;
+    for (const Node& node : nodes) {
+        const double area = length(node.normal);
+        const double facing = dot(node.normal, to_camera);
+        ground += area;
+        double& highest = horizon[static_cast<std::size_t>(
+            std::clamp(static_cast<int>((node.right - least.x) * per_m), 0, columns - 1))];
+        if (facing > 0 && node.up >= highest) {
+            seen += area;
+            covered += facing;
+            const double lit = std::max(dot(node.normal, to_sun), 0.0) / std::max(area, 1e-9);
+            light += facing * lit;
+            light2 += facing * lit * lit;
+        }
+        highest = std::max(highest, node.up);
+    }
+    Aspect aspect;
+    const double width = std::max(most.x - least.x, (most.y - least.y) * kPictureAspect) / kFill;
+    if (ground > 0) aspect.in_sight = seen / ground;
+    if (width > 0) aspect.filled = covered * kPictureAspect / (width * width);
+    if (covered > 0 && light > 0) {
+        const double mean = light / covered;
+        aspect.contrast = std::sqrt(std::max(light2 / covered - mean * mean, 0.0)) / mean;
+    }
+    return aspect;
+}
+
+std::string Framing::reason() const {
+    return fmt::format(
+        "the DEM is seen from azimuth {:.0f}, {:.0f} degrees high: {:.0f} % of it in sight",
+        orbit.azimuth_deg.value(), orbit.elevation_deg.value(), 100 * aspect.in_sight);
+}
+
+Framing frame_ground(const Orbit& wanted, const GroundNet& net, const DefaultDay& day) {
+    Framing best{.orbit = wanted};
+    best.by_relief = !wanted.azimuth_deg || !wanted.elevation_deg;
+    if (!best.by_relief) return best;
+    if (day.is_globe()) {
+        best.orbit.azimuth_deg = wanted.azimuth_deg.value_or(kGlobeAzimuth_deg);
+        best.orbit.elevation_deg = wanted.elevation_deg.value_or(kGlobeElevation_deg);
+        best.aspect = aspect_from(net, *best.orbit.azimuth_deg, *best.orbit.elevation_deg, day);
+        return best;
+    }
+    constexpr double kMiddle_deg = 34;
+    double azimuth_deg = wanted.azimuth_deg.value_or(0);
+    if (!wanted.azimuth_deg) {
+        double most = -1;
+        const double row_deg = row_azimuth_deg(net);
+        for (int i = 0; i < kAzimuths; ++i) {
+            // From the south on: of equals the first is taken, and maps are read from there.
+            const double turn_deg = (i + 1) / 2 * (360.0 / kAzimuths) * (i % 2 ? 1 : -1);
+            const double candidate_deg = turn_deg <= -180 ? turn_deg + 540 : 180 + turn_deg;
+            Aspect aspect =
+                aspect_from(net, candidate_deg, wanted.elevation_deg.value_or(kMiddle_deg), day);
+            const DefaultMoment light = day.estimate(candidate_deg);
+            const double southern = 1 + 0.05 * std::cos(radians(turn_deg));
+            const double score = aspect.score() * southern * obliqueness(candidate_deg, row_deg) *
+                                 (light.within_bounds ? 1 : 0.3);
+            if (score <= most + 1e-9) continue;
+            most = score;
+            azimuth_deg = std::fmod(candidate_deg, 360.0);
+        }
+    }
+    best.orbit.azimuth_deg = azimuth_deg;
+    double elevation_deg = wanted.elevation_deg.value_or(kFirstElevation_deg);
+    best.aspect = aspect_from(net, azimuth_deg, elevation_deg, day);
+    while (!wanted.elevation_deg && elevation_deg + kElevationStep_deg <= kHighestView_deg &&
+           (best.aspect.in_sight < kEnoughInSight ||
+            (best.aspect.filled < kEnoughFilled && elevation_deg < kHighForFill_deg))) {
+        elevation_deg += kElevationStep_deg;
+        best.aspect = aspect_from(net, azimuth_deg, elevation_deg, day);
+    }
+    best.orbit.elevation_deg = elevation_deg;
+    return best;
+}
+
+}  // namespace relevo::scene

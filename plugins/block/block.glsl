@@ -1,0 +1,42 @@
+//! provides  a DEM seen from outside as a block: the material of its cut sides, and a calm backdrop with the
+//!           block's own shade on the floor below it
+//! hook      side, backdrop
+//! reads     the sun, the sky's light, where the DEM has ground
+//! writes    radiance
+
+//@ include lib/floor.glsl
+//@ include lib/ground.glsl
+
+uniform vec3 block_side = vec3(0.34, 0.31, 0.28); //@ colour label("Sides") description("Reflectance of the cut")
+uniform float block_sun = 0.45; //@ range(0, 2) label("Sun on the sides") description("As a multiple of the sun's: below 1 the ground stays what is looked at")
+uniform float block_sky = 1.8; //@ range(0, 10) label("Light of the surroundings") description("On the sides, as a multiple of the sky's: what is bright around a block lights it")
+uniform vec3 block_above = vec3(0.60, 0.62, 0.64); //@ colour label("Backdrop above") description("At the picture's upper edge, by day")
+uniform vec3 block_below = vec3(0.43, 0.43, 0.42); //@ colour label("Backdrop below") description("And at its lower edge")
+uniform vec3 block_space = vec3(0.012, 0.014, 0.018); //@ colour label("Behind a globe") description("Backdrop of a DEM that goes round the Earth")
+uniform float block_shade = 0.55; //@ range(0, 1) label("Shade") description("How much of its light the floor below the block has lost")
+
+float block_luminance(in vec3 light) {
+    return dot(light, vec3(0.2126, 0.7152, 0.0722));
+}
+
+/// What turns a colour of the picture by day into radiance: the backdrop is no part of the landscape, and as
+/// bright whatever the exposure, but a night is dark all over.
+float block_scale() {
+    float light = block_luminance(frame.sky_irradiance.rgb + max(sin(frame.sun_direction.w), 0.25) * frame.sun_light[0].rgb);
+    return min(2.0 * light, 1.0 / frame.exposure);
+}
+
+vec3 block_on_side(in Surface s, in float down) {
+    vec3 to_sun;
+    vec3 sun = sun_light(s.up, to_sun) * max(dot(s.normal, to_sun), 0.0);
+    vec3 sky = block_sky * vec3(block_luminance(frame.sky_irradiance.rgb)) * (0.75 + 0.25 * dot(s.normal, s.up));
+    // Near the floor less of the surroundings is seen.
+    return block_side * (block_sun * sun + sky) * (1.0 - 0.35 * down * down);
+}
+
+vec3 block_on_backdrop(in vec3 direction, in vec2 at) {
+    if (frame.block.z <= 0.0) return block_space * block_scale();
+    vec2 shade = floor_shade(direction);
+    float left = (1.0 - 0.6 * block_shade * shade.x) * (1.0 - block_shade * shade.y);
+    return mix(block_below, block_above, smoothstep(0.0, 1.0, at.y)) * left * block_scale();
+}

@@ -1,0 +1,138 @@
+//! provides  the cut sides of a DEM that is seen from outside: a wall below each edge of the drawn ground
+//! reads     a tile's net and height page, as terrain.vert.glsl does, so that walls meet the ground as it
+//!           is drawn, whatever its level and however far it has morphed
+//! writes    position [m, relative to the eye], height [m], share of the way down, direction outwards
+//!
+//! An edge is one of two kinds: a step along the DEM's rim, or the line on which a triangle of the ground
+//! is cut because a corner of it has no height.
+
+//@ include lib/finite.glsl
+//@ include lib/ground.glsl
+
+layout(location = 0) in vec4 ends;  // xy, zw: two corners, in vertices of the tile
+layout(location = 1) in vec4 third;  // xy: the third one, x below 0 on the rim; z: 1 the edge's other end; w: 1 down
+layout(location = 2) in vec4 net_0;  // the rest as in terrain.vert.glsl
+layout(location = 3) in vec4 net_u;
+layout(location = 4) in vec4 net_uu;
+layout(location = 5) in vec4 net_v;
+layout(location = 6) in vec4 net_uv;
+layout(location = 7) in vec4 net_uuv;
+layout(location = 8) in vec4 net_vv;
+layout(location = 9) in vec4 net_uvv;
+layout(location = 10) in vec4 net_uuvv;
+layout(location = 11) in vec4 up_0;
+layout(location = 12) in vec4 up_u;
+layout(location = 13) in vec4 up_v;
+
+uniform sampler2DArray height_pages;
+
+out vec3 side_position_m;
+out float side_height_m;
+out float side_depth;
+out vec3 side_outwards;  // away from the ground beside a hole, of no length on the rim
+
+/// A corner of the ground as it is drawn.
+struct SideCorner {
+    vec2 at;  // 0..1 over the tile's part of the DEM
+    vec3 position_m;
+    float height_m;
+    float coverage;
+};
+
+vec3 placed(in vec2 at, in float height) {
+    vec3 up = up_0.xyz + at.x * up_u.xyz + at.y * up_v.xyz;
+    vec3 row = net_0.xyz + at.x * (net_u.xyz + at.x * net_uu.xyz);
+    vec3 row_v = net_v.xyz + at.x * (net_uv.xyz + at.x * net_uuv.xyz);
+    vec3 row_vv = net_vv.xyz + at.x * (net_uvv.xyz + at.x * net_uuvv.xyz);
+    return row + at.y * (row_v + at.y * row_vv) + height * frame.height_range.z * up;
+}
+
+SideCorner corner(in vec2 grid) {
+    vec2 limit = vec2(net_0.w, net_u.w);
+    ivec3 texel = ivec3(clamp(grid, vec2(0.0), ceil(limit)) + 1.0, net_uu.w);
+    vec4 levels = texelFetch(height_pages, texel, 0);
+    SideCorner c;
+    c.at = min(grid, limit) / limit;
+    float morph = clamp((length(placed(c.at, levels.r)) - net_vv.w) * net_uvv.w, 0.0, 1.0);
+    vec2 height = mix(levels.rg, levels.ba, morph);
+    c.height_m = height.r;
+    c.coverage = height.g;
+    VertexFrame v;
+    v.up = up_0.xyz + c.at.x * up_u.xyz + c.at.y * up_v.xyz;
+    v.height_m = c.height_m;
+    v.height_unit = height_unit_of(c.height_m);
+    v.position_m = placed(c.at, c.height_m);
+    v.ground_m = ground_at(v.position_m, v.up, c.height_m);
+    v.distance_m = length(v.position_m);
+    v.drawn_height_m = c.height_m * frame.height_range.z;
+    c.position_m = v.position_m;
+    hook_displace(v, v.position_m);
+    c.position_m = finite(vec4(v.position_m, 0.0)) == 0.0 ? c.position_m : v.position_m;
+    return c;
+}
+
+const int kReach = 3;  // nodes around that tell where a hole lies
+
+/// Away from the ground at an end of an edge beside a hole: the rim of a hole goes round posts in steps,
+/// and is shaded as the line that they follow.
+/// @param reach  0 on the DEM's rim, whose steps are the DEM's own corners: gives no direction
+vec3 outwards(in vec2 grid, in vec2 at, in int reach) {
+    vec2 slope = vec2(0.0);
+    ivec2 texel = ivec2(grid) + 1;
+    for (int i = 1; i <= reach; ++i) {
+        for (int j = -i; j <= i; ++j) {
+            ivec4 x = clamp(texel.x + ivec4(i, -i, j, j), 0, 66);
+            ivec4 y = clamp(texel.y + ivec4(j, j, i, -i), 0, 66);
+            int layer = int(net_uu.w);
+            slope.x += texelFetch(height_pages, ivec3(x.x, y.x, layer), 0).g -
+                       texelFetch(height_pages, ivec3(x.y, y.y, layer), 0).g;
+            slope.y += texelFetch(height_pages, ivec3(x.z, y.z, layer), 0).g -
+                       texelFetch(height_pages, ivec3(x.w, y.w, layer), 0).g;
+        }
+    }
+    const float step = 0.01;
+    vec3 along = placed(at + vec2(step, 0.0), 0.0) - placed(at, 0.0);
+    vec3 down = placed(at + vec2(0.0, step), 0.0) - placed(at, 0.0);
+    vec3 away = -slope.x * normalize(along) - slope.y * normalize(down);
+    return length(away) > 0.0 ? normalize(away) : vec3(0.0);
+}
+
+/// Where the way from one corner to another leaves the ground.
+SideCorner crossing(in SideCorner a, in SideCorner b) {
+    float share = clamp((0.5 - a.coverage) / (b.coverage - a.coverage), 0.0, 1.0);
+    return SideCorner(mix(a.at, b.at, share), mix(a.position_m, b.position_m, share),
+                      mix(a.height_m, b.height_m, share), 0.5);
+}
+
+bool covered(in SideCorner c) {
+    return c.coverage >= 0.5;
+}
+
+void main() {
+    SideCorner a = corner(ends.xy), b = corner(ends.zw);
+    bool in_a = covered(a), in_b = covered(b);
+    bool other = third.z > 0.5;
+    SideCorner end = other ? b : a;
+    bool nothing = !in_a && !in_b;
+    if (third.x < 0.0) {
+        if (in_a != in_b && !covered(end)) end = crossing(a, b);
+    } else {
+        SideCorner c = corner(third.xy);
+        bool in_c = covered(c);
+        nothing = in_a == in_b && in_b == in_c;
+        // The corner that is alone on its side is on both edges that are crossed.
+        if (in_a != in_b && in_a != in_c) {
+            end = other ? crossing(a, c) : crossing(a, b);
+        } else if (in_b != in_a && in_b != in_c) {
+            end = other ? crossing(b, c) : crossing(b, a);
+        } else {
+            end = other ? crossing(c, b) : crossing(c, a);
+        }
+    }
+    bool down = third.w > 0.5;
+    side_position_m = down ? placed(end.at, frame.block.x) : end.position_m;
+    side_height_m = down ? frame.block.x : end.height_m;
+    side_depth = third.w;
+    side_outwards = outwards(other ? ends.zw : ends.xy, end.at, third.x < 0.0 ? 0 : kReach);
+    gl_Position = nothing ? vec4(0.0, 0.0, 0.0, 1.0) : frame.view_projection * vec4(side_position_m, 1.0);
+}

@@ -1,0 +1,227 @@
+// What a picture shows for which nothing is asked: where the DEM lies in it, and in which light.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "base/paths.h"
+#include "base/units.h"
+#include "session/session.h"
+#include "sun/position.h"
+#include "support/support.h"
+
+namespace relevo::session {
+namespace {
+
+#define SKIP_WITHOUT_BLOCK                                                  \
+    if (!std::filesystem::exists(test::source_dir() / "plugins" / "block")) \
+    GTEST_SKIP() << "the plugin block is not there"
+
+scene::Scene scene_of(const std::filesystem::path& dem, std::vector<std::string> effects) {
+    scene::Scene scene;
+    scene.dems = {dem.string()};
+    scene.effects.switches.only = std::move(effects);
+    scene.width_px = 320;
+    scene.height_px = 256;
+    return scene;
+}
+
+std::filesystem::path bundled(const char* name) {
+    return test::source_dir() / "data/dem" / name;
+}
+
+/// What of a picture is the DEM.
+struct Covered {
+    double share = 0, width = 0, height = 0;
+};
+
+Covered covered(const Session& session) {
+    std::vector<float> depths;
+    session.read_depths(depths);
+    const int width = session.scene().width_px, height = session.scene().height_px;
+    int left = width, right = -1, low = height, high = -1, count = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            if (std::isinf(depths[static_cast<std::size_t>(y * width + x)])) continue;
+            ++count;
+            left = std::min(left, x);
+            right = std::max(right, x);
+            low = std::min(low, y);
+            high = std::max(high, y);
+        }
+    return {static_cast<double>(count) / (width * height),
+            static_cast<double>(right + 1 - left) / width,
+            static_cast<double>(high + 1 - low) / height};
+}
+
+void expect_filled(const scene::Scene& scene) {
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    session.draw();
+    const Covered at = covered(session);
+    EXPECT_NEAR(std::max(at.width, at.height), 0.95, 0.012) << scene.dems.front();
+    std::printf("[ picture  ] %s: %.0f %% of it\n", scene.dems.front().c_str(), 100 * at.share);
+}
+
+TEST(Frame, FillsTheWidthOrTheHeightOfPicturesOfAnyShape) {
+    SKIP_WITHOUT_BLOCK;
+    for (const std::vector<std::string>& effects : {std::vector<std::string>{"block"}, {}})
+        for (const auto& [width, height] : {std::pair(320, 256), {200, 400}, {500, 200}}) {
+            scene::Scene scene = scene_of(bundled("jacksboro.tif"), effects);
+            scene.width_px = width;
+            scene.height_px = height;
+            expect_filled(scene);
+        }
+}
+
+TEST(Frame, FillsTheWidthOrTheHeightOfRealDems) {
+    SKIP_WITHOUT_BLOCK;
+    SKIP_WITHOUT_TEST_DATA(data);
+    for (const char* name : {"hawaii_rotated20.tif", "SainteHelens.dem", "HI_topo_04.nc",
+                             "dem_RGI50-05.08389.tif", "srtm_bigtujunga30m_utm11.tif", "roi.tif"})
+        expect_filled(scene_of(data / "dem" / name, {"block"}));
+    expect_filled(scene_of(data / "climate/orog_1deg.tif", {"block"}));
+}
+
+TEST(Frame, ASquareDemCoversAThirdOfThePicture) {
+    SKIP_WITHOUT_BLOCK;
+    FilesInUse files;
+    Session session(scene_of(bundled("jacksboro.tif"), {"block"}), {.device = "software"}, files);
+    session.draw();
+    EXPECT_GE(covered(session).share, 1.0 / 3);
+}
+
+TEST(Frame, TheBlockIsThereFromOutsideAndNotFromWithin) {
+    SKIP_WITHOUT_BLOCK;
+    const auto depths_of = [](scene::Scene scene, bool block) {
+        if (!block) scene.effects.switches.only->clear();
+        FilesInUse files;
+        Session session(scene, {.device = "software"}, files);
+        session.draw();
+        std::vector<float> depths;
+        session.read_depths(depths);
+        return depths;
+    };
+    scene::Scene scene = scene_of(bundled("jacksboro.tif"), {"block"});
+    scene.view.orbit = {195, 30, 0.7};
+    const auto with = depths_of(scene, true);
+    // The camera without it stands nearer, as it has less to show: from an eye it stays.
+    FilesInUse files;
+    Session outside(scene, {.device = "software"}, files);
+    const geo::Geodetic eye = outside.ground().frame.to_geodetic(outside.camera().eye_m);
+    scene.view = {.eye = scene::Standpoint{eye}, .heading_deg = 15, .pitch_deg = -30};
+    int more = 0, other = 0;
+    const auto block = depths_of(scene, true), bare = depths_of(scene, false);
+    for (std::size_t i = 0; i < block.size(); ++i) {
+        more += std::isinf(bare[i]) && !std::isinf(block[i]);
+        other += !std::isinf(bare[i]) && std::abs(block[i] / bare[i] - 1) > 1e-3;
+    }
+    EXPECT_GT(more, 0.01 * static_cast<double>(block.size()));
+    EXPECT_LT(other, 0.005 * static_cast<double>(block.size()));
+    // From within all is as without.
+    scene.view = {.eye = scene::Standpoint{geo::geodetic_deg(36.3, -84.2, 1500)},
+                  .heading_deg = 300};
+    EXPECT_EQ(depths_of(scene, true), depths_of(scene, false));
+}
+
+TEST(Frame, WallsMeetTheGroundSoThatNothingShowsBetween) {
+    SKIP_WITHOUT_BLOCK;
+    SKIP_WITHOUT_TEST_DATA(data);
+    // Voids, a skewed border and a polygon: no background between ground and walls. Along each
+    // column of the picture the DEM is one piece where nothing of it stands behind a void.
+    for (const char* name : {"SainteHelens.dem", "hawaii_rotated20.tif"}) {
+        scene::Scene scene = scene_of(data / "dem" / name, {"block"});
+        scene.width_px = 640;
+        scene.height_px = 512;
+        FilesInUse files;
+        Session session(scene, {.device = "software"}, files);
+        session.draw();
+        std::vector<float> depths;
+        session.read_depths(depths);
+        int gaps = 0;
+        for (int x = 0; x < 640; ++x) {
+            int pieces = 0;
+            bool before = false;
+            for (int y = 0; y < 512; ++y) {
+                const bool here = !std::isinf(depths[static_cast<std::size_t>(y * 640 + x)]);
+                pieces += here && !before;
+                before = here;
+            }
+            gaps += std::max(0, pieces - 1);
+        }
+        EXPECT_LE(gaps, 3) << name;
+    }
+}
+
+TEST(Frame, TheSunOfTheDefaultHourRakesTheGround) {
+    SKIP_WITHOUT_TEST_DATA(data);
+    for (const char* name : {"hawaii_rotated20.tif", "SainteHelens.dem", "dem_RGI50-05.08389.tif",
+                             "srtm_bigtujunga30m_utm11.tif", "swellendam/srtm_41_19_4326.tif"}) {
+        FilesInUse files;
+        Session session(scene_of(data / "dem" / name, {}), {.device = "software"}, files);
+        const sun::Position sun = sun::position(session.moment(), session.ground().frame.origin());
+        EXPECT_GE(degrees(sun.elevation_rad), 20) << name;
+        EXPECT_LE(degrees(sun.elevation_rad), 35) << name;
+        const double aside = std::remainder(
+            degrees(sun.azimuth_rad) - session.scene().view.orbit.azimuth_deg.value(), 360);
+        EXPECT_GE(std::abs(aside), 50) << name;
+        EXPECT_LE(std::abs(aside), 100) << name;
+        EXPECT_EQ(session.moment_reason().find(", so 2026-"), 0u);
+        EXPECT_EQ(session.view_reason().find("the DEM is seen from azimuth "), 0u);
+    }
+}
+
+TEST(Frame, WhatIsGivenIsLeft) {
+    scene::Scene scene = scene_of(bundled("jacksboro.tif"), {});
+    scene.moment.time = "2026-03-01T12:00Z";
+    scene.view.orbit = {77, 20, 1};
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    EXPECT_EQ(session.moment_reason(), "");
+    EXPECT_EQ(session.view_reason(), "");
+    EXPECT_EQ(sun::to_iso(session.moment()), "2026-03-01T12:00:00Z");
+    // The view of a DEM is the same at all times and in all sizes.
+    scene.view.orbit = {};
+    FilesInUse others;
+    Session first(scene, {.device = "software"}, others);
+    scene.moment.time = "2026-12-01T20:00Z";
+    scene.height_px = 700;
+    Session second(scene, {.device = "software"}, others);
+    EXPECT_EQ(first.scene().view.orbit.azimuth_deg, second.scene().view.orbit.azimuth_deg);
+    EXPECT_EQ(first.scene().view.orbit.elevation_deg, second.scene().view.orbit.elevation_deg);
+}
+
+TEST(Frame, NoDefaultPictureIsClipped) {
+    // With all that is on by default.
+    std::vector<std::filesystem::path> dems{bundled("jacksboro.tif"),
+                                            bundled("vancouver-island.tif")};
+    if (const auto data = test::test_data_dir())
+        for (const char* name :
+             {"mt_rainier_90m.tif", "N42E001.hgt", "SainteHelens.dem", "colorado_tut_relief.nc",
+              "holyroodpark.tif", "dem_RGI50-05.08389.tif", "missoula_valley.img",
+              "monterey_bay_topobathy.tif", "hawaii_rotated20.tif", "rmnp/rmnp-dem.tif"})
+            dems.push_back(*data / "dem" / name);
+    for (const std::filesystem::path& dem : dems) {
+        scene::Scene scene = scene_of(dem, {});
+        scene.effects = {};
+        FilesInUse files;
+        Session session(scene, {.device = "software"}, files);
+        session.draw();
+        const image::Image8 picture = session.picture();
+        int light = 0, dark = 0;
+        for (int y = 0; y < picture.height; ++y)
+            for (int x = 0; x < picture.width; ++x) {
+                const auto [least, most] =
+                    std::minmax({picture.at(x, y, 0), picture.at(x, y, 1), picture.at(x, y, 2)});
+                light += least >= 254;
+                dark += most <= 2;
+            }
+        const double pixels = double{1} * picture.width * picture.height;
+        EXPECT_LE(light / pixels, 0.01) << dem;
+        EXPECT_LE(dark / pixels, 0.01) << dem;
+    }
+}
+
+}  // namespace
+}  // namespace relevo::session
