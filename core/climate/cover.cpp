@@ -111,7 +111,7 @@ CoverColumn::CoverColumn(const Normals& normals)
       lapse_k_km_(lapse_k_km(normals.lat_deg)),
       upper_lapse_k_km_(lapse_k_km_),
       year_mm_(sum_of(normals.rain_mm)) {
-    const double warm = std::clamp((mean_of(temperature_c(normals.relief_m)) - 10) / 15, 0.0, 1.0);
+    const double warm = std::clamp((mean_c(normals.relief_m) - 10) / 15, 0.0, 1.0);
     for (double& lapse : upper_lapse_k_km_)
         lapse -= kMoistLapse_k_km * warm;
     Months daily_mm;
@@ -138,6 +138,10 @@ Months CoverColumn::temperature_c(double height_m) const {
         temperature[month] = normals_.sea_level_c[month] - lapse_k_km_[month] * low_km -
                              upper_lapse_k_km_[month] * high_km;
     return temperature;
+}
+
+double CoverColumn::mean_c(double height_m) const {
+    return mean_of(temperature_c(height_m));
 }
 
 /// Linear between the middles of the months.
@@ -178,7 +182,7 @@ Year CoverColumn::steps_of(const Months& months) const {
 
 double CoverColumn::dryness(double height_m) const {
     const double seasonal = summer_share_ >= 0.7 ? 280 : summer_share_ <= 0.3 ? 0 : 140;
-    const double limit_mm = 20 * mean_of(temperature_c(height_m)) + seasonal;
+    const double limit_mm = 20 * mean_c(height_m) + seasonal;
     return year_mm_ / std::max(limit_mm, 60.0);
 }
 
@@ -270,6 +274,29 @@ double snow_on(const Year& snow_mm, double day) {
     };
     const double first = snow_mm[wrapped(below)], second = snow_mm[wrapped(below + 1)];
     return first + (at - below) * (second - first);
+}
+
+double CoverColumn::green(double height_m, double day) const {
+    constexpr double kFrom_c = 2, kFull_c = 10, kDry = 0.3, kMoist = 1;
+    constexpr std::size_t kBefore = 12;  // steps: sixty days
+    const Year temperature = steps_of(temperature_c(height_m));
+    const auto now = static_cast<std::size_t>(day / kStep_days) % kSteps;
+    // Leaves follow the warmth of weeks, not that of the day.
+    constexpr std::size_t kWeeks = 4;
+    double rain_mm = 0, warmth_c = 0, weeks_c = 0;
+    for (std::size_t i = 0; i < kBefore; ++i) {
+        const std::size_t step = (now + kSteps - i) % kSteps;
+        rain_mm += rain_mm_[step];
+        warmth_c += temperature[step] / kBefore;
+        if (i < kWeeks) weeks_c += temperature[step] / kWeeks;
+    }
+    const double year_mm = rain_mm * kSteps / kBefore;
+    const double limit_mm = std::max(20 * std::max(warmth_c, 0.0) + 140, 60.0);
+    const auto ramp = [](double from, double to, double x) {
+        const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+        return t * t * (3 - 2 * t);
+    };
+    return ramp(kFrom_c, kFull_c, weeks_c) * ramp(kDry, kMoist, year_mm / limit_mm);
 }
 
 Cover CoverColumn::cover(double height_m, double day) const {

@@ -44,6 +44,7 @@ class CoverColumn {
 
     /// Mean air temperature [degC]. Above the relief around it falls less where the ground is warm.
     Months temperature_c(double height_m) const;
+    double mean_c(double height_m) const;        ///< of the year
     double year_mm() const { return year_mm_; }  ///< rain and melted snow
 
     /// Rain over what the warmth takes; the limit of dry climates is 1, of deserts 0.5.
@@ -71,6 +72,10 @@ class CoverColumn {
     static double snow_share(double snow_mm) { return snow_mm / (snow_mm + 4); }
     /// That on a day.
     double snow_share(double height_m, double day) const;
+
+    /// How green what grows is on a day: 0 in frost and drought, 1 in warm months with as much rain
+    /// as their warmth takes. Rain counts over the two months before; limits as dryness().
+    double green(double height_m, double day) const;
 
     Cover cover(double height_m, double day) const;
 

@@ -59,18 +59,20 @@ CoverTable::CoverTable(const ClimateMap& map, const Box& box, double lowest_m, d
             places_.emplace_back(map.around(geo::geodetic_deg(lat_deg, lon_deg), apart_deg / 2));
         }
     }
-    fixed_.resize(4 * index(0, 0, heights_));
+    fixed_.resize(index(0, 2 * heights_));
     parallel_for(0, static_cast<int>(places_.size()), 4, [&](int first, int last) {
-        for (int place = first; place < last; ++place) {
-            const CoverColumn& column = places_[static_cast<std::size_t>(place)];
+        for (auto place = static_cast<std::size_t>(first); place < static_cast<std::size_t>(last);
+             ++place) {
+            const CoverColumn& column = places_[place];
             for (int height = 0; height < heights_; ++height) {
                 const double height_m = lowest_m_ + height * step_m_;
-                float* const texel =
-                    &fixed_[4 * (index(0, 0, height) + static_cast<std::size_t>(place))];
-                texel[0] = static_cast<float>(column.dryness(height_m));
-                texel[1] = static_cast<float>(column.growth(height_m));
-                texel[2] = static_cast<float>(column.ice_balance_mm(height_m) / 1000 +
-                                              kMappedIce_m * column.normals().mapped_ice);
+                float* const ground = &fixed_[index(place, height)];
+                ground[0] = static_cast<float>(column.dryness(height_m));
+                ground[1] = static_cast<float>(column.growth(height_m));
+                ground[3] = static_cast<float>(column.mean_c(height_m));
+                fixed_[index(place, heights_ + height)] =
+                    static_cast<float>(column.ice_balance_mm(height_m) / 1000 +
+                                       kMappedIce_m * column.normals().mapped_ice);
             }
         }
     });
@@ -80,14 +82,18 @@ std::vector<float> CoverTable::texels(double day) const {
     std::vector<float> texels = fixed_;
     parallel_for(0, static_cast<int>(places_.size()), 4, [&](int first, int last) {
         std::vector<float> shares(static_cast<std::size_t>(heights_));
-        for (int place = first; place < last; ++place) {
-            for (int height = 0; height < heights_; ++height)
+        for (auto place = static_cast<std::size_t>(first); place < static_cast<std::size_t>(last);
+             ++place) {
+            const CoverColumn& column = places_[place];
+            for (int height = 0; height < heights_; ++height) {
+                const double height_m = lowest_m_ + height * step_m_;
                 shares[static_cast<std::size_t>(height)] =
-                    static_cast<float>(places_[static_cast<std::size_t>(place)].snow_share(
-                        lowest_m_ + height * step_m_, day));
+                    static_cast<float>(column.snow_share(height_m, day));
+                texels[index(place, height) + 2] = static_cast<float>(column.green(height_m, day));
+            }
             const std::vector<float> mean = smoothed(shares, step_m_);
             for (int height = 0; height < heights_; ++height)
-                texels[4 * (index(0, 0, height) + static_cast<std::size_t>(place)) + 3] =
+                texels[index(place, heights_ + height) + 1] =
                     mean[static_cast<std::size_t>(height)];
         }
     });

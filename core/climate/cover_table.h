@@ -29,25 +29,26 @@ class CoverTable {
     int rows() const { return rows_; }        ///< from south to north
     int heights() const { return heights_; }  ///< upwards
     double step_m() const { return step_m_; }
+    double lowest_m() const { return lowest_m_; }
+    double highest_m() const { return lowest_m_ + step_m_ * (heights_ - 1); }
 
-    /// Of each place and height, column after column, row after row, upwards: dryness(), growth(),
-    /// the ice's balance with what mapped ice has over it [m of water a year], and the share of
-    /// level open ground that has snow on the day. That is a mean over 100 m of height, as the edge
-    /// of snow is ragged.
+    /// Four numbers for each place and height, column after column, row after row, upwards: first
+    /// of all the ground's, dryness(), growth(), green() on the day and the year's mean temperature
+    /// [degC]; then, likewise, the snow's: the ice's balance with what mapped ice has over it [m of
+    /// water a year], the share of level open ground that has snow on the day, and two zeros. That
+    /// share is a mean over 100 m of height, as the edge of snow is ragged.
     std::vector<float> texels(double day) const;
 
   private:
-    std::size_t index(int column, int row, int height) const {
-        return (static_cast<std::size_t>(height) * static_cast<std::size_t>(rows_) +
-                static_cast<std::size_t>(row)) *
-                   static_cast<std::size_t>(columns_) +
-               static_cast<std::size_t>(column);
+    /// Of a place's texel; those of the snow have heights from heights() on.
+    std::size_t index(std::size_t place, int height) const {
+        return 4 * (static_cast<std::size_t>(height) * places_.size() + place);
     }
 
     int columns_ = 2, rows_ = 2, heights_ = 2;
     double lowest_m_ = 0, step_m_ = kStep_m;
     std::vector<CoverColumn> places_;  // row after row
-    std::vector<float> fixed_;         // texels without the snow
+    std::vector<float> fixed_;         // texels without what hangs on the day
 };
 
 }  // namespace relevo::climate

@@ -14,6 +14,7 @@
 #include "gl/buffer.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "render/climate_volume.h"
 #include "render/loading.h"
 #include "render/lod.h"
 #include "render/page_cache.h"
@@ -95,6 +96,11 @@ class Terrain {
     /// them.
     void keep_surface();
 
+    /// From now on the ground has its climate's tables, with the snow of a day (0 to 364).
+    /// @returns them, for FrameBlock
+    /// @throws Error (BadInput) where the map of the climate is missing or damaged
+    const ClimateVolume& keep_climate(int day);
+
     /// What shaders read of the ground, by the sampler's name: a PageLayer's, or "page_table", the
     /// slot and level of the finest page of the picture there is. Null for others.
     const gl::Texture* texture(std::string_view name) const;
@@ -129,6 +135,7 @@ class Terrain {
     int normal_layers_ = 1;
 
     bool keeps_surface_ = false;
+    std::optional<ClimateVolume> climate_;
     bool complete_ = true;
     gl::Texture page_table_;
     gl::Buffer grid_vertices_, grid_indices_, instances_;

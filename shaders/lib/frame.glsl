@@ -31,4 +31,7 @@ layout(std140, binding = 0) uniform Frame {
                               // bends light, 1 is 59.7 arcsec at an elevation of 45 degrees
     vec4 celestial[3];        // xyz: rows of the rotation from the local frame to the axes of star catalogues (ICRS);
                               // w: velocity of the place there, over that of light
+    vec4 climate_place;       // lib/climate.glsl: factor and constant from longitudes off the DEM's centre, and from
+                              // latitudes [rad], to the table's coordinates
+    vec4 climate_height;      // xy: likewise from heights [m], of the ground's half; zw: its first and last coordinate
 } frame;

@@ -119,6 +119,18 @@ TEST(Cover, SnowComesAndGoesWithTheSeasonOfTheHemisphere) {
     EXPECT_GT(*tyrol.snow_line_m(july), 2600);
 }
 
+TEST(Cover, GreenGoesWithWarmthAndRain) {
+    const double january = day_of_year(1, 20), july = day_of_year(7, 20);
+    const CoverColumn scotland = column_at(55.9, -3.2), california = column_at(37.5, -121.5);
+    const CoverColumn sahara = column_at(23, 25), amazon = column_at(-3, -60);
+    EXPECT_GT(scotland.green(100, july), 0.8);
+    EXPECT_LT(scotland.green(100, january), 0.3);
+    EXPECT_LT(california.green(200, july), 0.1);  // golden hills
+    EXPECT_GT(california.green(200, day_of_year(3, 20)), 0.5);
+    EXPECT_LT(sahara.green(500, january), 0.05);
+    EXPECT_GT(amazon.green(60, january), 0.95);
+}
+
 TEST(Cover, YearHasNoStepAtItsTurn) {
     const CoverColumn tyrol = column_at(47.2, 11.4);
     for (const double height_m : {800.0, 1500.0, 2500.0}) {

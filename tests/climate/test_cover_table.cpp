@@ -29,7 +29,11 @@ TEST(CoverTable, CornersAreTheColumnsOfTheirPlaces) {
                         static_cast<std::size_t>(height * table.columns() * table.rows() + place)];
             EXPECT_NEAR(texel[0], column.dryness(height_m), 1e-4);
             EXPECT_NEAR(texel[1], column.growth(height_m), 1e-4);
-            EXPECT_NEAR(texel[3], column.snow_share(height_m, 200), 0.35) << height_m;
+            EXPECT_NEAR(texel[2], column.green(height_m, 200), 1e-4);
+            EXPECT_NEAR(texel[3], column.mean_c(height_m), 1e-4);
+            const float* const snow = texel + texels.size() / 2;
+            EXPECT_NEAR(snow[0], column.ice_balance_mm(height_m) / 1000, 1.5);  // mapped ice
+            EXPECT_NEAR(snow[1], column.snow_share(height_m, 200), 0.35) << height_m;
         }
     }
 }
@@ -39,9 +43,9 @@ TEST(CoverTable, SnowOfADayIsNotThatOfAnother) {
     const auto mean_snow = [&](double day) {
         const std::vector<float> texels = table.texels(day);
         double sum = 0;
-        for (std::size_t i = 3; i < texels.size(); i += 4)
+        for (std::size_t i = texels.size() / 2 + 1; i < texels.size(); i += 4)
             sum += texels[i];
-        return 4 * sum / static_cast<double>(texels.size());
+        return 8 * sum / static_cast<double>(texels.size());
     };
     EXPECT_GT(mean_snow(30), 0.8);
     EXPECT_LT(mean_snow(210), 0.3);
