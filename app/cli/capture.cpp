@@ -124,6 +124,8 @@ void capture(const Arguments& arguments) {
     log::info(fmt::format(
         "{}, {}: sun at {}{}", where, when, sun,
         scene.moment.time.empty() ? "; no --time given, so a summer morning was taken" : ""));
+    if (const std::string climate = session.climate_text(); !climate.empty())
+        log::info(fmt::format("natural ground of a normal year, in the DEM's middle: {}", climate));
     const auto passes_began = Clock::now();
     session.draw(timings.passes());
     timings.add("passes", milliseconds_since(passes_began));

@@ -17,6 +17,7 @@
 #include "render/ground.h"
 #include "scene/moment.h"
 #include "session/active_effects.h"
+#include "session/climate_words.h"
 #include "session/not_numbers.h"
 #include "session/words.h"
 #include "sun/celestial.h"
@@ -29,6 +30,13 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point began) {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+/// Where the climate is told of: the DEM's middle, at the middle of its heights above the sea.
+geo::Geodetic middle_of(const render::Ground& ground) {
+    geo::Geodetic middle = ground.frame.origin();
+    middle.height_m = middle_height_m(ground.lowest_m, ground.highest_m);
+    return middle;
 }
 
 std::shared_ptr<const LoadedDem> load(const scene::Scene& scene) {
@@ -368,6 +376,12 @@ std::string Session::sun_text() const {
     const geo::Geodetic eye = impl_->eye();
     return session::sun_text(sun::position(impl_->utc, eye),
                              refraction_at(impl_->scene.refraction, eye));
+}
+
+std::string Session::climate_text() const {
+    if (!impl_->drawn.renderer->reads_climate()) return {};
+    const ClimateReport report = climate_report(middle_of(*impl_->ground), impl_->utc);
+    return session::climate_text(report) + "; " + ground_text(report);
 }
 
 const StageTimes& Session::stages() const {

@@ -113,6 +113,10 @@ class Session {
     /// "azimuth 114.27, elevation 65.12 (65.13 with refraction)", as seen from there.
     std::string sun_text() const;
 
+    /// climate_text() and ground_text() of the DEM's middle, at the middle of its heights; empty
+    /// where no effect that is on draws by the climate.
+    std::string climate_text() const;
+
     const StageTimes& stages() const;
     int triangles() const;  ///< of the last frame
     const gl::DeviceInfo& device() const;

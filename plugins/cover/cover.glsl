@@ -25,7 +25,7 @@ uniform bool cover_ice = true; //@ static label("Permanent ice")
 uniform float cover_aspect_m = 480.0; //@ range(0, 3000) unit(m) label("Aspect") description("How much higher snow lies on a wall that faces the noon sun than on level ground")
 uniform vec2 cover_rock_deg = vec2(36.0, 52.0); //@ range(0, 90) unit(deg) label("Rock from, to") description("Slopes on which soil gives way to rock")
 uniform vec2 cover_bare_deg = vec2(46.0, 64.0); //@ range(0, 90) unit(deg) label("Snow slides from, to") description("Slopes that hold less and less snow")
-uniform float cover_open_flats = 0.55; //@ range(0, 1) label("Open flats") description("Share of level ground in temperate forests that is meadow: potential forest, but where people live")
+uniform float cover_open_flats = 0.45; //@ range(0, 1) label("Open flats") description("Share of level ground in temperate forests that is meadow: potential forest, but where people live")
 uniform float cover_noise = 1.0; //@ range(0, 3) label("Ragged edges") description("How far limits wander")
 uniform float cover_texture_m = 12.0; //@ range(0.1, 100000) unit(m) label("Texture size") description("Of the grain that is seen from near")
 uniform float cover_grain = 1.0; //@ range(0, 1) label("Grain") description("Of the ground from near; from afar there is none")
@@ -33,15 +33,16 @@ uniform float cover_grain = 1.0; //@ range(0, 1) label("Grain") description("Of 
 // What it looks like, as albedo.
 uniform vec3 cover_desert = vec3(0.47, 0.35, 0.22); //@ colour label("Desert")
 uniform vec3 cover_steppe = vec3(0.31, 0.25, 0.13); //@ colour label("Steppe, dry")
-uniform vec3 cover_steppe_green = vec3(0.19, 0.20, 0.085); //@ colour label("Steppe, green")
-uniform vec3 cover_grass = vec3(0.112, 0.155, 0.042); //@ colour label("Grass, green")
-uniform vec3 cover_straw = vec3(0.23, 0.19, 0.09); //@ colour label("Grass, dry or frozen")
+uniform vec3 cover_steppe_green = vec3(0.178, 0.172, 0.082); //@ colour label("Steppe, green")
+uniform vec3 cover_grass = vec3(0.105, 0.132, 0.045); //@ colour label("Grass, green")
+uniform vec3 cover_straw = vec3(0.195, 0.172, 0.082); //@ colour label("Grass, dry or frozen")
 uniform vec3 cover_tundra = vec3(0.15, 0.14, 0.062); //@ colour label("Grass of heights")
+uniform vec3 cover_scrub = vec3(0.095, 0.092, 0.047); //@ colour label("Scrub") description("Evergreen shrubs on the slopes of dry, mild country")
 uniform vec3 cover_conifers = vec3(0.028, 0.046, 0.021); //@ colour label("Forest of needles")
 uniform vec3 cover_broadleaf = vec3(0.044, 0.078, 0.022); //@ colour label("Forest of leaves")
-uniform vec3 cover_leafless = vec3(0.105, 0.083, 0.060); //@ colour label("Forest without its leaves")
+uniform vec3 cover_leafless = vec3(0.088, 0.073, 0.052); //@ colour label("Forest without its leaves")
 uniform vec3 cover_rock = vec3(0.225, 0.208, 0.187); //@ colour label("Rock")
-uniform vec3 cover_floor = vec3(0.30, 0.27, 0.21); //@ colour label("Sea floor")
+uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
 uniform vec3 cover_firn = vec3(0.66, 0.74, 0.80); //@ colour label("Ice")
 uniform vec3 cover_white = vec3(0.86, 0.88, 0.91); //@ colour label("Snow")
 
@@ -94,7 +95,9 @@ cover_Shape cover_shape(in Surface s, in float pixel_m) {
     vec2 at = s.ground_m.xy, dx = s.ground_dx_m.xy, dy = s.ground_dy_m.xy;
     shape.small = cover_patch(at, dx, dy, 410.0);
     shape.broad = cover_patch(cover_turn * at, cover_turn * dx, cover_turn * dy, 4700.0);
-    shape.ragged = cover_noise * (1.7 * shape.broad.r + 1.5 * shape.small.r + 1.1 * shape.broad.a);
+    // Near limits: from afar they are ragged by the ground's own shape.
+    float near = mix(0.3, 1.0, 1.0 / (1.0 + pixel_m * pixel_m * 0.01));
+    shape.ragged = near * cover_noise * (1.7 * shape.broad.r + 1.5 * shape.small.r + 1.1 * shape.broad.a);
     return shape;
 }
 
@@ -123,12 +126,16 @@ vec2 cover_white_at(in vec2 place, in float height_m) {
 /// Open ground without snow: desert, steppe, grass, and above them what is bare.
 /// @param rain    dryness, with what the slope does to it
 /// @param growth  warmth for plants
-vec3 cover_open(in ClimateGround ground, in float rain, in float growth) {
+/// @param steep   tangent of the slope
+vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in float steep) {
     vec3 steppe = mix(cover_steppe, cover_steppe_green, ground.green * smoothstep(0.4, 1.0, rain));
     vec3 meadow = mix(cover_straw, cover_grass, ground.green);
     meadow = mix(mix(meadow, cover_tundra, 0.75), meadow, smoothstep(0.7, 1.7, growth));
     vec3 open = mix(cover_desert, steppe, smoothstep(0.25, 0.8, rain));
-    return mix(open, meadow, smoothstep(0.75, 1.4, rain));
+    open = mix(open, meadow, smoothstep(0.8, 1.9, rain));
+    // Where winters are mild shrubs stay green through the drought: chaparral, maquis, fynbos.
+    float shrubs = smoothstep(0.55, 1.1, rain) * smoothstep(6.0, 11.0, ground.temperature) * smoothstep(0.06, 0.4, steep);
+    return mix(open, cover_scrub, 0.85 * shrubs);
 }
 
 vec3 cover_forest(in ClimateGround ground, in float growth) {
@@ -137,6 +144,16 @@ vec3 cover_forest(in ClimateGround ground, in float growth) {
     forest *= mix(1.0, 0.78, smoothstep(18.0, 24.0, ground.temperature));
     float falls = smoothstep(3.0, 9.0, ground.temperature) * (1.0 - smoothstep(13.0, 17.0, ground.temperature));
     return mix(forest, cover_leafless, 0.7 * falls * (1.0 - ground.green));
+}
+
+/// Crowns of trees and the dark between them, of mean 1; from so far that they are smaller than pixels,
+/// nothing.
+float cover_crowns(in Surface s, in float pixel_m) {
+    const float size_m = 96.0, seen_m = 4.0;
+    if (pixel_m > seen_m) return 1.0;
+    vec4 crowns = cover_patch(cover_turn * s.ground_m.yx, cover_turn * s.ground_dx_m.yx, cover_turn * s.ground_dy_m.yx, size_m);
+    float light = 1.7 * crowns.a + 0.6 * (crowns.b - 0.3);
+    return max(1.0 + light * (1.0 - smoothstep(0.2 * seen_m, seen_m, pixel_m)), 0.25);
 }
 
 cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain, in float growth,
@@ -149,16 +166,16 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
     float soil = growth + 0.3 * ragged - 0.35 * shape.steep;
     shares.rock = max(shares.rock, 1.0 - smoothstep(-0.35, 0.55, soil));
 
-    float wooded = smoothstep(1.35, 2.1, rain * (1.0 + 0.22 * ragged)) *
+    float wooded = smoothstep(1.15, 2.15, rain * (1.0 + 0.22 * ragged)) *
                    smoothstep(0.82, 1.16, growth + 0.16 * ragged - 0.06 * shape.steep);
     float temperate = smoothstep(3.0, 6.0, ground.temperature) * (1.0 - smoothstep(15.0, 19.0, ground.temperature));
-    float flats = 1.0 - smoothstep(0.05, 0.22, shape.steep * (1.0 + 0.6 * ragged));
+    float flats = 1.0 - smoothstep(0.02, 0.34, shape.steep * (1.0 + 0.3 * ragged));
     wooded *= 1.0 - cover_open_flats * temperate * flats;
     shares.forest = cover_trees == 2 ? 0.0 : wooded * (1.0 - smoothstep(0.85, 1.3, shape.steep));
 
     vec2 bare = vec2(cover_tan(cover_bare_deg.x), cover_tan(cover_bare_deg.y));
     float holds = 1.0 - 0.85 * smoothstep(bare.x, bare.y, shape.steep * (1.0 + 0.25 * ragged));
-    shares.ice = smoothstep(-0.35, 0.35, white.x + 0.3 * ragged) * holds;
+    shares.ice = smoothstep(-0.15, 0.5, white.x + 0.3 * ragged) * holds;
     float edge = 4.0 * white.y * (1.0 - white.y);
     shares.snow = smoothstep(0.12, 0.88, white.y + 0.22 * edge * ragged) * holds;
     return shares;
@@ -200,17 +217,17 @@ void cover_on_albedo(inout Surface s) {
     // Patches are for the eye that is near: none of them is seen from afar.
     float near = 1.0 / (1.0 + pixel_m * pixel_m * 0.02);
     float tone = near * (0.55 * shape.small.a + 0.35 * shape.small.r);
-    vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth);
+    vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep);
     open = mix(open, cover_floor, smoothstep(-12.0, -30.0, s.height_m) * smoothstep(0.6, 1.2, rain));
     open *= 1.0 + 0.8 * tone + near * 0.25 * shape.small.g * vec3(1.0, 0.0, -0.6);
     vec3 rock = mix(cover_rock, 0.62 * cover_desert + 0.2 * cover_rock, smoothstep(1.0, 0.3, rain));
     rock *= 1.0 + tone;
-    vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone);
+    vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone) * cover_crowns(s, pixel_m);
     vec3 albedo = mix(open, rock, shares.rock);
     float trees = shares.forest * (1.0 - shares.rock);
     albedo = mix(albedo, forest, trees);
-    // Under trees snow is seen by half.
-    float lying = shares.snow * (1.0 - 0.62 * trees);
+    // From above trees hide most of the snow under them.
+    float lying = shares.snow * (1.0 - 0.84 * trees);
     albedo = mix(albedo, cover_firn, shares.ice);
     lying = max(lying, shares.ice * shares.snow);
     albedo = mix(albedo, cover_white, lying);
