@@ -167,12 +167,22 @@ struct ClimateMap::Impl {
         return values[static_cast<std::size_t>(plane) * grid.cells(index) + at];
     }
 
-    /// Bilinear between the middles of cells, round the Earth.
+    /// Of all cells of a row.
+    double mean(Layer layer, int plane, int row, double (*value_of)(double)) {
+        double sum = 0;
+        for (int column = 0; column < grids[layer].columns; ++column)
+            sum += value_of(cell(layer, plane, column, row));
+        return sum / grids[layer].columns;
+    }
+
+    /// Bilinear between the middles of cells, round the Earth. Beyond the last row it goes to that
+    /// row's mean at the pole, where all longitudes are one place.
     void bilinear(Layer layer, const geo::Geodetic& place, std::span<double> planes,
                   double (*value_of)(double)) {
         const Grid& grid = grids[layer];
-        const double y =
-            std::clamp((90 - degrees(place.lat_rad)) * grid.rows / 180 - 0.5, 0.0, grid.rows - 1.0);
+        const double from_north = (90 - degrees(place.lat_rad)) * grid.rows / 180 - 0.5;
+        const double y = std::clamp(from_north, 0.0, grid.rows - 1.0);
+        const double polar = std::min(2 * std::abs(from_north - y), 1.0);
         double x = (degrees(place.lon_rad) + 180) * grid.columns / 360 - 0.5;
         x -= std::floor(x / grid.columns) * grid.columns;
         const int row = std::min(static_cast<int>(y), grid.rows - 2);
@@ -180,11 +190,13 @@ struct ClimateMap::Impl {
         const int next = (column + 1) % grid.columns;
         const double u = x - column, v = y - row;
         for (std::size_t i = 0; i < planes.size(); ++i) {
-            const auto at = [&](int c, int r) {
-                return value_of(cell(layer, static_cast<int>(i), c, r));
-            };
+            const int plane = static_cast<int>(i);
+            const auto at = [&](int c, int r) { return value_of(cell(layer, plane, c, r)); };
             planes[i] = (1 - v) * ((1 - u) * at(column, row) + u * at(next, row)) +
                         v * ((1 - u) * at(column, row + 1) + u * at(next, row + 1));
+            if (polar > 0)
+                planes[i] +=
+                    polar * (mean(layer, plane, v > 0.5 ? row + 1 : row, value_of) - planes[i]);
         }
     }
 

@@ -10,10 +10,9 @@ namespace relevo::climate {
 namespace {
 
 constexpr double kSpacing_deg = 0.5;
-constexpr int kMostHeights = 96, kMostTexels = 80000;
+constexpr int kMostHeights = 128, kMostTexels = 80000;
 constexpr double kRagged_m = 100;  // standard deviation of the snow's edge
 constexpr double kMappedIce_m = 1.5;
-constexpr double kPole_deg = 89.9;
 
 /// Weighted mean over the heights around, as far as there are any.
 std::vector<float> smoothed(const std::vector<float>& values, double step_m) {
@@ -55,9 +54,8 @@ CoverTable::CoverTable(const ClimateMap& map, const Box& box, double lowest_m, d
     for (int row = 0; row < rows_; ++row) {
         const double lat_deg = box.south_deg + height_deg * row / (rows_ - 1);
         for (int column = 0; column < columns_; ++column) {
-            // At a pole all longitudes are one place.
-            const double share = std::abs(lat_deg) > kPole_deg ? 0 : column / (columns_ - 1.0);
-            const double lon_deg = box.west_deg + (box.east_deg - box.west_deg) * share;
+            const double lon_deg =
+                box.west_deg + (box.east_deg - box.west_deg) * column / (columns_ - 1);
             places_.emplace_back(map.around(geo::geodetic_deg(lat_deg, lon_deg), apart_deg / 2));
         }
     }

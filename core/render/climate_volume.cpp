@@ -13,8 +13,8 @@
 namespace relevo::render {
 namespace {
 
-/// What aspects shift and noise may ask for beyond the DEM's heights [m].
-constexpr double kMargin_m = 1000;
+/// What aspects and shifts of limits may ask for beyond the DEM's heights [m].
+constexpr double kMargin_m = 3000;
 /// Heights of the Earth, whatever outliers a DEM has [m].
 constexpr double kLowest_m = -600, kHighest_m = 9000;
 

@@ -12,13 +12,13 @@ uniform sampler2D cover_patches;
 // Where the climate's word is not taken.
 uniform int cover_trees = 0; //@ enum(climate, line, none) static label("Trees") description("Up to the climate's tree line, to one of your own, or none")
 uniform float cover_tree_line_m = 2000.0; //@ range(-1000, 9000) unit(m) label("Tree line") description("Of trees by a line")
-uniform float cover_tree_shift_m = 0.0; //@ range(-9000, 9000) unit(m) label("Tree line shift") description("Added to the climate's: negative where wind, grazing or axes keep it low")
+uniform float cover_tree_shift_m = 0.0; //@ range(-3000, 3000) unit(m) label("Tree line shift") description("Added to the climate's: negative where wind, grazing or axes keep it low")
 uniform int cover_rain = 0; //@ enum(climate, given) static label("Rain") description("As the climate has it, or a dryness of your own")
 uniform float cover_dryness = 2.0; //@ range(0, 10) label("Dryness") description("Rain over what the warmth takes, of rain given: below 0.5 desert, below 1 steppe, from 1.75 forest")
 uniform float cover_rain_factor = 1.0; //@ range(0, 10) label("Rain factor") description("On the climate's: 0.5 in half as wet a country")
 uniform int cover_snow = 0; //@ enum(climate, line, none) static label("Snow") description("Of the date by the climate, above a line, or none")
 uniform float cover_snow_line_m = 2500.0; //@ range(-1000, 9000) unit(m) label("Snow line") description("Of snow by a line, on level ground")
-uniform float cover_snow_shift_m = 0.0; //@ range(-9000, 9000) unit(m) label("Snow line shift") description("Added to the climate's: negative in a snowy year")
+uniform float cover_snow_shift_m = 0.0; //@ range(-3000, 3000) unit(m) label("Snow line shift") description("Added to the climate's: negative in a snowy year")
 uniform bool cover_ice = true; //@ static label("Permanent ice")
 
 // What shape does to it.

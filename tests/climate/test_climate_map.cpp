@@ -83,6 +83,18 @@ TEST(ClimateMap, IsWholeAcrossTheDateLineAndAtThePoles) {
     }
 }
 
+TEST(ClimateMap, APoleIsOnePlace) {
+    const ClimateMap map = ClimateMap::shipped();
+    for (const double lat_deg : {90.0, -90.0}) {
+        const Normals greenwich = map.at(geodetic_deg(lat_deg, 0));
+        for (const double lon_deg : {-170.0, -60.0, 95.0}) {
+            const Normals other = map.at(geodetic_deg(lat_deg, lon_deg));
+            EXPECT_NEAR(other.sea_level_c[0], greenwich.sea_level_c[0], 1e-9);
+            EXPECT_NEAR(other.rain_mm[6], greenwich.rain_mm[6], 1e-9);
+        }
+    }
+}
+
 TEST(ClimateMap, OpensInMilliseconds) {
     // The least of several, as other programs of a test run take turns.
     double least_ms = 1e9;

