@@ -59,7 +59,7 @@ std::string ground_text(const ClimateReport& report) {
         trees = *report.tree_line_m < kEverywhere_m
                     ? "no trees"
                     : fmt::format("trees up to {}", height_text(*report.tree_line_m));
-    return fmt::format("{}, {}, {} on {}", trees, above("ice for good", report.ice_line_m),
+    return fmt::format("{}, {}, {} on {}", trees, above("permanent ice", report.ice_line_m),
                        above("snow", report.snow_line_m), sun::to_string(report.date));
 }
 

@@ -33,7 +33,7 @@ ClimateReport climate_report(const geo::Geodetic& place, sun::Instant moment);
 /// "January -4.1, July 13.2 degC at 1960 m, 1320 mm of rain a year".
 std::string climate_text(const ClimateReport& report);
 
-/// "trees up to 1890 m, ice for good from 2990 m, snow from 2440 m on 2026-06-21".
+/// "trees up to 1890 m, permanent ice from 2990 m, snow from 2440 m on 2026-06-21".
 std::string ground_text(const ClimateReport& report);
 
 }  // namespace relevo::session

@@ -44,7 +44,7 @@ uniform vec3 cover_leafless = vec3(0.088, 0.073, 0.052); //@ colour label("Fores
 uniform vec3 cover_rock = vec3(0.225, 0.208, 0.187); //@ colour label("Rock")
 uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
 uniform vec3 cover_firn = vec3(0.66, 0.74, 0.80); //@ colour label("Ice")
-uniform vec3 cover_white = vec3(0.86, 0.88, 0.91); //@ colour label("Snow")
+uniform vec3 cover_white = vec3(0.77, 0.79, 0.82); //@ colour label("Snow")
 
 // Of sand, grass, rock, snow.
 uniform vec4 cover_specular = vec4(0.02, 0.012, 0.025, 0.08); //@ range(0, 1) label("Specular")
@@ -143,7 +143,7 @@ vec3 cover_forest(in ClimateGround ground, in float growth) {
     vec3 forest = mix(cover_conifers, cover_broadleaf, smoothstep(3.0, 11.0, ground.temperature));
     forest *= mix(1.0, 0.78, smoothstep(18.0, 24.0, ground.temperature));
     float falls = smoothstep(3.0, 9.0, ground.temperature) * (1.0 - smoothstep(13.0, 17.0, ground.temperature));
-    return mix(forest, cover_leafless, 0.7 * falls * (1.0 - ground.green));
+    return mix(forest, cover_leafless, 0.5 * falls * (1.0 - ground.green));
 }
 
 /// Crowns of trees and the dark between them, of mean 1; from so far that they are smaller than pixels,
@@ -175,7 +175,7 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
 
     vec2 bare = vec2(cover_tan(cover_bare_deg.x), cover_tan(cover_bare_deg.y));
     float holds = 1.0 - 0.85 * smoothstep(bare.x, bare.y, shape.steep * (1.0 + 0.25 * ragged));
-    shares.ice = smoothstep(-0.15, 0.5, white.x + 0.3 * ragged) * holds;
+    shares.ice = smoothstep(0.0, 0.7, white.x + 0.3 * ragged) * holds;
     float edge = 4.0 * white.y * (1.0 - white.y);
     shares.snow = smoothstep(0.12, 0.88, white.y + 0.22 * edge * ragged) * holds;
     return shares;
@@ -218,16 +218,19 @@ void cover_on_albedo(inout Surface s) {
     float near = 1.0 / (1.0 + pixel_m * pixel_m * 0.02);
     float tone = near * (0.55 * shape.small.a + 0.35 * shape.small.r);
     vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep);
-    open = mix(open, cover_floor, smoothstep(-12.0, -30.0, s.height_m) * smoothstep(0.6, 1.2, rain));
+    // Dry land lies as low as the shore of the Dead Sea.
+    float floor_share = max((1.0 - smoothstep(-30.0, -12.0, s.height_m)) * smoothstep(0.6, 1.2, rain),
+                            1.0 - smoothstep(-600.0, -440.0, s.height_m));
+    open = mix(open, cover_floor, floor_share);
     open *= 1.0 + 0.8 * tone + near * 0.25 * shape.small.g * vec3(1.0, 0.0, -0.6);
-    vec3 rock = mix(cover_rock, 0.62 * cover_desert + 0.2 * cover_rock, smoothstep(1.0, 0.3, rain));
+    vec3 rock = mix(cover_rock, 0.62 * cover_desert + 0.2 * cover_rock, 1.0 - smoothstep(0.3, 1.0, rain));
     rock *= 1.0 + tone;
     vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone) * cover_crowns(s, pixel_m);
     vec3 albedo = mix(open, rock, shares.rock);
     float trees = shares.forest * (1.0 - shares.rock);
     albedo = mix(albedo, forest, trees);
     // From above trees hide most of the snow under them.
-    float lying = shares.snow * (1.0 - 0.84 * trees);
+    float lying = shares.snow * (1.0 - 0.88 * trees);
     albedo = mix(albedo, cover_firn, shares.ice);
     lying = max(lying, shares.ice * shares.snow);
     albedo = mix(albedo, cover_white, lying);

@@ -39,8 +39,9 @@ TEST(InfoVerb, SaysEverythingInLines) {
                   "they are above\n"
                   "sun        azimuth 114.27, elevation 65.12 (65.13 with refraction) at "
                   "2026-06-21T16:00:00Z\n"
-                  "climate    January JAN, July JUL degC at 656 m, 0 mm of rain a year\n"
-                  "ground     GROUND\n"
+                  "climate    January 1.4, July 22.8 degC at 656 m, 1250 mm of rain a year\n"
+                  "ground     trees up to 2650 m, permanent ice from 3480 m, snow from 2950 m on "
+                  "2026-06-21\n"
                   "net        pieces of 64 posts are drawn within 0.00024 m of where they are, "
                   "3.2e-06 of the post spacing\n");
 }

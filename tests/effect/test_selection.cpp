@@ -63,7 +63,8 @@ TEST(Selection, WhatIsProvidedAloneHidesNothingElse) {
     const Plugins plugins;
     add_two_grounds(plugins);
     plugins.add("paint", R"("provides": ["materials"])");
-    const Selection selection = select(plugins.load(), {}, {});
+    const Registry registry = plugins.load();
+    const Selection selection = select(registry, {}, {});
     EXPECT_THAT(ids(selection), ElementsAre("meadow", "paint", "bump"));
     EXPECT_THAT(selection.notices, IsEmpty());
 }
@@ -74,8 +75,8 @@ TEST(Selection, WhatWentOffDoesNotComeBackByAnotherWord) {
     plugins.add("stripes", R"("provides": ["lines", "materials"], "alone": ["materials"],
                               "enabled_by_default": false)");
     plugins.add("legend", R"("requires": ["lines"], "enabled_by_default": false)");
-    const Selection selection =
-        select(plugins.load(), {}, {.enable = {"stripes", "legend", "bands"}});
+    const Registry registry = plugins.load();
+    const Selection selection = select(registry, {}, {.enable = {"stripes", "legend", "bands"}});
     EXPECT_THAT(ids(selection), ElementsAre("bands", "bump"));
 }
 
