@@ -6,8 +6,8 @@ Usage: make_climate.py FOLDER OUT
 FOLDER  t0_1deg.tif, orog_1deg.tif, pr_annual_0p5.tif, pr_share_2p5.tif, ice_0p05.tif
 OUT     data/climate/climate.bin
 
-All grids are of latitude and longitude, north up from 90 N and 180 W, a cell an area. They are cut into bands of 20 degrees of latitude, each
-deflated by itself, so that a place costs only its own.
+All grids are of latitude and longitude, north up from 90 N and 180 W, a cell an area. They are cut into bands of 5 or 10 degrees of latitude,
+each deflated by itself, so that a place costs only its own.
 Layout: the text "relevo climate 1\\n"; for each grid "NAME COLUMNS ROWS PLANES BITS BAND_ROWS\\n"; "end\\n"; the size of each band, 4 bytes, least
 first, grid after grid from north to south; then the bands, as zlib writes them with its checksum. A band is plane after plane, row after row:
 of 1 bit eight cells a byte, the highest bit first; of 8 bits each cell less the one to the left, mod 256; of 16 bits each plane less the one
@@ -25,8 +25,8 @@ import numpy
 from osgeo import gdal
 
 # name, file, bits, rows a band
-GRIDS = [("temperature", "t0_1deg.tif", 16, 20), ("relief", "orog_1deg.tif", 16, 20), ("rain", "pr_annual_0p5.tif", 8, 40),
-         ("share", "pr_share_2p5.tif", 8, 8), ("ice", "ice_0p05.tif", 1, 400)]
+GRIDS = [("temperature", "t0_1deg.tif", 16, 10), ("relief", "orog_1deg.tif", 16, 10), ("rain", "pr_annual_0p5.tif", 8, 20),
+         ("share", "pr_share_2p5.tif", 8, 4), ("ice", "ice_0p05.tif", 1, 100)]
 
 
 def encoded(planes, bits):

@@ -74,6 +74,13 @@ sun::ParsedTime parse_over(const scene::Moment& moment, const dem::Source& sourc
     return session::parse_over(moment, source, *field);
 }
 
+/// At the middle of a DEM and of its heights.
+session::ClimateReport climate_over(const dem::Summary& summary, sun::Instant utc) {
+    geo::Geodetic middle = summary.center;
+    middle.height_m = session::middle_height_m(summary.min_m, summary.max_m);
+    return session::climate_report(climate::ClimateMap::shipped(), middle, utc);
+}
+
 nlohmann::ordered_json to_json(const session::ClimateReport& report) {
     const auto line = [](const std::optional<double>& line_m) {
         return line_m ? nlohmann::ordered_json(std::round(*line_m)) : nlohmann::ordered_json();
@@ -86,7 +93,7 @@ nlohmann::ordered_json to_json(const session::ClimateReport& report) {
             {"ice_line_m", line(report.ice_line_m)},
             {"date", sun::to_string(report.date)},
             {"snow_line_m", line(report.snow_line_m)},
-            {"cover", climate::name_of(report.cover)}};
+            {"ground_cover", climate::name_of(report.cover)}};
 }
 
 }  // namespace
@@ -119,9 +126,7 @@ void add_info(CLI::App& app) {
         const sun::Instant utc = given_time ? given_time->utc : sun::Instant::now();
         const sun::Position sun = sun::position(utc, summary.center);
         const sun::Refraction air = air_over(summary);
-        geo::Geodetic middle = summary.center;
-        middle.height_m = session::middle_height_m(summary.min_m, summary.max_m);
-        const session::ClimateReport climate = session::climate_report(middle, utc);
+        const session::ClimateReport climate = climate_over(summary, utc);
         const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
         if (arguments->json) {
             const NetError net = net_error(source.grid(), summary.max_m);

@@ -37,8 +37,8 @@ class ClimateMap {
     ClimateMap& operator=(ClimateMap&&) noexcept;
     ~ClimateMap();
 
-    /// The first place of a band of 20 degrees of latitude unpacks it; file, band and place take
-    /// together 2 ms at most (tests/climate/test_climate_map.cpp).
+    /// The first place of a band of 10 degrees of latitude unpacks it; file, band and place take
+    /// together 3 ms at most (tests/climate/test_climate_map.cpp).
     Normals at(const geo::Geodetic& place) const;
     /// The same where `mapped_ice` is the share of the mapped ice in a box around the place.
     /// @param half_deg  half of the box's sides, of latitude and of longitude

@@ -192,11 +192,15 @@ void Terrain::keep_surface() {
     clear_surface();
 }
 
+const climate::ClimateMap& Terrain::climate_map() {
+    if (!climate_map_) climate_map_ = climate::ClimateMap::shipped();
+    return *climate_map_;
+}
+
 const ClimateVolume& Terrain::keep_climate(int day) {
     if (!climate_) {
         const dem::Pyramid::Bounds all = pyramid_.bounds(tree_.root().level, tree_.root().at);
-        climate_.emplace(climate::ClimateMap::shipped(), grid_, frame_, all.lowest_m,
-                         all.highest_m);
+        climate_.emplace(climate_map(), grid_, frame_, all.lowest_m, all.highest_m);
     }
     climate_->set_day(day);
     return *climate_;

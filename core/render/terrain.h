@@ -100,6 +100,8 @@ class Terrain {
     /// @returns them, for FrameBlock
     /// @throws Error (BadInput) where the map of the climate is missing or damaged
     const ClimateVolume& keep_climate(int day);
+    /// What they are made from; opened when first asked for. @throws Error likewise
+    const climate::ClimateMap& climate_map();
 
     /// What shaders read of the ground, by the sampler's name: a PageLayer's, or "page_table", the
     /// slot and level of the finest page of the picture there is. Null for others.
@@ -135,6 +137,7 @@ class Terrain {
     int normal_layers_ = 1;
 
     bool keeps_surface_ = false;
+    std::optional<climate::ClimateMap> climate_map_;
     std::optional<ClimateVolume> climate_;
     bool complete_ = true;
     gl::Texture page_table_;

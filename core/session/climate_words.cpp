@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "climate/climate_map.h"
-
 namespace relevo::session {
 
 namespace {
@@ -31,8 +29,9 @@ double middle_height_m(double lowest_m, double highest_m) {
     return std::clamp(0.5 * (lowest + highest_m), -500.0, 9000.0);
 }
 
-ClimateReport climate_report(const geo::Geodetic& place, sun::Instant moment) {
-    const climate::CoverColumn column(climate::ClimateMap::shipped().at(place));
+ClimateReport climate_report(const climate::ClimateMap& map, const geo::Geodetic& place,
+                             sun::Instant moment) {
+    const climate::CoverColumn column(map.at(place));
     const climate::Months temperature = column.temperature_c(place.height_m);
     ClimateReport report{.height_m = place.height_m,
                          .january_c = temperature[0],

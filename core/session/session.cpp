@@ -380,7 +380,9 @@ std::string Session::sun_text() const {
 
 std::string Session::climate_text() const {
     if (!impl_->drawn.renderer->reads_climate()) return {};
-    const ClimateReport report = climate_report(middle_of(*impl_->ground), impl_->utc);
+    impl_->context->make_current();
+    const ClimateReport report =
+        climate_report(impl_->terrain->climate_map(), middle_of(*impl_->ground), impl_->utc);
     return session::climate_text(report) + "; " + ground_text(report);
 }
 

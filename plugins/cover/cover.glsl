@@ -25,7 +25,7 @@ uniform bool cover_ice = true; //@ static label("Permanent ice")
 uniform float cover_aspect_m = 480.0; //@ range(0, 3000) unit(m) label("Aspect") description("How much higher snow lies on a wall that faces the noon sun than on level ground")
 uniform vec2 cover_rock_deg = vec2(36.0, 52.0); //@ range(0, 90) unit(deg) label("Rock from, to") description("Slopes on which soil gives way to rock")
 uniform vec2 cover_bare_deg = vec2(46.0, 64.0); //@ range(0, 90) unit(deg) label("Snow slides from, to") description("Slopes that hold less and less snow")
-uniform float cover_open_flats = 0.45; //@ range(0, 1) label("Open flats") description("Share of level ground in temperate forests that is meadow: potential forest, but where people live")
+uniform float cover_open_flats = 0.3; //@ range(0, 1) label("Open flats") description("Share of level ground in temperate forests that is meadow: potential forest, but where people live")
 uniform float cover_noise = 1.0; //@ range(0, 3) label("Ragged edges") description("How far limits wander")
 uniform float cover_texture_m = 12.0; //@ range(0.1, 100000) unit(m) label("Texture size") description("Of the grain that is seen from near")
 uniform float cover_grain = 1.0; //@ range(0, 1) label("Grain") description("Of the ground from near; from afar there is none")
@@ -169,7 +169,7 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
     float wooded = smoothstep(1.15, 2.15, rain * (1.0 + 0.22 * ragged)) *
                    smoothstep(0.82, 1.16, growth + 0.16 * ragged - 0.06 * shape.steep);
     float temperate = smoothstep(3.0, 6.0, ground.temperature) * (1.0 - smoothstep(15.0, 19.0, ground.temperature));
-    float flats = 1.0 - smoothstep(0.02, 0.34, shape.steep * (1.0 + 0.3 * ragged));
+    float flats = 1.0 - smoothstep(0.01, 0.15, shape.steep * (1.0 + 0.3 * ragged));
     wooded *= 1.0 - cover_open_flats * temperate * flats;
     shares.forest = cover_trees == 2 ? 0.0 : wooded * (1.0 - smoothstep(0.85, 1.3, shape.steep));
 
@@ -230,7 +230,7 @@ void cover_on_albedo(inout Surface s) {
     float trees = shares.forest * (1.0 - shares.rock);
     albedo = mix(albedo, forest, trees);
     // From above trees hide most of the snow under them.
-    float lying = shares.snow * (1.0 - 0.88 * trees);
+    float lying = shares.snow * (1.0 - 0.94 * smoothstep(0.0, 0.9, trees));
     albedo = mix(albedo, cover_firn, shares.ice);
     lying = max(lying, shares.ice * shares.snow);
     albedo = mix(albedo, cover_white, lying);

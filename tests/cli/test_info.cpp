@@ -66,7 +66,7 @@ TEST(InfoVerb, JsonHasTheSunAndTheNet) {
     EXPECT_NEAR(climate["july_c"].get<double>(), 23, 3);
     EXPECT_NEAR(climate["year_mm"].get<double>(), 1300, 200);
     EXPECT_EQ(climate["date"], "2026-06-21");
-    EXPECT_EQ(climate["cover"], "forest");
+    EXPECT_EQ(climate["ground_cover"], "forest");
     EXPECT_GT(climate["tree_line_m"], 2200);
     EXPECT_GT(climate["snow_line_m"], climate["tree_line_m"]);
     EXPECT_GT(climate["ice_line_m"], climate["tree_line_m"]);

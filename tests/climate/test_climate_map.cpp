@@ -1,4 +1,4 @@
-#include <chrono>
+#include <ctime>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -96,18 +96,17 @@ TEST(ClimateMap, APoleIsOnePlace) {
 }
 
 TEST(ClimateMap, OpensInMilliseconds) {
-    // The least of several, as other programs of a test run take turns.
+    // Of the processor, and the least of several: other programs of a test run take turns.
     double least_ms = 1e9;
     for (int i = 0; i < 5; ++i) {
-        const auto began = std::chrono::steady_clock::now();
+        const std::clock_t began = std::clock();
         const Normals normals = ClimateMap::shipped().at(geodetic_deg(47, 11));
-        const std::chrono::duration<double, std::milli> took =
-            std::chrono::steady_clock::now() - began;
+        const auto took = static_cast<double>(std::clock() - began);
         EXPECT_GT(normals.relief_m, 500);
-        least_ms = std::min(least_ms, took.count());
+        least_ms = std::min(least_ms, 1e3 * took / CLOCKS_PER_SEC);
     }
     fmt::print("[ measured ] file, bands and a place: {:.2f} ms\n", least_ms);
-    EXPECT_LT(least_ms, 20);  // a guard for slow machines; 3 ms here
+    EXPECT_LT(least_ms, 20);  // a guard for slow machines
 }
 
 TEST(ClimateMap, SaysWhatIsWrongWithItsFile) {
