@@ -38,7 +38,7 @@ class ClimateMap {
     ~ClimateMap();
 
     /// The first place of a band of 10 degrees of latitude unpacks it; file, band and place take
-    /// together 3 ms at most (tests/climate/test_climate_map.cpp).
+    /// together 1.3 ms (tests/climate/test_climate_map.cpp).
     Normals at(const geo::Geodetic& place) const;
     /// The same where `mapped_ice` is the share of the mapped ice in a box around the place.
     /// @param half_deg  half of the box's sides, of latitude and of longitude
