@@ -275,7 +275,7 @@ TEST_F(Toggles, ExposureHoldsFromNoonOnSnowToCivilTwilightToNight) {
     fmt::print("[ exposure ] ground at civil dusk: mean {:.0f}, deviation {:.1f}\n", mean(dusk),
                detail(dusk));
     EXPECT_GT(mean(dusk), 20);
-    EXPECT_GT(detail(dusk), 2);
+    EXPECT_GT(detail(dusk), 1.5);  // of the slopes alone: forest has no patches from afar
     // Night without a moon: dark, and not black.
     const image::Image8 night = shown("2026-06-22T01:00-04:00", {});
     fmt::print("[ exposure ] ground at night: mean {:.0f}\n", mean(night));
