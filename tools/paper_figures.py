@@ -49,6 +49,8 @@ def main():
     arguments = parser.parse_args()
     for number in arguments.only.split(","):
         for name, view in FIGURES[number].items():
+            if name.startswith(("paper_", "layering_")):
+                view += " --enable layering"  # the paper's ground
             path = ROOT / f"docs/images/{name}.jpg"
             subprocess.run([arguments.build / "bin/relevo", "-q", "capture", ROOT / "data/dem/jacksboro.tif", "-o", path,
                             "--overwrite", "--size", arguments.size, "--device", "software", *view.split()], check=True)

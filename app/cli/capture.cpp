@@ -135,6 +135,8 @@ void capture(const Arguments& arguments) {
     if (const std::string view = session.view_reason(); !view.empty())
         chosen += "; by its relief " + view;
     log::info(fmt::format("{}, {}: sun at {}{}", where, when, sun, chosen));
+    if (const std::string climate = session.climate_text(); !climate.empty())
+        log::info(fmt::format("natural ground of a normal year, in the DEM's middle: {}", climate));
     const auto passes_began = Clock::now();
     session.draw(timings.passes());
     timings.add("passes", milliseconds_since(passes_began));

@@ -14,6 +14,7 @@
 #include "dem/summary.h"
 #include "geo/local_frame.h"
 #include "render/patch_net.h"
+#include "session/climate_words.h"
 #include "sun/position.h"
 
 namespace relevo::cli {
@@ -73,6 +74,28 @@ sun::ParsedTime parse_over(const scene::Moment& moment, const dem::Source& sourc
     return session::parse_over(moment, source, *field);
 }
 
+/// At the middle of a DEM and of its heights.
+session::ClimateReport climate_over(const dem::Summary& summary, sun::Instant utc) {
+    geo::Geodetic middle = summary.center;
+    middle.height_m = session::middle_height_m(summary.min_m, summary.max_m);
+    return session::climate_report(climate::ClimateMap::shipped(), middle, utc);
+}
+
+nlohmann::ordered_json to_json(const session::ClimateReport& report) {
+    const auto line = [](const std::optional<double>& line_m) {
+        return line_m ? nlohmann::ordered_json(std::round(*line_m)) : nlohmann::ordered_json();
+    };
+    return {{"height_m", report.height_m},
+            {"january_c", report.january_c},
+            {"july_c", report.july_c},
+            {"year_mm", report.year_mm},
+            {"tree_line_m", line(report.tree_line_m)},
+            {"ice_line_m", line(report.ice_line_m)},
+            {"date", sun::to_string(report.date)},
+            {"snow_line_m", line(report.snow_line_m)},
+            {"ground_cover", climate::name_of(report.cover)}};
+}
+
 }  // namespace
 
 void add_info(CLI::App& app) {
@@ -103,6 +126,7 @@ void add_info(CLI::App& app) {
         const sun::Instant utc = given_time ? given_time->utc : sun::Instant::now();
         const sun::Position sun = sun::position(utc, summary.center);
         const sun::Refraction air = air_over(summary);
+        const session::ClimateReport climate = climate_over(summary, utc);
         const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
         if (arguments->json) {
             const NetError net = net_error(source.grid(), summary.max_m);
@@ -112,6 +136,7 @@ void add_info(CLI::App& app) {
                 {"azimuth_deg", degrees(sun.azimuth_rad)},
                 {"elevation_deg", degrees(sun.elevation_rad)},
                 {"apparent_elevation_deg", degrees(air.apparent_rad(sun.elevation_rad))}};
+            json["climate"] = to_json(climate);
             if (given_time && !given_time->assumption.empty())
                 json["assumptions"].push_back(given_time->assumption);
             json["position_net"] = {{"piece_posts", net.posts}, {"error_m", net.worst_m}};
@@ -120,6 +145,8 @@ void add_info(CLI::App& app) {
         }
         fmt::print("{}", dem::to_text(summary));
         fmt::print("{:<10} {} at {}\n", "sun", session::sun_text(sun, air), sun::to_iso(utc));
+        fmt::print("{:<10} {}\n", "climate", session::climate_text(climate));
+        fmt::print("{:<10} {}\n", "ground", session::ground_text(climate));
         if (log::level() == log::Level::Debug) {
             const NetError net = net_error(source.grid(), summary.max_m);
             fmt::print(

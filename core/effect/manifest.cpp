@@ -17,13 +17,13 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and what its shaders' globals begin with.
-constexpr std::array<std::string_view, 43> kReserved = {
-    "all",     "antialias", "backdrop", "background", "camera", "colour",  "core",     "data",
-    "depth",   "east",      "edges",    "floor",      "frame",  "gbuffer", "geometry", "gl",
-    "ground",  "height",    "hook",     "light",      "load",   "net",     "none",     "normal",
-    "overlay", "page",      "place",    "post",       "scene",  "select",  "side",     "slope",
-    "srgb",    "steps",     "store",    "stored",     "sun",    "surface", "tangent",  "terrain",
-    "up",      "varyings",  "vertex"};
+constexpr std::array<std::string_view, 44> kReserved = {
+    "all",     "antialias", "backdrop", "background", "camera", "climate", "colour",  "core",
+    "data",    "depth",     "east",     "edges",      "floor",  "frame",   "gbuffer", "geometry",
+    "gl",      "ground",    "height",   "hook",       "light",  "load",    "net",     "none",
+    "normal",  "overlay",   "page",     "place",      "post",   "scene",   "select",  "side",
+    "slope",   "srgb",      "steps",    "store",      "stored", "sun",     "surface", "tangent",
+    "terrain", "up",        "varyings", "vertex"};
 
 // Capabilities that core provides itself: render/programs.h.
 constexpr std::array<std::string_view, 2> kCoreWords = {"night", "outside"};
@@ -107,6 +107,12 @@ class ManifestReader {
                 manifest_.provides.end())
                 object.fail(object.line_of("provides"), "provides",
                             fmt::format("\"{}\" is core's own word; expected another", word));
+        manifest_.alone = words(object, "alone");
+        for (const std::string& word : manifest_.alone)
+            if (std::find(manifest_.provides.begin(), manifest_.provides.end(), word) ==
+                manifest_.provides.end())
+                object.fail(object.line_of("alone"), "alone",
+                            fmt::format("expected words of \"provides\" but got \"{}\"", word));
         manifest_.needs = words(object, "requires");
         manifest_.wants = words(object, "wants");
         manifest_.after = words(object, "after");

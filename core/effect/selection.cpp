@@ -39,8 +39,9 @@ class Selector {
     }
 
     Selection run() {
-        while (meet_requirements()) {
-        }
+        do {
+            settle_alone();
+        } while (meet_requirements());
         check_exclusive_hooks();
         Selection selection;
         selection.effects = ordered();
@@ -94,6 +95,7 @@ class Selector {
             on_.insert(id);
             asked_.insert(id);
             disabled_.erase(id);
+            asked_at_[id] = ++times_asked_;
         };
         if (switches.only) {
             on_.clear();
@@ -108,6 +110,33 @@ class Selector {
             on_.erase(id);
             asked_.erase(id);
             disabled_.insert(id);
+        }
+    }
+
+    // ---- what only one may provide
+
+    /// Of effects that provide a word alone, the one that was asked for last stays.
+    void settle_alone() {
+        std::map<std::string, std::string> stays;  // by word
+        const auto at = [&](const std::string& id) {
+            const auto found = asked_at_.find(id);
+            return found == asked_at_.end() ? 0 : found->second;
+        };
+        for (const std::string& id : on_)
+            for (const std::string& word : effect(id).manifest.alone)
+                if (const auto [other, first] = stays.emplace(word, id);
+                    !first && at(id) > at(other->second))
+                    other->second = id;
+        const std::set<std::string> before = on_;
+        for (const std::string& id : before) {
+            for (const std::string& word : effect(id).manifest.alone) {
+                const std::string& other = stays.at(word);
+                if (other == id || on_.erase(id) == 0) continue;
+                notices_.push_back(
+                    fmt::format("{} is off: {} provides {} in its place", id, other, word));
+                asked_.erase(id);
+                unmet_.insert(id);
+            }
         }
     }
 
@@ -266,6 +295,8 @@ class Selector {
     const Registry& registry_;
     const Switches& command_line_;
     std::set<std::string> on_;
+    std::map<std::string, int> asked_at_;  // later ones more
+    int times_asked_ = 0;
     std::set<std::string> asked_;     // by name, or by what was asked for
     std::set<std::string> disabled_;  // by name
     std::set<std::string> unmet_;     // switched off here

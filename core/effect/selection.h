@@ -29,8 +29,9 @@ using Unusable = std::map<std::string, std::string>;
 /// On are those with `enabled_by_default`; each preset, and then the command line, changes that:
 /// `only` puts its own list in its place, `enable` adds, `disable` takes away. What `only` and
 /// `enable` name pulls in effects that provide what it requires, except disabled ones. An effect
-/// whose requirement nobody provides goes off. Order: behind every provider of a word in `after`;
-/// ties by id.
+/// whose requirement nobody provides goes off. Of those that provide a word `alone` the one that
+/// was asked for last stays, and the others go off with a notice. Order: behind every provider of a
+/// word in `after`; ties by id.
 ///
 /// What a preset names and is not there is a notice, so that deleting a plugin breaks no preset.
 /// @param unusable  effects that cannot be on: they are off, with a warning, and so is what

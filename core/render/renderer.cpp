@@ -23,6 +23,7 @@
 #include "render/native_host.h"
 #include "render/programs.h"
 #include "shader/stored_varyings.h"
+#include "sun/time.h"
 
 namespace relevo::render {
 namespace {
@@ -50,6 +51,12 @@ struct Scissor {
 };
 
 constexpr const char* kVaryings = shader::StoredVaryings::kTexture;
+
+/// The day of the year of a moment.
+int day_of(double unix_s) {
+    const sun::Date date = (sun::Instant() + unix_s).utc().date;
+    return climate::day_of_year(date.month, date.day);
+}
 
 constexpr const char* kNormalAddress = "terrain.normal";
 
@@ -119,7 +126,7 @@ struct Renderer::Impl {
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
     TileSelection tiles;  // of the last frame
-    bool reads_surface = false;
+    bool reads_surface = false, reads_climate = false;
 
     gl::Texture gbuffer, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     gl::Texture varyings, height_steps;
@@ -184,6 +191,7 @@ struct Renderer::Impl {
     /// What is drawn into, in the picture's size.
     void make_targets() {
         reads_surface = reads("surface_pages");
+        reads_climate = reads(kClimateTexture);
         const gl::Extent size{options.width_px, options.height_px, 1};
         const auto target = [&](gl::Format format, const char* label) {
             gl::Texture texture(gl::TextureKind::D2, format, size, 1, label);
@@ -360,8 +368,10 @@ struct Renderer::Impl {
     // In one piece: the passes of a frame in their order.
     void draw(Terrain& ground, const Ground& about, const FrameInputs& inputs, FrameBlock block,
               PassTimes* times) {
+        move(is_outside(about, inputs.camera.eye_m, inputs.exaggeration));
         block.normal_levels = static_cast<float>(ground.normal_levels());
         block.normal_texels_per_m = static_cast<float>(1 / ground.normal_spacing_m());
+        if (reads_climate) ground.keep_climate(day_of(inputs.unix_s)).write(block);
         frame_block.write(std::as_bytes(std::span(&block, 1)));
         frame_block.bind_uniform(kFrameBinding);
         if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
@@ -376,7 +386,6 @@ struct Renderer::Impl {
             began = now;
         };
 
-        move(is_outside(about, inputs.camera.eye_m, inputs.exaggeration));
         if (outside && footprint_of != ground.serial()) {
             footprint = footprint_texture(about.footprint);
             footprint_of = ground.serial();
@@ -538,6 +547,10 @@ void Renderer::read_depths(std::vector<float>& depths_m) const {
     const auto near_m = static_cast<float>(kNear_m);
     for (float& depth : depths_m)
         depth = near_m / depth;
+}
+
+bool Renderer::reads_climate() const {
+    return impl_->reads_climate;
 }
 
 Displacement Renderer::displacement() const {

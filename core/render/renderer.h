@@ -85,6 +85,9 @@ class Renderer {
     /// after row from below, infinity where there is sky.
     void read_depths(std::vector<float>& depths_m) const;
 
+    /// Whether what it draws hangs on the climate (lib/climate.glsl).
+    bool reads_climate() const;
+
     /// How far its effects move the ground.
     Displacement displacement() const;
     /// Whether its effects show the DEM as a block where the eye is outside of it.

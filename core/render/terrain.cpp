@@ -203,7 +203,22 @@ void Terrain::keep_surface() {
     clear_surface();
 }
 
+const climate::ClimateMap& Terrain::climate_map() {
+    if (!climate_map_) climate_map_ = climate::ClimateMap::shipped();
+    return *climate_map_;
+}
+
+const ClimateVolume& Terrain::keep_climate(int day) {
+    if (!climate_) {
+        const dem::Pyramid::Bounds all = pyramid_.bounds(tree_.root().level, tree_.root().at);
+        climate_.emplace(climate_map(), grid_, frame_, all.lowest_m, all.highest_m);
+    }
+    climate_->set_day(day);
+    return *climate_;
+}
+
 const gl::Texture* Terrain::texture(std::string_view name) const {
+    if (name == kClimateTexture) return climate_ ? &climate_->texture() : nullptr;
     if (name == "page_table") return &page_table_;
     if (const gl::Texture* const heights = heights_.find(name)) return heights;
     return surface_.find(name);

@@ -16,6 +16,7 @@
 #include "gl/buffer.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "render/climate_volume.h"
 #include "render/drape.h"
 #include "render/loading.h"
 #include "render/lod.h"
@@ -106,6 +107,13 @@ class Terrain {
     /// none.
     void drape(std::shared_ptr<const Drape> drape);
 
+    /// From now on the ground has its climate's tables, with the snow of a day (0 to 364).
+    /// @returns them, for FrameBlock
+    /// @throws Error (BadInput) where the map of the climate is missing or damaged
+    const ClimateVolume& keep_climate(int day);
+    /// What they are made from; opened when first asked for. @throws Error likewise
+    const climate::ClimateMap& climate_map();
+
     /// What shaders read of the ground, by the sampler's name: a PageLayer's, or "page_table", the
     /// slot and level of the finest page of the picture there is. Null for others.
     const gl::Texture* texture(std::string_view name) const;
@@ -144,6 +152,8 @@ class Terrain {
 
     bool keeps_surface_ = false;
     std::shared_ptr<const Drape> drape_;
+    std::optional<climate::ClimateMap> climate_map_;
+    std::optional<ClimateVolume> climate_;
     bool complete_ = true;
     gl::Texture page_table_;
     gl::Buffer grid_vertices_, grid_indices_, instances_;

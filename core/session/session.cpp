@@ -17,6 +17,7 @@
 #include "render/ground.h"
 #include "scene/moment.h"
 #include "session/active_effects.h"
+#include "session/climate_words.h"
 #include "session/not_numbers.h"
 #include "session/overlay.h"
 #include "session/words.h"
@@ -30,6 +31,13 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point began) {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+/// Where the climate is told of: the DEM's middle, at the middle of its heights above the sea.
+geo::Geodetic middle_of(const render::Ground& ground) {
+    geo::Geodetic middle = ground.frame.origin();
+    middle.height_m = middle_height_m(ground.lowest_m, ground.highest_m);
+    return middle;
 }
 
 std::shared_ptr<const LoadedDem> load(const scene::Scene& scene) {
@@ -434,6 +442,14 @@ std::string Session::view_reason() const {
 
 const std::string& Session::moment_reason() const {
     return impl_->moment_reason;
+}
+
+std::string Session::climate_text() const {
+    if (!impl_->drawn.renderer->reads_climate()) return {};
+    impl_->context->make_current();
+    const ClimateReport report =
+        climate_report(impl_->terrain->climate_map(), middle_of(*impl_->ground), impl_->utc);
+    return session::climate_text(report) + "; " + ground_text(report);
 }
 
 const StageTimes& Session::stages() const {

@@ -123,6 +123,9 @@ class Session {
     std::string view_reason() const;
     /// Why it is that time, as scene::DefaultMoment::reason(), and empty where one was given.
     const std::string& moment_reason() const;
+    /// climate_text() and ground_text() of the DEM's middle, at the middle of its heights; empty
+    /// where no effect that is on draws by the climate.
+    std::string climate_text() const;
 
     const StageTimes& stages() const;
     int triangles() const;  ///< of the last frame

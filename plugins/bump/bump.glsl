@@ -24,7 +24,7 @@ vec3 bump_normal(in vec3 map, in vec3 tangent, in vec3 bitangent, in vec3 normal
 
 void bump_on_normal(inout Surface s) {
     vec3 map = vec3(0.0);
-    int count = s.material_weight.y > 0.0 ? 2 : 1;  // as in layering.glsl, a read less in most places
+    int count = s.material_weight.y > 0.0 ? 2 : 1;  // a read less in most places
     for (int i = 0; i < count; ++i)
         map += s.material_weight[i] * bump_read(s, s.material[i]);
     s.normal = bump_normal(map, s.tangent, s.bitangent, s.geometric_normal);

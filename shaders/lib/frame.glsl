@@ -34,4 +34,7 @@ layout(std140, binding = 0) uniform Frame {
     vec4 block;               // of a DEM seen from outside; x: height of its lower side, before exaggeration [m], y: z of
                               // the floor that it stands on, z: depth below its lowest post, both drawn [m]; z 0: none
     vec4 footprint_area;      // of the texture floor_ground; xy: its south-west corner, zw: 1/its sides, in the local frame
+    vec4 climate_place;       // lib/climate.glsl: factor and constant from longitudes off the DEM's centre, and from
+                              // latitudes [rad], to the table's coordinates
+    vec4 climate_height;      // xy: likewise from heights [m], of the ground's half; zw: its first and last coordinate
 } frame;

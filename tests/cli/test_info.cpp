@@ -39,6 +39,9 @@ TEST(InfoVerb, SaysEverythingInLines) {
                   "they are above\n"
                   "sun        azimuth 114.27, elevation 65.12 (65.13 with refraction) at "
                   "2026-06-21T16:00:00Z\n"
+                  "climate    January 1.4, July 22.8 degC at 656 m, 1250 mm of rain a year\n"
+                  "ground     trees up to 2650 m, permanent ice from 3480 m, snow from 2950 m on "
+                  "2026-06-21\n"
                   "net        pieces of 64 posts are drawn within 0.00024 m of where they are, "
                   "3.2e-06 of the post spacing\n");
 }
@@ -57,6 +60,16 @@ TEST(InfoVerb, JsonHasTheSunAndTheNet) {
     for (const char* key : {"azimuth_deg", "elevation_deg"})
         EXPECT_NEAR(json["sun"][key].get<double>(), position[key].get<double>(), 1e-4) << key;
     EXPECT_GT(json["sun"]["apparent_elevation_deg"], json["sun"]["elevation_deg"]);
+    const nlohmann::json& climate = json["climate"];
+    EXPECT_EQ(climate["height_m"], 656);
+    EXPECT_NEAR(climate["january_c"].get<double>(), 0.5, 3);  // Knoxville: 3.5 and 25.6 at 270 m
+    EXPECT_NEAR(climate["july_c"].get<double>(), 23, 3);
+    EXPECT_NEAR(climate["year_mm"].get<double>(), 1300, 200);
+    EXPECT_EQ(climate["date"], "2026-06-21");
+    EXPECT_EQ(climate["ground_cover"], "forest");
+    EXPECT_GT(climate["tree_line_m"], 2200);
+    EXPECT_GT(climate["snow_line_m"], climate["tree_line_m"]);
+    EXPECT_GT(climate["ice_line_m"], climate["tree_line_m"]);
     EXPECT_EQ(json["position_net"]["piece_posts"], 64);
     EXPECT_LT(json["position_net"]["error_m"].get<double>(), 0.75);
     EXPECT_EQ(json["spikes"]["count"], 0);

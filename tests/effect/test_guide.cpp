@@ -50,6 +50,23 @@ TEST(PluginGuide, ItsContoursAreAPlugin) {
     EXPECT_TRUE(registry.effects()[0].answers("display"));
 }
 
+TEST(PluginGuide, ItsFrostReadsTheClimate) {
+    const Plugins plugins;
+    plugins.add("frost", "", block(guide(), "glsl frost.glsl"));
+    const Registry registry = plugins.load();
+    ASSERT_TRUE(registry.broken().empty()) << registry.broken()[0].error;
+    const Selection selection = select(registry, {}, {});
+    shader::StitchInput input;
+    input.snippets = selection.snippets();
+    const shader::Stitched stitched =
+        shader::stitch(shader::FolderTexts(relevo::test::source_dir() / "shaders"),
+                       {.vertex_main = "fullscreen.vert.glsl",
+                        .fragment_main = "terrain.frag.glsl",
+                        .geometry_of = "terrain.vert.glsl"},
+                       input);
+    EXPECT_THAT(stitched.fragment.text, HasSubstr("sampler3D climate_table;"));
+}
+
 TEST(PluginGuide, HasEveryHook) {
     const std::string text = guide();
     for (const shader::Hook& hook : shader::hooks())
@@ -66,7 +83,7 @@ TEST(PluginGuide, HasEveryKey) {
         relevo::test::error_of([&] { load_effect(plugins.plugins() / "dust", plugins.data()); });
     const std::string list = error.substr(error.find("there are ") + 10);
     const std::vector<std::string> keys = split(list, ',');
-    EXPECT_EQ(keys.size(), 15u);
+    EXPECT_EQ(keys.size(), 16u);
     for (const std::string& key : keys)
         EXPECT_THAT(text, HasSubstr('`' + std::string(trimmed(key)) + '`'));
 }

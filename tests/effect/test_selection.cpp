@@ -27,6 +27,59 @@ void add_ground(const Plugins& plugins) {
     plugins.add("wet", R"("requires": ["shine"], "enabled_by_default": false)");
 }
 
+// ---- what only one provides
+
+/// Two grounds, of which `meadow` is on by default.
+void add_two_grounds(const Plugins& plugins) {
+    plugins.add("meadow", R"("provides": ["materials"], "alone": ["materials"])");
+    plugins.add("bands", R"("provides": ["materials"], "alone": ["materials"],
+                            "enabled_by_default": false)");
+    plugins.add("bump", R"("requires": ["materials"], "after": ["materials"])");
+}
+
+TEST(Selection, OneOfThoseThatProvideAWordAloneStays) {
+    const Plugins plugins;
+    add_two_grounds(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("meadow", "bump"));
+    const Selection bands = select(registry, {}, {.enable = {"bands"}});
+    EXPECT_THAT(ids(bands), ElementsAre("bands", "bump"));
+    EXPECT_THAT(bands.notices, ElementsAre("meadow is off: bands provides materials in its place"));
+    // Whoever is asked for last.
+    const Selection meadow =
+        select(registry, {preset({.enable = {"bands"}})}, {.enable = {"meadow"}});
+    EXPECT_THAT(ids(meadow), ElementsAre("meadow", "bump"));
+    EXPECT_THAT(meadow.notices,
+                ElementsAre("bands is off: meadow provides materials in its place"));
+    EXPECT_THAT(ids(select(registry, {}, {.enable = {"meadow", "bands"}})),
+                ElementsAre("bands", "bump"));
+    EXPECT_THAT(ids(select(registry, {preset({.enable = {"bands"}})}, {.disable = {"bands"}})),
+                ElementsAre("meadow", "bump"));
+    EXPECT_THAT(ids(select(registry, {}, {.only = Words{"bump"}})), ElementsAre("meadow", "bump"));
+}
+
+TEST(Selection, WhatIsProvidedAloneHidesNothingElse) {
+    // Paint adds to the materials that others give.
+    const Plugins plugins;
+    add_two_grounds(plugins);
+    plugins.add("paint", R"("provides": ["materials"])");
+    const Registry registry = plugins.load();
+    const Selection selection = select(registry, {}, {});
+    EXPECT_THAT(ids(selection), ElementsAre("meadow", "paint", "bump"));
+    EXPECT_THAT(selection.notices, IsEmpty());
+}
+
+TEST(Selection, WhatWentOffDoesNotComeBackByAnotherWord) {
+    const Plugins plugins;
+    add_two_grounds(plugins);
+    plugins.add("stripes", R"("provides": ["lines", "materials"], "alone": ["materials"],
+                              "enabled_by_default": false)");
+    plugins.add("legend", R"("requires": ["lines"], "enabled_by_default": false)");
+    const Registry registry = plugins.load();
+    const Selection selection = select(registry, {}, {.enable = {"stripes", "legend", "bands"}});
+    EXPECT_THAT(ids(selection), ElementsAre("bands", "bump"));
+}
+
 // ---- what is on
 
 TEST(Selection, DefaultsAreOn) {

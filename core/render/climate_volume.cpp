@@ -1,0 +1,98 @@
+#include "render/climate_volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/gtc/packing.hpp>
+
+#include "base/units.h"
+
+namespace relevo::render {
+namespace {
+
+/// What aspects and shifts of limits may ask for beyond the DEM's heights [m].
+constexpr double kMargin_m = 3000;
+/// Heights of the Earth, whatever outliers a DEM has [m].
+constexpr double kLowest_m = -600, kHighest_m = 9000;
+
+constexpr double kHalfTurn_deg = 180;
+
+/// From a coordinate to that of a texture whose first and last texels' middles are at two values.
+/// @returns factor and constant
+glm::dvec2 to_texture(double first, double last, int texels) {
+    const double scale = (texels - 1.0) / texels / std::max(last - first, 1e-12);
+    return {scale, 0.5 / texels - first * scale};
+}
+
+}  // namespace
+
+climate::Box box_of(const dem::Grid& grid, const geo::Geodetic& origin) {
+    constexpr int kSamples = 64;
+    constexpr double kPole_deg = 89, kWide_deg = 300;
+    const double origin_deg = degrees(origin.lon_rad);
+    climate::Box box{
+        .west_deg = kHalfTurn_deg, .east_deg = -kHalfTurn_deg, .south_deg = 90, .north_deg = -90};
+    for (int j = 0; j <= kSamples; ++j) {
+        for (int i = 0; i <= kSamples; ++i) {
+            const geo::Geodetic place = grid.place((grid.columns() - 1.0) * i / kSamples,
+                                                   (grid.rows() - 1.0) * j / kSamples);
+            if (!std::isfinite(place.lat_rad)) continue;
+            const double lon_deg = geo::normalized_lon_deg(degrees(place.lon_rad) - origin_deg);
+            box.west_deg = std::min(box.west_deg, lon_deg);
+            box.east_deg = std::max(box.east_deg, lon_deg);
+            box.south_deg = std::min(box.south_deg, degrees(place.lat_rad));
+            box.north_deg = std::max(box.north_deg, degrees(place.lat_rad));
+        }
+    }
+    const bool polar = box.north_deg > kPole_deg || box.south_deg < -kPole_deg;
+    if (polar || box.east_deg - box.west_deg > kWide_deg) {
+        box.west_deg = -kHalfTurn_deg;
+        box.east_deg = kHalfTurn_deg;
+    }
+    if (box.north_deg > kPole_deg) box.north_deg = 90;
+    if (box.south_deg < -kPole_deg) box.south_deg = -90;
+    box.west_deg += origin_deg;
+    box.east_deg += origin_deg;
+    return box;
+}
+
+ClimateVolume::ClimateVolume(const climate::ClimateMap& map, const dem::Grid& grid,
+                             const geo::LocalFrame& frame, double lowest_m, double highest_m)
+    : table_(map, box_of(grid, frame.origin()),
+             std::clamp(lowest_m - kMargin_m, kLowest_m, kHighest_m - kMargin_m),
+             std::clamp(highest_m + kMargin_m, kLowest_m + kMargin_m, kHighest_m)),
+      texture_(gl::TextureKind::D3, gl::Format::RGBA16F,
+               {table_.columns(), table_.rows(), 2 * table_.heights()}, 1, kClimateTexture) {
+    texture_.set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
+    const climate::Box box = box_of(grid, frame.origin());
+    const double origin_rad = frame.origin().lon_rad;
+    const glm::dvec2 column = to_texture(radians(box.west_deg) - origin_rad,
+                                         radians(box.east_deg) - origin_rad, table_.columns());
+    const glm::dvec2 row =
+        to_texture(radians(box.south_deg), radians(box.north_deg), table_.rows());
+    // The ground's half of the texture; the snow's lies above.
+    const glm::dvec2 level =
+        0.5 * to_texture(table_.lowest_m(), table_.highest_m(), table_.heights());
+    place_ = glm::vec4(column, row);
+    height_ = glm::vec4(level, 0.25 / table_.heights(), 0.5 - 0.25 / table_.heights());
+}
+
+void ClimateVolume::set_day(int day) {
+    if (day_ == day) return;
+    const std::vector<float> values = table_.texels(day);
+    std::vector<std::uint16_t> texels(values.size());
+    std::transform(values.begin(), values.end(), texels.begin(),
+                   [](float value) { return glm::packHalf1x16(value); });
+    texture_.write(0, {0, 0, 0}, texture_.extent(), std::as_bytes(std::span(texels)));
+    day_ = day;
+}
+
+void ClimateVolume::write(FrameBlock& block) const {
+    block.climate_place = place_;
+    block.climate_height = height_;
+}
+
+}  // namespace relevo::render

@@ -1,0 +1,256 @@
+//! provides  materials: natural ground by climate, height, date and shape
+//! hook      albedo
+//! reads     the climate's tables, height [m], slope and aspect, ground coordinates [m]
+//! writes    material, material_weight, texture_at, gloss, diffuse, ambient, specular, emissive, shininess
+//! source    core/climate/cover.h has the climate's; what shape does to it is the README's
+
+//@ include lib/climate.glsl
+
+uniform sampler2DArray cover_albedo;
+uniform sampler2D cover_patches;
+
+// Where the climate's word is not taken.
+uniform int cover_trees = 0; //@ enum(climate, line, none) static label("Trees") description("Up to the climate's tree line, to one of your own, or none")
+uniform float cover_tree_line_m = 2000.0; //@ range(-1000, 9000) unit(m) label("Tree line") description("Of trees by a line")
+uniform float cover_tree_shift_m = 0.0; //@ range(-3000, 3000) unit(m) label("Tree line shift") description("Added to the climate's: negative where wind, grazing or axes keep it low")
+uniform int cover_rain = 0; //@ enum(climate, given) static label("Rain") description("As the climate has it, or a dryness of your own")
+uniform float cover_dryness = 2.0; //@ range(0, 10) label("Dryness") description("Rain over what the warmth takes, of rain given: below 0.5 desert, below 1 steppe, from 1.75 forest")
+uniform float cover_rain_factor = 1.0; //@ range(0, 10) label("Rain factor") description("On the climate's: 0.5 in half as wet a country")
+uniform int cover_snow = 0; //@ enum(climate, line, none) static label("Snow") description("Of the date by the climate, above a line, or none")
+uniform float cover_snow_line_m = 2500.0; //@ range(-1000, 9000) unit(m) label("Snow line") description("Of snow by a line, on level ground")
+uniform float cover_snow_shift_m = 0.0; //@ range(-3000, 3000) unit(m) label("Snow line shift") description("Added to the climate's: negative in a snowy year")
+uniform bool cover_ice = true; //@ static label("Permanent ice")
+
+// What shape does to it.
+uniform float cover_aspect_m = 480.0; //@ range(0, 3000) unit(m) label("Aspect") description("How much higher snow lies on a wall that faces the noon sun than on level ground")
+uniform vec2 cover_rock_deg = vec2(36.0, 52.0); //@ range(0, 90) unit(deg) label("Rock from, to") description("Slopes on which soil gives way to rock")
+uniform vec2 cover_bare_deg = vec2(46.0, 64.0); //@ range(0, 90) unit(deg) label("Snow slides from, to") description("Slopes that hold less and less snow")
+uniform float cover_open_flats = 0.3; //@ range(0, 1) label("Open flats") description("Share of level ground in temperate forests that is meadow: potential forest, but where people live")
+uniform float cover_noise = 1.0; //@ range(0, 3) label("Ragged edges") description("How far limits wander")
+uniform float cover_texture_m = 12.0; //@ range(0.1, 100000) unit(m) label("Texture size") description("Of the grain that is seen from near")
+uniform float cover_grain = 1.0; //@ range(0, 1) label("Grain") description("Of the ground from near; from afar there is none")
+
+// What it looks like, as albedo.
+uniform vec3 cover_desert = vec3(0.47, 0.35, 0.22); //@ colour label("Desert")
+uniform vec3 cover_steppe = vec3(0.31, 0.25, 0.13); //@ colour label("Steppe, dry")
+uniform vec3 cover_steppe_green = vec3(0.178, 0.172, 0.082); //@ colour label("Steppe, green")
+uniform vec3 cover_grass = vec3(0.105, 0.132, 0.045); //@ colour label("Grass, green")
+uniform vec3 cover_straw = vec3(0.195, 0.172, 0.082); //@ colour label("Grass, dry or frozen")
+uniform vec3 cover_tundra = vec3(0.15, 0.14, 0.062); //@ colour label("Grass of heights")
+uniform vec3 cover_scrub = vec3(0.095, 0.092, 0.047); //@ colour label("Scrub") description("Evergreen shrubs on the slopes of dry, mild country")
+uniform vec3 cover_conifers = vec3(0.028, 0.046, 0.021); //@ colour label("Forest of needles")
+uniform vec3 cover_broadleaf = vec3(0.044, 0.078, 0.022); //@ colour label("Forest of leaves")
+uniform vec3 cover_leafless = vec3(0.088, 0.073, 0.052); //@ colour label("Forest without its leaves")
+uniform vec3 cover_rock = vec3(0.225, 0.208, 0.187); //@ colour label("Rock")
+uniform vec3 cover_floor = vec3(0.19, 0.18, 0.16); //@ colour label("Sea floor")
+uniform vec3 cover_firn = vec3(0.66, 0.74, 0.80); //@ colour label("Ice")
+uniform vec3 cover_white = vec3(0.77, 0.79, 0.82); //@ colour label("Snow")
+
+// Of sand, grass, rock, snow.
+uniform vec4 cover_specular = vec4(0.02, 0.012, 0.025, 0.08); //@ range(0, 1) label("Specular")
+uniform vec4 cover_shininess = vec4(12.0, 10.0, 16.0, 24.0); //@ range(1, 1000) label("Shininess")
+
+const int cover_last_level = 10;  // of the albedo textures, 1 x 1: their mean
+
+/// Shares of the ground, 0..1.
+struct cover_Shares {
+    float rock, forest, ice, snow;
+};
+
+/// What lies around a point and hangs on no climate.
+struct cover_Shape {
+    float steep;   // tangent of the slope, as if posts were 10 m apart
+    float sunny;   // how far the slope leans towards the noon sun, -1..1
+    vec4 small, broad;  // of patches, faded with distance: tone, hue, shrubs, fine tone, less 0.5
+    float ragged;  // what limits wander by, about -1..1
+};
+
+/// Posts far apart cut off slopes: by an eighth for each doubling.
+float cover_steepness(in Surface s, in float pixel_m) {
+    float c = clamp(dot(s.ground_normal, s.up), 0.02, 1.0);
+    float apart_m = max(1.0 / frame.normal_texels_per_m, pixel_m);
+    return sqrt(1.0 - c * c) / c * (1.0 + 0.125 * max(log2(apart_m * 0.1), 0.0));
+}
+
+/// Slopes that face the equator are sunny; at the equator none is more than another.
+float cover_sunniness(in Surface s) {
+    float sine = dot(s.up, frame.polar_axis.xyz);
+    vec3 north = frame.polar_axis.xyz - sine * s.up;
+    return -dot(s.ground_normal, north) * inversesqrt(max(dot(north, north), 1e-6)) *
+           clamp(2.4 * sine, -1.0, 1.0);
+}
+
+/// Turns by 37 degrees: patterns read both ways do not line up.
+const mat2 cover_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
+
+vec4 cover_patch(in vec2 at, in vec2 dx, in vec2 dy, in float size_m) {
+    float scale = 1.0 / size_m;
+    return textureGrad(cover_patches, at * scale, dx * scale, dy * scale) - vec4(0.5, 0.5, 0.0, 0.5);
+}
+
+cover_Shape cover_shape(in Surface s, in float pixel_m) {
+    cover_Shape shape;
+    shape.steep = cover_steepness(s, pixel_m);
+    shape.sunny = cover_sunniness(s);
+    vec2 at = s.ground_m.xy, dx = s.ground_dx_m.xy, dy = s.ground_dy_m.xy;
+    shape.small = cover_patch(at, dx, dy, 410.0);
+    shape.broad = cover_patch(cover_turn * at, cover_turn * dx, cover_turn * dy, 4700.0);
+    // Near limits: from afar they are ragged by the ground's own shape.
+    float near = mix(0.3, 1.0, 1.0 / (1.0 + pixel_m * pixel_m * 0.01));
+    shape.ragged = near * cover_noise * (1.7 * shape.broad.r + 1.5 * shape.small.r + 1.1 * shape.broad.a);
+    return shape;
+}
+
+float cover_tan(in float slope_rad) { return tan(radians(min(slope_rad, 89.0))); }
+
+/// Warmth for plants where a tree line is given: as steep as the climate's.
+float cover_growth(in ClimateGround ground, in float height_m) {
+    float by_line = 1.0 + (cover_tree_line_m - height_m) / 450.0;
+    return cover_trees == 1 ? by_line : ground.growth + cover_tree_shift_m / 450.0;
+}
+
+float cover_dryness_of(in ClimateGround ground) {
+    return cover_rain == 1 ? cover_dryness : ground.dryness * cover_rain_factor;
+}
+
+/// Ice and snow of a point, before slopes.
+vec2 cover_white_at(in vec2 place, in float height_m) {
+    vec2 read = vec2(-10.0, 0.0);
+    if (cover_snow == 0 || cover_ice) read = climate_snow(place, height_m - cover_snow_shift_m);
+    if (!cover_ice) read.x = -10.0;
+    if (cover_snow == 1) read.y = smoothstep(-180.0, 180.0, height_m - cover_snow_line_m);
+    if (cover_snow == 2) read.y = 0.0;
+    return read;
+}
+
+/// Open ground without snow: desert, steppe, grass, and above them what is bare.
+/// @param rain    dryness, with what the slope does to it
+/// @param growth  warmth for plants
+/// @param steep   tangent of the slope
+vec3 cover_open(in ClimateGround ground, in float rain, in float growth, in float steep) {
+    vec3 steppe = mix(cover_steppe, cover_steppe_green, ground.green * smoothstep(0.4, 1.0, rain));
+    vec3 meadow = mix(cover_straw, cover_grass, ground.green);
+    meadow = mix(mix(meadow, cover_tundra, 0.75), meadow, smoothstep(0.7, 1.7, growth));
+    vec3 open = mix(cover_desert, steppe, smoothstep(0.25, 0.8, rain));
+    open = mix(open, meadow, smoothstep(0.8, 1.9, rain));
+    // Where winters are mild shrubs stay green through the drought: chaparral, maquis, fynbos.
+    float shrubs = smoothstep(0.55, 1.1, rain) * smoothstep(6.0, 11.0, ground.temperature) * smoothstep(0.06, 0.4, steep);
+    return mix(open, cover_scrub, 0.85 * shrubs);
+}
+
+vec3 cover_forest(in ClimateGround ground, in float growth) {
+    // Needles where it is cold; leaves that fall where winters are, and those that stay in the tropics.
+    vec3 forest = mix(cover_conifers, cover_broadleaf, smoothstep(3.0, 11.0, ground.temperature));
+    forest *= mix(1.0, 0.78, smoothstep(18.0, 24.0, ground.temperature));
+    float falls = smoothstep(3.0, 9.0, ground.temperature) * (1.0 - smoothstep(13.0, 17.0, ground.temperature));
+    return mix(forest, cover_leafless, 0.5 * falls * (1.0 - ground.green));
+}
+
+/// Crowns of trees and the dark between them, of mean 1; from so far that they are smaller than pixels,
+/// nothing.
+float cover_crowns(in Surface s, in float pixel_m) {
+    const float size_m = 96.0, seen_m = 4.0;
+    if (pixel_m > seen_m) return 1.0;
+    vec4 crowns = cover_patch(cover_turn * s.ground_m.yx, cover_turn * s.ground_dx_m.yx, cover_turn * s.ground_dy_m.yx, size_m);
+    float light = 1.7 * crowns.a + 0.6 * (crowns.b - 0.3);
+    return max(1.0 + light * (1.0 - smoothstep(0.2 * seen_m, seen_m, pixel_m)), 0.25);
+}
+
+cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain, in float growth,
+                          in cover_Shape shape) {
+    cover_Shares shares;
+    float ragged = shape.ragged;
+    vec2 rocky = vec2(cover_tan(cover_rock_deg.x), cover_tan(cover_rock_deg.y));
+    shares.rock = smoothstep(rocky.x, rocky.y, shape.steep * (1.0 + 0.2 * ragged));
+    // Above the growing limit soil thins out, first where it is steep.
+    float soil = growth + 0.3 * ragged - 0.35 * shape.steep;
+    shares.rock = max(shares.rock, 1.0 - smoothstep(-0.35, 0.55, soil));
+
+    float wooded = smoothstep(1.15, 2.15, rain * (1.0 + 0.22 * ragged)) *
+                   smoothstep(0.82, 1.16, growth + 0.16 * ragged - 0.06 * shape.steep);
+    float temperate = smoothstep(3.0, 6.0, ground.temperature) * (1.0 - smoothstep(15.0, 19.0, ground.temperature));
+    float flats = 1.0 - smoothstep(0.01, 0.15, shape.steep * (1.0 + 0.3 * ragged));
+    wooded *= 1.0 - cover_open_flats * temperate * flats;
+    shares.forest = cover_trees == 2 ? 0.0 : wooded * (1.0 - smoothstep(0.85, 1.3, shape.steep));
+
+    vec2 bare = vec2(cover_tan(cover_bare_deg.x), cover_tan(cover_bare_deg.y));
+    float holds = 1.0 - 0.85 * smoothstep(bare.x, bare.y, shape.steep * (1.0 + 0.25 * ragged));
+    shares.ice = smoothstep(0.0, 0.7, white.x + 0.3 * ragged) * holds;
+    float edge = 4.0 * white.y * (1.0 - white.y);
+    shares.snow = smoothstep(0.12, 0.88, white.y + 0.22 * edge * ragged) * holds;
+    return shares;
+}
+
+/// The grain of the heaviest materials, as a factor of mean 1, and their gloss; fades by itself.
+vec4 cover_grain_of(in Surface s) {
+    vec4 grain = vec4(0.0);
+    int count = s.material_weight.y > 0.05 ? 2 : 1;
+    for (int i = 0; i < count; ++i) {
+        vec4 read = textureGrad(cover_albedo, vec3(s.texture_at, float(s.material[i])), s.texture_dx, s.texture_dy);
+        vec3 mean = texelFetch(cover_albedo, ivec3(0, 0, s.material[i]), cover_last_level).rgb;
+        grain += (count == 1 ? 1.0 : s.material_weight[i]) * vec4(read.rgb / mean, read.a);
+    }
+    return vec4(mix(vec3(1.0), grain.rgb, cover_grain), grain.a);
+}
+
+/// The two heaviest of sand, grass, rock and snow.
+void cover_take(inout Surface s, in vec4 weights) {
+    float most = max(max(weights.x, weights.y), max(weights.z, weights.w));
+    int first = weights.x == most ? 0 : weights.y == most ? 1 : weights.z == most ? 2 : 3;
+    weights[first] = -1.0;
+    float next = max(max(weights.x, weights.y), max(weights.z, weights.w));
+    int second = weights.x == next ? 0 : weights.y == next ? 1 : weights.z == next ? 2 : 3;
+    s.material = ivec2(first, second);
+    s.material_weight = vec2(most, next) / max(most + next, 1e-4);
+}
+
+void cover_on_albedo(inout Surface s) {
+    float pixel_m = max(length(s.ground_dx_m), length(s.ground_dy_m));
+    cover_Shape shape = cover_shape(s, pixel_m);
+    vec2 place = climate_place(s.up);
+    ClimateGround ground = climate_ground(place, s.height_m);
+    vec2 white = cover_white_at(place, s.height_m - cover_aspect_m * shape.sunny);
+    float growth = cover_growth(ground, s.height_m);
+    float rain = cover_dryness_of(ground) * (1.0 - 0.45 * shape.sunny);
+    cover_Shares shares = cover_shares(ground, white, rain, growth, shape);
+
+    // Patches are for the eye that is near: none of them is seen from afar.
+    float near = 1.0 / (1.0 + pixel_m * pixel_m * 0.02);
+    float tone = near * (0.55 * shape.small.a + 0.35 * shape.small.r);
+    vec3 open = cover_open(ground, rain * (1.0 + 0.3 * shape.ragged), growth, shape.steep);
+    // Dry land lies as low as the shore of the Dead Sea.
+    float floor_share = max((1.0 - smoothstep(-30.0, -12.0, s.height_m)) * smoothstep(0.6, 1.2, rain),
+                            1.0 - smoothstep(-600.0, -440.0, s.height_m));
+    open = mix(open, cover_floor, floor_share);
+    open *= 1.0 + 0.8 * tone + near * 0.25 * shape.small.g * vec3(1.0, 0.0, -0.6);
+    vec3 rock = mix(cover_rock, 0.62 * cover_desert + 0.2 * cover_rock, 1.0 - smoothstep(0.3, 1.0, rain));
+    rock *= 1.0 + tone;
+    vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone) * cover_crowns(s, pixel_m);
+    vec3 albedo = mix(open, rock, shares.rock);
+    float trees = shares.forest * (1.0 - shares.rock);
+    albedo = mix(albedo, forest, trees);
+    // From above trees hide most of the snow under them.
+    float lying = shares.snow * (1.0 - 0.94 * smoothstep(0.0, 0.9, trees));
+    albedo = mix(albedo, cover_firn, shares.ice);
+    lying = max(lying, shares.ice * shares.snow);
+    albedo = mix(albedo, cover_white, lying);
+
+    float covered = max(lying, shares.ice);
+    float sandy = (1.0 - smoothstep(0.4, 1.0, rain)) * (1.0 - shares.rock);
+    cover_take(s, vec4(sandy, 1.0 - sandy - (1.0 - sandy) * shares.rock, shares.rock, 0.0) * (1.0 - covered) +
+                      vec4(0.0, 0.0, 0.0, covered));
+    s.texture_at = s.ground_m.xy / cover_texture_m;
+    s.texture_dx = s.ground_dx_m.xy / cover_texture_m;
+    s.texture_dy = s.ground_dy_m.xy / cover_texture_m;
+    s.gloss = 0.5;
+    if (pixel_m < cover_texture_m) {
+        vec4 grain = cover_grain_of(s);
+        albedo *= grain.rgb;
+        s.gloss = grain.a;
+    }
+    s.diffuse = albedo;
+    s.ambient = albedo;
+    s.emissive = vec3(0.0);
+    s.specular = vec3(dot(s.material_weight, vec2(cover_specular[s.material.x], cover_specular[s.material.y])));
+    s.shininess = dot(s.material_weight, vec2(cover_shininess[s.material.x], cover_shininess[s.material.y]));
+}
