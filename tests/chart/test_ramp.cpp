@@ -114,7 +114,9 @@ TEST(Legend, StandsOnAPictureWithItsTitleRampAndValues) {
             };
             if (is(0x1f, 0x2a, 0x50)) below = y;
             if (!above && is(0xfd, 0xf3, 0xa8)) above = y;
-            if (x < 100 || y < 50) EXPECT_EQ(picture.at(x, y, 0) + picture.at(x, y, 1), 0);
+            if (x < 100 || y < 50) {
+                EXPECT_EQ(picture.at(x, y, 0) + picture.at(x, y, 1), 0);
+            }
         }
     EXPECT_GT(above, 50);
     EXPECT_GT(below, above + 130);
