@@ -105,6 +105,12 @@ class ManifestReader {
             manifest_.provides.end())
             object.fail(object.line_of("provides"), "provides",
                         fmt::format("\"{}\" is core's own word; expected another", kNightWord));
+        manifest_.exclusive = words(object, "exclusive");
+        for (const std::string& word : manifest_.exclusive)
+            if (std::find(manifest_.provides.begin(), manifest_.provides.end(), word) ==
+                manifest_.provides.end())
+                object.fail(object.line_of("exclusive"), "exclusive",
+                            fmt::format("expected words of \"provides\" but got \"{}\"", word));
         manifest_.needs = words(object, "requires");
         manifest_.wants = words(object, "wants");
         manifest_.after = words(object, "after");

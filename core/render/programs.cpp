@@ -82,7 +82,9 @@ std::vector<ProgramText> stitch_all(const shader::CoreTexts& core, const shader:
         geometry.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
         terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
     }
-    if (answers(input, "displace")) geometry.defines.push_back({"DISPLACED", ""});
+    if (answers(input, "displace"))
+        for (shader::ProgramRecipe* const recipe : {&geometry, &terrain})
+            recipe->defines.push_back({"DISPLACED", ""});
     std::vector<shader::Define> ends;  // what the shading programs end in
     if (options.shown)
         ends.push_back({"SHOWN", ""});

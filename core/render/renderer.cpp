@@ -84,7 +84,7 @@ struct Renderer::Impl {
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
     TileSelection tiles;  // of the last frame
-    bool reads_surface = false;
+    bool reads_surface = false, reads_sun = false, reads_sky = false;
 
     gl::Texture gbuffer, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     gl::Texture varyings, height_steps;
@@ -119,6 +119,8 @@ struct Renderer::Impl {
 
         make_targets();
         reads_surface = reads("surface_pages");
+        reads_sun = reads("light_margins");
+        reads_sky = reads("light_sky");
         if (!effects.modules.empty()) depth_only = link("depth");
         for (const effect::NativeModule* module : effects.modules)
             natives.emplace_back(
@@ -300,9 +302,9 @@ struct Renderer::Impl {
               PassTimes* times) {
         block.normal_levels = static_cast<float>(ground.normal_levels());
         block.normal_texels_per_m = static_cast<float>(1 / ground.normal_spacing_m());
-        frame_block.write(std::as_bytes(std::span(&block, 1)));
-        frame_block.bind_uniform(kFrameBinding);
-        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
+        const dem::Pyramid& posts = ground.pyramid();
+        block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),
+                       1.0F / static_cast<float>(posts.rows())};
 
         auto began = std::chrono::steady_clock::now();
         const auto passed = [&](const char* name) {
@@ -313,6 +315,16 @@ struct Renderer::Impl {
                                 std::chrono::duration<double, std::milli>(now - began).count());
             began = now;
         };
+
+        if (reads_sun) ground.light().follow(inputs.sun, inputs.exaggeration);
+        if (reads_sky) ground.light().look_up(inputs.exaggeration);
+        if (reads_sun || reads_sky) {
+            block.light_grid = ground.light().grid();
+            passed("light");
+        }
+        frame_block.write(std::as_bytes(std::span(&block, 1)));
+        frame_block.bind_uniform(kFrameBinding);
+        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
 
         if (reads_surface) ground.keep_surface();
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,

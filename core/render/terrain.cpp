@@ -119,6 +119,7 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       frame_(frame),
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),
+      light_(heightfield, frame),
       grid_vertices_(gl::Buffer::of<float>(grid_vertices(), "terrain grid")),
       grid_indices_(gl::Buffer::of<std::uint16_t>(grid_indices(), "terrain grid indices")) {
     const glm::dvec2 spacing_m = grid_.post_spacing_m();
@@ -195,6 +196,7 @@ void Terrain::keep_surface() {
 const gl::Texture* Terrain::texture(std::string_view name) const {
     if (name == "page_table") return &page_table_;
     if (const gl::Texture* const heights = heights_.find(name)) return heights;
+    if (const gl::Texture* const light = light_.texture(name)) return light;
     return surface_.find(name);
 }
 

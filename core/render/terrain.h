@@ -14,6 +14,7 @@
 #include "gl/buffer.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
+#include "render/ground_light.h"
 #include "render/loading.h"
 #include "render/lod.h"
 #include "render/page_cache.h"
@@ -95,8 +96,13 @@ class Terrain {
     /// them.
     void keep_surface();
 
-    /// What shaders read of the ground, by the sampler's name: a PageLayer's, or "page_table", the
-    /// slot and level of the finest page of the picture there is. Null for others.
+    /// What comes to the ground past the ground around it.
+    GroundLight& light() { return light_; }
+    const GroundLight& light() const { return light_; }
+
+    /// What shaders read of the ground, by the sampler's name: a PageLayer's, one of GroundLight's,
+    /// or "page_table", the slot and level of the finest page of the picture there is. Null for
+    /// others.
     const gl::Texture* texture(std::string_view name) const;
     /// No two terrains of a process have the same.
     std::uint64_t serial() const { return serial_; }
@@ -124,6 +130,7 @@ class Terrain {
     const geo::LocalFrame& frame_;
     TileTree tree_;
     glm::dvec3 polar_axis_;
+    GroundLight light_;
     double normal_spacing_m_ = 0;
     int normal_levels_ = 1;
     int normal_layers_ = 1;

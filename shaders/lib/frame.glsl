@@ -31,4 +31,7 @@ layout(std140, binding = 0) uniform Frame {
                               // bends light, 1 is 59.7 arcsec at an elevation of 45 degrees
     vec4 celestial[3];        // xyz: rows of the rotation from the local frame to the axes of star catalogues (ICRS);
                               // w: velocity of the place there, over that of light
+    vec4 posts;               // xy: columns and rows of the DEM, zw: their inverses
+    vec4 light_grid;          // of render/ground_light.h: x: texels of a post of the margins, y: of the sky's; z: 1
+                              // where the margins' rows are columns of the DEM; w: greatest margin [m]
 } frame;

@@ -1,0 +1,84 @@
+#include "light/margins.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "base/error.h"
+#include "base/units.h"
+
+namespace relevo::light {
+namespace {
+
+/// A DEM in more windows than this is looked at with a sun that is off by more.
+constexpr std::size_t kMostWindows = 4096;
+constexpr double kLooser = 4;
+constexpr double kLoosest_rad = radians(12);
+
+struct Division {
+    std::vector<SweepWindow> windows;
+    double error_rad = 0;
+};
+
+Division division_of(const SunSky& sky, const dem::Grid& grid) {
+    for (double tolerance_rad = kSunTolerance_rad;; tolerance_rad *= kLooser) {
+        const bool last = tolerance_rad * kLooser > kLoosest_rad;
+        try {
+            Division division{divide({sky}, whole(grid), tolerance_rad), 0};
+            if (division.windows.size() > kMostWindows && !last) continue;
+            if (tolerance_rad > kSunTolerance_rad) division.error_rad = tolerance_rad;
+            return division;
+        } catch (const Error&) {
+            if (last) throw;
+        }
+    }
+}
+
+/// The lower limb's edges are found first and kept; with the upper one's come the margins.
+void margins_of_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double radius_rad,
+                     const Margins::Use& use) {
+    TileValues lower(tile.window, 0), scratch(sky.levels() > 1 ? tile.window : SweepWindow{}, 0);
+    for (TileValues* const each : {&lower, &scratch})
+        each->turn(tile.path.along_columns());
+    each_edge(sky, sweep, tile, -radius_rad, scratch, [&](const SweepRun& run) {
+        float* const margin_m = lower.of(run);
+        for (int i = 0; i < run.count; ++i)
+            margin_m[i] = run.height_m[i] - run.found[i];
+    });
+    each_edge(sky, sweep, tile, radius_rad, scratch, [&](const SweepRun& run) {
+        constexpr int kPart = 512;
+        std::array<float, kPart> upper_m;
+        const float* const lower_m = lower.of(run);
+        for (int done = 0; done < run.count; done += kPart) {
+            const int count = std::min(run.count - done, kPart);
+            for (int i = 0; i < count; ++i)
+                upper_m[static_cast<std::size_t>(i)] = run.height_m[done + i] - run.found[done + i];
+            use({run.along_column, run.line, run.first + done, count, upper_m.data(),
+                 lower_m + done});
+        }
+    });
+}
+
+}  // namespace
+
+Margins::Margins(const dem::Posts& posts, const ShadowOptions& options)
+    : dem_(posts, options), sweep_([&] {
+          const dem::Posts::View heights = view_in_memory(posts);
+          return Sweep(heights.first_m, posts.grid().columns(), posts.grid().rows(),
+                       heights.stride);
+      }()) {}
+
+Margins::Found Margins::each(const geo::Geodetic& place, const SunOverDem& sun,
+                             const std::function<void(bool)>& turn, const Use& use) const {
+    const SunSky sky(dem_, place, sun);
+    turn(sky.along_columns());
+    if (sky.is_night()) return {true, 0};
+    const Division division = division_of(sky, dem_.grid());
+    each_window(division.windows, [&](const SweepWindow& window) {
+        margins_of_tile(sky, sweep_, *sky.tile(window), sun.semidiameter_rad, use);
+    });
+    return {false, division.error_rad};
+}
+
+}  // namespace relevo::light
