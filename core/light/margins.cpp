@@ -1,8 +1,10 @@
 #include "light/margins.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "base/error.h"
@@ -35,12 +37,31 @@ Division division_of(const SunSky& sky, const dem::Grid& grid) {
     }
 }
 
+/// A figure for each post of a window, in the order in which sweeps come to them, not set yet.
+class Kept {
+  public:
+    Kept(const SweepWindow& window, bool along_columns)
+        : line_(along_columns ? window.column : window.row),
+          first_(along_columns ? window.row : window.column),
+          length_(along_columns ? window.rows : window.columns),
+          values_(std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>(window.columns) *
+                                                          static_cast<std::size_t>(window.rows))) {}
+
+    float* of(const SweepRun& run) {
+        return values_.get() + std::ptrdiff_t{run.line - line_} * length_ + (run.first - first_);
+    }
+
+  private:
+    int line_, first_, length_;
+    std::unique_ptr<float[]> values_;
+};
+
 /// The lower limb's edges are found first and kept; with the upper one's come the margins.
 void margins_of_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double radius_rad,
                      const Margins::Use& use) {
-    TileValues lower(tile.window, 0), scratch(sky.levels() > 1 ? tile.window : SweepWindow{}, 0);
-    for (TileValues* const each : {&lower, &scratch})
-        each->turn(tile.path.along_columns());
+    Kept lower(tile.window, tile.path.along_columns());
+    TileValues scratch(sky.levels() > 1 ? tile.window : SweepWindow{}, 0);
+    scratch.turn(tile.path.along_columns());
     each_edge(sky, sweep, tile, -radius_rad, scratch, [&](const SweepRun& run) {
         float* const margin_m = lower.of(run);
         for (int i = 0; i < run.count; ++i)

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -31,12 +32,11 @@ constexpr float kMostMargin = 60000;  // in halves, short of kHole
 constexpr double kMarginPosts = 4;    // a margin of so many spacings counts as one of any size
 
 /// A float as a half. What is smaller than a half's least normal number is 0.
-inline std::uint16_t half_of(float value) {
-    std::uint32_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
+inline std::uint32_t half_of(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
     const std::uint32_t sign = bits >> 16 & 0x8000U, size = bits & 0x7fffffffU;
     const std::uint32_t half = (size - (112U << 23) + 0x1000U) >> 13;
-    return static_cast<std::uint16_t>(sign | (size < (113U << 23) ? 0 : half));
+    return sign | (size < (113U << 23) ? 0 : half);
 }
 
 /// Means of squares of posts, as Source::read() makes them: holes take no part.
@@ -66,6 +66,31 @@ Array2d<float> means_of(const Array2d<float>& height_m, int side, float factor) 
 struct Bytes2 {
     std::uint8_t value, coverage;
 };
+
+constexpr std::uint32_t kHoles = 0x7bff7bffU;  // GroundLight::kHole twice
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define RELEVO_WIDE [[gnu::target_clones("avx2", "default")]]
+#else
+#define RELEVO_WIDE
+#endif
+
+/// Margins as two halves, the upper limb's in the low one, and the share of the disc that is seen.
+RELEVO_WIDE void encode(const light::MarginRun& run, std::uint32_t* halves, std::uint16_t* shares) {
+    const float *const uppers = run.upper_m, *const lowers = run.lower_m;
+    for (int i = 0; i < run.count; ++i) {
+        const float u = uppers[i], l = lowers[i];
+        const bool hole = !(u == u);
+        const float upper = std::min(kMostMargin, std::max(-kMostMargin, u)),
+                    lower = std::min(kMostMargin, std::max(-kMostMargin, l));
+        const std::uint32_t pair = half_of(upper) | half_of(lower) << 16;
+        halves[i] = hole ? kHoles : pair;
+        const float height = std::min(1.0F, std::max(0.0F, upper / std::max(upper - lower, 1e-3F)));
+        const float seen = lower >= 0 ? 1.0F : light::quick_share_of_disc(height);
+        const auto whole = static_cast<std::uint32_t>(static_cast<int>(255 * seen + 0.5F));
+        shares[i] = static_cast<std::uint16_t>(hole ? 0 : whole | 0xff00U);
+    }
+}
 
 /// Values and coverage with levels of means. Sides are such that each level halves the one before;
 /// what is beyond the posts has no coverage.
@@ -130,6 +155,16 @@ class Shares {
     std::optional<gl::Texture> texture_;
 };
 
+/// How many posts a mean is of, each way, where there may be so many means.
+int reduction_to(const Array2d<float>& h, std::int64_t most_posts) {
+    int reduction = 1;
+    while (std::min(h.width(), h.height()) / (2 * reduction) >= 2 &&
+           (std::max(h.width(), h.height()) / reduction > kMostSide ||
+            std::int64_t{h.width() / reduction} * (h.height() / reduction) > most_posts))
+        reduction *= 2;
+    return reduction;
+}
+
 /// A DEM's posts at the height that they are drawn at, or means of them.
 struct DrawnPosts {
     std::optional<dem::Heightfield> own;  ///< unless they are the given ones
@@ -138,16 +173,12 @@ struct DrawnPosts {
     int reduction = 1;  ///< of the given posts to one of these, each way
 
     /// @returns whether they are others than before
-    bool make(const dem::Heightfield& given, double wanted, int most_posts) {
-        if (posts && exaggeration == wanted) return false;
+    bool make(const dem::Heightfield& given, double wanted, int wanted_reduction) {
+        if (posts && exaggeration == wanted && reduction == wanted_reduction) return false;
         posts.reset();
         exaggeration = wanted;
-        reduction = 1;
+        reduction = wanted_reduction;
         const Array2d<float>& h = given.height_m;
-        while (std::min(h.width(), h.height()) / (2 * reduction) >= 2 &&
-               (std::max(h.width(), h.height()) / reduction > kMostSide ||
-                std::int64_t{h.width() / reduction} * (h.height() / reduction) > most_posts))
-            reduction *= 2;
         if (reduction == 1 && exaggeration == 1 && given.reduction == 1) {
             posts.emplace(given);
             return true;
@@ -192,26 +223,47 @@ struct GroundLight::Impl {
     const dem::Heightfield& field;
     const geo::LocalFrame& frame;
 
-    DrawnPosts ground, sky_ground;
-    std::optional<light::Margins> margins;
-    AirMade air;
+    /// Posts, or means of them, and what is the same for all suns.
+    struct Level {
+        DrawnPosts ground;
+        std::optional<light::Margins> margins;  // of the posts above
+        AirMade air;
+    };
+    std::map<int, Level> levels;   // by reduction
+    const Level* level = nullptr;  // of the textures
+    DrawnPosts sky_ground;
     std::optional<SunMade> sun;
     double told_error_rad = 0;
 
-    bool by_columns = false;        // rows of the textures are columns of the DEM
-    Array2d<std::uint32_t> halves;  // upper limb's margin in the low half, lower one's above
-    Array2d<Bytes2> post_shares;
+    bool by_columns = false;             // rows of the textures are columns of the DEM
+    Array2d<std::uint32_t> halves;       // upper limb's margin in the low half, lower one's above
+    Array2d<std::uint16_t> post_shares;  // value and coverage, a byte each
     std::optional<gl::Texture> margin_texture;
     Shares shares, sky;
     bool has_sky = false;
 
     Impl(const dem::Heightfield& f, const geo::LocalFrame& l) : field(f), frame(l) {}
 
-    void prepare(const SunLight& light, double exaggeration) {
+    /// Means are finer than the pixels, and few where pixels allow it.
+    int reduction_for(double pixel_posts) const {
+        const int few = reduction_to(field.height_m, kFewPosts);
+        int reduction = reduction_to(field.height_m, kMostPosts);
+        while (2 * reduction * field.reduction <= pixel_posts && 2 * reduction <= few)
+            reduction *= 2;
+        return reduction;
+    }
+
+    void prepare(const SunLight& light, double exaggeration, int reduction) {
         const AirMade wanted = AirMade::of(light);
-        if (ground.make(field, exaggeration, kMostPosts) || wanted != air) margins.reset();
-        if (margins) return;
-        air = wanted;
+        Level& here = levels[reduction];
+        if (level != &here) sun.reset();
+        level = &here;
+        if (here.air != wanted) here.margins.reset();
+        if (here.margins && here.ground.exaggeration == exaggeration) return;
+        here.margins.reset();
+        here.ground.make(field, exaggeration, reduction);
+        here.air = wanted;
+        sun.reset();
         light::ShadowOptions options;
         options.refraction = light.terrestrial_refraction;
         if (light.air)
@@ -220,13 +272,12 @@ struct GroundLight::Impl {
                 at.height_m /= exaggeration;  // of the ground that there is
                 return light.air(at);
             };
-        margins.emplace(*ground.posts, options);
-        sun.reset();
+        here.margins.emplace(*here.ground.posts, options);
     }
 
     /// The textures' rows are the lines that sweeps go by, so that nothing has to be turned.
     void turn(bool along_columns) {
-        const dem::Grid& grid = ground.posts->grid();
+        const dem::Grid& grid = level->ground.posts->grid();
         glm::ivec2 size(grid.columns(), grid.rows());
         if (along_columns) size = {size.y, size.x};
         if (halves.width() == size.x && halves.height() == size.y) {
@@ -235,34 +286,21 @@ struct GroundLight::Impl {
         }
         by_columns = along_columns;
         halves = Array2d<std::uint32_t>(size.x, size.y);
-        post_shares = Array2d<Bytes2>(size.x, size.y);
+        post_shares = Array2d<std::uint16_t>(size.x, size.y);
         margin_texture.emplace(gl::TextureKind::D2, gl::Format::RG16F,
                                gl::Extent{size.x, size.y, 1}, 1, "light_margins");
         margin_texture->set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
     }
 
     void take(const light::MarginRun& run) {
-        std::uint32_t* const to = &halves.at(run.first, run.line);
-        Bytes2* const share = &post_shares.at(run.first, run.line);
-        for (int i = 0; i < run.count; ++i) {
-            const float u = run.upper_m[i], l = run.lower_m[i];
-            const bool hole = !(u == u);
-            const float upper = std::min(std::max(u, -kMostMargin), kMostMargin),
-                        lower = std::min(std::max(l, -kMostMargin), kMostMargin);
-            const std::uint32_t pair = half_of(upper) | std::uint32_t{half_of(lower)} << 16;
-            to[i] = hole ? kHoles : pair;
-            const float height =
-                std::min(std::max(upper / std::max(upper - lower, 1e-3F), 0.0F), 1.0F);
-            const float seen = lower >= 0 ? 1.0F : light::quick_share_of_disc(height);
-            share[i] =
-                hole ? Bytes2{0, 0} : Bytes2{static_cast<std::uint8_t>(255 * seen + 0.5F), 255};
-        }
+        const int x = run.first, y = run.line;
+        encode(run, &halves.at(x, y), &post_shares.at(x, y));
     }
 
     void shade_all() {
         for (std::size_t i = 0; i < halves.size(); ++i) {
             halves.data()[i] = half_of(-kMostMargin) * 0x10001U;
-            post_shares.data()[i] = {0, 255};
+            post_shares.data()[i] = 0xff00U;
         }
     }
 
@@ -274,17 +312,19 @@ struct GroundLight::Impl {
         const int columns = halves.width(), rows = halves.height();
         parallel_for(0, (rows + 1) / 2, 32, [&](int first, int last) {
             for (int row = first; row < last; ++row) {
-                const Bytes2 *const a = post_shares.row(2 * row).data(),
-                                    *const b =
-                                        post_shares.row(std::min(2 * row + 1, rows - 1)).data();
+                const std::uint16_t* const a = post_shares.row(2 * row).data();
+                const std::uint16_t* const b =
+                    post_shares.row(std::min(2 * row + 1, rows - 1)).data();
                 Bytes2* const to = base.row(row).data();
                 for (int i = 0; i < (columns + 1) / 2; ++i) {
                     const int x = 2 * i, y = std::min(x + 1, columns - 1);
-                    to[i] = {static_cast<std::uint8_t>(
-                                 (a[x].value + a[y].value + b[x].value + b[y].value + 2) / 4),
-                             static_cast<std::uint8_t>((a[x].coverage + a[y].coverage +
-                                                        b[x].coverage + b[y].coverage + 2) /
-                                                       4)};
+                    const auto mean = [&](int shift) {
+                        return static_cast<std::uint8_t>(
+                            ((a[x] >> shift & 255) + (a[y] >> shift & 255) + (b[x] >> shift & 255) +
+                             (b[y] >> shift & 255) + 2) /
+                            4);
+                    };
+                    to[i] = {mean(0), mean(8)};
                 }
             }
         });
@@ -300,8 +340,6 @@ struct GroundLight::Impl {
                         "a part of it is off by up to {:.1f} degrees somewhere in the part",
                         degrees(error_rad)));
     }
-
-    static constexpr std::uint32_t kHoles = 0x7bff7bffU;  // kHole twice
 };
 
 GroundLight::GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame)
@@ -310,15 +348,15 @@ GroundLight::GroundLight(GroundLight&&) noexcept = default;
 GroundLight& GroundLight::operator=(GroundLight&&) noexcept = default;
 GroundLight::~GroundLight() = default;
 
-void GroundLight::follow(const SunLight& light, double exaggeration) {
+void GroundLight::follow(const SunLight& light, double exaggeration, double pixel_posts) {
     Impl& my = *impl_;
-    my.prepare(light, exaggeration);
+    my.prepare(light, exaggeration, my.reduction_for(pixel_posts));
     const SunMade wanted{light.direction, light.semidiameter_rad};
     if (my.sun == wanted) return;
     const glm::dvec3& d = light.direction;
     const light::SunOverDem over{std::atan2(d.x, d.y), std::atan2(d.z, std::hypot(d.x, d.y)),
                                  light.semidiameter_rad};
-    const light::Margins::Found found = my.margins->each(
+    const light::Margins::Found found = my.level->margins->each(
         my.frame.origin(), over, [&](bool along_columns) { my.turn(along_columns); },
         [&](const light::MarginRun& run) { my.take(run); });
     if (found.night) my.shade_all();
@@ -329,7 +367,10 @@ void GroundLight::follow(const SunLight& light, double exaggeration) {
 
 void GroundLight::look_up(double exaggeration) {
     Impl& my = *impl_;
-    if (!my.sky_ground.make(my.field, exaggeration, kMostSkyPosts) && my.has_sky) return;
+    if (!my.sky_ground.make(my.field, exaggeration,
+                            reduction_to(my.field.height_m, kMostSkyPosts)) &&
+        my.has_sky)
+        return;
     light::SkyViewOptions options;
     options.directions = kSkyDirections;
     options.of_open_slope = true;
@@ -360,10 +401,12 @@ glm::vec4 GroundLight::grid() const {
     const Impl& my = *impl_;
     const double given = my.field.reduction;
     const glm::dvec2 spacing_m = my.field.grid.post_spacing_m();
-    return {static_cast<float>(1 / (given * my.ground.reduction)),
-            static_cast<float>(1 / (given * my.sky_ground.reduction)), my.by_columns ? 1 : 0,
-            static_cast<float>(kMarginPosts * my.ground.reduction *
-                               std::max(spacing_m.x, spacing_m.y) * my.ground.exaggeration)};
+    const int reduction = my.level ? my.level->ground.reduction : 1;
+    const double exaggeration = my.level ? my.level->ground.exaggeration : 1;
+    return {static_cast<float>(1 / (given * reduction)),
+            static_cast<float>(1 / (given * my.sky_ground.reduction)), my.by_columns ? 1.0F : 0.0F,
+            static_cast<float>(kMarginPosts * reduction * std::max(spacing_m.x, spacing_m.y) *
+                               exaggeration)};
 }
 
 }  // namespace relevo::render

@@ -25,7 +25,8 @@ namespace relevo::render {
 /// - "light_sky": how much of the sky an endless slope as inclined sees is seen (r), times coverage
 ///   (g), with levels.
 ///
-/// A DEM of more than kMostPosts posts is looked at as means of 2 x 2, 4 x 4, ...
+/// Margins are those of means of 2 x 2, 4 x 4, ... posts where no pixel of the picture is finer,
+/// and of a DEM of more than kMostPosts posts; the sky's of one of more than kMostSkyPosts.
 class GroundLight {
   public:
     /// @param field  outlives this
@@ -36,8 +37,9 @@ class GroundLight {
     ~GroundLight();
 
     /// Has margins and shares be those of a sun. Nothing is done where they are.
+    /// @param pixel_posts  posts along the side of the picture's finest pixel of ground
     /// @throws Error (BadInput) for a refraction that no air has
-    void follow(const SunLight& sun, double exaggeration);
+    void follow(const SunLight& sun, double exaggeration, double pixel_posts = 1);
     /// Has the sky be there. Nothing is done where it is.
     void look_up(double exaggeration);
 
@@ -47,7 +49,7 @@ class GroundLight {
     glm::vec4 grid() const;
 
     static constexpr float kHole = 65504;  ///< the greatest half
-    static constexpr int kMostPosts = 1 << 24, kMostSkyPosts = 1 << 20;
+    static constexpr int kMostPosts = 1 << 25, kFewPosts = 1 << 20, kMostSkyPosts = 1 << 18;
     static constexpr int kSkyDirections = 16;
 
   private:

@@ -297,6 +297,16 @@ struct Renderer::Impl {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
+    /// Has the light by place be there that the programs read.
+    void light(Terrain& ground, const FrameInputs& inputs, FrameBlock& block) const {
+        const double pixel_rad = length(glm::dvec3(block.pixel_ray_dx));
+        if (reads_sun)
+            ground.light().follow(inputs.sun, inputs.exaggeration,
+                                  tiles.nearest_m() * pixel_rad / ground.normal_spacing_m());
+        if (reads_sky) ground.light().look_up(inputs.exaggeration);
+        if (reads_sun || reads_sky) block.light_grid = ground.light().grid();
+    }
+
     // In one piece: the passes of a frame in their order.
     void draw(Terrain& ground, const Ground& about, const FrameInputs& inputs, FrameBlock block,
               PassTimes* times) {
@@ -316,20 +326,16 @@ struct Renderer::Impl {
             began = now;
         };
 
-        if (reads_sun) ground.light().follow(inputs.sun, inputs.exaggeration);
-        if (reads_sky) ground.light().look_up(inputs.exaggeration);
-        if (reads_sun || reads_sky) {
-            block.light_grid = ground.light().grid();
-            passed("light");
-        }
-        frame_block.write(std::as_bytes(std::span(&block, 1)));
-        frame_block.bind_uniform(kFrameBinding);
-        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
-
         if (reads_surface) ground.keep_surface();
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
                                           inputs.exaggeration, inputs.loading);
         passed("select");
+
+        light(ground, inputs, block);
+        if (reads_sun || reads_sky) passed("light");
+        frame_block.write(std::as_bytes(std::span(&block, 1)));
+        frame_block.bind_uniform(kFrameBinding);
+        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
 
         if (!natives.empty()) {
             for (NativeHost& native : natives) {

@@ -162,6 +162,13 @@ int TileSelection::finest_level() const {
     return finest;
 }
 
+double TileSelection::nearest_m() const {
+    double nearest_m = tiles_.empty() ? 0 : tiles_.front().draw.distance_m;
+    for (const Tile& tile : tiles_)
+        nearest_m = std::min(nearest_m, tile.draw.distance_m);
+    return nearest_m;
+}
+
 bool Terrain::winds_counterclockwise() {
     const PatchNet& net = tree_.net(tree_.root());
     return dot(cross(net.position_m[3], net.position_m[1]), net.vertical[0]) > 0;

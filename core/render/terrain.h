@@ -36,6 +36,7 @@ class TileSelection {
     int triangles() const { return triangles_; }
     double tolerance() const { return tolerance_; }  ///< as LodView's, after the vertex budget
     int finest_level() const;                        ///< 0: every post; 0 for none
+    double nearest_m() const;  ///< from the eye to the nearest tile; 0 for none
 
   private:
     friend class Terrain;

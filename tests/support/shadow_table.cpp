@@ -1,6 +1,7 @@
 // Shadows that are drawn against shadows that are marched: shadow_table [--elevations 1,2,5]
-// [--azimuths 0,45] [--heights 4] [--set vsm.bleed=0.1] [--pictures FOLDER] DEM...; with
-// --comparison FILE.png a picture of the first sun instead of a table
+// [--azimuths 0,45] [--heights 4] [--effect vsm] [--set vsm.bleed=0.1] [--pictures FOLDER] DEM...;
+// with --comparison FILE.png a picture of the first sun instead of a table; with --penumbra how
+// well the share of the sun's disc is drawn
 #include <chrono>
 #include <cstdio>
 
@@ -9,7 +10,7 @@
 
 #include "base/text.h"
 #include "image/image.h"
-#include "truth.h"
+#include "support/shadow_truth.h"
 
 namespace {
 
@@ -73,6 +74,23 @@ void write_comparison(const std::filesystem::path& file, const relevo::dem::Heig
     image::write(file, picture, {}, true);
 }
 
+/// A row a sun: the posts that see a part of its disc, and how large a part is drawn there.
+void print_penumbras(relevo::shadow::Drawn& drawn, const relevo::shadow::Truth& truth,
+                     const std::vector<double>& elevations, const std::vector<double>& azimuths) {
+    fmt::print("| sun | azimuth | posts in the penumbra | mean error | mean size of the error |\n");
+    fmt::print("|---|---|---|---|---|\n");
+    drawn.semidiameter_rad() = relevo::shadow::kSunRadius_rad;
+    for (const double elevation : elevations)
+        for (const double azimuth : azimuths) {
+            const glm::dvec3 to_sun = relevo::shadow::direction(azimuth, elevation);
+            const auto p =
+                relevo::shadow::penumbra(truth, drawn.at_posts(to_sun, truth.posts()), to_sun);
+            fmt::print("| {} | {} | {} | {:+.3f} | {:.3f} |\n", elevation, azimuth, p.posts, p.mean,
+                       p.mean_size);
+            std::fflush(stdout);
+        }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -83,6 +101,8 @@ int main(int argc, char** argv) {
     std::vector<std::string> dems, settings;
     std::filesystem::path pictures, comparison;
     double pixel_error = 2, factor = 1;
+    std::string effect = "shadows";
+    bool penumbra = false;
     const auto numbers = [](const std::string& text) {
         std::vector<double> result;
         for (const std::string& part : split(text, ','))
@@ -103,6 +123,10 @@ int main(int argc, char** argv) {
             comparison = argv[++i];
         else if (word == "--pixel-error")
             pixel_error = std::stod(argv[++i]);
+        else if (word == "--effect")
+            effect = argv[++i];
+        else if (word == "--penumbra")
+            penumbra = true;
         else if (word == "--heights")
             factor = std::stod(argv[++i]);
         else
@@ -115,11 +139,15 @@ int main(int argc, char** argv) {
                 write_comparison(comparison, dem, elevations[0], azimuths[0]);
                 continue;
             }
-            Drawn drawn(dem, test::scratch_dir(), settings, pixel_error);
+            Drawn drawn(dem, test::scratch_dir(), settings, pixel_error, glm::ivec2(0), effect);
             const Truth truth(dem, drawn.ground().frame);
             fmt::print("\n{}{}: {} x {} posts\n\n", std::filesystem::path(path).filename().string(),
                        factor == 1 ? "" : fmt::format(", heights times {}", factor),
                        dem.grid.columns(), dem.grid.rows());
+            if (penumbra) {
+                print_penumbras(drawn, truth, elevations, azimuths);
+                continue;
+            }
             double worst = 1, worst_beyond = 1, worst_lit = 1;
             fmt::print(
                 "| sun | azimuth | shaded | balanced accuracy | beyond two texels | lit cells "

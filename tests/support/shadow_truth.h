@@ -160,9 +160,10 @@ class Drawn {
     /// @param scratch   a folder that may be written
     /// @param settings  "vsm.bleed=0.1"
     /// @param size      of the pictures [px]; 0: from above, 2 to 8 pixels a post
+    /// @param effect    that makes the shadows
     Drawn(const dem::Heightfield& dem, const std::filesystem::path& scratch,
           const std::vector<std::string>& settings = {}, double pixel_error = 2,
-          glm::ivec2 size = glm::ivec2(0))
+          glm::ivec2 size = glm::ivec2(0), const std::string& effect = "vsm")
         : dem_(dem), ground_(render::make_ground(dem)), context_({.device = "software"}) {
         // A surface that sends the sun's light on as it comes, and none of the sky's.
         std::filesystem::create_directories(scratch / "probe");
@@ -173,7 +174,7 @@ class Drawn {
                "vec3(1.0); }\n"
                "void probe_on_ambient(in Surface s, inout vec3 irradiance) { irradiance = "
                "vec3(0.0); }\n";
-        registry_ = effect::Registry::load({test::source_dir() / "plugins/vsm", scratch}, {});
+        registry_ = effect::Registry::load({test::source_dir() / "plugins" / effect, scratch}, {});
         values_.declare([&] {
             std::vector<shader::Param> params = registry_.params();
             for (const shader::Param& param : render::core_params())
@@ -195,7 +196,7 @@ class Drawn {
                                    .max_array_layers = context_.info().max_array_layers});
         inputs_.camera = scene::orbit_camera({180, 90, 1}, render::points_to_show(dem, ground_, 1),
                                              radians(8), double(size_.x) / size_.y);
-        shadowed_ = select({"probe", "vsm"});
+        shadowed_ = select({"probe", effect});
         plain_ = select({"probe"});
     }
 
@@ -203,6 +204,8 @@ class Drawn {
     double spacing_m() const { return terrain_->normal_spacing_m(); }  ///< from post to post
     glm::ivec2 size() const { return size_; }
     render::FrameInputs& inputs() { return inputs_; }
+    /// Half the width of the suns to come; 0, a point, at first.
+    double& semidiameter_rad() { return semidiameter_rad_; }
 
     /// For every pixel; NaN where there is no ground or none that faces the sun.
     Array2d<float> picture(const glm::dvec3& to_sun) {
@@ -292,8 +295,11 @@ class Drawn {
         return result;
     }
 
-    /// Across and up [m]: a texel of the map that the last picture was drawn with.
+    /// Across and up [m]: a texel of the map that the last picture was drawn with; of an effect
+    /// without maps half a post.
     glm::dvec2 texel_m() const {
+        if (!shadowed_.renderer->values().find("vsm.texel_m"))
+            return glm::dvec2(0.5, 0.5 * inputs_.sun.direction.z) * spacing_m();
         const auto value = shadowed_.renderer->values().value("vsm.texel_m");
         return {value[0], value[1]};
     }
@@ -307,7 +313,9 @@ class Drawn {
     void shine(const glm::dvec3& to_sun) {
         sun::Position position{};
         position.direction = to_sun;
+        position.semidiameter_rad = semidiameter_rad_;
         inputs_.sun = render::make_sun_light(position, sun::Refraction::none(), ground_, dem_.grid);
+        inputs_.sun.terrestrial_refraction = 0;  // the march goes straight on
     }
 
     Chosen select(const std::vector<std::string>& only) {
@@ -349,6 +357,7 @@ class Drawn {
     effect::Registry registry_;
     shader::ParamStore values_;
     glm::ivec2 size_{};
+    double semidiameter_rad_ = 0;
     Array2d<float> spread_;
     render::FrameInputs inputs_;
     std::optional<render::Terrain> terrain_;
@@ -447,6 +456,45 @@ inline Score score(const Truth& truth, const Truth::Mask& mask, const Array2d<fl
                      static_cast<double>(std::max<std::int64_t>(all[0][1], 1));
     s.texel_m = texel_m;
     return s;
+}
+
+constexpr double kSunRadius_rad = 0.004654;  // at one astronomical unit
+
+/// How well the share of the sun's disc is drawn that posts see, of those that face the sun and see
+/// some of it and not all.
+struct Penumbra {
+    std::int64_t posts = 0;
+    double mean = 0, mean_size = 0;  ///< of drawn less true, 0 to 1
+};
+
+/// @param lit  as drawn, of a sun of kSunRadius_rad
+inline Penumbra penumbra(const Truth& truth, const Array2d<float>& lit, const glm::dvec3& to_sun) {
+    constexpr int kPoints = 64;  // evenly over the disc, after Vogel, Math. Biosciences 44, 1979
+    const glm::dmat3 axes = Truth::axes(to_sun);
+    Array2d<int> seen(lit.width(), lit.height());
+    Truth::Mask mask;
+    for (int i = 0; i < kPoints; ++i) {
+        const double angle = 2.39996323 * i, radius = std::sqrt((i + 0.5) / kPoints);
+        const glm::dvec2 at =
+            kSunRadius_rad * radius * glm::dvec2(std::cos(angle), std::sin(angle));
+        mask = truth.cast(normalize(to_sun + at.x * axes[0] + at.y * axes[1]));
+        for (std::size_t k = 0; k < seen.size(); ++k)
+            seen.data()[k] += 1 - mask.shaded.data()[k];
+    }
+    mask = truth.cast(to_sun);
+    Penumbra result;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+        if (!mask.facing.data()[k] || seen.data()[k] == 0 || seen.data()[k] == kPoints) continue;
+        const double off = double{lit.data()[k]} - seen.data()[k] / double{kPoints};
+        ++result.posts;
+        result.mean += off;
+        result.mean_size += std::abs(off);
+    }
+    if (result.posts > 0) {
+        result.mean /= static_cast<double>(result.posts);
+        result.mean_size /= static_cast<double>(result.posts);
+    }
+    return result;
 }
 
 }  // namespace relevo::shadow
