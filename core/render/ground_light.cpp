@@ -78,7 +78,8 @@ constexpr std::uint32_t kHoles = 0x7bff7bffU;  // GroundLight::kHole twice
 /// Margins as two halves, the upper limb's in the low one, and the share of the disc that is seen.
 RELEVO_WIDE void encode(const light::MarginRun& run, std::uint32_t* halves, std::uint16_t* shares) {
     const float *const uppers = run.upper_m, *const lowers = run.lower_m;
-    for (int i = 0; i < run.count; ++i) {
+    const int count = run.count;
+    for (int i = 0; i < count; ++i) {
         const float u = uppers[i], l = lowers[i];
         const bool hole = !(u == u);
         const float upper = std::min(kMostMargin, std::max(-kMostMargin, u)),
