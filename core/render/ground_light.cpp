@@ -20,6 +20,7 @@
 #include "base/parallel_for.h"
 #include "base/units.h"
 #include "dem/posts.h"
+#include "geo/ellipsoid.h"
 #include "light/horizons.h"
 #include "light/margins.h"
 
@@ -398,16 +399,27 @@ const gl::Texture* GroundLight::texture(std::string_view name) const {
     return nullptr;
 }
 
-glm::vec4 GroundLight::grid() const {
+void GroundLight::describe(FrameBlock& block) const {
     const Impl& my = *impl_;
+    const dem::Grid& grid = my.field.grid;
     const double given = my.field.reduction;
-    const glm::dvec2 spacing_m = my.field.grid.post_spacing_m();
+    const glm::dvec2 spacing_m = grid.post_spacing_m();
     const int reduction = my.level ? my.level->ground.reduction : 1;
     const double exaggeration = my.level ? my.level->ground.exaggeration : 1;
-    return {static_cast<float>(1 / (given * reduction)),
-            static_cast<float>(1 / (given * my.sky_ground.reduction)), my.by_columns ? 1.0F : 0.0F,
-            static_cast<float>(kMarginPosts * reduction * std::max(spacing_m.x, spacing_m.y) *
-                               exaggeration)};
+    block.light_grid = {static_cast<float>(1 / (given * reduction)),
+                        static_cast<float>(1 / (given * my.sky_ground.reduction)),
+                        my.by_columns ? 1.0F : 0.0F,
+                        static_cast<float>(kMarginPosts * reduction *
+                                           std::max(spacing_m.x, spacing_m.y) * exaggeration)};
+    const geo::Geodetic centre = grid.center();
+    const double step_m = std::max(spacing_m.x, spacing_m.y);
+    const auto posts_a_metre = [&](double azimuth_rad) {
+        return (grid.post(geo::destination(centre, azimuth_rad, step_m)) -
+                grid.post(geo::destination(centre, azimuth_rad, -step_m))) /
+               (2 * step_m);
+    };
+    block.light_axes = {posts_a_metre(kPi / 2), posts_a_metre(0)};
+    block.light_map = {grid.crs().is_geographic() ? 1 : 0, 0, 0, 0};
 }
 
 }  // namespace relevo::render

@@ -3,8 +3,6 @@
 #include <memory>
 #include <string_view>
 
-#include <glm/vec4.hpp>
-
 #include "dem/heightfield.h"
 #include "geo/local_frame.h"
 #include "gl/texture.h"
@@ -45,8 +43,8 @@ class GroundLight {
 
     /// Null for what has not been asked for.
     const gl::Texture* texture(std::string_view name) const;
-    /// `light_grid` of frame.glsl.
-    glm::vec4 grid() const;
+    /// Sets what frame.glsl says of it.
+    void describe(FrameBlock& block) const;
 
     static constexpr float kHole = 65504;  ///< the greatest half
     static constexpr int kMostPosts = 1 << 25, kFewPosts = 1 << 20, kMostSkyPosts = 1 << 18;

@@ -304,7 +304,7 @@ struct Renderer::Impl {
             ground.light().follow(inputs.sun, inputs.exaggeration,
                                   tiles.nearest_m() * pixel_rad / ground.normal_spacing_m());
         if (reads_sky) ground.light().look_up(inputs.exaggeration);
-        if (reads_sun || reads_sky) block.light_grid = ground.light().grid();
+        if (reads_sun || reads_sky) ground.light().describe(block);
     }
 
     // In one piece: the passes of a frame in their order.

@@ -6,5 +6,5 @@
 //@ include lib/sun_share.glsl
 
 void shadows_on_visibility(in Surface s, in vec3 to_sun, inout float factor) {
-    factor *= sun_share(s);
+    factor *= sun_share(s, to_sun);
 }

@@ -90,9 +90,10 @@ class Truth {
         return mask;
     }
 
-    /// Whether a point of a grid line is in shadow.
+    /// Whether a point of the ground is in shadow; between posts it is on the drawn grid's
+    /// triangles.
     /// @param light  the posts in the light's space
-    /// @param at     its column and row, one of them whole
+    /// @param at     its column and row
     bool is_shaded(const Array2d<glm::dvec3>& light, const glm::dvec2& at, double rise,
                    double sine) const {
         const glm::ivec2 low(floor(at)), high(ceil(at));
@@ -258,6 +259,21 @@ class Drawn {
             }
         }
         return lit;
+    }
+
+    /// Has pictures show a part of the DEM from above, with so many pixels a post, so that they
+    /// show what is at the posts themselves.
+    void watch(const dem::Window& posts, int pixels) {
+        std::vector<glm::dvec3> points;
+        for (int y = posts.row; y < posts.row + posts.rows; ++y)
+            for (int x = posts.column; x < posts.column + posts.columns; ++x)
+                if (!std::isnan(dem_.height_m.at(x, y)))
+                    points.push_back(ground_.frame.to_local(dem_.place(x, y)));
+        size_ = pixels * glm::ivec2(posts.columns, posts.rows);
+        inputs_.camera =
+            scene::orbit_camera({180, 90, 1}, points, radians(8), double(size_.x) / size_.y);
+        for (Chosen* const each : {&shadowed_, &plain_})
+            each->renderer->resize(size_.x, size_.y);
     }
 
     /// Of the last picture: by how much the 16 pixels around each post differ; 2 outside of it.
@@ -430,13 +446,15 @@ inline double balanced(std::int64_t lit_right, std::int64_t lit, std::int64_t sh
                   static_cast<double>(shaded_right) / static_cast<double>(shaded));
 }
 
+/// @param shown  1 for the posts that count; null: all do
 inline Score score(const Truth& truth, const Truth::Mask& mask, const Array2d<float>& drawn,
-                   const glm::dvec2& texel_m, const glm::dvec3& to_sun, double spacing_m) {
+                   const glm::dvec2& texel_m, const glm::dvec3& to_sun, double spacing_m,
+                   const Array2d<std::uint8_t>* shown = nullptr) {
     const Array2d<std::uint8_t> near = near_line(truth, mask, texel_m, to_sun, spacing_m);
     std::array<std::array<std::int64_t, 2>, 2> all{}, right{};  // [beyond][shaded]
     for (int y = 0; y < drawn.height(); ++y) {
         for (int x = 0; x < drawn.width(); ++x) {
-            if (!mask.facing.at(x, y)) continue;
+            if (!mask.facing.at(x, y) || (shown && !shown->at(x, y))) continue;
             const std::size_t truly = mask.shaded.at(x, y);
             const std::size_t said = drawn.at(x, y) < 0.5f;
             for (std::size_t beyond = 0; beyond < 2; ++beyond) {
@@ -467,33 +485,64 @@ struct Penumbra {
     double mean = 0, mean_size = 0;  ///< of drawn less true, 0 to 1
 };
 
-/// @param lit  as drawn, of a sun of kSunRadius_rad
-inline Penumbra penumbra(const Truth& truth, const Array2d<float>& lit, const glm::dvec3& to_sun) {
+/// @param lit    as drawn, of a sun of kSunRadius_rad
+/// @param shown  1 for the posts that count
+inline Penumbra penumbra(const Truth& truth, const Array2d<float>& lit,
+                         const Array2d<std::uint8_t>& shown, const glm::dvec3& to_sun) {
     constexpr int kPoints = 64;  // evenly over the disc, after Vogel, Math. Biosciences 44, 1979
     const glm::dmat3 axes = Truth::axes(to_sun);
     Array2d<int> seen(lit.width(), lit.height());
     Truth::Mask mask;
     for (int i = 0; i < kPoints; ++i) {
         const double angle = 2.39996323 * i, radius = std::sqrt((i + 0.5) / kPoints);
-        const glm::dvec2 at =
+        const glm::dvec2 off =
             kSunRadius_rad * radius * glm::dvec2(std::cos(angle), std::sin(angle));
-        mask = truth.cast(normalize(to_sun + at.x * axes[0] + at.y * axes[1]));
+        mask = truth.cast(normalize(to_sun + off.x * axes[0] + off.y * axes[1]));
         for (std::size_t k = 0; k < seen.size(); ++k)
             seen.data()[k] += 1 - mask.shaded.data()[k];
     }
     mask = truth.cast(to_sun);
     Penumbra result;
     for (std::size_t k = 0; k < seen.size(); ++k) {
-        if (!mask.facing.data()[k] || seen.data()[k] == 0 || seen.data()[k] == kPoints) continue;
-        const double off = double{lit.data()[k]} - seen.data()[k] / double{kPoints};
+        if (!shown.data()[k] || !mask.facing.data()[k]) continue;
+        if (seen.data()[k] == 0 || seen.data()[k] == kPoints) continue;
+        const double apart = double{lit.data()[k]} - seen.data()[k] / double{kPoints};
         ++result.posts;
-        result.mean += off;
-        result.mean_size += std::abs(off);
+        result.mean += apart;
+        result.mean_size += std::abs(apart);
     }
     if (result.posts > 0) {
         result.mean /= static_cast<double>(result.posts);
         result.mean_size /= static_cast<double>(result.posts);
     }
+    return result;
+}
+
+/// What is drawn at the posts themselves, of windows all over a DEM.
+struct AtPosts {
+    Array2d<float> lit;
+    Array2d<std::uint8_t> shown;  ///< 1 for the posts of a window
+};
+
+/// @param windows  along a side of the DEM
+/// @param posts    along a side of a window
+inline AtPosts at_posts_themselves(Drawn& drawn, const Truth& truth, const glm::dvec3& to_sun,
+                                   int windows = 3, int posts = 60, int pixels = 32) {
+    const int columns = truth.posts().width(), rows = truth.posts().height();
+    AtPosts result{Array2d<float>(columns, rows, 1), Array2d<std::uint8_t>(columns, rows)};
+    for (int j = 0; j < windows; ++j)
+        for (int i = 0; i < windows; ++i) {
+            const dem::Window window{(columns - posts) * (2 * i + 1) / (2 * windows),
+                                     (rows - posts) * (2 * j + 1) / (2 * windows), posts, posts};
+            drawn.watch(window, pixels);
+            const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
+            for (int y = window.row + 2; y < window.row + posts - 2; ++y)
+                for (int x = window.column + 2; x < window.column + posts - 2; ++x) {
+                    if (drawn.spread().at(x, y) > 1.5f) continue;
+                    result.lit.at(x, y) = lit.at(x, y);
+                    result.shown.at(x, y) = 1;
+                }
+        }
     return result;
 }
 
