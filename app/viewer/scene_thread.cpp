@@ -158,7 +158,7 @@ struct SceneThread::Impl {
         if (now.view) session->look(*now.view);
         if (now.utc && *now.utc != session->moment()) {
             session->set_moment(*now.utc);
-            shadows_lag = true;
+            shadows_lag = !session->effects().loaded.modules.empty();  // core's never do
         }
         session->resize(std::max(1, static_cast<int>(std::lround(now.width_px * scale))),
                         std::max(1, static_cast<int>(std::lround(now.height_px * scale))));

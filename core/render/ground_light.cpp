@@ -16,6 +16,7 @@
 #include <glm/vec3.hpp>
 
 #include "base/array2d.h"
+#include "base/error.h"
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/units.h"
@@ -243,6 +244,7 @@ struct GroundLight::Impl {
     std::optional<gl::Texture> margin_texture;
     Shares shares, sky;
     bool has_sky = false;
+    bool has_sun = true;  // one can be found over the DEM
 
     Impl(const dem::Heightfield& f, const geo::LocalFrame& l) : field(f), frame(l) {}
 
@@ -299,11 +301,28 @@ struct GroundLight::Impl {
         encode(run, &halves.at(x, y), &post_shares.at(x, y));
     }
 
-    void shade_all() {
-        for (std::size_t i = 0; i < halves.size(); ++i) {
-            halves.data()[i] = half_of(-kMostMargin) * 0x10001U;
-            post_shares.data()[i] = 0xff00U;
+    /// All posts are in the shade, or none.
+    void set_all(bool lit) {
+        const std::uint32_t margin = half_of(lit ? kMostMargin : -kMostMargin);
+        std::fill(halves.begin(), halves.end(), margin << 16 | margin);
+        std::fill(post_shares.begin(), post_shares.end(), std::uint16_t(lit ? 0xffffU : 0xff00U));
+    }
+
+    /// Margins of a sun, where the DEM has one; false on maps of the world, whose rows end in
+    /// poles.
+    bool find_margins(const light::SunOverDem& over) {
+        if (!has_sun) return false;
+        try {
+            const light::Margins::Found found = level->margins->each(
+                frame.origin(), over, [&](bool along_columns) { turn(along_columns); },
+                [&](const light::MarginRun& run) { take(run); });
+            if (found.night) set_all(false);
+            tell(found.error_rad);
+        } catch (const Error& error) {
+            has_sun = false;
+            log::info(fmt::format("render: no shadows are cast: {}", error.what()));
         }
+        return has_sun;
     }
 
     void upload_sun() {
@@ -333,6 +352,17 @@ struct GroundLight::Impl {
         shares.upload("light_shares");
     }
 
+    /// The share of the sky that means of posts see; all of it on maps of the world.
+    Array2d<float> find_sky(const light::SkyViewOptions& options) {
+        const dem::Grid& grid = sky_ground.posts->grid();
+        try {
+            return light::sky_view(*sky_ground.posts, options).share;
+        } catch (const Error& error) {
+            log::info(fmt::format("render: the ground hides no sky: {}", error.what()));
+            return {grid.columns(), grid.rows(), 1};
+        }
+    }
+
     /// Says once how far off the sun is where one does not hold for enough posts.
     void tell(double error_rad) {
         if (error_rad <= told_error_rad) return;
@@ -358,11 +388,10 @@ void GroundLight::follow(const SunLight& light, double exaggeration, double pixe
     const glm::dvec3& d = light.direction;
     const light::SunOverDem over{std::atan2(d.x, d.y), std::atan2(d.z, std::hypot(d.x, d.y)),
                                  light.semidiameter_rad};
-    const light::Margins::Found found = my.level->margins->each(
-        my.frame.origin(), over, [&](bool along_columns) { my.turn(along_columns); },
-        [&](const light::MarginRun& run) { my.take(run); });
-    if (found.night) my.shade_all();
-    my.tell(found.error_rad);
+    if (!my.find_margins(over)) {
+        my.turn(my.by_columns);
+        my.set_all(true);
+    }
     my.upload_sun();
     my.sun = wanted;
 }
@@ -376,15 +405,15 @@ void GroundLight::look_up(double exaggeration) {
     light::SkyViewOptions options;
     options.directions = kSkyDirections;
     options.of_open_slope = true;
-    const light::SkyView view = light::sky_view(*my.sky_ground.posts, options);
-    my.sky.resize(view.share.width(), view.share.height());
-    for (int row = 0; row < view.share.height(); ++row)
-        for (int column = 0; column < view.share.width(); ++column) {
-            const float share = view.share.at(column, row);
+    const Array2d<float> share = my.find_sky(options);
+    my.sky.resize(share.width(), share.height());
+    for (int row = 0; row < share.height(); ++row)
+        for (int column = 0; column < share.width(); ++column) {
+            const float seen = share.at(column, row);
             my.sky.base().at(column, row) =
-                std::isnan(share)
+                std::isnan(seen)
                     ? Bytes2{0, 0}
-                    : Bytes2{static_cast<std::uint8_t>(255 * std::clamp(share, 0.0F, 1.0F) + 0.5F),
+                    : Bytes2{static_cast<std::uint8_t>(255 * std::clamp(seen, 0.0F, 1.0F) + 0.5F),
                              255};
         }
     my.sky.upload("light_sky");

@@ -77,8 +77,8 @@ class Session {
     void set(const std::string& address, const std::string& value);
     /// Sides of the picture [px].
     void resize(int width_px, int height_px);
-    /// Whether native effects leave what they have made as it is, such as shadows while the sun is
-    /// dragged, which cost more than the frame.
+    /// Whether native effects leave what they have made as it is, such as shadow maps while the sun
+    /// is dragged, which cost more than the frame. The light that core finds by place never lags.
     void keep_native(bool keep);
 
     sun::Instant moment() const;

@@ -237,6 +237,50 @@ TEST(Selection, AfterAWordIsBehindAllItsProviders) {
     EXPECT_THAT(ids(select(registry, {}, {.disable = {"b", "d"}})), ElementsAre("a", "c"));
 }
 
+// ---- words of which there may be one
+
+// Both cast shadows; maps are off by default.
+void add_shadows(const Plugins& plugins) {
+    plugins.add("maps", R"("provides": ["shadow"], "enabled_by_default": false)");
+    plugins.add("sweep", R"("provides": ["shadow"], "exclusive": ["shadow"])");
+}
+
+TEST(Selection, OfTwoProvidersOfAnExclusiveWordTheOneAskedForLastIsOn) {
+    const Plugins plugins;
+    add_shadows(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("sweep"));
+    const std::string gives_way =
+        "sweep is off: maps provides shadow in its place; --disable maps brings it back";
+    const Selection asked = select(registry, {}, {.enable = {"maps"}});
+    EXPECT_THAT(ids(asked), ElementsAre("maps"));
+    EXPECT_THAT(asked.notices, ElementsAre(gives_way));
+    const std::vector<Preset> paper{preset({.enable = {"maps"}})};
+    EXPECT_THAT(select(registry, paper, {}).notices, ElementsAre(gives_way));
+    EXPECT_THAT(ids(select(registry, paper, {.enable = {"sweep"}})), ElementsAre("sweep"));
+    EXPECT_THAT(ids(select(registry, {}, {.enable = {"maps"}, .disable = {"sweep"}})),
+                ElementsAre("maps"));
+}
+
+TEST(Selection, OfTwoDefaultsThatExcludeEachOtherTheFirstIsOn) {
+    const Plugins plugins;
+    plugins.add("b", R"("provides": ["shadow"])");
+    plugins.add("a", R"("provides": ["shadow"], "exclusive": ["shadow"])");
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("a"));
+}
+
+TEST(SelectionError, BothProvidersOfAnExclusiveWordAreAskedForAtOnce) {
+    const Plugins plugins;
+    add_shadows(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_EQ(error_of([&] {
+                  select(registry, {}, {.only = Words{"maps", "sweep"}});
+              }),
+              "exit 3: effect::select: shadow: expected one provider of it but got maps and sweep; "
+              "add --disable maps or --disable sweep");
+}
+
 // ---- what is refused
 
 TEST(SelectionError, ACircleNamesItsSides) {

@@ -39,7 +39,8 @@ INSTANTIATE_TEST_SUITE_P(Effects, ReferenceCompiler,
                          testing::Values(std::vector<std::string>{"--only", ""},
                                          std::vector<std::string>{"--enable", "wet"},
                                          std::vector<std::string>{"--preset", "paper"},
-                                         std::vector<std::string>{"--set", "vsm.penumbra=true"},
+                                         std::vector<std::string>{"--enable", "vsm", "--set",
+                                                                  "vsm.penumbra=true"},
                                          std::vector<std::string>{"--time",
                                                                   "2026-06-21T23:50-04:00"}));
 
