@@ -30,7 +30,7 @@ vec2 height_steps() {
 void main() {
 #ifdef TERRAIN_NORMAL_VERTEX
     vec3 n = normalize(vertex_normal);
-    uvec2 normal_source = uvec2(packSnorm2x16(octahedral(n)), packUnorm2x16(post * frame.posts.zw));
+    uvec2 normal_source = uvec2(packSnorm2x16(normal_octahedral(n)), packUnorm2x16(post * frame.posts.zw));
 #else
     uvec2 normal_source = floatBitsToUint(post);
 #endif

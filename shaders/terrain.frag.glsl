@@ -61,7 +61,7 @@ void main() {
     float across = length(frame.pixel_ray_dx.xyz) * depth * frame.normal_texels_per_m;
 #ifdef TERRAIN_NORMAL_VERTEX
     s.post = unpackUnorm2x16(what.y) * frame.posts.xy;
-    s.geometric_normal = from_octahedral(unpackSnorm2x16(what.x));
+    s.geometric_normal = normal_from_octahedral(unpackSnorm2x16(what.x));
     float upright = dot(s.geometric_normal, s.up);
     s.ground_normal =
         normalize(s.geometric_normal + (frame.height_range.z - 1.0) * upright * s.up);

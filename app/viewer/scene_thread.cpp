@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "gl/texture.h"
+#include "session/active_effects.h"
 
 namespace relevo::viewer {
 namespace {

@@ -44,7 +44,7 @@ class Margins {
     Sweep sweep_;
 };
 
-/// How much of a disc is over a level line; within 0.001 of share_of_disc(), for many at once.
+/// How much of a disc is over a level line; within 0.002 of share_of_disc(), for many at once.
 /// @param height  of its diameter, 0 to 1
 inline float quick_share_of_disc(float height) {
     const float x = height < 0.5F ? height : 1 - height;

@@ -319,6 +319,7 @@ struct GroundLight::Impl {
             if (found.night) set_all(false);
             tell(found.error_rad);
         } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
             has_sun = false;
             log::info(fmt::format("render: no shadows are cast: {}", error.what()));
         }
@@ -358,6 +359,7 @@ struct GroundLight::Impl {
         try {
             return light::sky_view(*sky_ground.posts, options).share;
         } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
             log::info(fmt::format("render: the ground hides no sky: {}", error.what()));
             return {grid.columns(), grid.rows(), 1};
         }

@@ -10,6 +10,6 @@ uniform float skylight_albedo = 0.2;  //@ range(0, 1) label("Albedo") descriptio
 uniform float skylight_strength = 1.0;  //@ range(0, 4) label("Strength") description("1 is the light there is; above it hollows are darker than they are")
 
 void skylight_on_ambient(in Surface s, inout vec3 irradiance) {
-    float seen = pow(open_sky(s), skylight_strength);
+    float seen = pow(surface_open_sky(s), skylight_strength);
     irradiance *= seen + (1.0 - seen) * skylight_albedo;
 }

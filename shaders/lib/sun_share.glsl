@@ -9,15 +9,15 @@ const float kMarginHole = 60001.0;  // what is greater stands for no ground
 const float kAtPost = 0.06;  // so far from a post, in spacings, its own margin counts as it is ...
 const float kSides = 4.0;    // ... and this much farther, as a caster's: 1 / spacings
 
-/// How much of a disc is over a level line; within 0.001. @param height  of its diameter, 0 to 1
-float share_of_disc(in float height) {
+/// How much of a disc is over a level line; within 0.002. @param height  of its diameter, 0 to 1
+float sun_disc_share(in float height) {
     float x = min(height, 1.0 - height);
     float part = x * sqrt(x) * (1.6977 - 0.567 * x);
     return height < 0.5 ? part : 1.0 - part;
 }
 
 /// By how much effects have moved the point up [m]; 0 on ground that is where the DEM has it.
-float moved_up_m(in Surface s) {
+float surface_moved_up_m(in Surface s) {
 #ifdef DISPLACED
     // Above the ellipsoid: |c + p| - |c| without the loss of a difference of two large numbers.
     float from_eye_m = dot(s.position_m, frame.eye_up.xyz);
@@ -38,7 +38,7 @@ float between(in vec4 values, in vec4 weights) {
 }
 
 /// The way to the sun over the margins' texels, unit.
-vec2 way_to_sun(in vec3 to_sun, in vec3 up) {
+vec2 sun_way(in vec3 to_sun, in vec3 up) {
     vec3 east = east_at(up);
     vec2 level = frame.light_map.x > 0.5 ? vec2(dot(to_sun, east), dot(to_sun, cross(up, east))) : to_sun.xy;
     vec2 way = level.x * frame.light_axes.xy + level.y * frame.light_axes.zw;
@@ -63,10 +63,13 @@ float sun_share_of_margins(in vec2 node, in vec2 way, in float pixel, in float m
     vec2 at = (quad + 1.0) / vec2(textureSize(light_margins, 0));
     vec4 upper = textureGather(light_margins, at, 0), lower = textureGather(light_margins, at, 1);
     vec4 weights = vec4((1.0 - t.x) * t.y, t.x * t.y, t.x * (1.0 - t.y), (1.0 - t.x) * (1.0 - t.y));
-    weights *= vec4(lessThan(upper, vec4(kMarginHole)));
+    bvec4 holes = greaterThan(upper, vec4(kMarginHole));
+    weights *= vec4(not(holes));
     vec4 most = vec4(frame.light_grid.w);
     upper = clamp(upper + moved_m, -most, most);
     lower = clamp(lower + moved_m, -most, most);
+    upper = mix(upper, vec4(between(upper, weights)), holes);
+    lower = mix(lower, vec4(between(lower, weights)), holes);
     vec4 sunward = clamp(kSides * ((vec4(0.0, 1.0, 1.0, 0.0) - t.x) * way.x +
                                    (vec4(1.0, 1.0, 0.0, 0.0) - t.y) * way.y - kAtPost), 0.0, 1.0);
     upper = counting(upper, weights, sunward);
@@ -77,15 +80,17 @@ float sun_share_of_margins(in vec2 node, in vec2 way, in float pixel, in float m
     vec2 slope = vec2(mix(middle.z - middle.w, middle.y - middle.x, t.y),
                       mix(middle.x - middle.w, middle.y - middle.z, t.x));
     float width = high - low + pixel * length(slope);
-    return share_of_disc(clamp(0.5 + 0.5 * (high + low) / max(width, 1e-3), 0.0, 1.0));
+    float share = sun_disc_share(clamp(0.5 + 0.5 * (high + low) / max(width, 1e-3), 0.0, 1.0));
+    bool lit = all(greaterThanEqual(lower, vec4(0.0))), shaded = all(lessThan(upper, vec4(0.0)));
+    return lit ? 1.0 : shaded ? 0.0 : share;
 }
 
 /// @param to_sun  as the point sees it, unit
 float sun_share(in Surface s, in vec3 to_sun) {
     vec2 node = (s.post + 0.5) * frame.light_grid.x - 0.5;
     node = frame.light_grid.z > 0.5 ? node.yx : node;
-    float pixel = s.pixel_posts * frame.light_grid.x, moved_m = moved_up_m(s);
-    float near = sun_share_of_margins(node, way_to_sun(to_sun, s.up), min(pixel, 1.0), moved_m);
+    float pixel = s.pixel_posts * frame.light_grid.x, moved_m = surface_moved_up_m(s);
+    float near = sun_share_of_margins(node, sun_way(to_sun, s.up), min(pixel, 1.0), moved_m);
     // Pixels that hold several posts see the mean of what those see.
     float level = log2(max(pixel, 1.0));
     vec2 at = (node + 0.5) / (2.0 * vec2(textureSize(light_shares, 0)));

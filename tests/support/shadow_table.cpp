@@ -2,7 +2,7 @@
 // [--azimuths 0,45] [--heights 4] [--part POSTS] [--pixels A_POST] [--effect vsm] [--set
 // vsm.bleed=0.1] [--pictures FOLDER] DEM...; with --comparison FILE.png a picture of the first sun
 // instead of a table; with --at-posts what is
-// drawn at posts of windows all over the DEM, 32 pixels to a post; with --penumbra how well the
+// drawn at posts of windows all over the DEM, 16 pixels to a post; with --penumbra how well the
 // share of the sun's disc is drawn
 #include <chrono>
 #include <cstdio>
@@ -101,7 +101,7 @@ void print_penumbras(relevo::shadow::Drawn& drawn, const relevo::shadow::Truth& 
     for (const double elevation : elevations)
         for (const double azimuth : azimuths) {
             const glm::dvec3 to_sun = relevo::shadow::direction(azimuth, elevation);
-            const auto at = relevo::shadow::at_posts_themselves(drawn, truth, to_sun);
+            const auto at = relevo::shadow::at_posts_themselves(drawn, truth, to_sun, 2, 60, 32);
             const auto p = relevo::shadow::penumbra(truth, at.lit, at.shown, to_sun);
             fmt::print("| {} | {} | {} | {:+.3f} | {:.3f} |\n", elevation, azimuth, p.posts, p.mean,
                        p.mean_size);

@@ -527,7 +527,7 @@ struct AtPosts {
 /// @param windows  along a side of the DEM
 /// @param posts    along a side of a window
 inline AtPosts at_posts_themselves(Drawn& drawn, const Truth& truth, const glm::dvec3& to_sun,
-                                   int windows = 3, int posts = 60, int pixels = 32) {
+                                   int windows = 2, int posts = 60, int pixels = 16) {
     const int columns = truth.posts().width(), rows = truth.posts().height();
     AtPosts result{Array2d<float>(columns, rows, 1), Array2d<std::uint8_t>(columns, rows)};
     for (int j = 0; j < windows; ++j)
