@@ -6,6 +6,7 @@
 //! pixels each, and a GPU a block of 2 x 2: this way that block runs these few lines only.
 
 //@ include lib/finite.glsl
+//@ include lib/octahedral.glsl
 
 in vec2 post;
 in float height_m;
@@ -29,7 +30,7 @@ vec2 height_steps() {
 void main() {
 #ifdef TERRAIN_NORMAL_VERTEX
     vec3 n = normalize(vertex_normal);
-    uvec2 normal_source = uvec2(packSnorm2x16(n.xy), packSnorm2x16(n.zz));
+    uvec2 normal_source = uvec2(packSnorm2x16(normal_octahedral(n)), packUnorm2x16(post * frame.posts.zw));
 #else
     uvec2 normal_source = floatBitsToUint(post);
 #endif

@@ -7,6 +7,7 @@
 //@ include lib/exposed.glsl
 //@ include lib/finite.glsl
 //@ include lib/ground.glsl
+//@ include lib/octahedral.glsl
 //@ include lib/pages.glsl
 //@ include lib/shown.glsl
 //@ include lib/tangent.glsl
@@ -58,19 +59,19 @@ void main() {
     vec3 east = east_at(s.up);
     vec3 north = cross(s.up, east);
 
+    float across = length(frame.pixel_ray_dx.xyz) * depth * frame.normal_texels_per_m;
 #ifdef TERRAIN_NORMAL_VERTEX
-    s.geometric_normal =
-        normalize(vec3(unpackSnorm2x16(what.x), unpackSnorm2x16(what.y).x));
+    s.post = unpackUnorm2x16(what.y) * frame.posts.xy;
+    s.geometric_normal = normal_from_octahedral(unpackSnorm2x16(what.x));
     float upright = dot(s.geometric_normal, s.up);
     s.ground_normal =
         normalize(s.geometric_normal + (frame.height_range.z - 1.0) * upright * s.up);
 #else
+    s.post = uintBitsToFloat(what.xy);
     // A pixel's size on the ground, across the view, decides how fine the normals are read.
-    float size = length(frame.pixel_ray_dx.xyz) * depth * frame.normal_texels_per_m;
-    float level = clamp(log2(size), 0.0, frame.normal_levels - 1.0);
-    vec2 post = uintBitsToFloat(what.xy);
-    vec2 slope = mix(slope_at(post, int(level)),
-                     slope_at(post, min(int(level) + 1, int(frame.normal_levels) - 1)), fract(level));
+    float level = clamp(log2(across), 0.0, frame.normal_levels - 1.0);
+    vec2 slope = mix(slope_at(s.post, int(level)),
+                     slope_at(s.post, min(int(level) + 1, int(frame.normal_levels) - 1)), fract(level));
     float rise = sqrt(max(1.0 - dot(slope, slope), 0.0025));
     s.ground_normal = normalize(slope.x * east + slope.y * north + rise * s.up);
     slope *= frame.height_range.z;
@@ -87,6 +88,8 @@ void main() {
     float most = max(shortest * frame.footprint_limit, 1e-6);
     s.ground_dx_m = unexaggerated(dx * min(1.0, most / length(dx)), s.up);
     s.ground_dy_m = unexaggerated(dy * min(1.0, most / length(dy)), s.up);
+    // Between the pixel's sides across the view and along it, which a slant makes longer.
+    s.pixel_posts = across * sqrt(min(longest / shortest, frame.footprint_limit));
     s.height_dx_m = s.height_dy_m = 0.0;
 #ifdef HEIGHT_STEPS
     vec2 steps = texelFetch(height_steps, pixel, 0).rg;

@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 DAWN = "--eye 36.40,-84.40,900 --heading 100 --pitch -1 --fov 30 --time 2026-03-20T08:05-04:00"
 ROCK = "--set layering.limits=metres --set layering.grass_rock_m=-100,0"
 EDGE = f"--eye 36.3718,-84.3303,12agl --heading 20 --pitch -22 --fov 30 --time 2026-06-21T06:55-04:00 {ROCK} " \
-       "--set bump.strength=3 --disable vsm"
+       "--set bump.strength=3 --disable shadows,skylight"
 DISC = "--eye 36.35,-84.38,1000 --heading 90 --pitch 2 --fov 12 --time 2026-03-20T07:53-04:00 --exposure -1.5"
 WIDE = "--eye 36.35,-84.38,1000 --heading 95 --pitch 8 --fov 60 --time 2026-03-20T08:05-04:00"
 GROUND = f"--eye 36.3513,-84.2290,2agl --heading 75 --pitch -10 --fov 50 --time 2026-06-21T08:40-04:00 {ROCK}"
@@ -32,7 +32,7 @@ FIGURES = {
     "3": {"paper_3a_abrupt": f"{EDGE} --set bump.correction=abrupt", "paper_3b_smooth": f"{EDGE} --set bump.correction=smooth"},
     "4": {"paper_4a_disc": DISC, "paper_4b_sky": WIDE, "paper_4c_paper": f"{WIDE} --preset paper"},
     "5": {"paper_5a_dry": GROUND, "paper_5b_wet": f"{GROUND} --enable wet"},
-    "6": {"paper_6_shadows": "--view az=205,el=32,zoom=2.2 --time 2026-06-21T20:05-04:00 --ab vsm"},
+    "6": {"paper_6_shadows": "--view az=205,el=32,zoom=2.2 --time 2026-06-21T20:05-04:00 --disable skylight --ab vsm"},
     "7": {"paper_7a_day": f"{RIDGES} --time 2026-03-20T13:00-04:00", "paper_7b_sunset": f"{RIDGES} --time 2026-03-20T07:55-04:00",
           "paper_7c_night": f"{RIDGES} --time 2026-03-20T05:30-04:00"},
     "layering": {"layering_range": f"{HILLS} --set layering.limits=normalised", "layering_climate": HILLS},

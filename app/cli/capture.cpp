@@ -52,16 +52,23 @@ class Timings {
         nlohmann::ordered_json& passes = json["passes_ms"] = nlohmann::ordered_json::object();
         for (const auto& [name, ms] : passes_)
             passes[name] = ms;
-        if (repeat > 0) json["frames"] = frames(session, repeat);
+        if (repeat > 0) {
+            json["frames"] = frames(session, repeat, 0);
+            json["frames_with_sun_moved"] = frames(session, repeat, kSunStep_s);
+        }
         file_->write(json_text(json));
     }
 
   private:
-    static nlohmann::ordered_json frames(session::Session& session, int repeat) {
+    static constexpr double kSunStep_s = 60;
+
+    /// @param step_s  by which the sun moves before each frame
+    static nlohmann::ordered_json frames(session::Session& session, int repeat, double step_s) {
         std::vector<double> frames_ms;
         const std::clock_t processor_began = std::clock();
         for (int i = 0; i < repeat; ++i) {
             const auto began = Clock::now();
+            if (step_s > 0) session.set_moment(session.moment() + step_s);
             session.draw_alone();
             frames_ms.push_back(milliseconds_since(began));
         }

@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "gl/texture.h"
+#include "session/active_effects.h"
 
 namespace relevo::viewer {
 namespace {
@@ -158,7 +159,7 @@ struct SceneThread::Impl {
         if (now.view) session->look(*now.view);
         if (now.utc && *now.utc != session->moment()) {
             session->set_moment(*now.utc);
-            shadows_lag = true;
+            shadows_lag = !session->effects().loaded.modules.empty();  // core's never do
         }
         session->resize(std::max(1, static_cast<int>(std::lround(now.width_px * scale))),
                         std::max(1, static_cast<int>(std::lround(now.height_px * scale))));

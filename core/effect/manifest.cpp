@@ -107,11 +107,11 @@ class ManifestReader {
                 manifest_.provides.end())
                 object.fail(object.line_of("provides"), "provides",
                             fmt::format("\"{}\" is core's own word; expected another", word));
-        manifest_.alone = words(object, "alone");
-        for (const std::string& word : manifest_.alone)
+        manifest_.exclusive = words(object, "exclusive");
+        for (const std::string& word : manifest_.exclusive)
             if (std::find(manifest_.provides.begin(), manifest_.provides.end(), word) ==
                 manifest_.provides.end())
-                object.fail(object.line_of("alone"), "alone",
+                object.fail(object.line_of("exclusive"), "exclusive",
                             fmt::format("expected words of \"provides\" but got \"{}\"", word));
         manifest_.needs = words(object, "requires");
         manifest_.wants = words(object, "wants");

@@ -62,10 +62,10 @@ struct Manifest {
 
     // Capability words, `[a-z][a-z0-9_]*`.
     std::vector<std::string> provides;
-    std::vector<std::string> alone;  ///< of these, what no other effect provides beside it
-    std::vector<std::string> needs;  ///< "requires": off without them
-    std::vector<std::string> wants;  ///< HAS_<word> in its GLSL says whether they are there
-    std::vector<std::string> after;  ///< comes behind the effects that provide them
+    std::vector<std::string> needs;      ///< "requires": off without them
+    std::vector<std::string> wants;      ///< HAS_<word> in its GLSL says whether they are there
+    std::vector<std::string> exclusive;  ///< of `provides`: one effect alone may be on with it
+    std::vector<std::string> after;      ///< comes behind the effects that provide them
 
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;

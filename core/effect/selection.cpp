@@ -26,9 +26,12 @@ class Selector {
         : registry_(registry), command_line_(command_line) {
         for (const Effect& effect : registry.effects())
             if (effect.manifest.enabled_by_default) on_.insert(effect.id());
-        for (const Preset& preset : presets)
+        for (const Preset& preset : presets) {
+            ++turn_;
             apply(known_of(preset));
+        }
         check_command_line(command_line);
+        ++turn_;
         apply(command_line);
         for (const auto& [id, reason] : unusable) {
             if (on_.erase(id) > 0) warn_off(id, reason);
@@ -40,8 +43,9 @@ class Selector {
 
     Selection run() {
         do {
-            settle_alone();
-        } while (meet_requirements());
+            while (meet_requirements()) {
+            }
+        } while (settle_exclusive_words());
         check_exclusive_hooks();
         Selection selection;
         selection.effects = ordered();
@@ -95,12 +99,13 @@ class Selector {
             on_.insert(id);
             asked_.insert(id);
             disabled_.erase(id);
-            asked_at_[id] = ++times_asked_;
+            turns_[id] = turn_;
         };
         if (switches.only) {
             on_.clear();
             asked_.clear();
             disabled_.clear();
+            turns_.clear();
             for (const std::string& id : *switches.only)
                 ask(id);
         }
@@ -110,33 +115,6 @@ class Selector {
             on_.erase(id);
             asked_.erase(id);
             disabled_.insert(id);
-        }
-    }
-
-    // ---- what only one may provide
-
-    /// Of effects that provide a word alone, the one that was asked for last stays.
-    void settle_alone() {
-        std::map<std::string, std::string> stays;  // by word
-        const auto at = [&](const std::string& id) {
-            const auto found = asked_at_.find(id);
-            return found == asked_at_.end() ? 0 : found->second;
-        };
-        for (const std::string& id : on_)
-            for (const std::string& word : effect(id).manifest.alone)
-                if (const auto [other, first] = stays.emplace(word, id);
-                    !first && at(id) > at(other->second))
-                    other->second = id;
-        const std::set<std::string> before = on_;
-        for (const std::string& id : before) {
-            for (const std::string& word : effect(id).manifest.alone) {
-                const std::string& other = stays.at(word);
-                if (other == id || on_.erase(id) == 0) continue;
-                notices_.push_back(
-                    fmt::format("{} is off: {} provides {} in its place", id, other, word));
-                asked_.erase(id);
-                unmet_.insert(id);
-            }
         }
     }
 
@@ -177,6 +155,7 @@ class Selector {
                 fmt::format("{} requires {}: {} is switched on too", id, word, provider->id()));
             on_.insert(provider->id());
             asked_.insert(provider->id());
+            turns_[provider->id()] = turn_of(id);
             return true;
         }
         return false;
@@ -219,6 +198,51 @@ class Selector {
                                   id, reason, only ? "--only" : "--enable"));
         warnings_.push_back(
             fmt::format("{} is off: {}; --disable {} leaves it out", id, reason, id));
+    }
+
+    // ---- words of which there may be one
+
+    /// Whether both provide a word that one of them wants for itself; the word, or empty.
+    static std::string rival_word(const Effect& a, const Effect& b) {
+        for (const std::string& word : a.manifest.exclusive)
+            if (std::ranges::find(b.manifest.exclusive, word) != b.manifest.exclusive.end())
+                return word;
+        return "";
+    }
+
+    /// Of two effects that cannot both be on, switches off the one that was asked for earlier.
+    /// @returns whether there were two
+    bool settle_exclusive_words() {
+        for (const std::string& id : on_) {
+            for (const std::string& other : on_) {
+                if (!(id < other)) continue;
+                const std::string word = rival_word(effect(id), effect(other));
+                if (word.empty()) continue;
+                const int turn = turn_of(id), others = turn_of(other);
+                if (turn == others && turn > 0)
+                    bad_input(fmt::format(
+                        "{}: {}: expected one provider of it but got {} and {}; add --disable {} "
+                        "or --disable {}",
+                        kWho, word, id, other, id, other));
+                give_way(turn < others ? id : other, turn < others ? other : id, word);
+                return true;
+            }
+        }
+        return false;
+    }
+
+    int turn_of(const std::string& id) const {
+        const auto found = turns_.find(id);
+        return found == turns_.end() ? 0 : found->second;
+    }
+
+    void give_way(const std::string id, const std::string& other, const std::string& word) {
+        notices_.push_back(
+            fmt::format("{} is off: {} provides {} in its place; --disable {} brings it back", id,
+                        other, word, other));
+        on_.erase(id);
+        asked_.erase(id);
+        unmet_.insert(id);
     }
 
     // ---- hooks and order
@@ -295,9 +319,9 @@ class Selector {
     const Registry& registry_;
     const Switches& command_line_;
     std::set<std::string> on_;
-    std::map<std::string, int> asked_at_;  // later ones more
-    int times_asked_ = 0;
-    std::set<std::string> asked_;     // by name, or by what was asked for
+    std::set<std::string> asked_;       // by name, or by what was asked for
+    std::map<std::string, int> turns_;  // when each was: by which preset, or after all of them
+    int turn_ = 0;
     std::set<std::string> disabled_;  // by name
     std::set<std::string> unmet_;     // switched off here
     std::set<std::string> broken_;    // of those, what is unusable or requires what is

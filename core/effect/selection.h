@@ -29,16 +29,20 @@ using Unusable = std::map<std::string, std::string>;
 /// On are those with `enabled_by_default`; each preset, and then the command line, changes that:
 /// `only` puts its own list in its place, `enable` adds, `disable` takes away. What `only` and
 /// `enable` name pulls in effects that provide what it requires, except disabled ones. An effect
-/// whose requirement nobody provides goes off. Of those that provide a word `alone` the one that
-/// was asked for last stays, and the others go off with a notice. Order: behind every provider of a
-/// word in `after`; ties by id.
+/// whose requirement nobody provides goes off. Order: behind every provider of a word in
+/// `after`; ties by id.
+///
+/// Of two that list a word as `exclusive`, the one that was asked for
+/// last is on, the command line's after those of presets and those after the defaults (of two
+/// defaults the first by id); the other goes off, with a notice.
 ///
 /// What a preset names and is not there is a notice, so that deleting a plugin breaks no preset.
 /// @param unusable  effects that cannot be on: they are off, with a warning, and so is what
 ///                  requires them
 /// @throws Error (BadInput) for an id on the command line that is unknown, or both on and off; one
 ///         that `only` or `enable` name there and that cannot be on; a circle of `after`; two
-///         providers of an exclusive hook
+///         providers of an exclusive hook, or of an exclusive word where both were asked for at
+///         once
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
                  const Switches& command_line, const Unusable& unusable = {});
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "base/units.h"
 #include "light/ground_slope.h"
 #include "light/quick_math.h"
@@ -62,6 +63,26 @@ void add_sky(const SweepRun& run, const float* east, const float* north, float s
     }
 }
 
+/// Makes sums of sky-view factors shares of those of endless planes, of which none sees more.
+/// @param most         the sum where all is seen
+/// @param east, north  the rise of the ground, in the same order
+void relate_to_slopes(const SweepWindow& window, float most, TileValues& east, TileValues& north,
+                      TileValues& sum) {
+    for (TileValues* const each : {&sum, &east, &north})
+        each->turn(false);
+    parallel_for(0, window.rows, 16, [&](int first, int last) {
+        for (int row = first; row < last; ++row) {
+            const SweepRun run{false, row, 0, window.columns, nullptr, nullptr};
+            const float *const e = east.of(run), *const n = north.of(run);
+            float* const share = sum.of(run);
+            for (int i = 0; i < run.count; ++i) {
+                const float cosine = 1 / std::sqrt(1 + e[i] * e[i] + n[i] * n[i]);
+                share[i] = std::min(share[i] * 2 / (1 + cosine), most);
+            }
+        }
+    });
+}
+
 }  // namespace
 
 Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, double refraction) {
@@ -109,6 +130,8 @@ SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
             add_sky(run, east.of(run), north.of(run), sin_azimuth, cos_azimuth, sum.of(run));
         });
     }
+    if (options.of_open_slope)
+        relate_to_slopes(whole(grid), static_cast<float>(options.directions), east, north, sum);
     sum.put(result.share);
     std::int64_t seen = 0;
     for (int row = 0; row < result.share.height(); ++row)

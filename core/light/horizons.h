@@ -32,6 +32,9 @@ struct SkyViewOptions {
     double refraction = 0.13;
     /// Of a level plane at each post instead of the ground as it is inclined.
     bool level = false;
+    /// As a share of what an endless plane as inclined as the ground sees: 1 where nothing rises
+    /// over the ground's own slope. Not with `level`.
+    bool of_open_slope = false;
 };
 
 /// How much of the sky each post of a DEM sees.

@@ -15,6 +15,7 @@
 #include "render/loading.h"
 #include "scene/camera.h"
 #include "sun/celestial.h"
+#include "sun/refraction.h"
 
 namespace relevo::render {
 
@@ -27,6 +28,12 @@ struct SunLight {
     double ground_height_m = 0;  ///< of the ground that is lit, above sea level
     /// Least and greatest sine of the sun's geometric elevation over the DEM.
     double lowest_sine = 0, highest_sine = 1;
+    double semidiameter_rad = 0;  ///< half the disc's width; 0: its centre is all there is
+    /// The air over a place at its height, which lifts the sun as the ground there sees it; none
+    /// where refraction is off.
+    std::function<sun::Refraction(const geo::Geodetic&)> air{};
+    /// Of rays over the ground, as a share of the Earth's curvature: light::ShadowOptions.
+    double terrestrial_refraction = 0.13;
 };
 
 /// Light and refraction as cubic polynomials of the sine of the sun's local elevation, in powers of

@@ -128,7 +128,9 @@ class Stitcher {
             geometry.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
             terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
         }
-        if (displaced_) geometry.defines.push_back({"DISPLACED", ""});
+        if (displaced_)
+            for (shader::ProgramRecipe* const recipe : {&geometry, &terrain})
+                recipe->defines.push_back({"DISPLACED", ""});
         if (options_.draped) terrain.defines.push_back({"DRAPED", ""});
         terrain.defines.insert(terrain.defines.end(), ends_.begin(), ends_.end());
         if (reads_height_steps(input)) {

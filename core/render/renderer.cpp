@@ -126,7 +126,7 @@ struct Renderer::Impl {
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
     TileSelection tiles;  // of the last frame
-    bool reads_surface = false, reads_climate = false;
+    bool reads_surface = false, reads_climate = false, reads_sun = false, reads_sky = false;
 
     gl::Texture gbuffer, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     gl::Texture varyings, height_steps;
@@ -192,6 +192,8 @@ struct Renderer::Impl {
     void make_targets() {
         reads_surface = reads("surface_pages");
         reads_climate = reads(kClimateTexture);
+        reads_sun = reads("light_margins");
+        reads_sky = reads("light_sky");
         const gl::Extent size{options.width_px, options.height_px, 1};
         const auto target = [&](gl::Format format, const char* label) {
             gl::Texture texture(gl::TextureKind::D2, format, size, 1, label);
@@ -365,6 +367,16 @@ struct Renderer::Impl {
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
 
+    /// Has the light by place be there that the programs read.
+    void light(Terrain& ground, const FrameInputs& inputs, FrameBlock& block) const {
+        const double pixel_rad = length(glm::dvec3(block.pixel_ray_dx));
+        if (reads_sun)
+            ground.light().follow(inputs.sun, inputs.exaggeration,
+                                  tiles.nearest_m() * pixel_rad / ground.normal_spacing_m());
+        if (reads_sky) ground.light().look_up(inputs.exaggeration);
+        if (reads_sun || reads_sky) ground.light().describe(block);
+    }
+
     // In one piece: the passes of a frame in their order.
     void draw(Terrain& ground, const Ground& about, const FrameInputs& inputs, FrameBlock block,
               PassTimes* times) {
@@ -372,9 +384,9 @@ struct Renderer::Impl {
         block.normal_levels = static_cast<float>(ground.normal_levels());
         block.normal_texels_per_m = static_cast<float>(1 / ground.normal_spacing_m());
         if (reads_climate) ground.keep_climate(day_of(inputs.unix_s)).write(block);
-        frame_block.write(std::as_bytes(std::span(&block, 1)));
-        frame_block.bind_uniform(kFrameBinding);
-        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
+        const dem::Pyramid& posts = ground.pyramid();
+        block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),
+                       1.0F / static_cast<float>(posts.rows())};
 
         auto began = std::chrono::steady_clock::now();
         const auto passed = [&](const char* name) {
@@ -394,6 +406,12 @@ struct Renderer::Impl {
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
                                           inputs.exaggeration, inputs.loading);
         passed("select");
+
+        light(ground, inputs, block);
+        if (reads_sun || reads_sky) passed("light");
+        frame_block.write(std::as_bytes(std::span(&block, 1)));
+        frame_block.bind_uniform(kFrameBinding);
+        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
 
         if (!natives.empty()) {
             for (NativeHost& native : natives) {

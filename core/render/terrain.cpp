@@ -118,6 +118,7 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       frame_(frame),
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),
+      light_(heightfield, frame),
       grid_vertices_(gl::Buffer::of<float>(grid_vertices(), "terrain grid")),
       grid_indices_(gl::Buffer::of<std::uint16_t>(grid_indices(), "terrain grid indices")),
       sides_(pyramid_) {
@@ -159,6 +160,13 @@ int TileSelection::finest_level() const {
     for (const Tile& tile : tiles_)
         finest = std::min(finest, tile.draw.key.level);
     return finest;
+}
+
+double TileSelection::nearest_m() const {
+    double nearest_m = tiles_.empty() ? 0 : tiles_.front().draw.distance_m;
+    for (const Tile& tile : tiles_)
+        nearest_m = std::min(nearest_m, tile.draw.distance_m);
+    return nearest_m;
 }
 
 bool Terrain::winds_counterclockwise() {
@@ -221,6 +229,7 @@ const gl::Texture* Terrain::texture(std::string_view name) const {
     if (name == kClimateTexture) return climate_ ? &climate_->texture() : nullptr;
     if (name == "page_table") return &page_table_;
     if (const gl::Texture* const heights = heights_.find(name)) return heights;
+    if (const gl::Texture* const light = light_.texture(name)) return light;
     return surface_.find(name);
 }
 

@@ -18,6 +18,7 @@
 #include "gl/vertex_array.h"
 #include "render/climate_volume.h"
 #include "render/drape.h"
+#include "render/ground_light.h"
 #include "render/loading.h"
 #include "render/lod.h"
 #include "render/page_cache.h"
@@ -40,6 +41,7 @@ class TileSelection {
     int triangles() const { return triangles_; }
     double tolerance() const { return tolerance_; }  ///< as LodView's, after the vertex budget
     int finest_level() const;                        ///< 0: every post; 0 for none
+    double nearest_m() const;  ///< from the eye to the nearest tile; 0 for none
 
   private:
     friend class Terrain;
@@ -114,8 +116,13 @@ class Terrain {
     /// What they are made from; opened when first asked for. @throws Error likewise
     const climate::ClimateMap& climate_map();
 
-    /// What shaders read of the ground, by the sampler's name: a PageLayer's, or "page_table", the
-    /// slot and level of the finest page of the picture there is. Null for others.
+    /// What comes to the ground past the ground around it.
+    GroundLight& light() { return light_; }
+    const GroundLight& light() const { return light_; }
+
+    /// What shaders read of the ground, by the sampler's name: a PageLayer's, one of GroundLight's,
+    /// or "page_table", the slot and level of the finest page of the picture there is. Null for
+    /// others.
     const gl::Texture* texture(std::string_view name) const;
     /// No two terrains of a process have the same.
     std::uint64_t serial() const { return serial_; }
@@ -146,6 +153,7 @@ class Terrain {
     const geo::LocalFrame& frame_;
     TileTree tree_;
     glm::dvec3 polar_axis_;
+    GroundLight light_;
     double normal_spacing_m_ = 0;
     int normal_levels_ = 1;
     int normal_layers_ = 1;

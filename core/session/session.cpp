@@ -239,6 +239,10 @@ struct Session::Impl {
         air =
             refraction_at(scene.refraction, {place.lat_rad, place.lon_rad, ground->air_height_m()});
         inputs.sun = render::make_sun_light(position, air, *ground, loaded->field.grid);
+        if (air.bends())
+            inputs.sun.air = [model = scene.refraction](const geo::Geodetic& at) {
+                return refraction_at(model, at);
+            };
         inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
         inputs.unix_s = static_cast<double>(utc.unix_us()) * 1e-6;
     }

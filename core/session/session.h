@@ -83,8 +83,8 @@ class Session {
     void drape(std::shared_ptr<const render::Drape> drape);
     /// What the colours of the scene's overlay mean.
     const std::optional<chart::Legend>& legend() const;
-    /// Whether native effects leave what they have made as it is, such as shadows while the sun is
-    /// dragged, which cost more than the frame.
+    /// Whether native effects leave what they have made as it is, such as shadow maps while the sun
+    /// is dragged, which cost more than the frame. The light that core finds by place never lags.
     void keep_native(bool keep);
 
     sun::Instant moment() const;

@@ -42,4 +42,6 @@ struct Surface {
     vec3 ground_normal;       // of the DEM's surface, not exaggerated: true slope and aspect, unit
     float height_dx_m;        // how height_m changes from this pixel to the next one right ...
     float height_dy_m;        // ... and up [m/px], on the drawn surface
+    vec2 post;                // column and row of the DEM, with fractions
+    float pixel_posts;        // posts along a side of the pixel on the ground
 };

@@ -59,7 +59,7 @@ class Plugins : public testing::Test {
                                            "--size",
                                            "64x48",
                                            "--disable",
-                                           "block,bump,cover,gloss,haze,layering,sky,vsm",
+                                           "block,bump,cover,gloss,haze,layering,shadows,sky,skylight",
                                            "--plugin-path",
                                            (folder_ / "plugins").string()};
         arguments.insert(arguments.end(), more.begin(), more.end());

@@ -154,7 +154,8 @@ std::string text(const std::string& members) {
 }
 
 constexpr const char* kKeys =
-    "format, id, name, description, version, enabled_by_default, provides, alone, requires, wants, "
+    "format, id, name, description, version, enabled_by_default, provides, exclusive, requires, "
+    "wants, "
     "after, "
     "module, glsl, textures, texts, displaces";
 const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
@@ -188,10 +189,10 @@ INSTANTIATE_TEST_SUITE_P(
             "2: provides: expected a list of texts but got \"air\""},
         Bad{"NumberInAList", with(R"("provides": [7])"),
             "2: provides: expected a list of texts but got 7 in it"},
+        Bad{"ExclusiveOfAnothers", with(R"("provides": ["air"], "exclusive": ["fog"])"),
+            "2: exclusive: expected words of \"provides\" but got \"fog\""},
         Bad{"CoresWord", with(R"("provides": ["night"])"),
             "2: provides: \"night\" is core's own word; expected another"},
-        Bad{"AloneWhatIsNotProvided", with(R"("provides": ["air"], "alone": ["sky"])"),
-            "2: alone: expected words of \"provides\" but got \"sky\""},
         Bad{"BadWord", with(R"("wants": ["Shadow map"])"),
             "2: wants: expected words of a-z, 0-9 and _ but got \"Shadow map\""},
         Bad{"WordTwice", with(R"("after": ["a", "a"])"), "2: after: \"a\" is listed twice"},

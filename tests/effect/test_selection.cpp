@@ -31,8 +31,8 @@ void add_ground(const Plugins& plugins) {
 
 /// Two grounds, of which `meadow` is on by default.
 void add_two_grounds(const Plugins& plugins) {
-    plugins.add("meadow", R"("provides": ["materials"], "alone": ["materials"])");
-    plugins.add("bands", R"("provides": ["materials"], "alone": ["materials"],
+    plugins.add("meadow", R"("provides": ["materials"], "exclusive": ["materials"])");
+    plugins.add("bands", R"("provides": ["materials"], "exclusive": ["materials"],
                             "enabled_by_default": false)");
     plugins.add("bump", R"("requires": ["materials"], "after": ["materials"])");
 }
@@ -44,15 +44,16 @@ TEST(Selection, OneOfThoseThatProvideAWordAloneStays) {
     EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("meadow", "bump"));
     const Selection bands = select(registry, {}, {.enable = {"bands"}});
     EXPECT_THAT(ids(bands), ElementsAre("bands", "bump"));
-    EXPECT_THAT(bands.notices, ElementsAre("meadow is off: bands provides materials in its place"));
+    EXPECT_THAT(bands.notices,
+                ElementsAre("meadow is off: bands provides materials in its place; --disable "
+                            "bands brings it back"));
     // Whoever is asked for last.
     const Selection meadow =
         select(registry, {preset({.enable = {"bands"}})}, {.enable = {"meadow"}});
     EXPECT_THAT(ids(meadow), ElementsAre("meadow", "bump"));
     EXPECT_THAT(meadow.notices,
-                ElementsAre("bands is off: meadow provides materials in its place"));
-    EXPECT_THAT(ids(select(registry, {}, {.enable = {"meadow", "bands"}})),
-                ElementsAre("bands", "bump"));
+                ElementsAre("bands is off: meadow provides materials in its place; --disable "
+                            "meadow brings it back"));
     EXPECT_THAT(ids(select(registry, {preset({.enable = {"bands"}})}, {.disable = {"bands"}})),
                 ElementsAre("meadow", "bump"));
     EXPECT_THAT(ids(select(registry, {}, {.only = Words{"bump"}})), ElementsAre("meadow", "bump"));
@@ -72,11 +73,12 @@ TEST(Selection, WhatIsProvidedAloneHidesNothingElse) {
 TEST(Selection, WhatWentOffDoesNotComeBackByAnotherWord) {
     const Plugins plugins;
     add_two_grounds(plugins);
-    plugins.add("stripes", R"("provides": ["lines", "materials"], "alone": ["materials"],
+    plugins.add("stripes", R"("provides": ["lines", "materials"], "exclusive": ["materials"],
                               "enabled_by_default": false)");
     plugins.add("legend", R"("requires": ["lines"], "enabled_by_default": false)");
     const Registry registry = plugins.load();
-    const Selection selection = select(registry, {}, {.enable = {"stripes", "legend", "bands"}});
+    const Selection selection =
+        select(registry, {preset({.enable = {"stripes", "legend"}})}, {.enable = {"bands"}});
     EXPECT_THAT(ids(selection), ElementsAre("bands", "bump"));
 }
 
@@ -288,6 +290,50 @@ TEST(Selection, AfterAWordIsBehindAllItsProviders) {
     const Registry registry = plugins.load();
     EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("b", "c", "d", "a"));
     EXPECT_THAT(ids(select(registry, {}, {.disable = {"b", "d"}})), ElementsAre("a", "c"));
+}
+
+// ---- words of which there may be one
+
+// Both cast shadows; maps are off by default.
+void add_shadows(const Plugins& plugins) {
+    plugins.add("maps", R"("provides": ["shadow"], "enabled_by_default": false)");
+    plugins.add("sweep", R"("provides": ["shadow"], "exclusive": ["shadow"])");
+}
+
+TEST(Selection, OfTwoProvidersOfAnExclusiveWordTheOneAskedForLastIsOn) {
+    const Plugins plugins;
+    add_shadows(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("sweep"));
+    const std::string gives_way =
+        "sweep is off: maps provides shadow in its place; --disable maps brings it back";
+    const Selection asked = select(registry, {}, {.enable = {"maps"}});
+    EXPECT_THAT(ids(asked), ElementsAre("maps"));
+    EXPECT_THAT(asked.notices, ElementsAre(gives_way));
+    const std::vector<Preset> paper{preset({.enable = {"maps"}})};
+    EXPECT_THAT(select(registry, paper, {}).notices, ElementsAre(gives_way));
+    EXPECT_THAT(ids(select(registry, paper, {.enable = {"sweep"}})), ElementsAre("sweep"));
+    EXPECT_THAT(ids(select(registry, {}, {.enable = {"maps"}, .disable = {"sweep"}})),
+                ElementsAre("maps"));
+}
+
+TEST(Selection, OfTwoDefaultsThatExcludeEachOtherTheFirstIsOn) {
+    const Plugins plugins;
+    plugins.add("b", R"("provides": ["shadow"])");
+    plugins.add("a", R"("provides": ["shadow"], "exclusive": ["shadow"])");
+    const Registry registry = plugins.load();
+    EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("a"));
+}
+
+TEST(SelectionError, BothProvidersOfAnExclusiveWordAreAskedForAtOnce) {
+    const Plugins plugins;
+    add_shadows(plugins);
+    const Registry registry = plugins.load();
+    EXPECT_EQ(error_of([&] {
+                  select(registry, {}, {.only = Words{"maps", "sweep"}});
+              }),
+              "exit 3: effect::select: shadow: expected one provider of it but got maps and sweep; "
+              "add --disable maps or --disable sweep");
 }
 
 // ---- what is refused

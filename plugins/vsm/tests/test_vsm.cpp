@@ -11,7 +11,7 @@
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "support/gpu_snippet.h"
-#include "truth.h"
+#include "support/shadow_truth.h"
 
 namespace relevo::shadow {
 namespace {

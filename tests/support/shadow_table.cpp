@@ -1,6 +1,9 @@
 // Shadows that are drawn against shadows that are marched: shadow_table [--elevations 1,2,5]
-// [--azimuths 0,45] [--heights 4] [--set vsm.bleed=0.1] [--pictures FOLDER] DEM...; with
-// --comparison FILE.png a picture of the first sun instead of a table
+// [--azimuths 0,45] [--heights 4] [--part POSTS] [--pixels A_POST] [--effect vsm] [--set
+// vsm.bleed=0.1] [--pictures FOLDER] DEM...; with --comparison FILE.png a picture of the first sun
+// instead of a table; with --at-posts what is
+// drawn at posts of windows all over the DEM, 16 pixels to a post; with --penumbra how well the
+// share of the sun's disc is drawn
 #include <chrono>
 #include <cstdio>
 
@@ -9,7 +12,7 @@
 
 #include "base/text.h"
 #include "image/image.h"
-#include "truth.h"
+#include "support/shadow_truth.h"
 
 namespace {
 
@@ -73,6 +76,39 @@ void write_comparison(const std::filesystem::path& file, const relevo::dem::Heig
     image::write(file, picture, {}, true);
 }
 
+/// So many posts a side out of the middle; all of them for 0.
+relevo::dem::Heightfield middle_of(relevo::dem::Heightfield dem, int side) {
+    if (side == 0) return dem;
+    const int columns = std::min(side, dem.grid.columns()), rows = std::min(side, dem.grid.rows());
+    const relevo::dem::Window window{(dem.grid.columns() - columns) / 2,
+                                     (dem.grid.rows() - rows) / 2, columns, rows};
+    relevo::Array2d<float> heights(columns, rows);
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x)
+            heights.at(x, y) = dem.height_m.at(window.column + x, window.row + y);
+    relevo::dem::Heightfield part{std::move(heights), dem.grid.part(window, columns, rows),
+                                  dem.about};
+    part.about.statistics = relevo::dem::statistics(part.height_m);
+    return part;
+}
+
+/// A row a sun: the posts that see a part of its disc, and how large a part is drawn there.
+void print_penumbras(relevo::shadow::Drawn& drawn, const relevo::shadow::Truth& truth,
+                     const std::vector<double>& elevations, const std::vector<double>& azimuths) {
+    fmt::print("| sun | azimuth | posts in the penumbra | mean error | mean size of the error |\n");
+    fmt::print("|---|---|---|---|---|\n");
+    drawn.semidiameter_rad() = relevo::shadow::kSunRadius_rad;
+    for (const double elevation : elevations)
+        for (const double azimuth : azimuths) {
+            const glm::dvec3 to_sun = relevo::shadow::direction(azimuth, elevation);
+            const auto at = relevo::shadow::at_posts_themselves(drawn, truth, to_sun, 2, 60, 32);
+            const auto p = relevo::shadow::penumbra(truth, at.lit, at.shown, to_sun);
+            fmt::print("| {} | {} | {} | {:+.3f} | {:.3f} |\n", elevation, azimuth, p.posts, p.mean,
+                       p.mean_size);
+            std::fflush(stdout);
+        }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -83,6 +119,9 @@ int main(int argc, char** argv) {
     std::vector<std::string> dems, settings;
     std::filesystem::path pictures, comparison;
     double pixel_error = 2, factor = 1;
+    std::string effect = "shadows";
+    bool penumbra = false, themselves = false;
+    int side = 0, pixels = 0;
     const auto numbers = [](const std::string& text) {
         std::vector<double> result;
         for (const std::string& part : split(text, ','))
@@ -103,6 +142,16 @@ int main(int argc, char** argv) {
             comparison = argv[++i];
         else if (word == "--pixel-error")
             pixel_error = std::stod(argv[++i]);
+        else if (word == "--effect")
+            effect = argv[++i];
+        else if (word == "--part")
+            side = std::stoi(argv[++i]);
+        else if (word == "--pixels")
+            pixels = std::stoi(argv[++i]);
+        else if (word == "--at-posts")
+            themselves = true;
+        else if (word == "--penumbra")
+            penumbra = true;
         else if (word == "--heights")
             factor = std::stod(argv[++i]);
         else
@@ -110,16 +159,22 @@ int main(int argc, char** argv) {
     }
     try {
         for (const std::string& path : dems) {
-            const dem::Heightfield dem = times_as_high(dem::load(path), factor);
+            const dem::Heightfield dem = middle_of(times_as_high(dem::load(path), factor), side);
+            const glm::ivec2 size =
+                pixels * glm::ivec2(dem.grid.columns(), dem.grid.rows()) + (pixels > 0 ? 8 : 0);
             if (!comparison.empty()) {
                 write_comparison(comparison, dem, elevations[0], azimuths[0]);
                 continue;
             }
-            Drawn drawn(dem, test::scratch_dir(), settings, pixel_error);
+            Drawn drawn(dem, test::scratch_dir(), settings, pixel_error, size, effect);
             const Truth truth(dem, drawn.ground().frame);
             fmt::print("\n{}{}: {} x {} posts\n\n", std::filesystem::path(path).filename().string(),
                        factor == 1 ? "" : fmt::format(", heights times {}", factor),
                        dem.grid.columns(), dem.grid.rows());
+            if (penumbra) {
+                print_penumbras(drawn, truth, elevations, azimuths);
+                continue;
+            }
             double worst = 1, worst_beyond = 1, worst_lit = 1;
             fmt::print(
                 "| sun | azimuth | shaded | balanced accuracy | beyond two texels | lit cells "
@@ -129,9 +184,12 @@ int main(int argc, char** argv) {
                 for (const double azimuth : azimuths) {
                     const glm::dvec3 to_sun = direction(azimuth, elevation);
                     const Truth::Mask mask = truth.cast(to_sun);
-                    const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
-                    const Score s =
-                        score(truth, mask, lit, drawn.texel_m(), to_sun, drawn.spacing_m());
+                    const AtPosts at =
+                        themselves ? at_posts_themselves(drawn, truth, to_sun) : AtPosts{};
+                    const Array2d<float> lit =
+                        themselves ? at.lit : drawn.at_posts(to_sun, truth.posts());
+                    const Score s = score(truth, mask, lit, drawn.texel_m(), to_sun,
+                                          drawn.spacing_m(), themselves ? &at.shown : nullptr);
                     fmt::print(
                         "| {} | {} | {:.1f} % | {:.2f} % | {:.2f} % | {:.2f} % | {:.2f} % | {:.1f} "
                         "x {:.2f} m |\n",

@@ -90,9 +90,10 @@ class Truth {
         return mask;
     }
 
-    /// Whether a point of a grid line is in shadow.
+    /// Whether a point of the ground is in shadow; between posts it is on the drawn grid's
+    /// triangles.
     /// @param light  the posts in the light's space
-    /// @param at     its column and row, one of them whole
+    /// @param at     its column and row
     bool is_shaded(const Array2d<glm::dvec3>& light, const glm::dvec2& at, double rise,
                    double sine) const {
         const glm::ivec2 low(floor(at)), high(ceil(at));
@@ -160,9 +161,10 @@ class Drawn {
     /// @param scratch   a folder that may be written
     /// @param settings  "vsm.bleed=0.1"
     /// @param size      of the pictures [px]; 0: from above, 2 to 8 pixels a post
+    /// @param effect    that makes the shadows
     Drawn(const dem::Heightfield& dem, const std::filesystem::path& scratch,
           const std::vector<std::string>& settings = {}, double pixel_error = 2,
-          glm::ivec2 size = glm::ivec2(0))
+          glm::ivec2 size = glm::ivec2(0), const std::string& effect = "vsm")
         : dem_(dem), ground_(render::make_ground(dem)), context_({.device = "software"}) {
         // A surface that sends the sun's light on as it comes, and none of the sky's.
         std::filesystem::create_directories(scratch / "probe");
@@ -173,7 +175,7 @@ class Drawn {
                "vec3(1.0); }\n"
                "void probe_on_ambient(in Surface s, inout vec3 irradiance) { irradiance = "
                "vec3(0.0); }\n";
-        registry_ = effect::Registry::load({test::source_dir() / "plugins/vsm", scratch}, {});
+        registry_ = effect::Registry::load({test::source_dir() / "plugins" / effect, scratch}, {});
         values_.declare([&] {
             std::vector<shader::Param> params = registry_.params();
             for (const shader::Param& param : render::core_params())
@@ -195,7 +197,7 @@ class Drawn {
                                    .max_array_layers = context_.info().max_array_layers});
         inputs_.camera = scene::orbit_camera({180, 90, 1}, render::points_to_show(dem, ground_, 1),
                                              radians(8), double(size_.x) / size_.y);
-        shadowed_ = select({"probe", "vsm"});
+        shadowed_ = select({"probe", effect});
         plain_ = select({"probe"});
     }
 
@@ -203,6 +205,8 @@ class Drawn {
     double spacing_m() const { return terrain_->normal_spacing_m(); }  ///< from post to post
     glm::ivec2 size() const { return size_; }
     render::FrameInputs& inputs() { return inputs_; }
+    /// Half the width of the suns to come; 0, a point, at first.
+    double& semidiameter_rad() { return semidiameter_rad_; }
 
     /// For every pixel; NaN where there is no ground or none that faces the sun.
     Array2d<float> picture(const glm::dvec3& to_sun) {
@@ -257,6 +261,21 @@ class Drawn {
         return lit;
     }
 
+    /// Has pictures show a part of the DEM from above, with so many pixels a post, so that they
+    /// show what is at the posts themselves.
+    void watch(const dem::Window& posts, int pixels) {
+        std::vector<glm::dvec3> points;
+        for (int y = posts.row; y < posts.row + posts.rows; ++y)
+            for (int x = posts.column; x < posts.column + posts.columns; ++x)
+                if (!std::isnan(dem_.height_m.at(x, y)))
+                    points.push_back(ground_.frame.to_local(dem_.place(x, y)));
+        size_ = pixels * glm::ivec2(posts.columns, posts.rows);
+        inputs_.camera =
+            scene::orbit_camera({180, 90, 1}, points, radians(8), double(size_.x) / size_.y);
+        for (Chosen* const each : {&shadowed_, &plain_})
+            each->renderer->resize(size_.x, size_.y);
+    }
+
     /// Of the last picture: by how much the 16 pixels around each post differ; 2 outside of it.
     const Array2d<float>& spread() const { return spread_; }
 
@@ -292,8 +311,11 @@ class Drawn {
         return result;
     }
 
-    /// Across and up [m]: a texel of the map that the last picture was drawn with.
+    /// Across and up [m]: a texel of the map that the last picture was drawn with; of an effect
+    /// without maps half a post.
     glm::dvec2 texel_m() const {
+        if (!shadowed_.renderer->values().find("vsm.texel_m"))
+            return glm::dvec2(0.5, 0.5 * inputs_.sun.direction.z) * spacing_m();
         const auto value = shadowed_.renderer->values().value("vsm.texel_m");
         return {value[0], value[1]};
     }
@@ -307,7 +329,9 @@ class Drawn {
     void shine(const glm::dvec3& to_sun) {
         sun::Position position{};
         position.direction = to_sun;
+        position.semidiameter_rad = semidiameter_rad_;
         inputs_.sun = render::make_sun_light(position, sun::Refraction::none(), ground_, dem_.grid);
+        inputs_.sun.terrestrial_refraction = 0;  // the march goes straight on
     }
 
     Chosen select(const std::vector<std::string>& only) {
@@ -349,6 +373,7 @@ class Drawn {
     effect::Registry registry_;
     shader::ParamStore values_;
     glm::ivec2 size_{};
+    double semidiameter_rad_ = 0;
     Array2d<float> spread_;
     render::FrameInputs inputs_;
     std::optional<render::Terrain> terrain_;
@@ -421,13 +446,15 @@ inline double balanced(std::int64_t lit_right, std::int64_t lit, std::int64_t sh
                   static_cast<double>(shaded_right) / static_cast<double>(shaded));
 }
 
+/// @param shown  1 for the posts that count; null: all do
 inline Score score(const Truth& truth, const Truth::Mask& mask, const Array2d<float>& drawn,
-                   const glm::dvec2& texel_m, const glm::dvec3& to_sun, double spacing_m) {
+                   const glm::dvec2& texel_m, const glm::dvec3& to_sun, double spacing_m,
+                   const Array2d<std::uint8_t>* shown = nullptr) {
     const Array2d<std::uint8_t> near = near_line(truth, mask, texel_m, to_sun, spacing_m);
     std::array<std::array<std::int64_t, 2>, 2> all{}, right{};  // [beyond][shaded]
     for (int y = 0; y < drawn.height(); ++y) {
         for (int x = 0; x < drawn.width(); ++x) {
-            if (!mask.facing.at(x, y)) continue;
+            if (!mask.facing.at(x, y) || (shown && !shown->at(x, y))) continue;
             const std::size_t truly = mask.shaded.at(x, y);
             const std::size_t said = drawn.at(x, y) < 0.5f;
             for (std::size_t beyond = 0; beyond < 2; ++beyond) {
@@ -447,6 +474,76 @@ inline Score score(const Truth& truth, const Truth::Mask& mask, const Array2d<fl
                      static_cast<double>(std::max<std::int64_t>(all[0][1], 1));
     s.texel_m = texel_m;
     return s;
+}
+
+constexpr double kSunRadius_rad = 0.004654;  // at one astronomical unit
+
+/// How well the share of the sun's disc is drawn that posts see, of those that face the sun and see
+/// some of it and not all.
+struct Penumbra {
+    std::int64_t posts = 0;
+    double mean = 0, mean_size = 0;  ///< of drawn less true, 0 to 1
+};
+
+/// @param lit    as drawn, of a sun of kSunRadius_rad
+/// @param shown  1 for the posts that count
+inline Penumbra penumbra(const Truth& truth, const Array2d<float>& lit,
+                         const Array2d<std::uint8_t>& shown, const glm::dvec3& to_sun) {
+    constexpr int kPoints = 64;  // evenly over the disc, after Vogel, Math. Biosciences 44, 1979
+    const glm::dmat3 axes = Truth::axes(to_sun);
+    Array2d<int> seen(lit.width(), lit.height());
+    Truth::Mask mask;
+    for (int i = 0; i < kPoints; ++i) {
+        const double angle = 2.39996323 * i, radius = std::sqrt((i + 0.5) / kPoints);
+        const glm::dvec2 off =
+            kSunRadius_rad * radius * glm::dvec2(std::cos(angle), std::sin(angle));
+        mask = truth.cast(normalize(to_sun + off.x * axes[0] + off.y * axes[1]));
+        for (std::size_t k = 0; k < seen.size(); ++k)
+            seen.data()[k] += 1 - mask.shaded.data()[k];
+    }
+    mask = truth.cast(to_sun);
+    Penumbra result;
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+        if (!shown.data()[k] || !mask.facing.data()[k]) continue;
+        if (seen.data()[k] == 0 || seen.data()[k] == kPoints) continue;
+        const double apart = double{lit.data()[k]} - seen.data()[k] / double{kPoints};
+        ++result.posts;
+        result.mean += apart;
+        result.mean_size += std::abs(apart);
+    }
+    if (result.posts > 0) {
+        result.mean /= static_cast<double>(result.posts);
+        result.mean_size /= static_cast<double>(result.posts);
+    }
+    return result;
+}
+
+/// What is drawn at the posts themselves, of windows all over a DEM.
+struct AtPosts {
+    Array2d<float> lit;
+    Array2d<std::uint8_t> shown;  ///< 1 for the posts of a window
+};
+
+/// @param windows  along a side of the DEM
+/// @param posts    along a side of a window
+inline AtPosts at_posts_themselves(Drawn& drawn, const Truth& truth, const glm::dvec3& to_sun,
+                                   int windows = 2, int posts = 60, int pixels = 16) {
+    const int columns = truth.posts().width(), rows = truth.posts().height();
+    AtPosts result{Array2d<float>(columns, rows, 1), Array2d<std::uint8_t>(columns, rows)};
+    for (int j = 0; j < windows; ++j)
+        for (int i = 0; i < windows; ++i) {
+            const dem::Window window{(columns - posts) * (2 * i + 1) / (2 * windows),
+                                     (rows - posts) * (2 * j + 1) / (2 * windows), posts, posts};
+            drawn.watch(window, pixels);
+            const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
+            for (int y = window.row + 2; y < window.row + posts - 2; ++y)
+                for (int x = window.column + 2; x < window.column + posts - 2; ++x) {
+                    if (drawn.spread().at(x, y) > 1.5f) continue;
+                    result.lit.at(x, y) = lit.at(x, y);
+                    result.shown.at(x, y) = 1;
+                }
+        }
+    return result;
 }
 
 }  // namespace relevo::shadow

@@ -1,0 +1,456 @@
+#include "render/ground_light.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "base/array2d.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/parallel_for.h"
+#include "base/units.h"
+#include "dem/posts.h"
+#include "geo/ellipsoid.h"
+#include "light/horizons.h"
+#include "light/margins.h"
+
+namespace relevo::render {
+namespace {
+
+constexpr int kMostLevels = 9;        // of means; the coarsest are of 512 x 512 posts
+constexpr int kMostSide = 16384;      // of textures, by OpenGL 4.5
+constexpr float kMostMargin = 60000;  // in halves, short of kHole
+constexpr double kMarginPosts = 4;    // a margin of so many spacings counts as one of any size
+
+/// A float as a half. What is smaller than a half's least normal number is 0.
+inline std::uint32_t half_of(float value) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const std::uint32_t sign = bits >> 16 & 0x8000U, size = bits & 0x7fffffffU;
+    const std::uint32_t half = (size - (112U << 23) + 0x1000U) >> 13;
+    return sign | (size < (113U << 23) ? 0 : half);
+}
+
+/// Means of squares of posts, as Source::read() makes them: holes take no part.
+Array2d<float> means_of(const Array2d<float>& height_m, int side, float factor) {
+    const int columns = height_m.width() / side, rows = height_m.height() / side;
+    Array2d<float> means(columns, rows);
+    parallel_for(0, rows, 8, [&](int first, int last) {
+        for (int row = first; row < last; ++row)
+            for (int column = 0; column < columns; ++column) {
+                float sum = 0;
+                int count = 0;
+                for (int y = row * side; y < (row + 1) * side; ++y)
+                    for (int x = column * side; x < (column + 1) * side; ++x) {
+                        const float h = height_m.at(x, y);
+                        if (std::isnan(h)) continue;
+                        sum += h;
+                        ++count;
+                    }
+                means.at(column, row) = count > 0 ? factor * sum / static_cast<float>(count)
+                                                  : std::numeric_limits<float>::quiet_NaN();
+            }
+    });
+    return means;
+}
+
+/// Two bytes a texel.
+struct Bytes2 {
+    std::uint8_t value, coverage;
+};
+
+constexpr std::uint32_t kHoles = 0x7bff7bffU;  // GroundLight::kHole twice
+
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define RELEVO_WIDE [[gnu::target_clones("avx2", "default")]]
+#else
+#define RELEVO_WIDE
+#endif
+
+/// Margins as two halves, the upper limb's in the low one, and the share of the disc that is seen.
+RELEVO_WIDE void encode(const light::MarginRun& run, std::uint32_t* halves, std::uint16_t* shares) {
+    const float *const uppers = run.upper_m, *const lowers = run.lower_m;
+    const int count = run.count;
+    for (int i = 0; i < count; ++i) {
+        const float u = uppers[i], l = lowers[i];
+        const bool hole = !(u == u);
+        const float upper = std::min(kMostMargin, std::max(-kMostMargin, u)),
+                    lower = std::min(kMostMargin, std::max(-kMostMargin, l));
+        const std::uint32_t pair = half_of(upper) | half_of(lower) << 16;
+        halves[i] = hole ? kHoles : pair;
+        const float height = std::min(1.0F, std::max(0.0F, upper / std::max(upper - lower, 1e-3F)));
+        const float seen = lower >= 0 ? 1.0F : light::quick_share_of_disc(height);
+        const auto whole = static_cast<std::uint32_t>(static_cast<int>(255 * seen + 0.5F));
+        shares[i] = static_cast<std::uint16_t>(hole ? 0 : whole | 0xff00U);
+    }
+}
+
+/// Values and coverage with levels of means. Sides are such that each level halves the one before;
+/// what is beyond the posts has no coverage.
+class Shares {
+  public:
+    /// @param width, height  of what level 0 has to have
+    void resize(int width, int height) {
+        if (width == asked_.x && height == asked_.y) return;
+        asked_ = {width, height};
+        int levels = 1;
+        while (levels < kMostLevels && std::max(width, height) >> levels > 0)
+            ++levels;
+        const int unit = 1 << (levels - 1);
+        const auto padded = [&](int side) { return (side + unit - 1) / unit * unit; };
+        levels_.clear();
+        for (int level = 0; level < levels; ++level)
+            levels_.emplace_back(padded(width) >> level, padded(height) >> level, Bytes2{0, 0});
+        texture_.reset();
+    }
+
+    Array2d<Bytes2>& base() { return levels_.front(); }
+
+    void upload(const char* name) {
+        for (std::size_t level = 1; level < levels_.size(); ++level)
+            reduce(levels_[level - 1], levels_[level]);
+        const Array2d<Bytes2>& base = levels_.front();
+        if (!texture_) {
+            texture_.emplace(gl::TextureKind::D2, gl::Format::RG8,
+                             gl::Extent{base.width(), base.height(), 1},
+                             static_cast<int>(levels_.size()), name);
+            texture_->set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
+        }
+        for (std::size_t level = 0; level < levels_.size(); ++level)
+            texture_->write(static_cast<int>(level), {0, 0, 0},
+                            {levels_[level].width(), levels_[level].height(), 1},
+                            std::as_bytes(std::span(levels_[level].data(), levels_[level].size())));
+    }
+
+    const gl::Texture* texture() const { return texture_ ? &*texture_ : nullptr; }
+
+  private:
+    static void reduce(const Array2d<Bytes2>& fine, Array2d<Bytes2>& coarse) {
+        parallel_for(0, coarse.height(), 64, [&](int first, int last) {
+            for (int row = first; row < last; ++row) {
+                const Bytes2 *const a = fine.row(2 * row).data(), *const b =
+                                                                      fine.row(2 * row + 1).data();
+                Bytes2* const to = coarse.row(row).data();
+                for (int i = 0; i < coarse.width(); ++i) {
+                    const auto mean = [&](std::uint8_t Bytes2::*part) {
+                        return static_cast<std::uint8_t>((a[2 * i].*part + a[2 * i + 1].*part +
+                                                          b[2 * i].*part + b[2 * i + 1].*part + 2) /
+                                                         4);
+                    };
+                    to[i] = {mean(&Bytes2::value), mean(&Bytes2::coverage)};
+                }
+            }
+        });
+    }
+
+    glm::ivec2 asked_{0};
+    std::vector<Array2d<Bytes2>> levels_;
+    std::optional<gl::Texture> texture_;
+};
+
+/// How many posts a mean is of, each way, where there may be so many means.
+int reduction_to(const Array2d<float>& h, std::int64_t most_posts) {
+    int reduction = 1;
+    while (std::min(h.width(), h.height()) / (2 * reduction) >= 2 &&
+           (std::max(h.width(), h.height()) / reduction > kMostSide ||
+            std::int64_t{h.width() / reduction} * (h.height() / reduction) > most_posts))
+        reduction *= 2;
+    return reduction;
+}
+
+/// A DEM's posts at the height that they are drawn at, or means of them.
+struct DrawnPosts {
+    std::optional<dem::Heightfield> own;  ///< unless they are the given ones
+    std::optional<dem::Posts> posts;
+    double exaggeration = 0;
+    int reduction = 1;  ///< of the given posts to one of these, each way
+
+    /// @returns whether they are others than before
+    bool make(const dem::Heightfield& given, double wanted, int wanted_reduction) {
+        if (posts && exaggeration == wanted && reduction == wanted_reduction) return false;
+        posts.reset();
+        exaggeration = wanted;
+        reduction = wanted_reduction;
+        const Array2d<float>& h = given.height_m;
+        if (reduction == 1 && exaggeration == 1 && given.reduction == 1) {
+            posts.emplace(given);
+            return true;
+        }
+        const int columns = h.width() / reduction, rows = h.height() / reduction;
+        own.emplace(dem::Heightfield{
+            means_of(h, reduction, static_cast<float>(exaggeration)),
+            given.grid.part({0, 0, columns * reduction, rows * reduction}, columns, rows),
+            given.about});
+        own->about.statistics = dem::statistics(own->height_m);
+        posts.emplace(*own);
+        return true;
+    }
+};
+
+/// The sun that textures were made for.
+struct SunMade {
+    glm::dvec3 direction{0};
+    double semidiameter_rad = 0;
+    friend bool operator==(const SunMade&, const SunMade&) = default;
+};
+
+/// The air that margins were made for, told apart by how it bends rays.
+struct AirMade {
+    std::array<double, 3> refraction_rad{};
+    double terrestrial = 0;
+    friend bool operator==(const AirMade&, const AirMade&) = default;
+
+    static AirMade of(const SunLight& sun) {
+        AirMade made;
+        made.terrestrial = sun.terrestrial_refraction;
+        if (sun.air && sun.refraction_rad)
+            made.refraction_rad = {sun.refraction_rad(0), sun.refraction_rad(0.1),
+                                   sun.refraction_rad(0.7)};
+        return made;
+    }
+};
+
+}  // namespace
+
+struct GroundLight::Impl {
+    const dem::Heightfield& field;
+    const geo::LocalFrame& frame;
+
+    /// Posts, or means of them, and what is the same for all suns.
+    struct Level {
+        DrawnPosts ground;
+        std::optional<light::Margins> margins;  // of the posts above
+        AirMade air;
+    };
+    std::map<int, Level> levels;   // by reduction
+    const Level* level = nullptr;  // of the textures
+    DrawnPosts sky_ground;
+    std::optional<SunMade> sun;
+    double told_error_rad = 0;
+
+    bool by_columns = false;             // rows of the textures are columns of the DEM
+    Array2d<std::uint32_t> halves;       // upper limb's margin in the low half, lower one's above
+    Array2d<std::uint16_t> post_shares;  // value and coverage, a byte each
+    std::optional<gl::Texture> margin_texture;
+    Shares shares, sky;
+    bool has_sky = false;
+    bool has_sun = true;  // one can be found over the DEM
+
+    Impl(const dem::Heightfield& f, const geo::LocalFrame& l) : field(f), frame(l) {}
+
+    /// Means are finer than the pixels, and few where pixels allow it.
+    int reduction_for(double pixel_posts) const {
+        const int few = reduction_to(field.height_m, kFewPosts);
+        int reduction = reduction_to(field.height_m, kMostPosts);
+        while (2 * reduction * field.reduction <= pixel_posts && 2 * reduction <= few)
+            reduction *= 2;
+        return reduction;
+    }
+
+    void prepare(const SunLight& light, double exaggeration, int reduction) {
+        const AirMade wanted = AirMade::of(light);
+        Level& here = levels[reduction];
+        if (level != &here) sun.reset();
+        level = &here;
+        if (here.air != wanted) here.margins.reset();
+        if (here.margins && here.ground.exaggeration == exaggeration) return;
+        here.margins.reset();
+        here.ground.make(field, exaggeration, reduction);
+        here.air = wanted;
+        sun.reset();
+        light::ShadowOptions options;
+        options.refraction = light.terrestrial_refraction;
+        if (light.air)
+            options.air = [&](const geo::Geodetic& place) {
+                geo::Geodetic at = place;
+                at.height_m /= exaggeration;  // of the ground that there is
+                return light.air(at);
+            };
+        here.margins.emplace(*here.ground.posts, options);
+    }
+
+    /// The textures' rows are the lines that sweeps go by, so that nothing has to be turned.
+    void turn(bool along_columns) {
+        const dem::Grid& grid = level->ground.posts->grid();
+        glm::ivec2 size(grid.columns(), grid.rows());
+        if (along_columns) size = {size.y, size.x};
+        if (halves.width() == size.x && halves.height() == size.y) {
+            by_columns = along_columns;
+            return;
+        }
+        by_columns = along_columns;
+        halves = Array2d<std::uint32_t>(size.x, size.y);
+        post_shares = Array2d<std::uint16_t>(size.x, size.y);
+        margin_texture.emplace(gl::TextureKind::D2, gl::Format::RG16F,
+                               gl::Extent{size.x, size.y, 1}, 1, "light_margins");
+        margin_texture->set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
+    }
+
+    void take(const light::MarginRun& run) {
+        const int x = run.first, y = run.line;
+        encode(run, &halves.at(x, y), &post_shares.at(x, y));
+    }
+
+    /// All posts are in the shade, or none.
+    void set_all(bool lit) {
+        const std::uint32_t margin = half_of(lit ? kMostMargin : -kMostMargin);
+        std::fill(halves.begin(), halves.end(), margin << 16 | margin);
+        std::fill(post_shares.begin(), post_shares.end(), std::uint16_t(lit ? 0xffffU : 0xff00U));
+    }
+
+    /// Margins of a sun, where the DEM has one; false on maps of the world, whose rows end in
+    /// poles.
+    bool find_margins(const light::SunOverDem& over) {
+        if (!has_sun) return false;
+        try {
+            const light::Margins::Found found = level->margins->each(
+                frame.origin(), over, [&](bool along_columns) { turn(along_columns); },
+                [&](const light::MarginRun& run) { take(run); });
+            if (found.night) set_all(false);
+            tell(found.error_rad);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
+            has_sun = false;
+            log::info(fmt::format("render: no shadows are cast: {}", error.what()));
+        }
+        return has_sun;
+    }
+
+    void upload_sun() {
+        margin_texture->write(0, {0, 0, 0}, {halves.width(), halves.height(), 1},
+                              std::as_bytes(std::span(halves.data(), halves.size())));
+        shares.resize((halves.width() + 1) / 2, (halves.height() + 1) / 2);
+        Array2d<Bytes2>& base = shares.base();
+        const int columns = halves.width(), rows = halves.height();
+        parallel_for(0, (rows + 1) / 2, 32, [&](int first, int last) {
+            for (int row = first; row < last; ++row) {
+                const std::uint16_t* const a = post_shares.row(2 * row).data();
+                const std::uint16_t* const b =
+                    post_shares.row(std::min(2 * row + 1, rows - 1)).data();
+                Bytes2* const to = base.row(row).data();
+                for (int i = 0; i < (columns + 1) / 2; ++i) {
+                    const int x = 2 * i, y = std::min(x + 1, columns - 1);
+                    const auto mean = [&](int shift) {
+                        return static_cast<std::uint8_t>(
+                            ((a[x] >> shift & 255) + (a[y] >> shift & 255) + (b[x] >> shift & 255) +
+                             (b[y] >> shift & 255) + 2) /
+                            4);
+                    };
+                    to[i] = {mean(0), mean(8)};
+                }
+            }
+        });
+        shares.upload("light_shares");
+    }
+
+    /// The share of the sky that means of posts see; all of it on maps of the world.
+    Array2d<float> find_sky(const light::SkyViewOptions& options) {
+        const dem::Grid& grid = sky_ground.posts->grid();
+        try {
+            return light::sky_view(*sky_ground.posts, options).share;
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::BadInput) throw;
+            log::info(fmt::format("render: the ground hides no sky: {}", error.what()));
+            return {grid.columns(), grid.rows(), 1};
+        }
+    }
+
+    /// Says once how far off the sun is where one does not hold for enough posts.
+    void tell(double error_rad) {
+        if (error_rad <= told_error_rad) return;
+        told_error_rad = error_rad;
+        log::info(
+            fmt::format("render: shadows: this DEM is so wide for its posts that the sun of "
+                        "a part of it is off by up to {:.1f} degrees somewhere in the part",
+                        degrees(error_rad)));
+    }
+};
+
+GroundLight::GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame)
+    : impl_(std::make_unique<Impl>(field, frame)) {}
+GroundLight::GroundLight(GroundLight&&) noexcept = default;
+GroundLight& GroundLight::operator=(GroundLight&&) noexcept = default;
+GroundLight::~GroundLight() = default;
+
+void GroundLight::follow(const SunLight& light, double exaggeration, double pixel_posts) {
+    Impl& my = *impl_;
+    my.prepare(light, exaggeration, my.reduction_for(pixel_posts));
+    const SunMade wanted{light.direction, light.semidiameter_rad};
+    if (my.sun == wanted) return;
+    const glm::dvec3& d = light.direction;
+    const light::SunOverDem over{std::atan2(d.x, d.y), std::atan2(d.z, std::hypot(d.x, d.y)),
+                                 light.semidiameter_rad};
+    if (!my.find_margins(over)) {
+        my.turn(my.by_columns);
+        my.set_all(true);
+    }
+    my.upload_sun();
+    my.sun = wanted;
+}
+
+void GroundLight::look_up(double exaggeration) {
+    Impl& my = *impl_;
+    if (!my.sky_ground.make(my.field, exaggeration,
+                            reduction_to(my.field.height_m, kMostSkyPosts)) &&
+        my.has_sky)
+        return;
+    light::SkyViewOptions options;
+    options.directions = kSkyDirections;
+    options.of_open_slope = true;
+    const Array2d<float> share = my.find_sky(options);
+    my.sky.resize(share.width(), share.height());
+    for (int row = 0; row < share.height(); ++row)
+        for (int column = 0; column < share.width(); ++column) {
+            const float seen = share.at(column, row);
+            my.sky.base().at(column, row) =
+                std::isnan(seen)
+                    ? Bytes2{0, 0}
+                    : Bytes2{static_cast<std::uint8_t>(255 * std::clamp(seen, 0.0F, 1.0F) + 0.5F),
+                             255};
+        }
+    my.sky.upload("light_sky");
+    my.has_sky = true;
+}
+
+const gl::Texture* GroundLight::texture(std::string_view name) const {
+    const Impl& my = *impl_;
+    if (name == "light_margins") return my.margin_texture ? &*my.margin_texture : nullptr;
+    if (name == "light_shares") return my.shares.texture();
+    if (name == "light_sky") return my.sky.texture();
+    return nullptr;
+}
+
+void GroundLight::describe(FrameBlock& block) const {
+    const Impl& my = *impl_;
+    const dem::Grid& grid = my.field.grid;
+    const double given = my.field.reduction;
+    const glm::dvec2 spacing_m = grid.post_spacing_m();
+    const int reduction = my.level ? my.level->ground.reduction : 1;
+    const double exaggeration = my.level ? my.level->ground.exaggeration : 1;
+    block.light_grid = {static_cast<float>(1 / (given * reduction)),
+                        static_cast<float>(1 / (given * my.sky_ground.reduction)),
+                        my.by_columns ? 1.0F : 0.0F,
+                        static_cast<float>(kMarginPosts * reduction *
+                                           std::max(spacing_m.x, spacing_m.y) * exaggeration)};
+    const geo::Geodetic centre = grid.center();
+    const double step_m = std::max(spacing_m.x, spacing_m.y);
+    const auto posts_a_metre = [&](double azimuth_rad) {
+        return (grid.post(geo::destination(centre, azimuth_rad, step_m)) -
+                grid.post(geo::destination(centre, azimuth_rad, -step_m))) /
+               (2 * step_m);
+    };
+    block.light_axes = {posts_a_metre(kPi / 2), posts_a_metre(0)};
+    block.light_map = {grid.crs().is_geographic() ? 1 : 0, 0, 0, 0};
+}
+
+}  // namespace relevo::render

@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "support/gpu_snippet.h"
+#include "support/shadow_truth.h"
+
+namespace relevo::shadow {
+namespace {
+
+dem::Heightfield bundled() {
+    return dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
+}
+
+/// Heights at the posts of a UTM grid, 30 m apart.
+dem::Heightfield ground(int columns, int rows, const std::function<double(int, int)>& height_m) {
+    Array2d<float> heights(columns, rows);
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x)
+            heights.at(x, y) = static_cast<float>(height_m(x, y));
+    dem::Description about;
+    about.statistics = dem::statistics(heights);
+    return {std::move(heights),
+            dem::Grid(columns, rows, {400000, 30, 0, 5000000, 0, -30},
+                      geo::Crs::parse("EPSG:32631", "test")),
+            about};
+}
+
+Drawn drawn_of(const dem::Heightfield& dem, const std::string& scratch,
+               glm::ivec2 size = glm::ivec2(0)) {
+    return Drawn(dem, test::scratch_dir(scratch), {}, 2, size, "shadows");
+}
+
+TEST(Shadows, AtThePostsTheyAreThoseOfRays) {
+    const dem::Heightfield dem = bundled();
+    Drawn drawn = drawn_of(dem, "shadows_posts");
+    const Truth truth(dem, drawn.ground().frame);
+    for (const glm::dvec2 sun : {glm::dvec2(2, 200), {5, 315}, {20, 90}}) {
+        const glm::dvec3 to_sun = direction(sun.y, sun.x);
+        const Truth::Mask mask = truth.cast(to_sun);
+        const AtPosts at = at_posts_themselves(drawn, truth, to_sun);
+        const Score s =
+            score(truth, mask, at.lit, drawn.texel_m(), to_sun, drawn.spacing_m(), &at.shown);
+        fmt::print(
+            "[ shadow ] sun at {} degrees from {}: {:.1f} % shaded, balanced accuracy {:.2f} %\n",
+            sun.x, sun.y, 100 * s.shaded_share, 100 * s.balanced);
+        EXPECT_GT(s.shaded_share, 0.01);
+        EXPECT_GE(s.balanced, 0.99);
+    }
+}
+
+TEST(Shadows, OfAWholePictureTheyAreThoseOfRaysOverTheSamePosts) {
+    const dem::Heightfield dem = bundled();
+    Drawn drawn = drawn_of(dem, "shadows_whole");
+    const Truth truth(dem, drawn.ground().frame);
+    for (const glm::dvec2 sun : {glm::dvec2(2, 0), {10, 225}, {60, 45}}) {
+        const glm::dvec3 to_sun = direction(sun.y, sun.x);
+        const Array2d<float> lit = drawn.at_posts(to_sun, truth.posts());
+        const Score s =
+            score(truth, truth.cast(to_sun), lit, drawn.texel_m(), to_sun, drawn.spacing_m());
+        EXPECT_GE(s.lit_right, 0.99) << sun.x;
+        if (s.shaded_share > 0.01) {
+            EXPECT_GE(s.balanced, 0.99) << sun.x;
+        }
+        EXPECT_GE(s.beyond, 0.999) << sun.x;
+    }
+}
+
+TEST(Shadows, InThePenumbraTheyAreThePartOfTheDiscThatIsSeen) {
+    const dem::Heightfield dem = bundled();
+    Drawn drawn = drawn_of(dem, "shadows_penumbra");
+    drawn.semidiameter_rad() = kSunRadius_rad;
+    const Truth truth(dem, drawn.ground().frame);
+    // Low suns graze many ridges at once, and three sweeps do not tell all of them apart.
+    for (const auto& [elevation_deg, limit] : {std::pair(2.0, 0.1), {10.0, 0.05}}) {
+        const glm::dvec3 to_sun = direction(200, elevation_deg);
+        const AtPosts at = at_posts_themselves(drawn, truth, to_sun);
+        const Penumbra p = penumbra(truth, at.lit, at.shown, to_sun);
+        fmt::print(
+            "[ shadow ] {} posts in the penumbra: off by {:+.3f} in the mean, by {:.3f} in size\n",
+            p.posts, p.mean, p.mean_size);
+        EXPECT_GT(p.posts, 100);
+        EXPECT_LT(std::abs(p.mean), limit);
+        EXPECT_LT(p.mean_size, limit + 0.04);
+    }
+}
+
+TEST(Shadows, APictureOfFewPixelsHasTheLightOfAFineOne) {
+    const dem::Heightfield dem = bundled();
+    std::vector<double> means;
+    for (const glm::ivec2 size : {glm::ivec2(100, 86), {1600, 1376}}) {
+        Drawn drawn = drawn_of(dem, "shadows_far", size);
+        double sum = 0, pixels = 0;
+        for (const float share : drawn.picture(direction(225, 10)))
+            if (!std::isnan(share)) {
+                sum += double{share};
+                ++pixels;
+            }
+        means.push_back(sum / pixels);
+    }
+    EXPECT_NEAR(means[0], means[1], 0.01);
+    EXPECT_LT(means[1], 0.9);
+}
+
+TEST(Shadows, LevelGroundBesideHolesIsLit) {
+    const dem::Heightfield dem = ground(
+        60, 60, [](int x, int y) { return (x / 7 + y / 5) % 5 == 0 ? std::nan("") : 100.0; });
+    Drawn drawn = drawn_of(dem, "shadows_holes", {480, 480});
+    for (const double elevation : {3.0, 30.0})
+        for (const float lit : drawn.picture(direction(130, elevation)))
+            if (!std::isnan(lit)) {
+                ASSERT_GT(lit, 0.999f);
+            }
+}
+
+TEST(Shadows, AWallShadesAsFarAsItsTangent) {
+    // 60 m high, to the east of posts that are level: 60 / tan(10) = 340 m.
+    const dem::Heightfield dem = ground(60, 9, [](int x, int) { return x == 40 ? 160.0 : 100.0; });
+    Drawn drawn = drawn_of(dem, "shadows_wall", {1200, 180});
+    const Truth truth(dem, drawn.ground().frame);
+    const Array2d<float> lit = drawn.at_posts(direction(90, 10), truth.posts());
+    for (int x = 3; x < 57; ++x) {
+        if (x >= 39 && x <= 41) continue;  // the wall's own sides
+        const double away_m = (40 - x) * 30;
+        if (std::abs(away_m - 340) < 35) continue;
+        EXPECT_NEAR(lit.at(x, 4), away_m > 0 && away_m < 340 ? 0 : 1, 0.02) << x;
+    }
+}
+
+TEST(Shadows, TheShareOfADiscIsThatOfItsSegment) {
+    test::GpuSnippet gpu("", "lib/sun_share.glsl");
+    const auto results = gpu.run("result = vec4(sun_disc_share(float(x) / 400.0));", 401, 1);
+    double worst = 0;
+    for (int x = 0; x <= 400; ++x) {
+        const double below = 1 - x / 200.0;
+        const double share = (std::acos(below) - below * std::sqrt(1 - below * below)) / kPi;
+        worst = std::max(worst, std::abs(double{results[static_cast<std::size_t>(x)].x} - share));
+    }
+    EXPECT_LT(worst, 0.002);
+}
+
+}  // namespace
+}  // namespace relevo::shadow

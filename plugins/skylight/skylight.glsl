@@ -1,0 +1,15 @@
+//! provides  skylight: the sky's light as far as the ground around leaves the sky in sight
+//! hook      ambient
+//! reads     the share of the sky that every post sees (core/render/ground_light.h)
+//! writes    irradiance
+//! source    Dozier and Frew, IEEE Trans. Geosci. Remote Sensing 28 (1990) 963: sky-view factor
+
+//@ include lib/open_sky.glsl
+
+uniform float skylight_albedo = 0.2;  //@ range(0, 1) label("Albedo") description("Of the ground that stands before the sky: so much of the sky's light comes from there")
+uniform float skylight_strength = 1.0;  //@ range(0, 4) label("Strength") description("1 is the light there is; above it hollows are darker than they are")
+
+void skylight_on_ambient(in Surface s, inout vec3 irradiance) {
+    float seen = pow(surface_open_sky(s), skylight_strength);
+    irradiance *= seen + (1.0 - seen) * skylight_albedo;
+}

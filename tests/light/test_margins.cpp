@@ -1,0 +1,91 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "dem/load.h"
+#include "light/margins.h"
+#include "sun/position.h"
+#include "support/support.h"
+
+namespace relevo::light {
+namespace {
+
+const dem::Posts& posts() {
+    static const dem::Heightfield field =
+        dem::load((test::source_dir() / "data/dem/jacksboro.tif").string());
+    static const dem::Posts posts(field);
+    return posts;
+}
+
+struct Found {
+    Array2d<float> upper_m, lower_m;
+    Margins::Found what;
+};
+
+Found margins(const SunOverDem& sun) {
+    const dem::Grid& grid = posts().grid();
+    Found found{Array2d<float>(grid.columns(), grid.rows(), -1e9F),
+                Array2d<float>(grid.columns(), grid.rows(), -1e9F),
+                {}};
+    bool by_columns = false;
+    const auto turn = [&](bool along_columns) { by_columns = along_columns; };
+    found.what = Margins(posts(), {}).each(grid.center(), sun, turn, [&](const MarginRun& run) {
+        EXPECT_EQ(run.along_column, by_columns);
+        for (int i = 0; i < run.count; ++i) {
+            const int column = run.along_column ? run.line : run.first + i;
+            const int row = run.along_column ? run.first + i : run.line;
+            found.upper_m.at(column, row) = run.upper_m[i];
+            found.lower_m.at(column, row) = run.lower_m[i];
+        }
+    });
+    return found;
+}
+
+TEST(Margins, OfAPointAreThoseOfShadows) {
+    for (const double azimuth_deg : {30.0, 100.0, 200.0, 290.0}) {
+        const SunOverDem sun{radians(azimuth_deg), radians(6), 0};
+        const Found found = margins(sun);
+        const Shadows expected = shadows(posts(), sun);
+        std::int64_t wrong = 0;
+        for (std::size_t i = 0; i < found.upper_m.size(); ++i) {
+            wrong += (found.upper_m.data()[i] >= 0) != (expected.lit.data()[i] > 0);
+            wrong += found.upper_m.data()[i] != found.lower_m.data()[i];
+        }
+        EXPECT_EQ(wrong, 0) << azimuth_deg;
+        EXPECT_GT(expected.shaded_posts, 1000);
+    }
+}
+
+TEST(Margins, SomeOfTheDiscIsSeenWhereTheUpperLimbIsAndAllWhereTheLowerOneIs) {
+    const SunOverDem sun{radians(200), radians(4), sun::semidiameter_rad(1)};
+    const Found found = margins(sun);
+    const Shadows expected = shadows(posts(), sun, {.soft = true});
+    std::int64_t wrong = 0, part = 0;
+    for (std::size_t i = 0; i < found.upper_m.size(); ++i) {
+        const float upper_m = found.upper_m.data()[i], lower_m = found.lower_m.data()[i];
+        const float share = expected.lit.data()[i];
+        wrong += (upper_m > 0) != (share > 0);
+        wrong += (lower_m >= 0) != (share == 1);
+        wrong += lower_m > upper_m;
+        part += share > 0 && share < 1;
+    }
+    EXPECT_LE(wrong, part / 100);  // shares that are rounded to none or all
+    EXPECT_GT(part, 1000);
+}
+
+TEST(Margins, AtNightThereAreNone) {
+    const Found found = margins({1, radians(-10), 0.0046});
+    EXPECT_TRUE(found.what.night);
+    EXPECT_EQ(found.upper_m.at(5, 5), -1e9F);
+}
+
+TEST(Margins, TheQuickShareOfADiscIsWithinTwoThousandths) {
+    for (int i = 0; i <= 1000; ++i) {
+        const double height = i / 1000.0;
+        EXPECT_NEAR(double{quick_share_of_disc(static_cast<float>(height))}, share_of_disc(height),
+                    0.002);
+    }
+}
+
+}  // namespace
+}  // namespace relevo::light
