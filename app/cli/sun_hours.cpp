@@ -32,20 +32,22 @@ Array2d<float> in_minutes(Array2d<float> hours) {
     return hours;
 }
 
-std::vector<light::RasterBand> bands_of(const std::vector<std::string>& wanted,
-                                        light::SunHours hours) {
+std::vector<light::RasterBand> bands_of(const std::vector<std::string>& wanted) {
     std::vector<light::RasterBand> bands;
     for (const std::string& band : wanted) {
-        if (band == "hours") bands.push_back({"sun hours", "h", std::move(hours.hours)});
-        if (band == "first")
-            bands.push_back(
-                {"minutes to the first light", "min", in_minutes(std::move(hours.first_h))});
-        if (band == "last")
-            bands.push_back(
-                {"minutes to the last light", "min", in_minutes(std::move(hours.last_h))});
-        if (band == "spells") bands.push_back({"spells of light", "1", std::move(hours.spells)});
+        if (band == "hours") bands.push_back({"sun hours", "h"});
+        if (band == "first") bands.push_back({"minutes to the first light", "min"});
+        if (band == "last") bands.push_back({"minutes to the last light", "min"});
+        if (band == "spells") bands.push_back({"spells of light", "1"});
     }
     return bands;
+}
+
+/// Of a band, as it is stored.
+Array2d<float> values_of(const std::string& band, light::SunHours& hours) {
+    if (band == "first") return in_minutes(std::move(hours.first_h));
+    if (band == "last") return in_minutes(std::move(hours.last_h));
+    return std::move(band == "spells" ? hours.spells : hours.hours);
 }
 
 bool has_spells(const std::vector<std::string>& bands) {
@@ -91,13 +93,7 @@ void run(const Arguments& arguments) {
     warn_of_holes(hours.holes);
     const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);
     const std::string air = air_of_posts(arguments.refraction, posts);
-    const light::RasterFile about = arguments.raster.about(posts, hours.definition, hours.holes,
-                                                           {{"TIME_FROM", from},
-                                                            {"TIME_TO", to},
-                                                            {"TIME_ZONE", days.zone.name()},
-                                                            {"REFRACTION", air}});
     const double mean = hours.mean_hours, level = hours.level_hours;
-    const std::string definition = hours.definition;
     const auto [least, most] = [&] {
         std::pair<float, float> range{INFINITY, -INFINITY};
         for (const float value : hours.hours)
@@ -105,13 +101,21 @@ void run(const Arguments& arguments) {
                 range = {std::min(range.first, value), std::max(range.second, value)};
         return range;
     }();
-    light::write_raster(file, posts.grid(), bands_of(arguments.bands, std::move(hours)), about);
+    light::RasterWriter writer(file, posts.grid(), light::RasterType::Float,
+                               bands_of(arguments.bands), arguments.raster.creation_options);
+    for (std::size_t k = 0; k < arguments.bands.size(); ++k)
+        writer.put(k, 0, 0, values_of(arguments.bands[k], hours));
+    writer.finish(arguments.raster.about(posts, hours.definition, hours.holes,
+                                         {{"TIME_FROM", from},
+                                          {"TIME_TO", to},
+                                          {"TIME_ZONE", days.zone.name()},
+                                          {"REFRACTION", air}}));
     fmt::print("time                {} to {}\n", from, to);
     fmt::print(
         "sun hours           mean {:.2f}, least {:.2f}, most {:.2f}; over a level horizon in "
         "the middle of the DEM {:.2f}\n",
         mean, least, most, level);
-    fmt::print("\n{}\nrefraction of the sun: {}\n", definition, air);
+    fmt::print("\n{}\nrefraction of the sun: {}\n", hours.definition, air);
 }
 
 }  // namespace

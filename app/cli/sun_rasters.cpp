@@ -28,17 +28,16 @@ OutputFile& RasterArguments::open(FilesInUse& files) const {
     return *output.open(files, dem);
 }
 
-light::RasterFile RasterArguments::about(const dem::Posts& posts, const std::string& definition,
-                                         std::int64_t holes, light::RasterMetadata more) const {
-    light::RasterFile about;
-    about.metadata = {{"TIFFTAG_SOFTWARE", "Relevo " RELEVO_VERSION},
-                      {"DEFINITION", definition},
-                      {"DEM", posts.about().path},
-                      {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", terrestrial_refraction)},
-                      {"HOLES", fmt::format("{}", holes)}};
+light::RasterMetadata RasterArguments::about(const dem::Posts& posts, const std::string& definition,
+                                             std::int64_t holes, light::RasterMetadata more) const {
+    light::RasterMetadata about{
+        {"TIFFTAG_SOFTWARE", "Relevo " RELEVO_VERSION},
+        {"DEFINITION", definition},
+        {"DEM", posts.about().path},
+        {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", terrestrial_refraction)},
+        {"HOLES", fmt::format("{}", holes)}};
     for (auto& item : more)
-        about.metadata.push_back(std::move(item));
-    about.creation_options = creation_options;
+        about.push_back(std::move(item));
     return about;
 }
 

@@ -22,8 +22,8 @@ struct RasterArguments {
     OutputFile& open(FilesInUse& files) const;
     dem::Posts load() const { return dem::Posts::load(dem.paths, dem.options); }
     /// What every such file says of itself; `more` besides.
-    light::RasterFile about(const dem::Posts& posts, const std::string& definition,
-                            std::int64_t holes, light::RasterMetadata more) const;
+    light::RasterMetadata about(const dem::Posts& posts, const std::string& definition,
+                                std::int64_t holes, light::RasterMetadata more) const;
 };
 
 /// --refraction's model in words, over each post.

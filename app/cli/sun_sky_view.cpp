@@ -26,11 +26,12 @@ void run_sky_view(const Arguments& arguments) {
                                 .refraction = arguments.raster.terrestrial_refraction,
                                 .level = arguments.level});
     warn_of_holes(view.holes);
-    const light::RasterFile about =
+    light::RasterWriter writer(file, posts.grid(), light::RasterType::Float,
+                               {{"sky-view factor", "1"}}, arguments.raster.creation_options);
+    writer.put(0, 0, 0, view.share);
+    writer.finish(
         arguments.raster.about(posts, view.definition, view.holes,
-                               {{"DIRECTIONS", fmt::format("{}", arguments.directions)}});
-    light::write_raster(file, posts.grid(), {{"sky-view factor", "1", std::move(view.share)}},
-                        about);
+                               {{"DIRECTIONS", fmt::format("{}", arguments.directions)}}));
     fmt::print("sky view            mean {:.4f}\n\n{}\n", view.mean, view.definition);
 }
 
@@ -45,18 +46,20 @@ void run_horizons(const Arguments& arguments) {
         light::horizons(posts, azimuth_rad, arguments.raster.terrestrial_refraction);
     warn_of_holes(horizons.holes);
     std::vector<light::RasterBand> bands;
+    for (const double azimuth : azimuth_rad) {
+        const std::string azimuth_deg = fmt::format("{:.10g}", degrees(azimuth));
+        bands.push_back(
+            {"horizon towards azimuth " + azimuth_deg, "deg", {{"AZIMUTH_DEG", azimuth_deg}}});
+    }
+    light::RasterWriter writer(file, posts.grid(), light::RasterType::Float, bands,
+                               arguments.raster.creation_options);
     for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
         Array2d<float>& elevation = horizons.elevation_rad[k];
         for (float& value : elevation)
             value = static_cast<float>(degrees(double{value}));
-        const std::string azimuth = fmt::format("{:.10g}", degrees(azimuth_rad[k]));
-        bands.push_back({"horizon towards azimuth " + azimuth,
-                         "deg",
-                         std::move(elevation),
-                         {{"AZIMUTH_DEG", azimuth}}});
+        writer.put(k, 0, 0, elevation);
     }
-    light::write_raster(file, posts.grid(), bands,
-                        arguments.raster.about(posts, horizons.definition, horizons.holes, {}));
+    writer.finish(arguments.raster.about(posts, horizons.definition, horizons.holes, {}));
     fmt::print("horizons            {} directions, {:.10g} degrees apart, from true north\n\n{}\n",
                arguments.directions, 360.0 / arguments.directions, horizons.definition);
 }
