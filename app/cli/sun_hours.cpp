@@ -77,11 +77,34 @@ void check(const Arguments& arguments) {
                               light::SunHoursOptions::kMostDays));
 }
 
+/// Of all parts.
+struct Summary {
+    double hours = 0, posts = 0, least = INFINITY, most = -INFINITY, level_hours = 0;
+    std::int64_t holes = 0;
+    std::string definition;
+
+    void add(const light::SunHours& part) {
+        const auto with_light =
+            static_cast<double>(part.hours.size()) - static_cast<double>(part.holes);
+        if (with_light > 0) hours += part.mean_hours * with_light;
+        posts += with_light;
+        for (const float value : part.hours)
+            if (!std::isnan(value)) {
+                least = std::min(least, double{value});
+                most = std::max(most, double{value});
+            }
+        level_hours = part.level_hours;
+        holes += part.holes;
+        definition = part.definition;
+    }
+};
+
 void run(const Arguments& arguments) {
     check(arguments);
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
-    const dem::Posts posts = arguments.raster.load();
+    const RasterGround ground = arguments.raster.load();
+    const dem::Posts& posts = ground.posts;
     const DaysArguments::Days days = arguments.days.parse(posts.grid().center());
     const auto [begin, end] = time_of(days);
     light::SunHoursOptions options;
@@ -89,23 +112,21 @@ void run(const Arguments& arguments) {
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
     options.step_s = 60 * arguments.step_min.value_or(3);
     options.spells = has_spells(arguments.bands);
-    light::SunHours hours = light::sun_hours(posts, begin, end, options);
-    warn_of_holes(hours.holes);
+    light::RasterWriter writer(file, ground.grid(), light::RasterType::Float,
+                               bands_of(arguments.bands), arguments.raster.creation_options);
+    Summary sum;
+    for (const dem::Window& part : ground.parts) {
+        options.part = part;
+        light::SunHours hours = light::sun_hours(posts, begin, end, options);
+        sum.add(hours);
+        for (std::size_t k = 0; k < arguments.bands.size(); ++k)
+            writer.put(k, part.column - ground.window.column, part.row - ground.window.row,
+                       values_of(arguments.bands[k], hours));
+    }
+    warn_of_holes(sum.holes);
     const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);
     const std::string air = air_of_posts(arguments.refraction, posts);
-    const double mean = hours.mean_hours, level = hours.level_hours;
-    const auto [least, most] = [&] {
-        std::pair<float, float> range{INFINITY, -INFINITY};
-        for (const float value : hours.hours)
-            if (!std::isnan(value))
-                range = {std::min(range.first, value), std::max(range.second, value)};
-        return range;
-    }();
-    light::RasterWriter writer(file, posts.grid(), light::RasterType::Float,
-                               bands_of(arguments.bands), arguments.raster.creation_options);
-    for (std::size_t k = 0; k < arguments.bands.size(); ++k)
-        writer.put(k, 0, 0, values_of(arguments.bands[k], hours));
-    writer.finish(arguments.raster.about(posts, hours.definition, hours.holes,
+    writer.finish(arguments.raster.about(ground, sum.definition, sum.holes,
                                          {{"TIME_FROM", from},
                                           {"TIME_TO", to},
                                           {"TIME_ZONE", days.zone.name()},
@@ -114,8 +135,8 @@ void run(const Arguments& arguments) {
     fmt::print(
         "sun hours           mean {:.2f}, least {:.2f}, most {:.2f}; over a level horizon in "
         "the middle of the DEM {:.2f}\n",
-        mean, least, most, level);
-    fmt::print("\n{}\nrefraction of the sun: {}\n", hours.definition, air);
+        sum.hours / std::max(1.0, sum.posts), sum.least, sum.most, sum.level_hours);
+    fmt::print("\n{}\nrefraction of the sun: {}\n", sum.definition, air);
 }
 
 }  // namespace
@@ -133,6 +154,7 @@ void add_sun_hours(CLI::App& sun_verb) {
     verb.add_option("--bands", arguments->bands,
                     "hours; of a few days also first, last (minutes from the beginning) and spells")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::IsMember(kBands));
     verb.callback([arguments] { run(*arguments); });
 }

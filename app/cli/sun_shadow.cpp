@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <set>
@@ -166,7 +167,7 @@ void print_one(const Asked& asked, const Counts& counts, bool soft) {
         "sun                 azimuth {:.3f} deg ({}), elevation {:.3f} deg as seen, in the "
         "middle of the DEM\n",
         azimuth_deg, compass_point(azimuth_deg), degrees(asked.apparent_rad));
-    const auto posts = static_cast<double>(counts.lit + counts.shaded);
+    const double posts = std::max(1.0, static_cast<double>(counts.lit + counts.shaded));
     fmt::print("{}            {} posts, {:.2f} %\n", soft ? "some sun" : "lit     ", counts.lit,
                100 * static_cast<double>(counts.lit) / posts);
     fmt::print("in the shade        {} posts, {:.2f} %\n", counts.shaded,
@@ -177,7 +178,7 @@ void print_many(const std::vector<Asked>& suns, const std::vector<Counts>& count
     fmt::print("band  time                       azimuth  elevation  {}\n",
                soft ? "some sun" : "lit");
     for (std::size_t k = 0; k < suns.size(); ++k) {
-        const auto posts = static_cast<double>(counts[k].lit + counts[k].shaded);
+        const double posts = std::max(1.0, static_cast<double>(counts[k].lit + counts[k].shaded));
         fmt::print("{:4}  {:25}  {:7.2f}  {:9.2f}  {:6.2f} %{}\n", k + 1,
                    sun::to_iso(suns[k].when->utc, suns[k].when->zone),
                    degrees(suns[k].sun.azimuth_rad), degrees(suns[k].apparent_rad),
@@ -198,6 +199,29 @@ void check(const Arguments& arguments) {
         bad_usage("--refraction: goes with --time; --sun is where the sun is seen");
 }
 
+/// Puts the light of all suns where it belongs. @return what it is
+std::string light_all(const RasterGround& ground, const std::vector<Asked>& suns,
+                      light::ShadowOptions options, light::RasterWriter& writer,
+                      std::vector<Counts>& counts) {
+    std::string definition;
+    for (const dem::Window& part : ground.parts) {
+        options.part = part;
+        const int column = part.column - ground.window.column, row = part.row - ground.window.row;
+        for (std::size_t k = 0; k < suns.size(); ++k) {
+            const light::Shadows shadows = light::shadows(ground.posts, suns[k].sun, options);
+            counts[k].lit += shadows.lit_posts;
+            counts[k].shaded += shadows.shaded_posts;
+            counts[k].holes += shadows.holes;
+            if (options.soft)
+                writer.put(k, column, row, shadows.lit);
+            else
+                writer.put(k, column, row, mask_of(shadows.lit));
+            definition = shadows.definition;
+        }
+    }
+    return definition;
+}
+
 void run(const Arguments& arguments) {
     check(arguments);
     const bool timed = !arguments.times.empty();
@@ -206,7 +230,8 @@ void run(const Arguments& arguments) {
     OutputFile& file = arguments.raster.open(files);
     std::vector<dem::NamedTime> times;
     if (timed) times = dem::read_times(arguments.times, "--times", kMostTimes);
-    const dem::Posts posts = arguments.raster.load();
+    const RasterGround ground = arguments.raster.load();
+    const dem::Posts& posts = ground.posts;
     const std::vector<Asked> suns = all_suns(arguments, times, posts);
     light::ShadowOptions options;
     options.refraction = arguments.raster.terrestrial_refraction;
@@ -217,25 +242,17 @@ void run(const Arguments& arguments) {
         air = air_of_posts(arguments.refraction, posts);
     }
     light::RasterWriter writer(
-        file, posts.grid(), options.soft ? light::RasterType::Float : light::RasterType::Byte,
+        file, ground.grid(), options.soft ? light::RasterType::Float : light::RasterType::Byte,
         bands_of(suns, timed, options.soft), arguments.raster.creation_options);
     std::vector<Counts> counts(suns.size());
-    std::string definition;
-    for (std::size_t k = 0; k < suns.size(); ++k) {
-        const light::Shadows shadows = light::shadows(posts, suns[k].sun, options);
-        if (k == 0) warn_of_holes(shadows.holes);
-        counts[k] = {shadows.lit_posts, shadows.shaded_posts, shadows.holes};
-        if (options.soft)
-            writer.put(k, 0, 0, shadows.lit);
-        else
-            writer.put(k, 0, 0, mask_of(shadows.lit));
-        definition = shadows.definition;
-    }
+    const std::string definition = light_all(ground, suns, options, writer, counts);
+    warn_of_holes(counts.front().holes);
     light::RasterMetadata more{{"REFRACTION", air}};
     if (!timed)
         for (auto& item : about_sun(suns.front()))
             more.push_back(std::move(item));
-    writer.finish(arguments.raster.about(posts, definition, counts.front().holes, std::move(more)));
+    writer.finish(
+        arguments.raster.about(ground, definition, counts.front().holes, std::move(more)));
     if (timed)
         print_many(suns, counts, options.soft);
     else

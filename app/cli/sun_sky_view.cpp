@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -20,48 +21,63 @@ struct Arguments {
 void run_sky_view(const Arguments& arguments) {
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
-    const dem::Posts posts = arguments.raster.load();
-    light::SkyView view =
-        light::sky_view(posts, {.directions = arguments.directions,
-                                .refraction = arguments.raster.terrestrial_refraction,
-                                .level = arguments.level});
-    warn_of_holes(view.holes);
-    light::RasterWriter writer(file, posts.grid(), light::RasterType::Float,
+    const RasterGround ground = arguments.raster.load();
+    light::RasterWriter writer(file, ground.grid(), light::RasterType::Float,
                                {{"sky-view factor", "1"}}, arguments.raster.creation_options);
-    writer.put(0, 0, 0, view.share);
-    writer.finish(
-        arguments.raster.about(posts, view.definition, view.holes,
-                               {{"DIRECTIONS", fmt::format("{}", arguments.directions)}}));
-    fmt::print("sky view            mean {:.4f}\n\n{}\n", view.mean, view.definition);
+    light::SkyViewOptions options{.directions = arguments.directions,
+                                  .refraction = arguments.raster.terrestrial_refraction,
+                                  .level = arguments.level};
+    double sum = 0, posts = 0;
+    std::int64_t holes = 0;
+    std::string definition;
+    for (const dem::Window& part : ground.parts) {
+        options.part = part;
+        const light::SkyView view = light::sky_view(ground.posts, options);
+        const auto seen = static_cast<double>(view.share.size()) - static_cast<double>(view.holes);
+        if (seen > 0) sum += view.mean * seen;
+        posts += seen;
+        holes += view.holes;
+        definition = view.definition;
+        writer.put(0, part.column - ground.window.column, part.row - ground.window.row, view.share);
+    }
+    warn_of_holes(holes);
+    writer.finish(arguments.raster.about(
+        ground, definition, holes, {{"DIRECTIONS", fmt::format("{}", arguments.directions)}}));
+    fmt::print("sky view            mean {:.4f}\n\n{}\n", sum / std::max(1.0, posts), definition);
 }
 
 void run_horizons(const Arguments& arguments) {
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
-    const dem::Posts posts = arguments.raster.load();
+    const RasterGround ground = arguments.raster.load();
     std::vector<double> azimuth_rad;
-    for (int i = 0; i < arguments.directions; ++i)
-        azimuth_rad.push_back(2 * kPi * i / arguments.directions);
-    light::Horizons horizons =
-        light::horizons(posts, azimuth_rad, arguments.raster.terrestrial_refraction);
-    warn_of_holes(horizons.holes);
     std::vector<light::RasterBand> bands;
-    for (const double azimuth : azimuth_rad) {
-        const std::string azimuth_deg = fmt::format("{:.10g}", degrees(azimuth));
+    for (int i = 0; i < arguments.directions; ++i) {
+        azimuth_rad.push_back(2 * kPi * i / arguments.directions);
+        const std::string azimuth_deg = fmt::format("{:.10g}", degrees(azimuth_rad.back()));
         bands.push_back(
             {"horizon towards azimuth " + azimuth_deg, "deg", {{"AZIMUTH_DEG", azimuth_deg}}});
     }
-    light::RasterWriter writer(file, posts.grid(), light::RasterType::Float, bands,
+    light::RasterWriter writer(file, ground.grid(), light::RasterType::Float, bands,
                                arguments.raster.creation_options);
-    for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
-        Array2d<float>& elevation = horizons.elevation_rad[k];
-        for (float& value : elevation)
-            value = static_cast<float>(degrees(double{value}));
-        writer.put(k, 0, 0, elevation);
-    }
-    writer.finish(arguments.raster.about(posts, horizons.definition, horizons.holes, {}));
+    std::int64_t holes = 0;
+    std::string definition;
+    for (const dem::Window& part : ground.parts)
+        for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
+            light::Horizons horizons = light::horizons(
+                ground.posts, {azimuth_rad[k]}, arguments.raster.terrestrial_refraction, part);
+            if (k == 0) holes += horizons.holes;
+            definition = horizons.definition;
+            Array2d<float>& elevation = horizons.elevation_rad.front();
+            for (float& value : elevation)
+                value = static_cast<float>(degrees(double{value}));
+            writer.put(k, part.column - ground.window.column, part.row - ground.window.row,
+                       elevation);
+        }
+    warn_of_holes(holes);
+    writer.finish(arguments.raster.about(ground, definition, holes, {}));
     fmt::print("horizons            {} directions, {:.10g} degrees apart, from true north\n\n{}\n",
-               arguments.directions, 360.0 / arguments.directions, horizons.definition);
+               arguments.directions, 360.0 / arguments.directions, definition);
 }
 
 std::shared_ptr<Arguments> add_directions(CLI::App& verb, int least, int most) {

@@ -17,21 +17,22 @@ struct Horizons {
     std::string definition;  ///< a sentence, to be printed with results
 };
 
-/// @param azimuth_rad  directions, from true north at each post
-/// @param refraction   terrestrial, as in HorizonOptions
-/// @throws Error (BadInput) as shadows()
-///
 /// Eyes are on the ground. What lies farther off than the nearest four posts is met within a
 /// quarter of a post of the direction. Beyond the DEM lies a smooth Earth as high as its lowest
 /// post, as in TerrainHorizon. Accuracy: tests/light/test_horizons.cpp.
+/// @param azimuth_rad  directions, from true north at each post
+/// @param refraction   terrestrial, as in HorizonOptions
+/// @throws Error (BadInput) as shadows()
+/// @param part  as in ShadowOptions
 Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad,
-                  double refraction = 0.13);
+                  double refraction = 0.13, const dem::Window& part = {});
 
 struct SkyViewOptions {
     int directions = 36;
     double refraction = 0.13;
     /// Of a level plane at each post instead of the ground as it is inclined.
     bool level = false;
+    dem::Window part{};  ///< as in ShadowOptions
 };
 
 /// How much of the sky each post of a DEM sees.

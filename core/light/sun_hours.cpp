@@ -203,8 +203,9 @@ void add_end(const SweepRun& run, double at_h, bool is_first, PostLight& posts) 
 
 class FewDays {
   public:
-    FewDays(const DemSky& dem, const Sweep& sweep, const Moments& moments, bool spells)
-        : dem_(dem), sweep_(sweep), moments_(moments), spells_(spells) {
+    FewDays(const DemSky& dem, const Sweep& sweep, const Moments& moments, bool spells,
+            const SweepWindow& part)
+        : dem_(dem), sweep_(sweep), moments_(moments), spells_(spells), part_(part) {
         for (const SunOverDem& sun : moments.suns)
             skies_.emplace_back(dem, sun);
         for (const SunSky& sky : skies_)
@@ -212,7 +213,7 @@ class FewDays {
     }
 
     void light(SunHours& result) const {
-        PostLight posts(whole(dem_.grid()), spells_);
+        PostLight posts(part_, spells_);
         std::vector<SweepWindow> windows;
         for (std::size_t k = 0; k < skies_.size(); ++k) {
             if (night_[k]) continue;
@@ -221,11 +222,11 @@ class FewDays {
             posts.turn(skies_[k].along_columns());
             each_window(windows, [&](const SweepWindow& window) { add(window, k, posts); });
         }
-        posts.lit_h.put(result.hours);
+        posts.lit_h.put(result.hours, part_);
         if (!spells_) return;
-        posts.first_h.put(result.first_h);
-        posts.last_h.put(result.last_h);
-        posts.spells.put(result.spells);
+        posts.first_h.put(result.first_h, part_);
+        posts.last_h.put(result.last_h, part_);
+        posts.spells.put(result.spells, part_);
     }
 
   private:
@@ -237,11 +238,11 @@ class FewDays {
         while (last + 1 < skies_.size() && !night_[last + 1] && (last + 1) % kTogether != 0)
             ++last;
         if (last > k) suns.push_back(skies_[last]);
-        return divide(suns, whole(dem_.grid()));
+        return divide(suns, whole(dem_.grid()), part_);
     }
 
     void add(const SweepWindow& window, std::size_t k, PostLight& posts) const {
-        const SunTile tile = *skies_[k].tile(window);
+        const SunTile tile = tile_of(skies_[k], window, part_);
         // A night leaves all posts in the shade.
         const bool is_first = k == 0 || night_[k - 1],
                    is_last = k + 1 == skies_.size() || night_[k + 1];
@@ -269,6 +270,7 @@ class FewDays {
     const Sweep& sweep_;
     const Moments& moments_;
     bool spells_;
+    SweepWindow part_;
     std::vector<SunSky> skies_;
     std::vector<bool> night_;
 };
@@ -319,16 +321,19 @@ class Direction {
 
 class ManyDays {
   public:
-    ManyDays(const DemSky& dem, const Sweep& sweep, sun::Instant begin, double length_s)
+    ManyDays(const DemSky& dem, const Sweep& sweep, sun::Instant begin, double length_s,
+             const SweepWindow& part)
         : dem_(dem),
           sweep_(sweep),
           begin_(begin),
           length_s_(length_s),
-          table_(begin, begin + length_s) {}
+          table_(begin, begin + length_s),
+          part_(part) {}
 
     void light(SunHours& result) const {
         for (const SweepWindow& block : blocks())
-            light_block(block, result);
+            if (const SweepWindow part = common(block, part_); part.columns > 0 && part.rows > 0)
+                light_block(block, part, result);
     }
 
   private:
@@ -352,11 +357,11 @@ class ManyDays {
         return blocks;
     }
 
-    void light_block(const SweepWindow& block, SunHours& result) const {
+    void light_block(const SweepWindow& block, const SweepWindow& part, SunHours& result) const {
         const geo::Geodetic middle = dem_.grid().place(block.column + (block.columns - 1) / 2.0,
                                                        block.row + (block.rows - 1) / 2.0);
         Directions directions = directions_over(middle);
-        TileValues lit_h(block, 0);
+        TileValues lit_h(part, 0);
         for (std::size_t k = 0; k < kDirections; ++k) {
             Direction& low = directions[0][k];
             if (low.empty()) continue;
@@ -364,13 +369,14 @@ class ManyDays {
             directions[1][k].sum_up();
             const SunSky sky(dem_, middle, {low.azimuth_rad(), 0, 0});
             lit_h.turn(sky.along_columns());
-            const std::vector<SweepWindow> windows = divide({sky}, block, kPeriodTolerance_rad);
+            const std::vector<SweepWindow> windows =
+                divide({sky}, block, part, kPeriodTolerance_rad);
             result.windows = std::max(result.windows, static_cast<int>(windows.size()));
             each_window(windows, [&](const SweepWindow& window) {
-                add(sky, *sky.tile(window), low, directions[1][k], lit_h);
+                add(sky, tile_of(sky, window, part), low, directions[1][k], lit_h);
             });
         }
-        lit_h.put(result.hours);
+        lit_h.put(result.hours, part_);
     }
 
     Directions directions_over(const geo::Geodetic& middle) const {
@@ -408,27 +414,30 @@ class ManyDays {
         const double low_m = dem_.level_height_m(0);
         const double span_m = std::max(1.0, dem_.level_height_m(1) - low_m);
         each_horizon(sky, sweep_, tile, [&](const SweepRun& run) {
-            const double column = run.along_column ? run.line : run.first,
-                         row = run.along_column ? run.first : run.line;
-            look_up(run, lift_rad + more.column * (column - at.column) + more.row * (row - at.row),
-                    run.along_column ? more.row : more.column, low.over(), high.over(), low_m,
-                    span_m, lit_h.of(run));
+            // From the reference on, so that bits do not hang on where a run begins.
+            const double aside = run.along_column ? more.column * (run.line - at.column)
+                                                  : more.row * (run.line - at.row);
+            look_up(run, lift_rad + aside, run.along_column ? more.row : more.column,
+                    run.first - (run.along_column ? at.row : at.column), low.over(), high.over(),
+                    low_m, span_m, lit_h.of(run));
         });
     }
 
     /// @param lift, lift_a_post  of the sun over where it stands in the middle [rad]
-    static void look_up(const SweepRun& run, double lift, double lift_a_post, const float* low,
-                        const float* high, double low_m, double span_m, float* lit_h) {
+    /// @param from               where the run begins, posts from the middle on
+    static void look_up(const SweepRun& run, double lift, double lift_a_post, double from,
+                        const float* low, const float* high, double low_m, double span_m,
+                        float* lit_h) {
         constexpr auto kScale = static_cast<float>(1 / Direction::kStep_rad);
-        const auto a_post = static_cast<float>(lift_a_post);
+        const auto a_post = static_cast<float>(lift_a_post), first = static_cast<float>(from);
         const auto base = static_cast<float>(lift + Direction::kLowest_rad);
         const auto bottom_m = static_cast<float>(low_m), scale_m = static_cast<float>(1 / span_m);
         for (int i = 0; i < run.count; ++i) {
             const float t = run.found[i];
             const float elevation = std::copysign(quick_atan(std::abs(t)), t);
             const float at =
-                std::clamp((elevation - base - a_post * static_cast<float>(i)) * kScale, 0.0F,
-                           Direction::kEntries - 1.001F);
+                std::clamp((elevation - base - a_post * (first + static_cast<float>(i))) * kScale,
+                           0.0F, Direction::kEntries - 1.001F);
             const auto entry = static_cast<int>(at);
             const float part = at - static_cast<float>(entry);
             const float in_low = low[entry] + part * (low[entry + 1] - low[entry]);
@@ -442,6 +451,7 @@ class ManyDays {
     sun::Instant begin_;
     double length_s_;
     sun::PositionTable table_;
+    SweepWindow part_;
 };
 
 double level_hours(const DemSky& dem, const Moments& moments) {
@@ -473,12 +483,12 @@ void check(sun::Instant begin, sun::Instant end, const SunHoursOptions& options)
 }
 
 /// Holes, and the mean of the others.
-void sum_up(const dem::Posts::View& heights, SunHours& result) {
+void sum_up(const dem::Posts::View& heights, const SweepWindow& part, SunHours& result) {
     std::int64_t posts = 0;
     for (int row = 0; row < result.hours.height(); ++row)
         for (int column = 0; column < result.hours.width(); ++column) {
             float& hours = result.hours.at(column, row);
-            if (std::isnan(*heights.at(column, row))) {
+            if (std::isnan(*heights.at(part.column + column, part.row + row))) {
                 hours = kNaN;
                 if (result.spells.size() > 0) result.spells.at(column, row) = kNaN;
                 ++result.holes;
@@ -505,15 +515,16 @@ SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end
     const Moments times =
         moments(dem, begin, length_s, few ? options.step_s : 600, few ? kFiner : 1);
     SunHours result;
-    result.hours = Array2d<float>(grid.columns(), grid.rows(), 0);
+    const SweepWindow part = window_of(options.part, grid);
+    result.hours = Array2d<float>(part.columns, part.rows, 0);
     if (options.spells)
         for (Array2d<float>* const each : {&result.first_h, &result.last_h, &result.spells})
-            *each = Array2d<float>(grid.columns(), grid.rows(), kNaN);
+            *each = Array2d<float>(part.columns, part.rows, kNaN);
     if (few)
-        FewDays(dem, sweep, times, options.spells).light(result);
+        FewDays(dem, sweep, times, options.spells, part).light(result);
     else
-        ManyDays(dem, sweep, begin, length_s).light(result);
-    sum_up(heights, result);
+        ManyDays(dem, sweep, begin, length_s, part).light(result);
+    sum_up(heights, part, result);
     result.level_hours = level_hours(dem, times);
     result.definition = fmt::format(
         "hours that the centre of the sun stands over the terrain, at the height of the ground, "

@@ -20,6 +20,7 @@ struct SunHoursOptions {
     double step_s = 180;
     /// Of such a time: when each post is lit first and last, and how often, too.
     bool spells = false;
+    dem::Window part{};  ///< as in ShadowOptions
 
     /// Beyond this time, every post's horizon is found in directions that are 2 degrees apart, at a
     /// cost that does not grow with the time.

@@ -56,8 +56,9 @@ struct Ground {
 /// Lines next to each other that rise to their ground: e[i] = max(before[i] - slope, all ground).
 struct Lift {
     float* e;
-    const float* before;  // or null: of ground alone
-    int line;             // the number of the first
+    const float* before;       // or null: of ground alone
+    float least = kNothing_m;  // without
+    int line;                  // the number of the first
     int lines;
     Slope slope;
     const Ground* ground;
@@ -73,7 +74,7 @@ template <typename V, int kVectors>
 #pragma GCC unroll 8
     for (int k = 0; k < kVectors; ++k) {
         line[k] = static_cast<float>(lift.line + i + k * kWidth) + lane;
-        height[k] = V{} + kNothing_m;
+        height[k] = V{} + lift.least;
         if (lift.before) std::memcpy(&height[k], lift.before + i + k * kWidth, sizeof(V));
         height[k] -= lift.slope.fall + lift.slope.ramp * line[k];
     }
@@ -203,33 +204,20 @@ struct Sheet {
 /// Lines at a row. Line i is the ray through the reference, which is a post, moved by i columns.
 struct RowPlan {
     double shift = 0;  // column of line 0
-    double fall = 0;   // of line 0, from the first row on
+    double fall = 0;   // of line 0, from the row of the reference on
     double ramp = 0;   // likewise, more for each line
 };
 
 /// The rows that matter to a window, and all that is the same for their posts.
 class Plan {
   public:
-    Plan(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double relief_m)
+    /// @param drop_m  what lines may fall by before they matter no more
+    Plan(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double drop_m)
         : sheet_(sheet), sun_(sun) {
-        begin_ = find_begin(window, relief_m);
-        const int end_row = window.row + window.rows;
-        rows_.resize(static_cast<std::size_t>(end_row - begin_));
-        double before_m = 0, before_tangent = 0;
-        for (int row = begin_; row < end_row; ++row) {
-            RowPlan& at = rows_[static_cast<std::size_t>(row - begin_)];
-            const double s = sun.distance_m(row);
-            at.shift = sun.reference.column + sun.way(s).column;
-            const double tangent = sun.tangent_at(at.shift, row);
-            if (row > begin_) {
-                const RowPlan& last = rows_[static_cast<std::size_t>(row - begin_ - 1)];
-                const double step_m = before_m - s;
-                at.fall = last.fall + step_m * (before_tangent + tangent) / 2;
-                at.ramp = last.ramp + step_m * sun.tangent_a_post.column;
-            }
-            before_m = s;
-            before_tangent = tangent;
-        }
+        begin_ = find_begin(window, drop_m);
+        rows_.resize(static_cast<std::size_t>(window.row + window.rows - begin_));
+        fill(1);
+        fill(-1);
     }
 
     int begin() const { return begin_; }
@@ -280,16 +268,41 @@ class Plan {
     }
 
   private:
+    /// The rows from that of the reference on, so that what is found does not hang on where a sweep
+    /// begins. @param step  1: away from the sun, -1: towards it
+    void fill(int step) {
+        const int first = static_cast<int>(sun_.reference.row);
+        const int end = begin_ + static_cast<int>(rows_.size());
+        RowPlan last;
+        double before_m = 0, before_tangent = 0;
+        for (int row = first; step > 0 ? row < end : row >= begin_; row += step) {
+            RowPlan at;
+            const double s = sun_.distance_m(row);
+            at.shift = sun_.reference.column + sun_.way(s).column;
+            const double tangent = sun_.tangent_at(at.shift, row);
+            if (row != first) {
+                const double step_m = before_m - s;
+                at.fall = last.fall + step_m * (before_tangent + tangent) / 2;
+                at.ramp = last.ramp + step_m * sun_.tangent_a_post.column;
+            }
+            if (row >= begin_ && row < end) rows_[static_cast<std::size_t>(row - begin_)] = at;
+            last = at;
+            before_m = s;
+            before_tangent = tangent;
+        }
+    }
+
     /// The first row from which shade can reach the window.
-    int find_begin(const SweepWindow& window, double relief_m) const {
+    int find_begin(const SweepWindow& window, double drop_m) const {
         const GridPair& more = sun_.tangent_a_post;
         const int right = window.column + window.columns - 1, end = window.row + window.rows - 1;
         const double tangent = sun_.tangent_at(more.column > 0 ? window.column : right,
                                                more.row > 0 ? window.row : end);
-        // Towards the sun it stands higher still.
-        const bool higher = more.column * sun_.towards.column + more.row * sun_.towards.row >= 0;
-        const double reach_m =
-            tangent > 0 && higher ? relief_m / tangent : std::numeric_limits<double>::infinity();
+        // Towards the sun it stands higher still, by so much with each metre.
+        const double a_metre = more.column * sun_.towards.column + more.row * sun_.towards.row;
+        const double sum = tangent + std::sqrt(tangent * tangent + 2 * a_metre * drop_m);
+        const double reach_m = a_metre >= 0 && sum > 0 ? kMargin * 2 * drop_m / sum
+                                                       : std::numeric_limits<double>::infinity();
         const double from_m = sun_.distance_m(window.row);
         int begin = window.row;
         while (begin > 0 && sun_.distance_m(begin) - from_m <= reach_m &&
@@ -297,6 +310,8 @@ class Plan {
             --begin;
         return begin;
     }
+
+    static constexpr double kMargin = 1.05;  // of a reach
 
     const Sheet& sheet_;
     const SweepSun& sun_;
@@ -312,7 +327,7 @@ struct Steps {
         int column = 0;     // of the post that belongs to line 0
         float between = 0;  // how far on towards the next line each post stands
         Slope slope;        // of lines, from the row before
-        double fallen = 0;  // line 0 from the first row on
+        double fallen = 0;  // line 0 from the row of the reference on
         Slope far_slope;    // of posts' rays, from the last row that is not near
 
         std::size_t& posts() { return lines[kLineSets]; }
@@ -323,7 +338,7 @@ struct Steps {
     int begin = 0;
 
     const Row& row(int row) const { return rows[static_cast<std::size_t>(row - begin)]; }
-    /// How far line 0 has come from the first row on, where tangents are 1.
+    /// How far line 0 has come from the row of the reference on, where tangents are 1.
     double distance_m(int at) const { return row(at).fallen; }
 };
 
@@ -376,8 +391,8 @@ Steps steps_of(const Plan& plan, int first_row, int end_row) {
 class Strip {
   public:
     /// @param line  the first one
-    Strip(const Sheet& sheet, const Steps& steps, Kernel kernel, int line)
-        : sheet_(sheet), steps_(steps), kernel_(kernel), line_(line) {
+    Strip(const Sheet& sheet, const Steps& steps, Kernel kernel, int line, float floor_m)
+        : sheet_(sheet), steps_(steps), kernel_(kernel), line_(line), floor_m_(floor_m) {
         for (Lines& lines : height_m_)
             lines.fill(kNothing_m);
     }
@@ -419,8 +434,8 @@ class Strip {
             far.slope = step.far_slope;
         }
         float* const e = edge_m_.data();
-        raise({.e = e, .before = nullptr, .line = from, .lines = to - from}, far.p ? &far : nullptr,
-              step.posts(), step.end);
+        raise({.e = e, .before = nullptr, .least = floor_m_, .line = from, .lines = to - from},
+              far.p ? &far : nullptr, step.posts(), step.end);
         use(step.column + from, to - from, e);
     }
 
@@ -453,7 +468,7 @@ class Strip {
                 continue;
             }
             float* const e = lift.e + (from - first);
-            kernel_.raise({e, e, from, to - from, {}, ground.data(), 1});
+            kernel_.raise({e, e, kNothing_m, from, to - from, {}, ground.data(), 1});
         }
         settle();
     }
@@ -462,6 +477,7 @@ class Strip {
     const Steps& steps_;
     Kernel kernel_;
     int line_;
+    float floor_m_;
     using Lines = std::array<float, kLines>;
     std::array<Lines, kLineSets> height_m_;
     std::array<float, kStripLines> edge_m_;
@@ -799,8 +815,8 @@ Sweep::View Sweep::view(const SweepSun& given, const SweepWindow& window) const 
     return view;
 }
 
-void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Use& use,
-                      int lanes) const {
+void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Use& use, int lanes,
+                      float floor_m) const {
     View view = this->view(given, window);
     SweepSun& sun = view.sun;
     if (!(std::abs(sun.tangent) < kSteepest)) {
@@ -808,12 +824,13 @@ void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Us
         sun.tangent_a_post = {};
     }
     const SweepWindow& w = view.window;
-    const double relief_m = highest_m_ > lowest_m_ ? double{highest_m_} - lowest_m_ : 0;
-    const Steps steps = steps_of(Plan(view.sheet, sun, w, relief_m), w.row, w.row + w.rows);
+    const double drop_m =
+        std::max(0.0, double{highest_m_} - (floor_m > kNoFloor_m ? floor_m : lowest_m_));
+    const Steps steps = steps_of(Plan(view.sheet, sun, w, drop_m), w.row, w.row + w.rows);
     const Kernel kernel = widest_kernel(lanes);
     sweep_strips(
         steps, w, kStripLines,
-        [&](int line) { return std::make_unique<Strip>(view.sheet, steps, kernel, line); },
+        [&](int line) { return std::make_unique<Strip>(view.sheet, steps, kernel, line, floor_m); },
         [&](Strip& strip, int row) {
             strip.edge(row, w.column, w.column + w.columns,
                        [&](int column, int count, const float* edge_m) {

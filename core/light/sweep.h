@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -110,9 +111,11 @@ class Sweep {
     using Use = std::function<void(const SweepRun&)>;
     /// The same without an array for them: calls `use` on several threads, once for each post of
     /// the window. All runs are along rows or all along columns, as SweepSun::along_columns() has
-    /// it.
+    /// it. A post's edge is the same bits whatever the window, where there is a floor.
+    /// @param floor_m  edges are no lower, and ground so far off that it makes only lower ones is
+    ///     not swept. Under the lowest post it changes no shade
     void each_edge(const SweepSun& sun, const SweepWindow& window, const Use& use,
-                   int lanes = kMostLanes) const;
+                   int lanes = kMostLanes, float floor_m = kNoFloor_m) const;
 
     /// The tangent of the horizon's elevation for all posts of a window, each as seen from the
     /// ground there: minus infinity where nothing of the grid lies that way. Called on several
@@ -126,6 +129,7 @@ class Sweep {
                       const SweepWindow& window, const Use& use, int lanes = kMostLanes) const;
 
     static constexpr int kMostLanes = 16;
+    static constexpr float kNoFloor_m = -std::numeric_limits<float>::infinity();
 
     float lowest_m() const { return lowest_m_; }    ///< infinity where there are only holes
     float highest_m() const { return highest_m_; }  ///< minus infinity likewise

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -121,6 +122,122 @@ TEST(SunSkyView, IsAShareThatAWallTakesAway) {
     EXPECT_NEAR(value_at(*sky, 1, 2, 20), 1, 0.02);
     ASSERT_EQ(relevo({"sun", "sky-view", dem, "--level", "-o", out("level.tif")}).status, 0);
     EXPECT_NEAR(value_at(*opened(out("level.tif")), 1, 50, 20), 0.855, 0.03);
+}
+
+/// All that a window of a file's bands holds, as bytes.
+std::string bytes_in(GDALDataset& dataset, const std::array<int, 4>& window) {
+    const auto [column, row, columns, rows] = window;
+    std::string bytes(static_cast<std::size_t>(dataset.GetRasterCount()) *
+                          static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) *
+                          sizeof(float),
+                      0);
+    EXPECT_EQ(dataset.RasterIO(GF_Read, column, row, columns, rows, bytes.data(), columns, rows,
+                               GDT_Float32, dataset.GetRasterCount(), nullptr, 0, 0, 0, nullptr),
+              CE_None);
+    return bytes;
+}
+std::string all_bytes(GDALDataset& dataset) {
+    return bytes_in(dataset, {0, 0, dataset.GetRasterXSize(), dataset.GetRasterYSize()});
+}
+
+/// Verbs under sun, and what they are asked.
+const std::vector<std::vector<std::string>>& questions() {
+    static const std::vector<std::vector<std::string>> all{
+        {"shadow", "--sun", "135,5"},
+        {"shadow", "--sun", "100,0.3", "--soft"},
+        {"shadow", "--time", "2026-01-10T13:00Z", "--soft"},
+        {"hours", "--date", "2026-12-21", "--tz", "UTC", "--step", "30", "--bands",
+         "hours,first,last,spells"},
+        {"hours", "--from", "2026-12-21", "--to", "2026-12-26", "--tz", "UTC"},
+        {"sky-view", "--directions", "12"},
+        {"horizons", "--directions", "3"}};
+    return all;
+}
+
+std::string said(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words)
+        text += word + " ";
+    return text;
+}
+
+/// Runs a question on a DEM. @return the file that it made
+std::string answer(const std::vector<std::string>& question, const std::string& dem,
+                   const std::string& name, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"sun"};
+    arguments.insert(arguments.end(), question.begin(), question.end());
+    arguments.insert(arguments.end(), {dem, "--overwrite", "-o", out(name)});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Result run = relevo(arguments);
+    EXPECT_EQ(run.status, 0) << said(arguments) << run.err;
+    return out(name);
+}
+
+/// A part is the whole cut out, to the last bit.
+void expect_parts_of_whole(const std::string& dem, const std::string& clip,
+                           const std::array<int, 4>& window) {
+    for (const std::vector<std::string>& question : questions()) {
+        const Dataset whole = opened(answer(question, dem, "whole.tif"));
+        const Dataset part = opened(answer(question, dem, "part.tif", {"--clip=" + clip}));
+        ASSERT_TRUE(whole && part) << said(question);
+        ASSERT_EQ(part->GetRasterXSize(), window[2]) << said(question);
+        ASSERT_EQ(part->GetRasterYSize(), window[3]) << said(question);
+        std::array<double, 6> a{}, b{};
+        whole->GetGeoTransform(a.data());
+        part->GetGeoTransform(b.data());
+        EXPECT_NEAR(a[0] + window[0] * a[1] + window[1] * a[2], b[0], 1e-9 * std::abs(b[0]));
+        EXPECT_NEAR(a[3] + window[0] * a[4] + window[1] * a[5], b[3], 1e-9 * std::abs(b[3]));
+        EXPECT_TRUE(bytes_in(*whole, window) == all_bytes(*part)) << said(question);
+    }
+}
+
+TEST(SunClip, APartIsTheWholeCutOut) {
+    // A grid of degrees, 3 seconds apart; posts from 84.41333 W and 36.44583 N on.
+    expect_parts_of_whole(bundled_dem(), "-84.3,36.2,-84.15,36.3", {136, 175, 181, 121});
+    SKIP_WITHOUT_TEST_DATA(data);
+    // One of metres, with long shadows from beyond the part.
+    expect_parts_of_whole((data / "dem" / "srtm_bigtujunga30m_utm11.tif").string(),
+                          "385000,3800000,391000,3803000", {290, 164, 200, 100});
+}
+
+TEST(SunClip, IsOfTheGridsCrsOrAnother) {
+    const std::string dem = walled();  // 121 x 81 posts of 10 m from 500005 E, 395 N on
+    const auto size = [&](const std::vector<std::string>& more) {
+        const Dataset part =
+            opened(answer({"shadow", "--sun", "grid:90,10"}, dem, "part.tif", more));
+        return std::array{part->GetRasterXSize(), part->GetRasterYSize()};
+    };
+    // Posts on the sides are in it.
+    EXPECT_EQ(size({"--clip", "500105,105,500195,195"}), (std::array{10, 10}));
+    EXPECT_EQ(size({"--clip", "500106,106,500194,194"}), (std::array{8, 8}));
+    EXPECT_EQ(size({"--clip", "0,0,1e6,1e6"}), (std::array{121, 40}));
+    EXPECT_EQ(size({"--clip", "500105,105,500106,106"}), (std::array{1, 1}));
+    // A degree at the equator is 110.6 km to the north and 111.3 to the east, 0.9996 of it in UTM.
+    EXPECT_EQ(size({"--clip", "3.0,0.0,3.0045,0.001", "--clip-crs", "EPSG:4326"}),
+              (std::array{50, 11}));
+    const auto refused = [&](const std::vector<std::string>& more, int status,
+                             const std::string& message) {
+        std::vector<std::string> arguments{"sun", "sky-view", dem, "-o", out("x.tif")};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result run = relevo(arguments);
+        EXPECT_EQ(run.status, status);
+        EXPECT_TRUE(run.err.find("error: " + message + "\n") != std::string::npos ||
+                    run.err.find("error: " + message + "; see") != std::string::npos)
+            << run.err;
+        EXPECT_FALSE(std::filesystem::exists(out("x.tif")));
+    };
+    refused({"--clip", "3.0,0.0,3.0045,0.001"}, 3,
+            "--clip: 3.0,0.0,3.0045,0.001: not one post of the DEM is in it; in WGS 84 / UTM zone "
+            "31N they lie from 500005,-405 to 501205,395; for degrees pass --clip-crs EPSG:4326");
+    refused({"--clip", "500106,106,500109,194"}, 3,
+            "--clip: 500106,106,500109,194: not one post of the DEM is in it; in WGS 84 / UTM zone "
+            "31N they lie from 500005,-405 to 501205,395; for degrees pass --clip-crs EPSG:4326");
+    for (const std::string text : {"1,2,3", "1,2,x,4", "3,2,1,4", "1,4,3,2", "1,2,1,4"})
+        refused({"--clip", text}, 2,
+                fmt::format("--clip: {}: expected WEST,SOUTH,EAST,NORTH, numbers of the DEM's CRS "
+                            "or of --clip-crs, west less than east and south less than north",
+                            text));
+    refused({"--clip-crs", "EPSG:4326"}, 2, "--clip-crs: goes with --clip");
 }
 
 TEST(SunRasters, WhatMeansNothingIsRefused) {
