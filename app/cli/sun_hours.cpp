@@ -112,25 +112,25 @@ void run(const Arguments& arguments) {
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
     options.step_s = 60 * arguments.step_min.value_or(3);
     options.spells = has_spells(arguments.bands);
-    light::RasterWriter writer(file, ground.grid(), light::RasterType::Float,
-                               bands_of(arguments.bands), arguments.raster.creation_options);
+    RasterRun raster(arguments.raster, file, ground, light::RasterType::Float,
+                     bands_of(arguments.bands), 1, options.spells ? 44 : 20);
+    options.done = raster.done();
     Summary sum;
-    for (const dem::Window& part : ground.parts) {
+    raster.each_part([&](const dem::Window& part) {
         options.part = part;
         light::SunHours hours = light::sun_hours(posts, begin, end, options);
         sum.add(hours);
         for (std::size_t k = 0; k < arguments.bands.size(); ++k)
-            writer.put(k, part.column - ground.window.column, part.row - ground.window.row,
-                       values_of(arguments.bands[k], hours));
-    }
-    warn_of_holes(sum.holes);
+            raster.put(k, part, values_of(arguments.bands[k], hours));
+    });
     const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);
     const std::string air = air_of_posts(arguments.refraction, posts);
-    writer.finish(arguments.raster.about(ground, sum.definition, sum.holes,
-                                         {{"TIME_FROM", from},
-                                          {"TIME_TO", to},
-                                          {"TIME_ZONE", days.zone.name()},
-                                          {"REFRACTION", air}}));
+    if (!raster.finish(sum.definition, sum.holes,
+                       {{"TIME_FROM", from},
+                        {"TIME_TO", to},
+                        {"TIME_ZONE", days.zone.name()},
+                        {"REFRACTION", air}}))
+        return;
     fmt::print("time                {} to {}\n", from, to);
     fmt::print(
         "sun hours           mean {:.2f}, least {:.2f}, most {:.2f}; over a level horizon in "

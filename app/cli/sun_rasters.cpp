@@ -1,5 +1,7 @@
 #include "cli/sun_rasters.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -8,8 +10,15 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/parallel_for.h"
+#include "base/text.h"
 
 namespace relevo::cli {
+namespace {
+
+constexpr double kProgram_mib = 60;  // of itself, its libraries and what they read and write by
+
+}  // namespace
 
 bool RasterGround::whole() const {
     return window == dem::Window{0, 0, posts.grid().columns(), posts.grid().rows()};
@@ -36,6 +45,9 @@ void RasterArguments::add_to(CLI::App& verb) {
                     "the same")
         ->type_name("W,S,E,N");
     verb.add_option("--clip-crs", clip_crs, "CRS of --clip instead: EPSG:4326");
+    verb.add_flag("--dry-run", dry_run,
+                  "Say how long it takes and how much memory, from computing a little of it, and "
+                  "write nothing");
 }
 
 OutputFile& RasterArguments::open(FilesInUse& files) const {
@@ -75,6 +87,92 @@ light::RasterMetadata RasterArguments::about(const RasterGround& ground,
     return about;
 }
 
+namespace {
+
+constexpr double kEnough_s = 2;  // of computing, to say how long all of it takes
+
+/// A dry run knows enough.
+struct Enough {};
+
+double posts_of(const dem::Window& window) {
+    return double(window.columns) * window.rows;
+}
+
+}  // namespace
+
+RasterRun::RasterRun(const RasterArguments& arguments, OutputFile& file, const RasterGround& ground,
+                     light::RasterType type, const std::vector<light::RasterBand>& bands,
+                     std::size_t calls, int bytes_a_post)
+    : arguments_(arguments),
+      ground_(ground),
+      calls_(calls),
+      bands_(bands.size()),
+      bytes_a_post_(bytes_a_post),
+      bytes_a_value_(type == light::RasterType::Float ? 4 : 1) {
+    if (!arguments.dry_run) {
+        writer_.emplace(file, ground.grid(), type, bands, arguments.creation_options);
+        bar_.emplace(printable(file.path().string()));
+    }
+    began_ = Progress::Clock::now();
+}
+
+std::function<void(double)> RasterRun::done() {
+    return [this](double of_call) {
+        share_ += of_call * part_share_ / static_cast<double>(calls_);
+        passed_s_ = std::chrono::duration<double>(Progress::Clock::now() - began_).count();
+        if (bar_) bar_->show(share_);
+        if (!writer_ && passed_s_ > kEnough_s && share_ < 1) throw Enough();
+    };
+}
+
+bool RasterRun::each_part(const std::function<void(const dem::Window&)>& body) {
+    try {
+        for (const dem::Window& part : ground_.parts) {
+            part_share_ = posts_of(part) / posts_of(ground_.window);
+            body(part);
+        }
+    } catch (const Enough&) {
+        return false;
+    }
+    return true;
+}
+
+bool RasterRun::finish(const std::string& definition, std::int64_t holes,
+                       light::RasterMetadata more) {
+    bar_.reset();
+    if (!writer_) {
+        tell();
+        return false;
+    }
+    if (holes > 0)
+        log::warning(
+            fmt::format("the DEM has {} holes: they get no figure, and hide nothing", holes));
+    writer_->finish(arguments_.about(ground_, definition, holes, std::move(more)));
+    return true;
+}
+
+void RasterRun::tell() const {
+    constexpr double kMiB = 1 << 20;
+    const double posts = posts_of(ground_.window);
+    double most = 0;  // posts of a part
+    for (const dem::Window& part : ground_.parts)
+        most = std::max(most, posts_of(part));
+    const dem::Grid& grid = ground_.posts.grid();
+    // Sweeps along columns have the heights a second time.
+    const double heights = 2.0 * sizeof(float) * grid.columns() * grid.rows();
+    fmt::print("posts               {:.0f}, in {} part{}\n", posts, ground_.parts.size(),
+               ground_.parts.size() == 1 ? "" : "s");
+    fmt::print("memory              some {:.0f} MiB, {:.0f} of them heights\n",
+               (heights + most * bytes_a_post_) / kMiB + kProgram_mib, heights / kMiB);
+    fmt::print("computing           some {}, as {:.3g} % of it took {:.2g} s on {} threads\n",
+               duration_text(passed_s_ / std::max(share_, 1e-9)), 100 * share_, passed_s_,
+               thread_count());
+    fmt::print(
+        "result              {} band{} of {:.0f} MiB before compression, for which the "
+        "folder of the result has to have room besides\n",
+        bands_, bands_ == 1 ? "" : "s", posts * bytes_a_value_ / kMiB);
+}
+
 std::string air_of_posts(const RefractionArguments& refraction, const dem::Posts& posts) {
     if (refraction.name() == "standard")
         return "integrated ICAO standard atmosphere over each post";
@@ -83,12 +181,6 @@ std::string air_of_posts(const RefractionArguments& refraction, const dem::Posts
         posts.height_at((posts.grid().columns() - 1) / 2.0, (posts.grid().rows() - 1) / 2.0);
     ground.height_m = std::isnan(height_m) ? posts.lowest_m() : height_m;
     return refraction.at(ground).description();
-}
-
-void warn_of_holes(std::int64_t holes) {
-    if (holes > 0)
-        log::warning(
-            fmt::format("the DEM has {} holes: they get no figure, and hide nothing", holes));
 }
 
 }  // namespace relevo::cli

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "cli/sun_options.h"
 #include "dem/clip.h"
 #include "light/raster.h"
@@ -27,6 +30,7 @@ struct RasterArguments {
     OutputArguments output;
     std::vector<std::string> creation_options;
     std::string clip, clip_crs;
+    bool dry_run = false;
 
     void add_to(CLI::App& verb);
     /// Opens the result, before any work is done. @throws Error as OutputArguments::open, (Usage)
@@ -39,10 +43,45 @@ struct RasterArguments {
                                 std::int64_t holes, light::RasterMetadata more) const;
 };
 
+/// A raster being made: part by part, with a bar on a terminal. With --dry-run so much of it is
+/// computed as tells how long it takes, and nothing is written.
+class RasterRun {
+  public:
+    /// @param calls           of core's functions that each part takes
+    /// @param bytes_a_post    of memory, besides the DEM's heights
+    RasterRun(const RasterArguments& arguments, OutputFile& file, const RasterGround& ground,
+              light::RasterType type, const std::vector<light::RasterBand>& bands,
+              std::size_t calls, int bytes_a_post);
+
+    /// Calls `body` with one part after the other.
+    /// @return whether all of them are done: not where a dry run knows enough
+    bool each_part(const std::function<void(const dem::Window&)>& body);
+    /// What the options of core's functions want to be told by.
+    std::function<void(double)> done();
+    template <typename T>
+    void put(std::size_t band, const dem::Window& part, const Array2d<T>& values) {
+        if (writer_)
+            writer_->put(band, part.column - ground_.window.column, part.row - ground_.window.row,
+                         values);
+    }
+    /// Gives the file its name; for a dry run says instead what it has found out.
+    /// @return whether there is a file
+    bool finish(const std::string& definition, std::int64_t holes, light::RasterMetadata more);
+
+  private:
+    void tell() const;
+
+    const RasterArguments& arguments_;
+    const RasterGround& ground_;
+    std::optional<light::RasterWriter> writer_;
+    std::optional<ProgressBar> bar_;
+    std::size_t calls_, bands_;
+    int bytes_a_post_, bytes_a_value_;
+    double share_ = 0, part_share_ = 0, passed_s_ = 0;
+    Progress::Clock::time_point began_ = Progress::Clock::now();
+};
+
 /// --refraction's model in words, over each post.
 std::string air_of_posts(const RefractionArguments& refraction, const dem::Posts& posts);
-
-/// Warns of holes, where there are some.
-void warn_of_holes(std::int64_t holes);
 
 }  // namespace relevo::cli

@@ -200,25 +200,25 @@ void check(const Arguments& arguments) {
 }
 
 /// Puts the light of all suns where it belongs. @return what it is
-std::string light_all(const RasterGround& ground, const std::vector<Asked>& suns,
-                      light::ShadowOptions options, light::RasterWriter& writer,
+std::string light_all(const dem::Posts& posts, const std::vector<Asked>& suns,
+                      light::ShadowOptions options, RasterRun& raster,
                       std::vector<Counts>& counts) {
     std::string definition;
-    for (const dem::Window& part : ground.parts) {
+    options.done = raster.done();
+    raster.each_part([&](const dem::Window& part) {
         options.part = part;
-        const int column = part.column - ground.window.column, row = part.row - ground.window.row;
         for (std::size_t k = 0; k < suns.size(); ++k) {
-            const light::Shadows shadows = light::shadows(ground.posts, suns[k].sun, options);
+            const light::Shadows shadows = light::shadows(posts, suns[k].sun, options);
             counts[k].lit += shadows.lit_posts;
             counts[k].shaded += shadows.shaded_posts;
             counts[k].holes += shadows.holes;
             if (options.soft)
-                writer.put(k, column, row, shadows.lit);
+                raster.put(k, part, shadows.lit);
             else
-                writer.put(k, column, row, mask_of(shadows.lit));
+                raster.put(k, part, mask_of(shadows.lit));
             definition = shadows.definition;
         }
-    }
+    });
     return definition;
 }
 
@@ -241,18 +241,16 @@ void run(const Arguments& arguments) {
         options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
         air = air_of_posts(arguments.refraction, posts);
     }
-    light::RasterWriter writer(
-        file, ground.grid(), options.soft ? light::RasterType::Float : light::RasterType::Byte,
-        bands_of(suns, timed, options.soft), arguments.raster.creation_options);
+    RasterRun raster(arguments.raster, file, ground,
+                     options.soft ? light::RasterType::Float : light::RasterType::Byte,
+                     bands_of(suns, timed, options.soft), suns.size(), options.soft ? 16 : 13);
     std::vector<Counts> counts(suns.size());
-    const std::string definition = light_all(ground, suns, options, writer, counts);
-    warn_of_holes(counts.front().holes);
+    const std::string definition = light_all(posts, suns, options, raster, counts);
     light::RasterMetadata more{{"REFRACTION", air}};
     if (!timed)
         for (auto& item : about_sun(suns.front()))
             more.push_back(std::move(item));
-    writer.finish(
-        arguments.raster.about(ground, definition, counts.front().holes, std::move(more)));
+    if (!raster.finish(definition, counts.front().holes, std::move(more))) return;
     if (timed)
         print_many(suns, counts, options.soft);
     else

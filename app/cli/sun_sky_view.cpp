@@ -22,15 +22,17 @@ void run_sky_view(const Arguments& arguments) {
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
-    light::RasterWriter writer(file, ground.grid(), light::RasterType::Float,
-                               {{"sky-view factor", "1"}}, arguments.raster.creation_options);
+    RasterRun raster(arguments.raster, file, ground, light::RasterType::Float,
+                     {{"sky-view factor", "1"}}, 1, 20);
     light::SkyViewOptions options{.directions = arguments.directions,
                                   .refraction = arguments.raster.terrestrial_refraction,
-                                  .level = arguments.level};
+                                  .level = arguments.level,
+                                  .part = {},
+                                  .done = raster.done()};
     double sum = 0, posts = 0;
     std::int64_t holes = 0;
     std::string definition;
-    for (const dem::Window& part : ground.parts) {
+    raster.each_part([&](const dem::Window& part) {
         options.part = part;
         const light::SkyView view = light::sky_view(ground.posts, options);
         const auto seen = static_cast<double>(view.share.size()) - static_cast<double>(view.holes);
@@ -38,11 +40,11 @@ void run_sky_view(const Arguments& arguments) {
         posts += seen;
         holes += view.holes;
         definition = view.definition;
-        writer.put(0, part.column - ground.window.column, part.row - ground.window.row, view.share);
-    }
-    warn_of_holes(holes);
-    writer.finish(arguments.raster.about(
-        ground, definition, holes, {{"DIRECTIONS", fmt::format("{}", arguments.directions)}}));
+        raster.put(0, part, view.share);
+    });
+    if (!raster.finish(definition, holes,
+                       {{"DIRECTIONS", fmt::format("{}", arguments.directions)}}))
+        return;
     fmt::print("sky view            mean {:.4f}\n\n{}\n", sum / std::max(1.0, posts), definition);
 }
 
@@ -58,11 +60,12 @@ void run_horizons(const Arguments& arguments) {
         bands.push_back(
             {"horizon towards azimuth " + azimuth_deg, "deg", {{"AZIMUTH_DEG", azimuth_deg}}});
     }
-    light::RasterWriter writer(file, ground.grid(), light::RasterType::Float, bands,
-                               arguments.raster.creation_options);
+    RasterRun raster(arguments.raster, file, ground, light::RasterType::Float, bands,
+                     azimuth_rad.size(), 12);
+    const std::function<void(double)> done = raster.done();
     std::int64_t holes = 0;
     std::string definition;
-    for (const dem::Window& part : ground.parts)
+    raster.each_part([&](const dem::Window& part) {
         for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
             light::Horizons horizons = light::horizons(
                 ground.posts, {azimuth_rad[k]}, arguments.raster.terrestrial_refraction, part);
@@ -71,11 +74,11 @@ void run_horizons(const Arguments& arguments) {
             Array2d<float>& elevation = horizons.elevation_rad.front();
             for (float& value : elevation)
                 value = static_cast<float>(degrees(double{value}));
-            writer.put(k, part.column - ground.window.column, part.row - ground.window.row,
-                       elevation);
+            raster.put(k, part, elevation);
+            done(1);
         }
-    warn_of_holes(holes);
-    writer.finish(arguments.raster.about(ground, definition, holes, {}));
+    });
+    if (!raster.finish(definition, holes, {})) return;
     fmt::print("horizons            {} directions, {:.10g} degrees apart, from true north\n\n{}\n",
                arguments.directions, 360.0 / arguments.directions, definition);
 }

@@ -110,6 +110,7 @@ SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
         ground.each_horizon(sky, kSkyTolerance_rad, part, [&](const SweepRun& run) {
             add_sky(run, east.of(run), north.of(run), sin_azimuth, cos_azimuth, sum.of(run));
         });
+        if (options.done) options.done(1.0 / options.directions);
     }
     sum.put(result.share, part);
     std::int64_t seen = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct SkyViewOptions {
     double refraction = 0.13;
     /// Of a level plane at each post instead of the ground as it is inclined.
     bool level = false;
-    dem::Window part{};  ///< as in ShadowOptions
+    dem::Window part{};                ///< as in ShadowOptions
+    std::function<void(double)> done;  ///< likewise
 };
 
 /// How much of the sky each post of a DEM sees.

@@ -88,6 +88,7 @@ Shadows shadows(const dem::Posts& posts, const SunOverDem& sun, const ShadowOpti
         });
         result.tiles = static_cast<int>(windows.size());
     }
+    if (options.done) options.done(1);
     for (const float lit : result.lit) {
         result.holes += std::isnan(lit);
         result.lit_posts += lit > 0;

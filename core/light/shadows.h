@@ -37,6 +37,9 @@ struct ShadowOptions {
     /// Whose posts are wanted; without columns: all. Ground around it shades all the same, and the
     /// figures are those, to the bit, that they have among all.
     dem::Window part{};
+    /// Told now and then which share of the work has been done since it was told last, on the
+    /// thread that called. What it throws ends the work.
+    std::function<void(double)> done;
 };
 
 /// Light and shade of a moment.

@@ -212,7 +212,9 @@ class FewDays {
             night_.push_back(sky.is_night());
     }
 
-    void light(SunHours& result) const {
+    void light(SunHours& result, const std::function<void(double)>& done) const {
+        const double all = std::max<double>(
+            1, static_cast<double>(std::count(night_.begin(), night_.end(), false)));
         PostLight posts(part_, spells_);
         std::vector<SweepWindow> windows;
         for (std::size_t k = 0; k < skies_.size(); ++k) {
@@ -221,6 +223,7 @@ class FewDays {
             result.windows = std::max(result.windows, static_cast<int>(windows.size()));
             posts.turn(skies_[k].along_columns());
             each_window(windows, [&](const SweepWindow& window) { add(window, k, posts); });
+            if (done) done(1 / all);
         }
         posts.lit_h.put(result.hours, part_);
         if (!spells_) return;
@@ -330,10 +333,14 @@ class ManyDays {
           table_(begin, begin + length_s),
           part_(part) {}
 
-    void light(SunHours& result) const {
+    void light(SunHours& result, const std::function<void(double)>& done) const {
         for (const SweepWindow& block : blocks())
-            if (const SweepWindow part = common(block, part_); part.columns > 0 && part.rows > 0)
-                light_block(block, part, result);
+            if (const SweepWindow part = common(block, part_); part.columns > 0 && part.rows > 0) {
+                const double share = double(part.columns) * part.rows / part_.columns / part_.rows;
+                light_block(block, part, result, [&](double of_block) {
+                    if (done) done(share * of_block);
+                });
+            }
     }
 
   private:
@@ -357,10 +364,14 @@ class ManyDays {
         return blocks;
     }
 
-    void light_block(const SweepWindow& block, const SweepWindow& part, SunHours& result) const {
+    void light_block(const SweepWindow& block, const SweepWindow& part, SunHours& result,
+                     const std::function<void(double)>& done) const {
         const geo::Geodetic middle = dem_.grid().place(block.column + (block.columns - 1) / 2.0,
                                                        block.row + (block.rows - 1) / 2.0);
         Directions directions = directions_over(middle);
+        const double all = static_cast<double>(
+            std::count_if(directions[0].begin(), directions[0].end(),
+                          [](const Direction& direction) { return !direction.empty(); }));
         TileValues lit_h(part, 0);
         for (std::size_t k = 0; k < kDirections; ++k) {
             Direction& low = directions[0][k];
@@ -375,6 +386,7 @@ class ManyDays {
             each_window(windows, [&](const SweepWindow& window) {
                 add(sky, tile_of(sky, window, part), low, directions[1][k], lit_h);
             });
+            done(1 / all);
         }
         lit_h.put(result.hours, part_);
     }
@@ -521,9 +533,9 @@ SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end
         for (Array2d<float>* const each : {&result.first_h, &result.last_h, &result.spells})
             *each = Array2d<float>(part.columns, part.rows, kNaN);
     if (few)
-        FewDays(dem, sweep, times, options.spells, part).light(result);
+        FewDays(dem, sweep, times, options.spells, part).light(result, options.done);
     else
-        ManyDays(dem, sweep, begin, length_s, part).light(result);
+        ManyDays(dem, sweep, begin, length_s, part).light(result, options.done);
     sum_up(heights, part, result);
     result.level_hours = level_hours(dem, times);
     result.definition = fmt::format(

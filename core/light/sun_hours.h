@@ -20,7 +20,8 @@ struct SunHoursOptions {
     double step_s = 180;
     /// Of such a time: when each post is lit first and last, and how often, too.
     bool spells = false;
-    dem::Window part{};  ///< as in ShadowOptions
+    dem::Window part{};                ///< as in ShadowOptions
+    std::function<void(double)> done;  ///< likewise
 
     /// Beyond this time, every post's horizon is found in directions that are 2 degrees apart, at a
     /// cost that does not grow with the time.

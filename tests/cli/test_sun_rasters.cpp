@@ -240,6 +240,23 @@ TEST(SunClip, IsOfTheGridsCrsOrAnother) {
     refused({"--clip-crs", "EPSG:4326"}, 2, "--clip-crs: goes with --clip");
 }
 
+TEST(SunRasters, ADryRunSaysWhatARunTakesAndWritesNothing) {
+    const std::string dem = bundled_dem();
+    for (std::vector<std::string> arguments : questions()) {
+        arguments.insert(arguments.begin(), "sun");
+        arguments.insert(arguments.end(), {dem, "--dry-run", "-o", out("dry.tif")});
+        const Result run = relevo(arguments);
+        EXPECT_EQ(run.status, 0) << said(arguments) << run.err;
+        EXPECT_TRUE(run.out.starts_with("posts               138632, in 1 part\nmemory  "))
+            << run.out;
+        EXPECT_NE(run.out.find("\ncomputing           some "), std::string::npos) << run.out;
+        EXPECT_NE(run.out.find(" before compression"), std::string::npos) << run.out;
+    }
+    EXPECT_FALSE(std::filesystem::exists(out("dry.tif")));
+    for (const auto& entry : std::filesystem::directory_iterator(folder()))
+        EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
+}
+
 TEST(SunRasters, WhatMeansNothingIsRefused) {
     const std::string dem = walled();
     const auto hours = [&](const std::vector<std::string>& more) {
