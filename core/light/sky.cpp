@@ -214,6 +214,13 @@ SunSky::SunSky(const DemSky& dem, double azimuth_rad)
     along_columns_ = goes_along_columns();
 }
 
+glm::dvec3 SunSky::direction(double column, double row) const {
+    const Local sun = at(column, row);
+    const double level = std::cos(sun.elevation_rad);
+    return {level * std::sin(sun.azimuth_rad), level * std::cos(sun.azimuth_rad),
+            std::sin(sun.elevation_rad)};
+}
+
 bool SunSky::goes_along_columns() const {
     const dem::Grid& grid = dem_.grid();
     const glm::dvec2 middle((grid.columns() - 1) / 2.0, (grid.rows() - 1) / 2.0);

@@ -83,6 +83,9 @@ class SunSky {
     /// Of the sun without air at a post.
     double elevation_rad(double column, double row) const { return at(column, row).elevation_rad; }
 
+    /// Likewise towards it, local ENU, a unit vector.
+    glm::dvec3 direction(double column, double row) const;
+
     /// The ray through the middle of a window, as a cubic over the grid.
     std::optional<SunTile> tile(const SweepWindow& window) const;
 

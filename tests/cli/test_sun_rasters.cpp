@@ -95,6 +95,28 @@ TEST(SunHours, OfAYearAreOfItsDays) {
     EXPECT_LT(value_at(*year, 1, 59, 20), 3000);
 }
 
+TEST(SunHours, HaveTheEnergyOfClearDays) {
+    const Result run = relevo({"sun", "hours", walled(), "--date", "2026-03-20", "--tz", "UTC",
+                               "--bands", "global,beam,diffuse,reflected", "-o", out("e.tif")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("Linke turbidity 3:"), std::string::npos) << run.out;
+    const Dataset energy = opened(out("e.tif"));
+    ASSERT_TRUE(energy);
+    ASSERT_EQ(energy->GetRasterCount(), 4);
+    EXPECT_STREQ(energy->GetRasterBand(1)->GetDescription(), "global irradiation");
+    EXPECT_STREQ(energy->GetRasterBand(3)->GetUnitType(), "kWh/m2");
+    const auto at = [&](int band, int column) { return value_at(*energy, band, column, 20); };
+    EXPECT_NEAR(at(1, 2), at(2, 2) + at(3, 2) + at(4, 2), 1e-5);
+    // The model by hand, with a sun that goes through the zenith, from 9.8 degrees on.
+    EXPECT_NEAR(at(2, 2), 7.130, 0.01);
+    // 100 m before the wall the first three hours are without sun, and a part of the sky is.
+    EXPECT_NEAR(at(2, 50), 7.151 - 0.886, 0.02);
+    EXPECT_LT(at(3, 50), at(3, 2) * 0.95);
+    EXPECT_GT(at(4, 50), at(4, 2) + 0.05);
+    for (int band = 1; band <= 4; ++band)
+        EXPECT_TRUE(std::isnan(value_at(*energy, band, 60, 40))) << band;
+}
+
 TEST(SunHorizons, ABandForEachDirection) {
     const Result run =
         relevo({"sun", "horizons", walled(), "--directions", "4", "-o", out("horizons.tif")});
@@ -148,7 +170,10 @@ const std::vector<std::vector<std::string>>& questions() {
         {"shadow", "--time", "2026-01-10T13:00Z", "--soft"},
         {"hours", "--date", "2026-12-21", "--tz", "UTC", "--step", "30", "--bands",
          "hours,first,last,spells"},
-        {"hours", "--from", "2026-12-21", "--to", "2026-12-26", "--tz", "UTC"},
+        {"hours", "--date", "2026-03-21", "--tz", "UTC", "--step", "60", "--bands",
+         "beam,diffuse,reflected,global"},
+        {"hours", "--from", "2026-12-21", "--to", "2026-12-26", "--tz", "UTC", "--bands",
+         "hours,beam"},
         {"sky-view", "--directions", "12"},
         {"horizons", "--directions", "3"}};
     return all;
@@ -275,6 +300,10 @@ TEST(SunRasters, WhatMeansNothingIsRefused) {
                    "--bands: first is named twice");
     expect_failure(hours({"--year", "2026", "--bands", "first"}), 2,
                    "--bands: first, last and spells are known of 4 days at most");
+    expect_failure(hours({"--year", "2026", "--linke", "4"}), 2,
+                   "--linke: goes with --bands global, beam, diffuse or reflected");
+    expect_failure(hours({"--year", "2026", "--bands", "beam", "--albedo", "2"}), 2,
+                   "--albedo: expected 0 to 1 but got 2; see relevo sun hours --help");
     expect_failure(hours({"--year", "2026", "--step", "1"}), 2,
                    "--step: is of 4 days at most; a longer time has directions of the sun instead");
     expect_failure({"sun", "sky-view", dem, "-o", out("x.tif"), "--co", "ZSTD"}, 2,
