@@ -18,6 +18,25 @@ namespace {
 
 constexpr double kProgram_mib = 60;  // of itself, its libraries and what they read and write by
 
+/// Of a DEM beyond --memory the heights that are read take all of that; what is made of them has
+/// parts of this share of it, as each of their posts takes some ten times as much as a height.
+constexpr std::int64_t kPostsAPart = 16;
+
+/// Squares, of whole blocks of the result where they are so large.
+std::vector<dem::Window> parts_of(const dem::Window& window, std::int64_t most_posts) {
+    constexpr int kBlock = 512, kLeast = 64;
+    const int fitting = static_cast<int>(std::sqrt(static_cast<double>(most_posts)));
+    const int step = fitting >= kBlock ? kBlock : kLeast;
+    const int side = std::max(kLeast, fitting / step * step);
+    std::vector<dem::Window> parts;
+    for (int row = 0; row < window.rows; row += side)
+        for (int column = 0; column < window.columns; column += side)
+            parts.push_back({window.column + column, window.row + row,
+                             std::min(side, window.columns - column),
+                             std::min(side, window.rows - row)});
+    return parts;
+}
+
 }  // namespace
 
 bool RasterGround::whole() const {
@@ -64,7 +83,9 @@ RasterGround RasterArguments::load() const {
     const dem::Grid& grid = posts.grid();
     const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
                                          : dem::Window{0, 0, grid.columns(), grid.rows()};
-    return {std::move(posts), window, {window}};
+    std::vector<dem::Window> parts{window};
+    if (!posts.in_memory()) parts = parts_of(window, dem.options.max_posts / kPostsAPart);
+    return {std::move(posts), window, std::move(parts)};
 }
 
 light::RasterMetadata RasterArguments::about(const RasterGround& ground,

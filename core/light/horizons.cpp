@@ -22,14 +22,11 @@ constexpr int kLeastDirections = 4, kMostDirections = 3600;
 
 /// What all rasters of directions begin with.
 struct Ground {
-    dem::Posts::View heights;
     DemSky dem;
     Sweep sweep;
 
     Ground(const dem::Posts& posts, double refraction)
-        : heights(view_in_memory(posts)),
-          dem(posts, {.refraction = refraction}),
-          sweep(heights.first_m, posts.grid().columns(), posts.grid().rows(), heights.stride) {}
+        : dem(posts, {.refraction = refraction}), sweep(sweep_over(posts)) {}
 
     /// Calls `use` with the posts of a part and the tangents of their horizons in a direction.
     void each_horizon(const SunSky& sky, double tolerance_rad, const SweepWindow& part,
@@ -98,8 +95,9 @@ SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
     const SweepWindow part = window_of(options.part, posts.grid());
     SkyView result;
     result.share = Array2d<float>(part.columns, part.rows);
+    const PartHeights heights(posts, part);
     TileValues sum(part, 0), east(part, 0), north(part, 0);
-    if (!options.level) ground_slope(posts.grid(), ground.heights, part, east, north);
+    if (!options.level) ground_slope(posts.grid(), heights.view, part, east, north);
     for (int k = 0; k < options.directions; ++k) {
         const double azimuth_rad = 2 * kPi * k / options.directions;
         const SunSky sky(ground.dem, azimuth_rad);
@@ -117,7 +115,7 @@ SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
     for (int row = 0; row < result.share.height(); ++row)
         for (int column = 0; column < result.share.width(); ++column) {
             float& share = result.share.at(column, row);
-            const float height_m = *ground.heights.at(part.column + column, part.row + row);
+            const float height_m = heights.at(part.column + column, part.row + row);
             share =
                 std::isnan(height_m) ? height_m : share / static_cast<float>(options.directions);
             if (std::isnan(share)) continue;

@@ -29,19 +29,14 @@ double air_left(const DemSky& dem, double height_m) {
 GroundForBeams::GroundForBeams(const DemSky& dem, const SweepWindow& part)
     : east(part, 0), north(part, 0), air(part, 0), beam_wh(part, 0) {
     const dem::Grid& grid = dem.grid();
-    const SweepWindow around =
-        common({part.column - 1, part.row - 1, part.columns + 2, part.rows + 2}, whole(grid));
-    std::vector<float> buffer;
-    const dem::Posts::View heights =
-        dem.posts().view({around.column, around.row, around.columns, around.rows}, buffer);
-    ground_slope(grid, heights, part, east, north);
+    const PartHeights heights(dem.posts(), part);
+    ground_slope(grid, heights.view, part, east, north);
     parallel_for(part.row, part.row + part.rows, 16, [&](int first, int last) {
         for (int row = first; row < last; ++row) {
             const SweepRun run{false, row, part.column, part.columns, nullptr, nullptr};
             float* const to = air.of(run);
             for (int i = 0; i < part.columns; ++i)
-                to[i] =
-                    static_cast<float>(air_left(dem, double{*heights.at(part.column + i, row)}));
+                to[i] = static_cast<float>(air_left(dem, double{heights.at(part.column + i, row)}));
         }
     });
 }

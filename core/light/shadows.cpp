@@ -67,20 +67,20 @@ double true_azimuth_rad(const dem::Grid& grid, double azimuth_rad) {
 
 Shadows shadows(const dem::Posts& posts, const SunOverDem& sun, const ShadowOptions& options) {
     const dem::Grid& grid = posts.grid();
-    const dem::Posts::View heights = view_in_memory(posts);
     const DemSky dem(posts, options);
     const SunSky sky(dem, sun);
     const SweepWindow part = window_of(options.part, grid);
     Shadows result;
     result.lit = Array2d<float>(part.columns, part.rows);
     if (sky.is_night()) {
+        const PartHeights heights(posts, part);
         for (int row = 0; row < part.rows; ++row)
             for (int column = 0; column < part.columns; ++column) {
-                const float h = *heights.at(part.column + column, part.row + row);
+                const float h = heights.at(part.column + column, part.row + row);
                 result.lit.at(column, row) = std::isnan(h) ? h : 0;
             }
     } else {
-        const Sweep sweep(heights.first_m, grid.columns(), grid.rows(), heights.stride);
+        const Sweep sweep = sweep_over(posts);
         const std::vector<SweepWindow> windows = divide({sky}, whole(grid), part);
         each_window(windows, [&](const SweepWindow& window) {
             light_tile(sky, sweep, tile_of(sky, window, part),

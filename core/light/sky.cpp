@@ -149,14 +149,23 @@ void divide(const std::vector<SunSky>& suns, double tolerance_rad, const SweepWi
 
 }  // namespace
 
-dem::Posts::View view_in_memory(const dem::Posts& posts) {
+Sweep sweep_over(const dem::Posts& posts) {
     const dem::Grid& grid = posts.grid();
     if (!posts.in_memory())
-        bad_input(fmt::format("{}: {} x {} posts are more than --memory allows; pass --memory {}",
-                              posts.about().path, grid.columns(), grid.rows(),
-                              ((std::int64_t{grid.columns()} * grid.rows()) >> 18) + 1));
+        return Sweep(
+            [&posts](const SweepWindow& window, std::vector<float>& height_m) {
+                posts.view({window.column, window.row, window.columns, window.rows}, height_m);
+            },
+            grid.columns(), grid.rows(), posts.lowest_m(), posts.highest_m());
     std::vector<float> unused;
-    return posts.view({0, 0, grid.columns(), grid.rows()}, unused);
+    const dem::Posts::View all = posts.view({0, 0, grid.columns(), grid.rows()}, unused);
+    return Sweep(all.first_m, grid.columns(), grid.rows(), all.stride);
+}
+
+PartHeights::PartHeights(const dem::Posts& posts, const SweepWindow& part) {
+    const SweepWindow w = common({part.column - 1, part.row - 1, part.columns + 2, part.rows + 2},
+                                 whole(posts.grid()));
+    view = posts.view({w.column, w.row, w.columns, w.rows}, buffer);
 }
 
 DemSky::DemSky(const dem::Posts& posts, const ShadowOptions& options)

@@ -18,9 +18,18 @@
 /// The sun over the grid of a DEM, as sweeps need it; shared by what makes rasters.
 namespace relevo::light {
 
-/// All heights of a DEM that is in memory.
-/// @throws Error (BadInput) for one that is not
-dem::Posts::View view_in_memory(const dem::Posts& posts);
+/// Sweeps over all posts of a DEM, in memory or not.
+/// @param posts  outlives it
+Sweep sweep_over(const dem::Posts& posts);
+
+/// The heights of a part, and of the posts beside it.
+struct PartHeights {
+    std::vector<float> buffer;
+    dem::Posts::View view;
+
+    PartHeights(const dem::Posts& posts, const SweepWindow& part);
+    float at(int column, int row) const { return *view.at(column, row); }
+};
 
 /// A tile of a DEM, and the sun over it but for its height.
 struct SunTile {

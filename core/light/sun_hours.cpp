@@ -600,12 +600,12 @@ void check(sun::Instant begin, sun::Instant end, const SunHoursOptions& options)
 }
 
 /// Holes, and the mean of the others.
-void sum_up(const dem::Posts::View& heights, const SweepWindow& part, SunHours& result) {
+void sum_up(const PartHeights& heights, const SweepWindow& part, SunHours& result) {
     std::int64_t posts = 0;
     for (int row = 0; row < result.hours.height(); ++row)
         for (int column = 0; column < result.hours.width(); ++column) {
             float& hours = result.hours.at(column, row);
-            if (std::isnan(*heights.at(part.column + column, part.row + row))) {
+            if (std::isnan(heights.at(part.column + column, part.row + row))) {
                 hours = kNaN;
                 if (result.spells.size() > 0) result.spells.at(column, row) = kNaN;
                 ++result.holes;
@@ -630,15 +630,13 @@ void add_sky(const DemSky& dem, sun::Instant begin, double length_s, const SunHo
     const double step_s = length_s > 40 * kDay_s ? 600 : 60;
     const OpenSky open(dem, sun::PositionTable(begin, begin + length_s), begin, length_s, step_s,
                        options.irradiation->linke);
-    std::vector<float> buffer;
-    const dem::Posts::View heights =
-        dem.posts().view({part.column, part.row, part.columns, part.rows}, buffer);
+    const PartHeights heights(dem.posts(), part);
     const double albedo = options.irradiation->albedo;
     parallel_for(0, part.rows, 16, [&](int first, int last) {
         for (int row = first; row < last; ++row)
             for (int column = 0; column < part.columns; ++column) {
                 const OpenSky::Energy energy = open.at(part.column + column, part.row + row);
-                const double height_m = *heights.at(part.column + column, part.row + row);
+                const double height_m = heights.at(part.column + column, part.row + row);
                 const double level_wh =
                     energy.beam_low_wh +
                     air_left(dem, height_m) * (energy.beam_high_wh - energy.beam_low_wh);
@@ -658,10 +656,9 @@ void add_sky(const DemSky& dem, sun::Instant begin, double length_s, const SunHo
 SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end,
                    const SunHoursOptions& options) {
     check(begin, end, options);
-    const dem::Posts::View heights = view_in_memory(posts);
     const dem::Grid& grid = posts.grid();
     const DemSky dem(posts, {.refraction = options.refraction, .air = options.air});
-    const Sweep sweep(heights.first_m, grid.columns(), grid.rows(), heights.stride);
+    const Sweep sweep = sweep_over(posts);
     const double length_s = end - begin;
     const bool few = length_s <= SunHoursOptions::kMostDays * kDay_s;
     const Moments times =
@@ -680,7 +677,7 @@ SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end
         FewDays(dem, sweep, times, options, part).light(result, options.done);
     else
         ManyDays(dem, sweep, begin, length_s, options, part).light(result, options.done);
-    sum_up(heights, part, result);
+    sum_up(PartHeights(posts, part), part, result);
     if (options.irradiation) add_sky(dem, begin, length_s, options, result);
     result.level_hours = level_hours(dem, times);
     result.definition = fmt::format(

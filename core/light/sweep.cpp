@@ -221,7 +221,18 @@ class Plan {
     }
 
     int begin() const { return begin_; }
+    int end() const { return begin_ + static_cast<int>(rows_.size()); }
     const RowPlan& row(int row) const { return rows_[static_cast<std::size_t>(row - begin_)]; }
+
+    /// The columns that line 0 goes through over rows [first, end).
+    std::pair<double, double> columns(int first, int end_row) const {
+        std::pair<double, double> range{row(first).shift, row(first).shift};
+        for (int at = first + 1; at < end_row; ++at) {
+            range.first = std::min(range.first, row(at).shift);
+            range.second = std::max(range.second, row(at).shift);
+        }
+        return range;
+    }
 
     /// The ground of a row, for rays that are at `shift` there, and fall from there to `to`.
     Term row_term(int at, double shift, const RowPlan& to) const {
@@ -390,12 +401,17 @@ Steps steps_of(const Plan& plan, int first_row, int end_row) {
 /// Lines next to each other, from the sun to the end of the window.
 class Strip {
   public:
+    static constexpr int kWidth = kStripLines;
+
     /// @param line  the first one
     Strip(const Sheet& sheet, const Steps& steps, Kernel kernel, int line, float floor_m)
         : sheet_(sheet), steps_(steps), kernel_(kernel), line_(line), floor_m_(floor_m) {
         for (Lines& lines : height_m_)
             lines.fill(kNothing_m);
     }
+
+    /// Where its ground is, from now on.
+    Sheet& sheet() { return sheet_; }
 
     /// To the next row, and the ground there.
     void advance(int row) {
@@ -473,7 +489,7 @@ class Strip {
         settle();
     }
 
-    const Sheet& sheet_;
+    Sheet sheet_;
     const Steps& steps_;
     Kernel kernel_;
     int line_;
@@ -526,7 +542,7 @@ class Hull {
 /// Lines next to each other, with the hulls of the ground under them.
 class HullStrip {
   public:
-    static constexpr int kLines = 128;
+    static constexpr int kLines = 128, kWidth = kLines;
 
     /// @param steps      for a tangent of 1 everywhere: what lines fall by is how far they go
     /// @param line       the first one
@@ -541,6 +557,8 @@ class HullStrip {
         for (std::size_t i = 0; i < kLineSets * (kLines + 1); ++i)
             hulls_[i / (kLines + 1)][i % (kLines + 1)] = Hull(points_.get() + i * most);
     }
+
+    Sheet& sheet() { return sheet_; }
 
     /// The ground of the next row, and of the columns before it.
     void advance(int row) {
@@ -606,7 +624,7 @@ class HullStrip {
         }
     }
 
-    const Sheet& sheet_;
+    Sheet sheet_;
     const Steps& steps_;
     const Kernel& kernel_;
     double curvature_;
@@ -627,24 +645,9 @@ struct Extent {
     }
 };
 
-/// Has strips of lines over a window go from its first row to the last.
-/// @param make  a strip from its first line
-/// @param look  at a row of the window with a strip
-template <typename Make, typename Look>
-void sweep_strips(const Steps& steps, const SweepWindow& window, int lines, const Make& make,
-                  const Look& look) {
-    const Extent extent(steps, window);
-    const int strips = (extent.end_line - extent.first_line + lines - 1) / lines;
-    parallel_for(0, strips, 1, [&](int begin, int end) {
-        for (int k = begin; k < end; ++k) {
-            auto strip = make(extent.first_line + k * lines);
-            for (int row = steps.begin; row < window.row + window.rows; ++row) {
-                if (const int at = row - kNearRows - 1; at >= steps.begin) strip->advance(at);
-                if (row >= window.row) look(*strip, row);
-            }
-        }
-    });
-}
+/// Rows that ground is read for together, and those before them that it takes besides: posts look
+/// back over kNearRows of them, and lines that are left behind those cross the columns before.
+constexpr int kReadRows = 256, kRowsBefore = kNearRows + 2;
 
 constexpr int kTransposeBlock = 4;  // posts a side
 
@@ -779,6 +782,15 @@ const float* Sweep::transposed() const {
     return transposed_.data();
 }
 
+Sweep::Sweep(Read read, int columns, int rows, float lowest_m, float highest_m)
+    : read_(std::move(read)),
+      columns_(columns),
+      rows_(rows),
+      lowest_m_(lowest_m),
+      highest_m_(highest_m) {
+    assert(columns > 0 && rows > 0);
+}
+
 /// The grid as a sweep goes over it.
 struct Sweep::View {
     Sheet sheet;
@@ -786,11 +798,32 @@ struct Sweep::View {
     SweepWindow window;
     bool along_columns, mirrored;
 
-    /// A piece of a row of the sheet, as it is on the grid.
-    SweepRun run(int row, int column, int count, const float* found) const {
+    /// A piece of a row of a sheet, as it is on the grid.
+    SweepRun run(const Sheet& of, int row, int column, int count, const float* found) const {
         const int line = mirrored ? sheet.rows - 1 - row : row;
-        return {along_columns, line, column, count, sheet.first + row * sheet.stride + column,
-                found};
+        return {along_columns, line, column, count, of.first + row * of.stride + column, found};
+    }
+
+    /// Reads rows [row, end_row) and columns [column, end_column) of the sheet, so that it has them
+    /// where it looks for them.
+    void read(const Read& from, Sheet& to, int row, int end_row, int column, int end_column,
+              std::vector<float>& buffer) const {
+        const int rows = end_row - row, columns = end_column - column;
+        const int line = mirrored ? sheet.rows - end_row : row;
+        std::vector<float> packed;
+        from(along_columns ? SweepWindow{line, column, rows, columns}
+                           : SweepWindow{column, line, columns, rows},
+             packed);
+        buffer.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(to.stride));
+        float* const first = buffer.data() + (mirrored ? (rows - 1) * to.stride : 0);
+        const std::ptrdiff_t stride = mirrored ? -to.stride : to.stride;
+        if (along_columns)
+            transpose(packed.data(), rows, columns, rows, first, stride);
+        else
+            for (int i = 0; i < rows; ++i)
+                std::copy_n(packed.data() + std::ptrdiff_t{i} * columns, columns,
+                            first + i * stride);
+        to.first = buffer.data() - (row * to.stride + column);
     }
 };
 
@@ -800,7 +833,7 @@ Sweep::View Sweep::view(const SweepSun& given, const SweepWindow& window) const 
     View view{{height_m_, stride_, columns_, rows_}, at_a_post(given), window, false, false};
     view.along_columns = given.along_columns();
     if (view.along_columns) {
-        view.sheet = {transposed(), rows_, rows_, columns_};
+        view.sheet = {read_ ? nullptr : transposed(), rows_, rows_, columns_};
         view.window = {window.row, window.column, window.rows, window.columns};
         view.sun = view.sun.transposed();
     }
@@ -808,11 +841,59 @@ Sweep::View Sweep::view(const SweepSun& given, const SweepWindow& window) const 
     view.mirrored = view.sun.towards.row > 0;
     if (view.mirrored) {
         view.sun = mirrored(view.sun, sheet.rows);
-        sheet.first += (sheet.rows - 1) * sheet.stride;
-        sheet.stride = -sheet.stride;
+        if (!read_) {
+            sheet.first += (sheet.rows - 1) * sheet.stride;
+            sheet.stride = -sheet.stride;
+        }
         view.window.row = sheet.rows - view.window.row - view.window.rows;
     }
     return view;
+}
+
+/// Has strips of lines over a window go from the first row that matters to its last.
+/// @param make  a strip from the steps and its first line
+/// @param look  at a row of the window with a strip
+template <typename OneStrip, typename Make, typename Look>
+void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look& look) const {
+    const SweepWindow& w = view.window;
+    Sheet& sheet = view.sheet;
+    const Plan plan(sheet, view.sun, w, drop_m);
+    constexpr int kLines = OneStrip::kWidth;
+    // Ground that is read has room for a strip, and how far that goes aside over the rows.
+    const auto rows_before = [&](int row) { return std::max(plan.begin(), row - kRowsBefore); };
+    if (read_) {
+        double aside = 0;
+        for (int row = plan.begin(); row < plan.end(); row += kReadRows) {
+            const auto [least, most] =
+                plan.columns(rows_before(row), std::min(row + kReadRows, plan.end()));
+            aside = std::max(aside, most - least);
+        }
+        sheet.stride = kLines + static_cast<int>(std::ceil(aside)) + 8;
+    }
+    const Steps steps = steps_of(plan, w.row, w.row + w.rows);
+    const Extent extent(steps, w);
+    const int strips = (extent.end_line - extent.first_line + kLines - 1) / kLines;
+    parallel_for(0, strips, 1, [&](int begin, int end) {
+        std::vector<float> buffer;
+        for (int k = begin; k < end; ++k) {
+            const int line = extent.first_line + k * kLines;
+            auto strip = make(steps, line);
+            for (int row = steps.begin; row < plan.end(); ++row) {
+                if (read_ && (row - steps.begin) % kReadRows == 0) {
+                    const int first = rows_before(row),
+                              last = std::min(row + kReadRows, plan.end());
+                    const auto [least, most] = plan.columns(first, last);
+                    const int column = std::max(0, static_cast<int>(std::floor(least)) + line - 2);
+                    const int end_column = std::min(
+                        sheet.columns, static_cast<int>(std::ceil(most)) + line + kLines + 4);
+                    if (column < end_column)
+                        view.read(read_, strip->sheet(), first, last, column, end_column, buffer);
+                }
+                if (const int at = row - kNearRows - 1; at >= steps.begin) strip->advance(at);
+                if (row >= w.row) look(*strip, row);
+            }
+        }
+    });
 }
 
 void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Use& use, int lanes,
@@ -826,15 +907,16 @@ void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Us
     const SweepWindow& w = view.window;
     const double drop_m =
         std::max(0.0, double{highest_m_} - (floor_m > kNoFloor_m ? floor_m : lowest_m_));
-    const Steps steps = steps_of(Plan(view.sheet, sun, w, drop_m), w.row, w.row + w.rows);
     const Kernel kernel = widest_kernel(lanes);
-    sweep_strips(
-        steps, w, kStripLines,
-        [&](int line) { return std::make_unique<Strip>(view.sheet, steps, kernel, line, floor_m); },
+    sweep_strips<Strip>(
+        view, drop_m,
+        [&](const Steps& steps, int line) {
+            return std::make_unique<Strip>(view.sheet, steps, kernel, line, floor_m);
+        },
         [&](Strip& strip, int row) {
             strip.edge(row, w.column, w.column + w.columns,
                        [&](int column, int count, const float* edge_m) {
-                           use(view.run(row, column, count, edge_m));
+                           use(view.run(strip.sheet(), row, column, count, edge_m));
                        });
         });
 }
@@ -845,17 +927,16 @@ void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
     view.sun.tangent = 1;
     view.sun.tangent_a_post = {};
     const SweepWindow& w = view.window;
-    const Steps steps = steps_of(Plan(view.sheet, view.sun, w, reach_m), w.row, w.row + w.rows);
     const Kernel kernel = widest_kernel(lanes);
-    sweep_strips(
-        steps, w, HullStrip::kLines,
-        [&](int line) {
+    sweep_strips<HullStrip>(
+        view, reach_m,
+        [&](const Steps& steps, int line) {
             return std::make_unique<HullStrip>(view.sheet, steps, kernel, curvature, line);
         },
         [&](HullStrip& strip, int row) {
             strip.look(row, w.column, w.column + w.columns,
                        [&](int column, int count, const float* tangent) {
-                           use(view.run(row, column, count, tangent));
+                           use(view.run(strip.sheet(), row, column, count, tangent));
                        });
         });
 }

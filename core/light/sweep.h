@@ -95,6 +95,13 @@ class Sweep {
     /// @param stride    from row to row
     Sweep(const float* height_m, int columns, int rows, std::ptrdiff_t stride);
 
+    /// Puts the heights of a window into an array, row by row; called on several threads at once.
+    using Read = std::function<void(const SweepWindow&, std::vector<float>&)>;
+    /// Heights that are read where they are needed, strip by strip, so that a sweep of any length
+    /// takes little memory. What is found is the same, to the bit.
+    /// @param lowest_m, highest_m  of all posts
+    Sweep(Read read, int columns, int rows, float lowest_m, float highest_m);
+
     /// The height of the shadow's edge: how high the rays that pass over the ground before a post
     /// are at the post. What is lower there is in the shade; the post itself is lit where it is as
     /// high or higher, and its height less the edge is the margin. Minus infinity where nothing of
@@ -138,10 +145,13 @@ class Sweep {
     struct View;
     View view(const SweepSun& sun, const SweepWindow& window) const;
     const float* transposed() const;
+    template <typename OneStrip, typename Make, typename Look>
+    void sweep_strips(View& view, double drop_m, const Make& make, const Look& look) const;
 
-    const float* height_m_;
+    const float* height_m_ = nullptr;
+    Read read_;  // instead
     int columns_, rows_;
-    std::ptrdiff_t stride_;
+    std::ptrdiff_t stride_ = 0;
     float lowest_m_, highest_m_;
     mutable std::once_flag once_;
     mutable std::vector<float> transposed_;  // made for the first sun that needs it

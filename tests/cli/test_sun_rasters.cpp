@@ -225,6 +225,47 @@ TEST(SunClip, APartIsTheWholeCutOut) {
                           "385000,3800000,391000,3803000", {290, 164, 200, 100});
 }
 
+/// Hills, more posts than 1 MiB has room for.
+std::string hills(const std::string& name, const std::string& crs,
+                  const std::array<double, 6>& geotransform) {
+    Raster raster;
+    raster.columns = 701;
+    raster.rows = 401;
+    raster.crs = crs;
+    raster.geotransform = geotransform;
+    raster.nodata = -9999;
+    raster.value = [](int column, int row, int) {
+        if (column % 97 == 5 && row % 89 == 7) return -9999.0;
+        return 700 + 300 * std::sin(column / 23.0) * std::cos(row / 31.0) +
+               150 * std::sin((column + 2 * row) / 11.0);
+    };
+    return write_raster(folder() / name, raster);
+}
+
+TEST(SunMemory, WhatABudgetIsMakesNoDifference) {
+    const std::vector<std::string> dems{
+        hills("metres.tif", "EPSG:32632", {{500000, 30, 0, 5300000, 0, -20}}),
+        hills("turned.tif", "EPSG:32632", {{500000, 25, 9, 5300000, 8, -27}}),
+        hills("degrees.tif", "EPSG:4326", {{11, 0.001, 0, 47.6, 0, -0.0007}})};
+    // Of a part, which takes four parts of that budget, for the time that all would take.
+    const std::vector<std::string> clips{"--clip=505000,5294000,509500,5297000",
+                                         "--clip=506000,5295000,509000,5298000",
+                                         "--clip=11.2,47.4,11.35,47.5"};
+    for (std::size_t k = 0; k < dems.size(); ++k)
+        for (const std::vector<std::string>& question : questions()) {
+            const std::string& dem = dems[k];
+            const Dataset all = opened(answer(question, dem, "all.tif", {clips[k]}));
+            const Dataset little =
+                opened(answer(question, dem, "little.tif", {clips[k], "--memory", "1"}));
+            ASSERT_TRUE(all && little) << said(question);
+            EXPECT_TRUE(all_bytes(*all) == all_bytes(*little)) << dem << said(question);
+            EXPECT_STREQ(all->GetMetadataItem("HOLES"), little->GetMetadataItem("HOLES"));
+        }
+    const Result dry = relevo(
+        {"sun", "sky-view", dems.front(), "--dry-run", "--memory", "1", "-o", out("dry.tif")});
+    EXPECT_TRUE(dry.out.starts_with("posts               281101, in 24 parts\n")) << dry.out;
+}
+
 TEST(SunClip, IsOfTheGridsCrsOrAnother) {
     const std::string dem = walled();  // 121 x 81 posts of 10 m from 500005 E, 395 N on
     const auto size = [&](const std::vector<std::string>& more) {
