@@ -17,10 +17,11 @@ namespace relevo::cli {
 namespace {
 
 constexpr double kProgram_mib = 60;  // of itself, its libraries and what they read and write by
+constexpr double kBlocks_mib = 256;  // of files, and what tiles and threads take besides (measured)
 
 /// Of a DEM beyond --memory the heights that are read take all of that; what is made of them has
 /// parts of this share of it, as each of their posts takes some ten times as much as a height.
-constexpr std::int64_t kPostsAPart = 16;
+constexpr std::int64_t kPostsAPart = 32;
 
 /// Squares, of whole blocks of the result where they are so large.
 std::vector<dem::Window> parts_of(const dem::Window& window, std::int64_t most_posts) {
@@ -179,8 +180,13 @@ void RasterRun::tell() const {
     for (const dem::Window& part : ground_.parts)
         most = std::max(most, posts_of(part));
     const dem::Grid& grid = ground_.posts.grid();
-    // Sweeps along columns have the heights a second time.
-    const double heights = 2.0 * sizeof(float) * grid.columns() * grid.rows();
+    // Sweeps along columns have the heights a second time; those beyond memory have what is kept
+    // of them, and the file's blocks.
+    const double heights = ground_.posts.in_memory()
+                               ? 2.0 * sizeof(float) * grid.columns() * grid.rows()
+                               : static_cast<double>(sizeof(float)) *
+                                         static_cast<double>(arguments_.dem.options.max_posts) +
+                                     kBlocks_mib * kMiB;
     fmt::print("posts               {:.0f}, in {} part{}\n", posts, ground_.parts.size(),
                ground_.parts.size() == 1 ? "" : "s");
     fmt::print("memory              some {:.0f} MiB, {:.0f} of them heights\n",
