@@ -21,9 +21,16 @@ struct Arguments {
     RefractionArguments refraction;
     std::optional<double> step_min;
     std::vector<std::string> bands{"hours"};
+    std::optional<double> linke, albedo;
 };
 
-const std::vector<std::string> kBands{"hours", "first", "last", "spells"};
+const std::vector<std::string> kBands{"hours",  "first", "last",    "spells",
+                                      "global", "beam",  "diffuse", "reflected"};
+constexpr const char* kEnergy = "kWh/m2";
+
+bool is_energy(const std::string& band) {
+    return band == "global" || band == "beam" || band == "diffuse" || band == "reflected";
+}
 
 /// From hours since the beginning to minutes.
 Array2d<float> in_minutes(Array2d<float> hours) {
@@ -32,24 +39,42 @@ Array2d<float> in_minutes(Array2d<float> hours) {
     return hours;
 }
 
-std::vector<light::RasterBand> bands_of(const std::vector<std::string>& wanted,
-                                        light::SunHours hours) {
+std::vector<light::RasterBand> bands_of(const std::vector<std::string>& wanted) {
     std::vector<light::RasterBand> bands;
     for (const std::string& band : wanted) {
-        if (band == "hours") bands.push_back({"sun hours", "h", std::move(hours.hours)});
-        if (band == "first")
-            bands.push_back(
-                {"minutes to the first light", "min", in_minutes(std::move(hours.first_h))});
-        if (band == "last")
-            bands.push_back(
-                {"minutes to the last light", "min", in_minutes(std::move(hours.last_h))});
-        if (band == "spells") bands.push_back({"spells of light", "1", std::move(hours.spells)});
+        if (band == "hours") bands.push_back({"sun hours", "h"});
+        if (band == "first") bands.push_back({"minutes to the first light", "min"});
+        if (band == "last") bands.push_back({"minutes to the last light", "min"});
+        if (band == "spells") bands.push_back({"spells of light", "1"});
+        if (band == "global") bands.push_back({"global irradiation", kEnergy});
+        if (is_energy(band) && band != "global") bands.push_back({band + " irradiation", kEnergy});
     }
     return bands;
 }
 
+/// Beam, diffuse and reflected together.
+Array2d<float> global_of(const light::SunHours& hours) {
+    Array2d<float> sum = hours.beam_kwh;
+    for (std::size_t i = 0; i < sum.size(); ++i)
+        sum.data()[i] += hours.diffuse_kwh.data()[i] + hours.reflected_kwh.data()[i];
+    return sum;
+}
+
+/// Of a band, as it is stored.
+Array2d<float> values_of(const std::string& band, light::SunHours& hours) {
+    if (band == "global") return global_of(hours);
+    if (band == "beam") return hours.beam_kwh;
+    if (band == "diffuse") return hours.diffuse_kwh;
+    if (band == "reflected") return hours.reflected_kwh;
+    if (band == "first") return in_minutes(std::move(hours.first_h));
+    if (band == "last") return in_minutes(std::move(hours.last_h));
+    return std::move(band == "spells" ? hours.spells : hours.hours);
+}
+
 bool has_spells(const std::vector<std::string>& bands) {
-    return bands != std::vector<std::string>{"hours"};
+    return std::any_of(bands.begin(), bands.end(), [](const std::string& band) {
+        return band == "first" || band == "last" || band == "spells";
+    });
 }
 
 sun::TimeSpan time_of(const DaysArguments::Days& days) {
@@ -63,6 +88,10 @@ void check(const Arguments& arguments) {
         if (std::find(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(i), bands[i]) !=
             bands.begin() + static_cast<std::ptrdiff_t>(i))
             bad_usage(fmt::format("--bands: {} is named twice", bands[i]));
+    if ((arguments.linke || arguments.albedo) &&
+        std::none_of(bands.begin(), bands.end(), is_energy))
+        bad_usage(fmt::format("{}: goes with --bands global, beam, diffuse or reflected",
+                              arguments.linke ? "--linke" : "--albedo"));
     const auto [begin, end] = time_of(arguments.days.parse({}, false));
     if (end - begin <= 86400 * light::SunHoursOptions::kMostDays) return;
     if (arguments.step_min)
@@ -75,11 +104,42 @@ void check(const Arguments& arguments) {
                               light::SunHoursOptions::kMostDays));
 }
 
+std::string words_of(const light::SunHoursOptions::Irradiation& irradiation) {
+    return fmt::format(
+        "irradiation of the ground as it is inclined, clear sky of the European Solar Radiation "
+        "Atlas (Rigollier et al. 2000), Linke turbidity {:.4g}: beam with the terrain's shade, "
+        "diffuse alike from all of the open sky, reflected by ground of albedo {:.4g}",
+        irradiation.linke, irradiation.albedo);
+}
+
+/// Of all parts.
+struct Summary {
+    double hours = 0, posts = 0, least = INFINITY, most = -INFINITY, level_hours = 0;
+    std::int64_t holes = 0;
+    std::string definition;
+
+    void add(const light::SunHours& part) {
+        const auto with_light =
+            static_cast<double>(part.hours.size()) - static_cast<double>(part.holes);
+        if (with_light > 0) hours += part.mean_hours * with_light;
+        posts += with_light;
+        for (const float value : part.hours)
+            if (!std::isnan(value)) {
+                least = std::min(least, double{value});
+                most = std::max(most, double{value});
+            }
+        level_hours = part.level_hours;
+        holes += part.holes;
+        definition = part.definition;
+    }
+};
+
 void run(const Arguments& arguments) {
     check(arguments);
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
-    const dem::Posts posts = arguments.raster.load();
+    const RasterGround ground = arguments.raster.load();
+    const dem::Posts& posts = ground.posts;
     const DaysArguments::Days days = arguments.days.parse(posts.grid().center());
     const auto [begin, end] = time_of(days);
     light::SunHoursOptions options;
@@ -87,31 +147,37 @@ void run(const Arguments& arguments) {
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
     options.step_s = 60 * arguments.step_min.value_or(3);
     options.spells = has_spells(arguments.bands);
-    light::SunHours hours = light::sun_hours(posts, begin, end, options);
-    warn_of_holes(hours.holes);
+    if (std::any_of(arguments.bands.begin(), arguments.bands.end(), is_energy))
+        options.irradiation = {.linke = arguments.linke.value_or(3),
+                               .albedo = arguments.albedo.value_or(0.2),
+                               .sky_directions = 36};
+    RasterRun raster(arguments.raster, file, ground, light::RasterType::Float,
+                     bands_of(arguments.bands), 1,
+                     (options.spells ? 44 : 20) + (options.irradiation ? 48 : 0));
+    options.done = raster.done();
+    Summary sum;
+    raster.each_part([&](const dem::Window& part) {
+        options.part = part;
+        light::SunHours hours = light::sun_hours(posts, begin, end, options);
+        sum.add(hours);
+        for (std::size_t k = 0; k < arguments.bands.size(); ++k)
+            raster.put(k, part, values_of(arguments.bands[k], hours));
+    });
     const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);
     const std::string air = air_of_posts(arguments.refraction, posts);
-    const light::RasterFile about = arguments.raster.about(posts, hours.definition, hours.holes,
-                                                           {{"TIME_FROM", from},
-                                                            {"TIME_TO", to},
-                                                            {"TIME_ZONE", days.zone.name()},
-                                                            {"REFRACTION", air}});
-    const double mean = hours.mean_hours, level = hours.level_hours;
-    const std::string definition = hours.definition;
-    const auto [least, most] = [&] {
-        std::pair<float, float> range{INFINITY, -INFINITY};
-        for (const float value : hours.hours)
-            if (!std::isnan(value))
-                range = {std::min(range.first, value), std::max(range.second, value)};
-        return range;
-    }();
-    light::write_raster(file, posts.grid(), bands_of(arguments.bands, std::move(hours)), about);
+    if (options.irradiation) sum.definition += "; " + words_of(*options.irradiation);
+    if (!raster.finish(sum.definition, sum.holes,
+                       {{"TIME_FROM", from},
+                        {"TIME_TO", to},
+                        {"TIME_ZONE", days.zone.name()},
+                        {"REFRACTION", air}}))
+        return;
     fmt::print("time                {} to {}\n", from, to);
     fmt::print(
         "sun hours           mean {:.2f}, least {:.2f}, most {:.2f}; over a level horizon in "
         "the middle of the DEM {:.2f}\n",
-        mean, least, most, level);
-    fmt::print("\n{}\nrefraction of the sun: {}\n", definition, air);
+        sum.hours / std::max(1.0, sum.posts), sum.least, sum.most, sum.level_hours);
+    fmt::print("\n{}\nrefraction of the sun: {}\n", sum.definition, air);
 }
 
 }  // namespace
@@ -127,9 +193,17 @@ void add_sun_hours(CLI::App& sun_verb) {
                     "Minutes from sun to sun, where few days are asked for (3)")
         ->check(in_range(1 / 60.0, 60.0));
     verb.add_option("--bands", arguments->bands,
-                    "hours; of a few days also first, last (minutes from the beginning) and spells")
+                    "hours; of a few days also first, last (minutes from the beginning) and "
+                    "spells; global, beam, diffuse, reflected (irradiation of clear days, kWh/m2)")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::IsMember(kBands));
+    verb.add_option("--linke", arguments->linke,
+                    "Turbidity of the air, for irradiation: 2 clean, 3 country, 5 city (3)")
+        ->check(in_range(1.0, 10.0));
+    verb.add_option("--albedo", arguments->albedo,
+                    "Of the ground around, for irradiation: 0.2 grass, 0.8 snow (0.2)")
+        ->check(in_range(0.0, 1.0));
     verb.callback([arguments] { run(*arguments); });
 }
 

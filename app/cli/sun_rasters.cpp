@@ -1,13 +1,52 @@
 #include "cli/sun_rasters.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/error.h"
 #include "base/log.h"
+#include "base/parallel_for.h"
+#include "base/text.h"
 
 namespace relevo::cli {
+namespace {
+
+constexpr double kProgram_mib = 60;  // of itself, its libraries and what they read and write by
+constexpr double kBlocks_mib = 256;  // of files, and what tiles and threads take besides (measured)
+
+/// Of a DEM beyond --memory the heights that are read take all of that; what is made of them has
+/// parts of this share of it, as each of their posts takes some ten times as much as a height.
+constexpr std::int64_t kPostsAPart = 32;
+
+/// Squares, of whole blocks of the result where they are so large.
+std::vector<dem::Window> parts_of(const dem::Window& window, std::int64_t most_posts) {
+    constexpr int kBlock = 512, kLeast = 64;
+    const int fitting = static_cast<int>(std::sqrt(static_cast<double>(most_posts)));
+    const int step = fitting >= kBlock ? kBlock : kLeast;
+    const int side = std::max(kLeast, fitting / step * step);
+    std::vector<dem::Window> parts;
+    for (int row = 0; row < window.rows; row += side)
+        for (int column = 0; column < window.columns; column += side)
+            parts.push_back({window.column + column, window.row + row,
+                             std::min(side, window.columns - column),
+                             std::min(side, window.rows - row)});
+    return parts;
+}
+
+}  // namespace
+
+bool RasterGround::whole() const {
+    return window == dem::Window{0, 0, posts.grid().columns(), posts.grid().rows()};
+}
+
+dem::Grid RasterGround::grid() const {
+    return whole() ? posts.grid() : posts.grid().part(window, window.columns, window.rows);
+}
 
 void RasterArguments::add_to(CLI::App& verb) {
     dem.add_to(verb);
@@ -21,6 +60,14 @@ void RasterArguments::add_to(CLI::App& verb) {
     verb.add_option("--co", creation_options,
                     "Creation option of GDAL's COG driver: COMPRESS=ZSTD; may be repeated")
         ->allow_extra_args(false);
+    verb.add_option("--clip", clip,
+                    "Only the posts in W,S,E,N of the DEM's CRS; ground around them counts all "
+                    "the same")
+        ->type_name("W,S,E,N");
+    verb.add_option("--clip-crs", clip_crs, "CRS of --clip instead: EPSG:4326");
+    verb.add_flag("--dry-run", dry_run,
+                  "Say how long it takes and how much memory, from computing a little of it, and "
+                  "write nothing");
 }
 
 OutputFile& RasterArguments::open(FilesInUse& files) const {
@@ -28,18 +75,129 @@ OutputFile& RasterArguments::open(FilesInUse& files) const {
     return *output.open(files, dem);
 }
 
-light::RasterFile RasterArguments::about(const dem::Posts& posts, const std::string& definition,
-                                         std::int64_t holes, light::RasterMetadata more) const {
-    light::RasterFile about;
-    about.metadata = {{"TIFFTAG_SOFTWARE", "Relevo " RELEVO_VERSION},
-                      {"DEFINITION", definition},
-                      {"DEM", posts.about().path},
-                      {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", terrestrial_refraction)},
-                      {"HOLES", fmt::format("{}", holes)}};
+RasterGround RasterArguments::load() const {
+    if (clip.empty() && !clip_crs.empty()) bad_usage("--clip-crs: goes with --clip");
+    std::optional<dem::Clip> rectangle;
+    if (!clip.empty()) rectangle = dem::parse_clip(clip, "--clip");
+    if (!clip_crs.empty()) rectangle->crs = geo::Crs::parse(clip_crs, "--clip-crs");
+    dem::Posts posts = dem::Posts::load(dem.paths, dem.options);
+    const dem::Grid& grid = posts.grid();
+    const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
+                                         : dem::Window{0, 0, grid.columns(), grid.rows()};
+    std::vector<dem::Window> parts{window};
+    if (!posts.in_memory()) parts = parts_of(window, dem.options.max_posts / kPostsAPart);
+    return {std::move(posts), window, std::move(parts)};
+}
+
+light::RasterMetadata RasterArguments::about(const RasterGround& ground,
+                                             const std::string& definition, std::int64_t holes,
+                                             light::RasterMetadata more) const {
+    light::RasterMetadata about{
+        {"TIFFTAG_SOFTWARE", "Relevo " RELEVO_VERSION},
+        {"DEFINITION", definition},
+        {"DEM", ground.posts.about().path},
+        {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", terrestrial_refraction)},
+        {"HOLES", fmt::format("{}", holes)}};
+    if (!ground.whole()) {
+        const dem::Window& w = ground.window;
+        about.emplace_back(
+            "CLIP", fmt::format("columns {} to {} and rows {} to {} of the DEM, from 0", w.column,
+                                w.column + w.columns - 1, w.row, w.row + w.rows - 1));
+    }
     for (auto& item : more)
-        about.metadata.push_back(std::move(item));
-    about.creation_options = creation_options;
+        about.push_back(std::move(item));
     return about;
+}
+
+namespace {
+
+constexpr double kEnough_s = 2;  // of computing, to say how long all of it takes
+
+/// A dry run knows enough.
+struct Enough {};
+
+double posts_of(const dem::Window& window) {
+    return double(window.columns) * window.rows;
+}
+
+}  // namespace
+
+RasterRun::RasterRun(const RasterArguments& arguments, OutputFile& file, const RasterGround& ground,
+                     light::RasterType type, const std::vector<light::RasterBand>& bands,
+                     std::size_t calls, int bytes_a_post)
+    : arguments_(arguments),
+      ground_(ground),
+      calls_(calls),
+      bands_(bands.size()),
+      bytes_a_post_(bytes_a_post),
+      bytes_a_value_(type == light::RasterType::Float ? 4 : 1) {
+    if (!arguments.dry_run) {
+        writer_.emplace(file, ground.grid(), type, bands, arguments.creation_options);
+        bar_.emplace(printable(file.path().string()));
+    }
+    began_ = Progress::Clock::now();
+}
+
+std::function<void(double)> RasterRun::done() {
+    return [this](double of_call) {
+        share_ += of_call * part_share_ / static_cast<double>(calls_);
+        passed_s_ = std::chrono::duration<double>(Progress::Clock::now() - began_).count();
+        if (bar_) bar_->show(share_);
+        if (!writer_ && passed_s_ > kEnough_s && share_ < 1) throw Enough();
+    };
+}
+
+bool RasterRun::each_part(const std::function<void(const dem::Window&)>& body) {
+    try {
+        for (const dem::Window& part : ground_.parts) {
+            part_share_ = posts_of(part) / posts_of(ground_.window);
+            body(part);
+        }
+    } catch (const Enough&) {
+        return false;
+    }
+    return true;
+}
+
+bool RasterRun::finish(const std::string& definition, std::int64_t holes,
+                       light::RasterMetadata more) {
+    bar_.reset();
+    if (!writer_) {
+        tell();
+        return false;
+    }
+    if (holes > 0)
+        log::warning(
+            fmt::format("the DEM has {} holes: they get no figure, and hide nothing", holes));
+    writer_->finish(arguments_.about(ground_, definition, holes, std::move(more)));
+    return true;
+}
+
+void RasterRun::tell() const {
+    constexpr double kMiB = 1 << 20;
+    const double posts = posts_of(ground_.window);
+    double most = 0;  // posts of a part
+    for (const dem::Window& part : ground_.parts)
+        most = std::max(most, posts_of(part));
+    const dem::Grid& grid = ground_.posts.grid();
+    // Sweeps along columns have the heights a second time; those beyond memory have what is kept
+    // of them, and the file's blocks.
+    const double heights = ground_.posts.in_memory()
+                               ? 2.0 * sizeof(float) * grid.columns() * grid.rows()
+                               : static_cast<double>(sizeof(float)) *
+                                         static_cast<double>(arguments_.dem.options.max_posts) +
+                                     kBlocks_mib * kMiB;
+    fmt::print("posts               {:.0f}, in {} part{}\n", posts, ground_.parts.size(),
+               ground_.parts.size() == 1 ? "" : "s");
+    fmt::print("memory              some {:.0f} MiB, {:.0f} of them heights\n",
+               (heights + most * bytes_a_post_) / kMiB + kProgram_mib, heights / kMiB);
+    fmt::print("computing           some {}, as {:.3g} % of it took {:.2g} s on {} threads\n",
+               duration_text(passed_s_ / std::max(share_, 1e-9)), 100 * share_, passed_s_,
+               thread_count());
+    fmt::print(
+        "result              {} band{} of {:.0f} MiB before compression, for which the "
+        "folder of the result has to have room besides\n",
+        bands_, bands_ == 1 ? "" : "s", posts * bytes_a_value_ / kMiB);
 }
 
 std::string air_of_posts(const RefractionArguments& refraction, const dem::Posts& posts) {
@@ -50,12 +208,6 @@ std::string air_of_posts(const RefractionArguments& refraction, const dem::Posts
         posts.height_at((posts.grid().columns() - 1) / 2.0, (posts.grid().rows() - 1) / 2.0);
     ground.height_m = std::isnan(height_m) ? posts.lowest_m() : height_m;
     return refraction.at(ground).description();
-}
-
-void warn_of_holes(std::int64_t holes) {
-    if (holes > 0)
-        log::warning(
-            fmt::format("the DEM has {} holes: they get no figure, and hide nothing", holes));
 }
 
 }  // namespace relevo::cli

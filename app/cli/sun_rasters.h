@@ -1,35 +1,87 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/progress.h"
 #include "cli/sun_options.h"
+#include "dem/clip.h"
 #include "light/raster.h"
 
 /// What the verbs that give a figure for every post of a DEM share.
 namespace relevo::cli {
 
-/// DEM..., -k, -o, --overwrite, --co.
+/// A DEM, and what of it a raster is made of.
+struct RasterGround {
+    dem::Posts posts;
+    dem::Window window;              ///< that is asked for
+    std::vector<dem::Window> parts;  ///< of it, one after the other
+
+    bool whole() const;
+    dem::Grid grid() const;  ///< of the result
+};
+
+/// DEM..., -k, -o, --overwrite, --co, --clip, --clip-crs.
 struct RasterArguments {
     DemArguments dem;
     double terrestrial_refraction = 0.13;
     OutputArguments output;
     std::vector<std::string> creation_options;
+    std::string clip, clip_crs;
+    bool dry_run = false;
 
     void add_to(CLI::App& verb);
     /// Opens the result, before any work is done. @throws Error as OutputArguments::open, (Usage)
     /// for creation options that there are not
     OutputFile& open(FilesInUse& files) const;
-    dem::Posts load() const { return dem::Posts::load(dem.paths, dem.options); }
+    /// @throws Error (Usage, BadInput) as dem::load, dem::parse_clip and dem::window_of
+    RasterGround load() const;
     /// What every such file says of itself; `more` besides.
-    light::RasterFile about(const dem::Posts& posts, const std::string& definition,
-                            std::int64_t holes, light::RasterMetadata more) const;
+    light::RasterMetadata about(const RasterGround& ground, const std::string& definition,
+                                std::int64_t holes, light::RasterMetadata more) const;
+};
+
+/// A raster being made: part by part, with a bar on a terminal. With --dry-run so much of it is
+/// computed as tells how long it takes, and nothing is written.
+class RasterRun {
+  public:
+    /// @param calls           of core's functions that each part takes
+    /// @param bytes_a_post    of memory, besides the DEM's heights
+    RasterRun(const RasterArguments& arguments, OutputFile& file, const RasterGround& ground,
+              light::RasterType type, const std::vector<light::RasterBand>& bands,
+              std::size_t calls, int bytes_a_post);
+
+    /// Calls `body` with one part after the other.
+    /// @return whether all of them are done: not where a dry run knows enough
+    bool each_part(const std::function<void(const dem::Window&)>& body);
+    /// What the options of core's functions want to be told by.
+    std::function<void(double)> done();
+    template <typename T>
+    void put(std::size_t band, const dem::Window& part, const Array2d<T>& values) {
+        if (writer_)
+            writer_->put(band, part.column - ground_.window.column, part.row - ground_.window.row,
+                         values);
+    }
+    /// Gives the file its name; for a dry run says instead what it has found out.
+    /// @return whether there is a file
+    bool finish(const std::string& definition, std::int64_t holes, light::RasterMetadata more);
+
+  private:
+    void tell() const;
+
+    const RasterArguments& arguments_;
+    const RasterGround& ground_;
+    std::optional<light::RasterWriter> writer_;
+    std::optional<ProgressBar> bar_;
+    std::size_t calls_, bands_;
+    int bytes_a_post_, bytes_a_value_;
+    double share_ = 0, part_share_ = 0, passed_s_ = 0;
+    Progress::Clock::time_point began_ = Progress::Clock::now();
 };
 
 /// --refraction's model in words, over each post.
 std::string air_of_posts(const RefractionArguments& refraction, const dem::Posts& posts);
-
-/// Warns of holes, where there are some.
-void warn_of_holes(std::int64_t holes);
 
 }  // namespace relevo::cli

@@ -1,21 +1,29 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
+#include "dem/places.h"
 #include "light/shadows.h"
 
 namespace relevo::cli {
 namespace {
 
+/// One band each, and each of them as large as the DEM.
+constexpr std::size_t kMostTimes = 10'000;
+
 struct Arguments {
     RasterArguments raster;
     TimeArguments time;
+    std::string times;
     RefractionArguments refraction;
     std::string sun;
     bool soft = false;
@@ -24,10 +32,14 @@ struct Arguments {
 /// A sun, and what is to be said of it.
 struct Asked {
     light::SunOverDem sun;
-    light::ShadowOptions options;
     double apparent_rad = 0;  ///< elevation as seen from the ground in the middle of the DEM
     std::optional<sun::ParsedTime> when;
-    std::string air = "none, the sun was given as seen";
+    std::string name;  ///< that the table of times has for it
+};
+
+/// What became of all posts under a sun.
+struct Counts {
+    std::int64_t lit = 0, shaded = 0, holes = 0;
 };
 
 /// "AZ,EL" or "grid:AZ,EL". @throws Error (Usage)
@@ -53,50 +65,100 @@ light::SunOverDem parse_sun(const std::string& text, const dem::Grid& grid) {
     return sun;
 }
 
-Asked asked(const Arguments& arguments, const dem::Posts& posts) {
-    Asked asked;
-    asked.options.refraction = arguments.raster.terrestrial_refraction;
-    asked.options.soft = arguments.soft;
-    if (!arguments.sun.empty()) {
-        asked.sun = parse_sun(arguments.sun, posts.grid());
-        asked.apparent_rad = asked.sun.elevation_rad;
-        return asked;
-    }
+/// The sun of a moment.
+Asked at_moment(const Arguments& arguments, const dem::Posts& posts, sun::ParsedTime when) {
     const geo::Geodetic middle = posts.grid().center();
-    asked.when = session::parse(
-        arguments.time.moment(),
-        {.middle = [&] { return middle; }, .posts = [&]() -> const dem::Posts& { return posts; }});
-    const sun::Position position = sun::position(asked.when->utc, middle);
-    asked.sun = light::SunOverDem::of(position);
-    asked.options.air = [&arguments](const geo::Geodetic& place) {
-        return arguments.refraction.at(place);
-    };
+    const sun::Position position = sun::position(when.utc, middle);
     geo::Geodetic ground = middle;
     const double height_m =
         posts.height_at((posts.grid().columns() - 1) / 2.0, (posts.grid().rows() - 1) / 2.0);
     ground.height_m = std::isnan(height_m) ? posts.lowest_m() : height_m;
     const sun::Refraction air = arguments.refraction.at(ground);
-    asked.apparent_rad = air.apparent_rad(position.elevation_rad);
-    asked.air = air_of_posts(arguments.refraction, posts);
-    return asked;
+    return {light::SunOverDem::of(position),
+            air.apparent_rad(position.elevation_rad),
+            std::move(when),
+            {}};
 }
 
-light::RasterFile about(const Arguments& arguments, const Asked& asked,
-                        const light::Shadows& shadows, const dem::Posts& posts) {
-    light::RasterMetadata more{
+/// The suns of a table of times. What is assumed and what is odd is said once.
+std::vector<Asked> at_times(const Arguments& arguments, const std::vector<dem::NamedTime>& times,
+                            const dem::Posts& posts) {
+    const geo::Geodetic middle = posts.grid().center();
+    const light::TerrainAccess terrain{.middle = [&] { return middle; },
+                                       .posts = [&]() -> const dem::Posts& { return posts; }};
+    std::vector<Asked> suns;
+    std::set<std::string> said;
+    for (const dem::NamedTime& time : times) {
+        const std::string line =
+            fmt::format("--times: {}: line {}: ", printable(arguments.times), time.line);
+        try {
+            suns.push_back(
+                at_moment(arguments, posts,
+                          session::parse_quietly({time.time, {}, arguments.time.zone}, terrain)));
+        } catch (const Error& error) {
+            bad_input(line + error.what());
+        }
+        Asked& asked = suns.back();
+        asked.name = time.name;
+        const std::string& assumption = asked.when->assumption;
+        if (!assumption.empty() && said.insert(assumption).second)
+            log::info(assumption + "; --tz overrides it");
+        if (!asked.when->note.empty()) log::info(line + asked.when->note);
+    }
+    return suns;
+}
+
+std::vector<Asked> all_suns(const Arguments& arguments, const std::vector<dem::NamedTime>& times,
+                            const dem::Posts& posts) {
+    if (!times.empty()) return at_times(arguments, times, posts);
+    if (!arguments.sun.empty()) {
+        const light::SunOverDem sun = parse_sun(arguments.sun, posts.grid());
+        return {{sun, sun.elevation_rad, {}, {}}};
+    }
+    const geo::Geodetic middle = posts.grid().center();
+    return {at_moment(arguments, posts,
+                      session::parse(arguments.time.moment(),
+                                     {.middle = [&] { return middle; },
+                                      .posts = [&]() -> const dem::Posts& { return posts; }}))};
+}
+
+/// Where the sun stands, and when.
+light::RasterMetadata about_sun(const Asked& asked) {
+    light::RasterMetadata about{
         {"SUN_AZIMUTH_DEG", fmt::format("{:.5f}", degrees(asked.sun.azimuth_rad))},
         {"SUN_APPARENT_ELEVATION_DEG", fmt::format("{:.5f}", degrees(asked.apparent_rad))},
-        {"SUN_PLACE", "the middle of the DEM; azimuth from true north"},
-        {"REFRACTION", asked.air}};
+        {"SUN_PLACE", "the middle of the DEM; azimuth from true north"}};
     if (asked.when) {
-        more.emplace_back("TIME_UTC", sun::to_iso(asked.when->utc, 3));
-        more.emplace_back("SUN_ELEVATION_DEG",
-                          fmt::format("{:.5f}", degrees(asked.sun.elevation_rad)));
+        about.emplace_back("TIME_UTC", sun::to_iso(asked.when->utc, 3));
+        about.emplace_back("SUN_ELEVATION_DEG",
+                           fmt::format("{:.5f}", degrees(asked.sun.elevation_rad)));
     }
-    return arguments.raster.about(posts, shadows.definition, shadows.holes, std::move(more));
+    return about;
 }
 
-void print(const Arguments& arguments, const Asked& asked, const light::Shadows& shadows) {
+/// One sun's band needs no other name than what it is; of many it is their time.
+std::vector<light::RasterBand> bands_of(const std::vector<Asked>& suns, bool timed, bool soft) {
+    std::vector<light::RasterBand> bands;
+    for (const Asked& asked : suns) {
+        light::RasterBand band{soft ? "share of the sun's disc" : "direct sun", "1"};
+        if (timed) {
+            band.name = sun::to_iso(asked.when->utc, asked.when->zone);
+            if (!asked.name.empty()) band.name += " " + asked.name;
+            band.metadata = about_sun(asked);
+        }
+        bands.push_back(std::move(band));
+    }
+    return bands;
+}
+
+Array2d<std::uint8_t> mask_of(const Array2d<float>& lit) {
+    Array2d<std::uint8_t> mask(lit.width(), lit.height());
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        mask.data()[i] = std::isnan(lit.data()[i]) ? 255 : lit.data()[i] > 0;
+    return mask;
+}
+
+void print_one(const Asked& asked, const Counts& counts, bool soft) {
     if (asked.when)
         fmt::print("time                {}  ({})\n", sun::to_iso(asked.when->utc, asked.when->zone),
                    sun::to_iso(asked.when->utc));
@@ -105,40 +167,95 @@ void print(const Arguments& arguments, const Asked& asked, const light::Shadows&
         "sun                 azimuth {:.3f} deg ({}), elevation {:.3f} deg as seen, in the "
         "middle of the DEM\n",
         azimuth_deg, compass_point(azimuth_deg), degrees(asked.apparent_rad));
-    const auto posts = static_cast<double>(shadows.lit_posts + shadows.shaded_posts);
-    fmt::print("{}            {} posts, {:.2f} %\n", arguments.soft ? "some sun" : "lit     ",
-               shadows.lit_posts, 100 * static_cast<double>(shadows.lit_posts) / posts);
-    fmt::print("in the shade        {} posts, {:.2f} %\n", shadows.shaded_posts,
-               100 * static_cast<double>(shadows.shaded_posts) / posts);
-    fmt::print("\n{}\nrefraction of the sun: {}\n", shadows.definition, asked.air);
+    const double posts = std::max(1.0, static_cast<double>(counts.lit + counts.shaded));
+    fmt::print("{}            {} posts, {:.2f} %\n", soft ? "some sun" : "lit     ", counts.lit,
+               100 * static_cast<double>(counts.lit) / posts);
+    fmt::print("in the shade        {} posts, {:.2f} %\n", counts.shaded,
+               100 * static_cast<double>(counts.shaded) / posts);
 }
 
-light::RasterBand band_of(light::Shadows shadows, bool soft) {
-    if (soft) return {"share of the sun's disc", "1", std::move(shadows.lit)};
-    Array2d<std::uint8_t> mask(shadows.lit.width(), shadows.lit.height());
-    for (std::size_t i = 0; i < mask.size(); ++i) {
-        const float lit = shadows.lit.data()[i];
-        mask.data()[i] = std::isnan(lit) ? 255 : lit > 0;
+void print_many(const std::vector<Asked>& suns, const std::vector<Counts>& counts, bool soft) {
+    fmt::print("band  time                       azimuth  elevation  {}\n",
+               soft ? "some sun" : "lit");
+    for (std::size_t k = 0; k < suns.size(); ++k) {
+        const double posts = std::max(1.0, static_cast<double>(counts[k].lit + counts[k].shaded));
+        fmt::print("{:4}  {:25}  {:7.2f}  {:9.2f}  {:6.2f} %{}\n", k + 1,
+                   sun::to_iso(suns[k].when->utc, suns[k].when->zone),
+                   degrees(suns[k].sun.azimuth_rad), degrees(suns[k].apparent_rad),
+                   100 * static_cast<double>(counts[k].lit) / posts,
+                   suns[k].name.empty() ? "" : "  " + printable(suns[k].name));
     }
-    return {"direct sun", "1", std::move(mask)};
 }
 
-void run(const Arguments& arguments) {
-    const bool timed = arguments.time.given();
+void check(const Arguments& arguments) {
+    const bool timed = !arguments.times.empty() || arguments.time.given();
+    if (!arguments.times.empty() && !(arguments.time.time + arguments.time.date).empty())
+        bad_usage("--times: has its times and their days itself; leave out --time and --date");
     if (timed == !arguments.sun.empty())
-        bad_usage(timed ? "--time and --sun exclude each other; give one of them"
+        bad_usage(timed ? fmt::format("{} and --sun exclude each other; give one of them",
+                                      arguments.times.empty() ? "--time" : "--times")
                         : "--time: missing; pass --time 2026-06-21T18:30+02:00, or --sun AZ,EL");
     if (!timed && arguments.refraction.given())
         bad_usage("--refraction: goes with --time; --sun is where the sun is seen");
+}
+
+/// Puts the light of all suns where it belongs. @return what it is
+std::string light_all(const dem::Posts& posts, const std::vector<Asked>& suns,
+                      light::ShadowOptions options, RasterRun& raster,
+                      std::vector<Counts>& counts) {
+    std::string definition;
+    options.done = raster.done();
+    raster.each_part([&](const dem::Window& part) {
+        options.part = part;
+        for (std::size_t k = 0; k < suns.size(); ++k) {
+            const light::Shadows shadows = light::shadows(posts, suns[k].sun, options);
+            counts[k].lit += shadows.lit_posts;
+            counts[k].shaded += shadows.shaded_posts;
+            counts[k].holes += shadows.holes;
+            if (options.soft)
+                raster.put(k, part, shadows.lit);
+            else
+                raster.put(k, part, mask_of(shadows.lit));
+            definition = shadows.definition;
+        }
+    });
+    return definition;
+}
+
+void run(const Arguments& arguments) {
+    check(arguments);
+    const bool timed = !arguments.times.empty();
     FilesInUse files;
+    if (timed) files.add_input(arguments.times, "the table of times");
     OutputFile& file = arguments.raster.open(files);
-    const dem::Posts posts = arguments.raster.load();
-    const Asked sun = asked(arguments, posts);
-    const light::Shadows shadows = light::shadows(posts, sun.sun, sun.options);
-    warn_of_holes(shadows.holes);
-    light::write_raster(file, posts.grid(), {band_of(shadows, arguments.soft)},
-                        about(arguments, sun, shadows, posts));
-    print(arguments, sun, shadows);
+    std::vector<dem::NamedTime> times;
+    if (timed) times = dem::read_times(arguments.times, "--times", kMostTimes);
+    const RasterGround ground = arguments.raster.load();
+    const dem::Posts& posts = ground.posts;
+    const std::vector<Asked> suns = all_suns(arguments, times, posts);
+    light::ShadowOptions options;
+    options.refraction = arguments.raster.terrestrial_refraction;
+    options.soft = arguments.soft;
+    std::string air = "none, the sun was given as seen";
+    if (arguments.sun.empty()) {
+        options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
+        air = air_of_posts(arguments.refraction, posts);
+    }
+    RasterRun raster(arguments.raster, file, ground,
+                     options.soft ? light::RasterType::Float : light::RasterType::Byte,
+                     bands_of(suns, timed, options.soft), suns.size(), options.soft ? 16 : 13);
+    std::vector<Counts> counts(suns.size());
+    const std::string definition = light_all(posts, suns, options, raster, counts);
+    light::RasterMetadata more{{"REFRACTION", air}};
+    if (!timed)
+        for (auto& item : about_sun(suns.front()))
+            more.push_back(std::move(item));
+    if (!raster.finish(definition, counts.front().holes, std::move(more))) return;
+    if (timed)
+        print_many(suns, counts, options.soft);
+    else
+        print_one(suns.front(), counts.front(), options.soft);
+    fmt::print("\n{}\nrefraction of the sun: {}\n", definition, air);
 }
 
 }  // namespace
@@ -149,6 +266,9 @@ void add_sun_shadow(CLI::App& sun_verb) {
         "shadow", "What of a DEM lies in the sun at a moment, as a raster");
     arguments->raster.add_to(verb);
     arguments->time.add_to(verb);
+    verb.add_option("--times", arguments->times,
+                    "Instead of --time: a CSV with a column time (and perhaps name), a band for "
+                    "each of its rows");
     verb.add_option("--sun", arguments->sun,
                     "Instead of a time: AZ,EL in degrees, from true north and as seen in the "
                     "middle of the DEM; grid:AZ,EL from the map's north");

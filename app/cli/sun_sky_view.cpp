@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include <fmt/format.h>
@@ -20,45 +21,66 @@ struct Arguments {
 void run_sky_view(const Arguments& arguments) {
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
-    const dem::Posts posts = arguments.raster.load();
-    light::SkyView view =
-        light::sky_view(posts, {.directions = arguments.directions,
-                                .refraction = arguments.raster.terrestrial_refraction,
-                                .level = arguments.level});
-    warn_of_holes(view.holes);
-    const light::RasterFile about =
-        arguments.raster.about(posts, view.definition, view.holes,
-                               {{"DIRECTIONS", fmt::format("{}", arguments.directions)}});
-    light::write_raster(file, posts.grid(), {{"sky-view factor", "1", std::move(view.share)}},
-                        about);
-    fmt::print("sky view            mean {:.4f}\n\n{}\n", view.mean, view.definition);
+    const RasterGround ground = arguments.raster.load();
+    RasterRun raster(arguments.raster, file, ground, light::RasterType::Float,
+                     {{"sky-view factor", "1"}}, 1, 20);
+    light::SkyViewOptions options{.directions = arguments.directions,
+                                  .refraction = arguments.raster.terrestrial_refraction,
+                                  .level = arguments.level,
+                                  .part = {},
+                                  .done = raster.done()};
+    double sum = 0, posts = 0;
+    std::int64_t holes = 0;
+    std::string definition;
+    raster.each_part([&](const dem::Window& part) {
+        options.part = part;
+        const light::SkyView view = light::sky_view(ground.posts, options);
+        const auto seen = static_cast<double>(view.share.size()) - static_cast<double>(view.holes);
+        if (seen > 0) sum += view.mean * seen;
+        posts += seen;
+        holes += view.holes;
+        definition = view.definition;
+        raster.put(0, part, view.share);
+    });
+    if (!raster.finish(definition, holes,
+                       {{"DIRECTIONS", fmt::format("{}", arguments.directions)}}))
+        return;
+    fmt::print("sky view            mean {:.4f}\n\n{}\n", sum / std::max(1.0, posts), definition);
 }
 
 void run_horizons(const Arguments& arguments) {
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
-    const dem::Posts posts = arguments.raster.load();
+    const RasterGround ground = arguments.raster.load();
     std::vector<double> azimuth_rad;
-    for (int i = 0; i < arguments.directions; ++i)
-        azimuth_rad.push_back(2 * kPi * i / arguments.directions);
-    light::Horizons horizons =
-        light::horizons(posts, azimuth_rad, arguments.raster.terrestrial_refraction);
-    warn_of_holes(horizons.holes);
     std::vector<light::RasterBand> bands;
-    for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
-        Array2d<float>& elevation = horizons.elevation_rad[k];
-        for (float& value : elevation)
-            value = static_cast<float>(degrees(double{value}));
-        const std::string azimuth = fmt::format("{:.10g}", degrees(azimuth_rad[k]));
-        bands.push_back({"horizon towards azimuth " + azimuth,
-                         "deg",
-                         std::move(elevation),
-                         {{"AZIMUTH_DEG", azimuth}}});
+    for (int i = 0; i < arguments.directions; ++i) {
+        azimuth_rad.push_back(2 * kPi * i / arguments.directions);
+        const std::string azimuth_deg = fmt::format("{:.10g}", degrees(azimuth_rad.back()));
+        bands.push_back(
+            {"horizon towards azimuth " + azimuth_deg, "deg", {{"AZIMUTH_DEG", azimuth_deg}}});
     }
-    light::write_raster(file, posts.grid(), bands,
-                        arguments.raster.about(posts, horizons.definition, horizons.holes, {}));
+    RasterRun raster(arguments.raster, file, ground, light::RasterType::Float, bands,
+                     azimuth_rad.size(), 12);
+    const std::function<void(double)> done = raster.done();
+    std::int64_t holes = 0;
+    std::string definition;
+    raster.each_part([&](const dem::Window& part) {
+        for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
+            light::Horizons horizons = light::horizons(
+                ground.posts, {azimuth_rad[k]}, arguments.raster.terrestrial_refraction, part);
+            if (k == 0) holes += horizons.holes;
+            definition = horizons.definition;
+            Array2d<float>& elevation = horizons.elevation_rad.front();
+            for (float& value : elevation)
+                value = static_cast<float>(degrees(double{value}));
+            raster.put(k, part, elevation);
+            done(1);
+        }
+    });
+    if (!raster.finish(definition, holes, {})) return;
     fmt::print("horizons            {} directions, {:.10g} degrees apart, from true north\n\n{}\n",
-               arguments.directions, 360.0 / arguments.directions, horizons.definition);
+               arguments.directions, 360.0 / arguments.directions, definition);
 }
 
 std::shared_ptr<Arguments> add_directions(CLI::App& verb, int least, int most) {

@@ -245,6 +245,24 @@ void OutputFile::write(std::string_view text) {
     write(std::as_bytes(std::span(text)));
 }
 
+int OutputFile::open_scratch() const {
+    // What is no regular file has no folder of ours.
+    if (!impl_->folder) {
+        const int memory = memfd_create("relevo", MFD_CLOEXEC);
+        if (memory < 0) impl_->cannot_be_written(errno);
+        return memory;
+    }
+    const int in = impl_->folder.get();
+    const int unnamed = openat(in, ".", O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (unnamed >= 0) return unnamed;
+    if (!not_offered(errno)) impl_->cannot_be_written(errno);
+    const PartialName name(in);  // which goes with this
+    const int named =
+        openat(in, name.name(), O_CREAT | O_EXCL | O_NOFOLLOW | O_RDWR | O_CLOEXEC, 0600);
+    if (named < 0 || unlinkat(in, name.name(), 0) != 0) impl_->cannot_be_written(errno);
+    return named;
+}
+
 void OutputFile::finish() {
     finish_all({this});
 }

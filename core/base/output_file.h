@@ -44,6 +44,11 @@ class OutputFile {
     ///     where the disk refuses
     void finish();
 
+    /// Opens a file without a name in the folder of the result, for what is on the way to it; the
+    /// system frees it with the descriptor, however the process ends. The caller closes it.
+    /// @throws Error (Failed) where the disk refuses
+    int open_scratch() const;
+
     /// finish() of all results of a run, which appear together or not at all: none has its name
     /// before all are on the disk or have gone to their devices and pipes, and where one cannot
     /// have its name the others lose theirs. What has replaced a file stays; its turn is last.

@@ -1,14 +1,27 @@
 #include "base/progress.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "base/log.h"
 
 namespace relevo {
 namespace {
+
+constexpr int kBarWidth = 24;
+constexpr double kRedraw_s = 0.25;
+constexpr std::string_view kClearLine = "\r\x1b[K";
+
+void put(int descriptor, std::string_view text) {
+    // A terminal that is gone is no reason to end the work.
+    [[maybe_unused]] const ssize_t written = write(descriptor, text.data(), text.size());
+}
+
+}  // namespace
 
 std::string duration_text(double seconds) {
     if (seconds < 100) return fmt::format("{:.0f} s", seconds);
@@ -16,7 +29,23 @@ std::string duration_text(double seconds) {
                           : fmt::format("{:.0f} h", seconds / 3600);
 }
 
-}  // namespace
+ProgressBar::ProgressBar(std::string what, int descriptor)
+    : what_(std::move(what)), descriptor_(descriptor), terminal_(isatty(descriptor) != 0) {}
+
+ProgressBar::~ProgressBar() {
+    if (drawn_) put(descriptor_, kClearLine);
+}
+
+void ProgressBar::show(double share) {
+    const double passed_s = std::chrono::duration<double>(Progress::Clock::now() - began_).count();
+    if (!terminal_ || passed_s < next_s_ || !(share > 0 && share < 1)) return;
+    next_s_ = passed_s + kRedraw_s;
+    drawn_ = true;
+    const auto full = static_cast<std::size_t>(share * kBarWidth);
+    put(descriptor_, fmt::format("{}{} [{}{}] {:.0f} %, {} left", kClearLine, what_,
+                                 std::string(full, '='), std::string(kBarWidth - full, ' '),
+                                 100 * share, duration_text(passed_s * (1 - share) / share)));
+}
 
 Progress::Progress(std::string what, double total, double patience_s)
     : what_(std::move(what)), total_(total), next_s_(patience_s) {}

@@ -30,4 +30,29 @@ class Progress {
     Clock::time_point began_ = Clock::now();
 };
 
+/// A line on a terminal that says how much of long work is done and how long the rest takes, drawn
+/// anew four times a second, and gone with this. Anything but a terminal gets no byte. Short work,
+/// of less than a second, has no word.
+class ProgressBar {
+  public:
+    /// @param descriptor  of the stream, standard error
+    explicit ProgressBar(std::string what, int descriptor = 2);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+
+    /// @param share  that is done, 0 to 1
+    void show(double share);
+
+  private:
+    std::string what_;
+    int descriptor_;
+    bool terminal_, drawn_ = false;
+    double next_s_ = 1;
+    Progress::Clock::time_point began_ = Progress::Clock::now();
+};
+
+/// "12 s", "3 min", "2 h".
+std::string duration_text(double seconds);
+
 }  // namespace relevo

@@ -15,6 +15,8 @@
 namespace relevo::dem {
 namespace {
 
+constexpr GIntBig kBlockBytes = GIntBig{256} << 20;  // of GDAL's cache
+
 void to_debug_log(CPLErr, int, const char* text) {
     log::debug(fmt::format("GDAL: {}", text));
 }
@@ -28,9 +30,8 @@ void prepare_gdal() {
         GDALAllRegister();
         disarm_gdal();
         // By itself it is a twentieth of the machine's memory, whatever --memory is.
-        constexpr GIntBig kMaxCache = GIntBig{256} << 20;
         if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr))
-            GDALSetCacheMax64(std::min(GDALGetCacheMax64(), kMaxCache));
+            GDALSetCacheMax64(std::min(GDALGetCacheMax64(), kBlockBytes));
     });
 }
 
@@ -39,6 +40,11 @@ void hold_blocks(std::int64_t bytes) {
     const std::lock_guard lock(mutex);
     if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr) && GDALGetCacheMax64() < bytes)
         GDALSetCacheMax64(bytes);
+}
+
+void spare_blocks() {
+    if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr) && GDALGetCacheMax64() <= kBlockBytes)
+        GDALSetCacheMax64(kBlockBytes / 2);
 }
 
 GdalMessages::GdalMessages() {

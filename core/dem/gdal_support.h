@@ -16,6 +16,10 @@ void prepare_gdal();
 /// Lets GDAL's cache have so much at least: blocks that it cannot hold are decoded for every read.
 void hold_blocks(std::int64_t bytes);
 
+/// Leaves it half of what it has at the start, for whoever keeps what it has read; not where it has
+/// been given more since.
+void spare_blocks();
+
 /// Collects what GDAL says on this thread while it lives, instead of having it printed.
 class GdalMessages {
   public:

@@ -121,23 +121,51 @@ std::vector<std::string> fields_of(std::string_view line, char separator) {
     return fields;
 }
 
-/// The columns of a CSV, by their names.
+/// The names of a CSV's columns, in its first line.
+class Header {
+  public:
+    explicit Header(std::string_view line) {
+        for (const char candidate : {',', ';', '\t'})
+            if (std::count(line.begin(), line.end(), candidate) >
+                std::count(line.begin(), line.end(), separator_))
+                separator_ = candidate;
+        names_ = fields_of(line, separator_);
+    }
+
+    std::optional<std::size_t> find(std::initializer_list<std::string_view> words) const {
+        for (const std::string_view word : words)
+            for (std::size_t i = 0; i < names_.size(); ++i)
+                if (equal_ignoring_case(names_[i], word)) return i;
+        return std::nullopt;
+    }
+    std::vector<std::string> fields(std::string_view line) const {
+        return fields_of(line, separator_);
+    }
+
+  private:
+    char separator_ = ',';
+    std::vector<std::string> names_;
+};
+
+/// One of a line's fields; empty where the line or the file has none.
+std::string field_of(const std::vector<std::string>& fields,
+                     const std::optional<std::size_t>& column) {
+    return column && *column < fields.size() ? fields[*column] : std::string();
+}
+
+/// The columns of a CSV of places, by their names.
 class Columns {
   public:
-    Columns(std::string_view header, const std::string& crs, const Asked& asked) : asked_(asked) {
-        for (const char candidate : {',', ';', '\t'})
-            if (std::count(header.begin(), header.end(), candidate) >
-                std::count(header.begin(), header.end(), separator_))
-                separator_ = candidate;
-        names_ = fields_of(header, separator_);
-        lat_ = find({"lat", "latitude", "lat_deg"});
-        lon_ = find({"lon", "longitude", "lng", "long", "lon_deg"});
-        name_ = find({"name", "id", "title"});
-        height_ = find({"height", "height_m"});
-        time_ = find({"time"});
+    Columns(std::string_view header, const std::string& crs, const Asked& asked)
+        : asked_(asked), header_(header) {
+        lat_ = header_.find({"lat", "latitude", "lat_deg"});
+        lon_ = header_.find({"lon", "longitude", "lng", "long", "lon_deg"});
+        name_ = header_.find({"name", "id", "title"});
+        height_ = header_.find({"height", "height_m"});
+        time_ = header_.find({"time"});
         if (lat_ && lon_) return;
-        lon_ = find({"x", "easting"});
-        lat_ = find({"y", "northing"});
+        lon_ = header_.find({"x", "easting"});
+        lat_ = header_.find({"y", "northing"});
         if (!lat_ || !lon_)
             asked_.refuse(
                 fmt::format("no columns lat and lon, expected a first line that names "
@@ -151,9 +179,9 @@ class Columns {
     }
 
     NamedPlace read(std::string_view line, std::size_t number) const {
-        const std::vector<std::string> fields = fields_of(line, separator_);
+        const std::vector<std::string> fields = header_.fields(line);
         const auto field = [&](const std::optional<std::size_t>& column) {
-            return column && *column < fields.size() ? fields[*column] : std::string();
+            return field_of(fields, column);
         };
         const std::string who = fmt::format("{}: {}: line {}", asked_.who, asked_.path, number);
         const std::string height = field(height_);
@@ -171,13 +199,6 @@ class Columns {
     }
 
   private:
-    std::optional<std::size_t> find(std::initializer_list<std::string_view> words) const {
-        for (const std::string_view word : words)
-            for (std::size_t i = 0; i < names_.size(); ++i)
-                if (equal_ignoring_case(names_[i], word)) return i;
-        return std::nullopt;
-    }
-
     void set_projected(const std::string& x_text, const std::string& y_text, const std::string& who,
                        geo::Geodetic& place) const {
         const std::optional<double> x = parse_number(x_text), y = parse_number(y_text);
@@ -193,8 +214,7 @@ class Columns {
     }
 
     Asked asked_;
-    char separator_ = ',';
-    std::vector<std::string> names_;
+    Header header_;
     std::optional<std::size_t> lat_, lon_, name_, height_, time_;
     std::optional<geo::Crs> crs_;
 };
@@ -236,6 +256,38 @@ NamedPlace place_of(const Asked& asked, std::size_t number, VectorPoint&& point)
 }
 
 }  // namespace
+
+std::vector<NamedTime> read_times(const std::string& path, std::string_view who, std::size_t most) {
+    const Asked asked{path, who};
+    Lines lines(asked);
+    std::optional<Header> header;
+    std::optional<std::size_t> time, name;
+    std::vector<NamedTime> times;
+    while (const std::optional<std::string_view> line = lines.next()) {
+        if (line->find('\0') != line->npos) asked.refuse("not a text, expected a CSV file");
+        if (trimmed(*line).empty() || line->starts_with('#')) continue;
+        if (!header) {
+            header.emplace(*line);
+            time = header->find({"time"});
+            name = header->find({"name", "id", "title"});
+            if (!time)
+                asked.refuse(
+                    fmt::format("no column time, expected a first line that names it but got "
+                                "\"{}\"",
+                                line->substr(0, 80)));
+            continue;
+        }
+        const std::vector<std::string> fields = header->fields(*line);
+        times.push_back({field_of(fields, name), field_of(fields, time), lines.number()});
+        if (times.back().time.empty())
+            asked.refuse(fmt::format("line {}: no time in it", lines.number()));
+        if (times.size() > most)
+            asked.refuse(fmt::format("more than {} times; cut the file up", most));
+    }
+    if (times.empty())
+        asked.refuse("no times, expected a first line \"time\" and a line for each below it");
+    return times;
+}
 
 std::vector<NamedPlace> read_points(const std::string& path, std::string_view who,
                                     const std::string& crs) {

@@ -46,4 +46,15 @@ std::vector<NamedPlace> read_points(const std::string& path, std::string_view wh
 NamedLine read_line(const std::string& path, std::string_view who, const std::string& crs = {},
                     int number = 0);
 
+struct NamedTime {
+    std::string name;  ///< empty where the file has none
+    std::string time;  ///< as `--time` takes it
+    std::size_t line;  ///< of the file, from 1
+};
+
+/// The rows of a CSV with a column `time` and perhaps `name`, as above.
+/// @param most  more are refused
+/// @throws Error (BadInput) for what is no such file, has no times, or too many
+std::vector<NamedTime> read_times(const std::string& path, std::string_view who, std::size_t most);
+
 }  // namespace relevo::dem

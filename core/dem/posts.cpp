@@ -10,6 +10,7 @@
 
 #include "base/parallel_for.h"
 #include "base/progress.h"
+#include "dem/gdal_support.h"
 #include "dem/load.h"
 #include "dem/survey.h"
 #include "dem/tile_cache.h"
@@ -130,6 +131,7 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
                                      blocks_of(grid().rows(), block), -kInfinity);
     go_through(std::min(max_posts / 2, kMaxSlab));
     settle_holes();
+    spare_blocks();
     tiles = std::make_unique<TileCache>(on_demand, max_posts - blocks());
 }
 

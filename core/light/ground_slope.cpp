@@ -64,26 +64,32 @@ glm::dmat2 from_posts(const dem::Grid& grid, double column, double row) {
 
 }  // namespace
 
-void ground_slope(const dem::Grid& grid, const dem::Posts::View& heights, TileValues& east,
-                  TileValues& north) {
-    // Posts next to each other have one north.
+void ground_slope(const dem::Grid& grid, const dem::Posts::View& heights, const SweepWindow& part,
+                  TileValues& east, TileValues& north) {
+    // Posts next to each other have one north: those of a block of the grid, whatever the part.
     constexpr int kTogether = 32;
-    parallel_for(0, (grid.rows() + kTogether - 1) / kTogether, 1, [&](int first, int last) {
-        for (int row = first * kTogether; row < std::min(grid.rows(), last * kTogether); ++row)
-            for (int column = 0; column < grid.columns(); column += kTogether) {
-                const int count = std::min(kTogether, grid.columns() - column);
-                const glm::dmat2 to_metres = from_posts(
-                    grid, column + count / 2, std::min(grid.rows() - 1, row | (kTogether / 2)));
-                const SweepRun run{false, row, column, count, nullptr, nullptr};
-                float *const to_east = east.of(run), *const to_north = north.of(run);
-                for (int i = 0; i < count; ++i) {
-                    const glm::dvec2 slope =
-                        to_metres * Around(grid, heights, column + i, row).rise();
-                    to_east[i] = static_cast<float>(slope.x);
-                    to_north[i] = static_cast<float>(slope.y);
+    const int end_column = part.column + part.columns, end_row = part.row + part.rows;
+    parallel_for(
+        part.row / kTogether, (end_row + kTogether - 1) / kTogether, 1, [&](int first, int last) {
+            for (int row = std::max(part.row, first * kTogether);
+                 row < std::min(end_row, last * kTogether); ++row)
+                for (int block = part.column / kTogether * kTogether; block < end_column;
+                     block += kTogether) {
+                    const int width = std::min(kTogether, grid.columns() - block);
+                    const glm::dmat2 to_metres = from_posts(
+                        grid, block + width / 2, std::min(grid.rows() - 1, row | (kTogether / 2)));
+                    const int column = std::max(block, part.column);
+                    const int count = std::min(block + width, end_column) - column;
+                    const SweepRun run{false, row, column, count, nullptr, nullptr};
+                    float *const to_east = east.of(run), *const to_north = north.of(run);
+                    for (int i = 0; i < count; ++i) {
+                        const glm::dvec2 slope =
+                            to_metres * Around(grid, heights, column + i, row).rise();
+                        to_east[i] = static_cast<float>(slope.x);
+                        to_north[i] = static_cast<float>(slope.y);
+                    }
                 }
-            }
-    });
+        });
 }
 
 }  // namespace relevo::light

@@ -23,20 +23,18 @@ constexpr int kLeastDirections = 4, kMostDirections = 3600;
 
 /// What all rasters of directions begin with.
 struct Ground {
-    dem::Posts::View heights;
     DemSky dem;
     Sweep sweep;
 
     Ground(const dem::Posts& posts, double refraction)
-        : heights(view_in_memory(posts)),
-          dem(posts, {.refraction = refraction}),
-          sweep(heights.first_m, posts.grid().columns(), posts.grid().rows(), heights.stride) {}
+        : dem(posts, {.refraction = refraction}), sweep(sweep_over(posts)) {}
 
-    /// Calls `use` with all posts and the tangents of their horizons in a direction.
-    void each_horizon(const SunSky& sky, double tolerance_rad, const Sweep::Use& use) const {
-        each_window(divide({sky}, whole(dem.grid()), tolerance_rad),
+    /// Calls `use` with the posts of a part and the tangents of their horizons in a direction.
+    void each_horizon(const SunSky& sky, double tolerance_rad, const SweepWindow& part,
+                      const Sweep::Use& use) const {
+        each_window(divide({sky}, whole(dem.grid()), part, tolerance_rad),
                     [&](const SweepWindow& window) {
-                        light::each_horizon(sky, sweep, *sky.tile(window), use);
+                        light::each_horizon(sky, sweep, tile_of(sky, window, part), use);
                     });
     }
 };
@@ -85,21 +83,22 @@ void relate_to_slopes(const SweepWindow& window, float most, TileValues& east, T
 
 }  // namespace
 
-Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, double refraction) {
+Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, double refraction,
+                  const dem::Window& of) {
     const Ground ground(posts, refraction);
-    const dem::Grid& grid = posts.grid();
+    const SweepWindow part = window_of(of, posts.grid());
     Horizons result;
     result.azimuth_rad = std::move(azimuth_rad);
     for (const double azimuth : result.azimuth_rad) {
         const SunSky sky(ground.dem, azimuth);
-        TileValues values(whole(grid), 0);
+        TileValues values(part, 0);
         values.turn(sky.along_columns());
-        ground.each_horizon(sky, kHorizonTolerance_rad, [&](const SweepRun& run) {
+        ground.each_horizon(sky, kHorizonTolerance_rad, part, [&](const SweepRun& run) {
             float* const out = values.of(run);
             for (int i = 0; i < run.count; ++i)
                 out[i] = std::isnan(run.height_m[i]) ? run.height_m[i] : std::atan(run.found[i]);
         });
-        values.put(result.elevation_rad.emplace_back(grid.columns(), grid.rows()));
+        values.put(result.elevation_rad.emplace_back(part.columns, part.rows), part);
     }
     if (!result.elevation_rad.empty())
         for (const float elevation : result.elevation_rad.front())
@@ -114,11 +113,12 @@ SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
         bad_input(fmt::format("light::sky_view: {} directions: expected {} to {}",
                               options.directions, kLeastDirections, kMostDirections));
     const Ground ground(posts, options.refraction);
-    const dem::Grid& grid = posts.grid();
+    const SweepWindow part = window_of(options.part, posts.grid());
     SkyView result;
-    result.share = Array2d<float>(grid.columns(), grid.rows());
-    TileValues sum(whole(grid), 0), east(whole(grid), 0), north(whole(grid), 0);
-    if (!options.level) ground_slope(grid, ground.heights, east, north);
+    result.share = Array2d<float>(part.columns, part.rows);
+    const PartHeights heights(posts, part);
+    TileValues sum(part, 0), east(part, 0), north(part, 0);
+    if (!options.level) ground_slope(posts.grid(), heights.view, part, east, north);
     for (int k = 0; k < options.directions; ++k) {
         const double azimuth_rad = 2 * kPi * k / options.directions;
         const SunSky sky(ground.dem, azimuth_rad);
@@ -126,18 +126,19 @@ SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
             each->turn(sky.along_columns());
         const auto sin_azimuth = static_cast<float>(std::sin(azimuth_rad));
         const auto cos_azimuth = static_cast<float>(std::cos(azimuth_rad));
-        ground.each_horizon(sky, kSkyTolerance_rad, [&](const SweepRun& run) {
+        ground.each_horizon(sky, kSkyTolerance_rad, part, [&](const SweepRun& run) {
             add_sky(run, east.of(run), north.of(run), sin_azimuth, cos_azimuth, sum.of(run));
         });
+        if (options.done) options.done(1.0 / options.directions);
     }
     if (options.of_open_slope)
-        relate_to_slopes(whole(grid), static_cast<float>(options.directions), east, north, sum);
-    sum.put(result.share);
+        relate_to_slopes(part, static_cast<float>(options.directions), east, north, sum);
+    sum.put(result.share, part);
     std::int64_t seen = 0;
     for (int row = 0; row < result.share.height(); ++row)
         for (int column = 0; column < result.share.width(); ++column) {
             float& share = result.share.at(column, row);
-            const float height_m = *ground.heights.at(column, row);
+            const float height_m = heights.at(part.column + column, part.row + row);
             share =
                 std::isnan(height_m) ? height_m : share / static_cast<float>(options.directions);
             if (std::isnan(share)) continue;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,15 +18,15 @@ struct Horizons {
     std::string definition;  ///< a sentence, to be printed with results
 };
 
-/// @param azimuth_rad  directions, from true north at each post
-/// @param refraction   terrestrial, as in HorizonOptions
-/// @throws Error (BadInput) as shadows()
-///
 /// Eyes are on the ground. What lies farther off than the nearest four posts is met within a
 /// quarter of a post of the direction. Beyond the DEM lies a smooth Earth as high as its lowest
 /// post, as in TerrainHorizon. Accuracy: tests/light/test_horizons.cpp.
+/// @param azimuth_rad  directions, from true north at each post
+/// @param refraction   terrestrial, as in HorizonOptions
+/// @throws Error (BadInput) as shadows()
+/// @param part  as in ShadowOptions
 Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad,
-                  double refraction = 0.13);
+                  double refraction = 0.13, const dem::Window& part = {});
 
 struct SkyViewOptions {
     int directions = 36;
@@ -35,6 +36,8 @@ struct SkyViewOptions {
     /// As a share of what an endless plane as inclined as the ground sees: 1 where nothing rises
     /// over the ground's own slope. Not with `level`.
     bool of_open_slope = false;
+    dem::Window part{};                ///< as in ShadowOptions
+    std::function<void(double)> done;  ///< likewise
 };
 
 /// How much of the sky each post of a DEM sees.

@@ -27,7 +27,7 @@ Division division_of(const SunSky& sky, const dem::Grid& grid) {
     for (double tolerance_rad = kSunTolerance_rad;; tolerance_rad *= kLooser) {
         const bool last = tolerance_rad * kLooser > kLoosest_rad;
         try {
-            Division division{divide({sky}, whole(grid), tolerance_rad), 0};
+            Division division{divide({sky}, whole(grid), whole(grid), tolerance_rad), 0};
             if (division.windows.size() > kMostWindows && !last) continue;
             if (tolerance_rad > kSunTolerance_rad) division.error_rad = tolerance_rad;
             return division;
@@ -35,6 +35,11 @@ Division division_of(const SunSky& sky, const dem::Grid& grid) {
             if (last) throw;
         }
     }
+}
+
+ShadowOptions of_discs(ShadowOptions options) {
+    options.soft = true;
+    return options;
 }
 
 /// A figure for each post of a window, in the order in which sweeps come to them, not set yet.
@@ -107,11 +112,7 @@ void margins_of_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile,
 }  // namespace
 
 Margins::Margins(const dem::Posts& posts, const ShadowOptions& options)
-    : dem_(posts, options), sweep_([&] {
-          const dem::Posts::View heights = view_in_memory(posts);
-          return Sweep(heights.first_m, posts.grid().columns(), posts.grid().rows(),
-                       heights.stride);
-      }()) {}
+    : dem_(posts, of_discs(options)), sweep_(sweep_over(posts)) {}
 
 Margins::Found Margins::each(const geo::Geodetic& place, const SunOverDem& sun,
                              const std::function<void(bool)>& turn, const Use& use) const {
@@ -120,7 +121,7 @@ Margins::Found Margins::each(const geo::Geodetic& place, const SunOverDem& sun,
     if (sky.is_night()) return {true, 0};
     const Division division = division_of(sky, dem_.grid());
     each_window(division.windows, [&](const SweepWindow& window) {
-        margins_of_tile(sky, sweep_, *sky.tile(window), sun.semidiameter_rad, use);
+        margins_of_tile(sky, sweep_, tile_of(sky, window, window), sun.semidiameter_rad, use);
     });
     return {false, division.error_rad};
 }

@@ -1,14 +1,13 @@
 #include "light/raster.h"
 
 #include <array>
-#include <atomic>
+#include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <memory>
 #include <span>
 
 #include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
@@ -16,26 +15,10 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "dem/gdal_support.h"
+#include "light/scratch_files.h"
 
 namespace relevo::light {
 namespace {
-
-/// A folder in memory, gone with all that is in it.
-class MemoryFolder {
-  public:
-    MemoryFolder() {
-        static std::atomic<int> count = 0;
-        path_ = fmt::format("/vsimem/relevo-raster-{}", count++);
-        VSIMkdir(path_.c_str(), 0700);
-    }
-    ~MemoryFolder() { VSIRmdirRecursive(path_.c_str()); }
-    MemoryFolder(const MemoryFolder&) = delete;
-    MemoryFolder& operator=(const MemoryFolder&) = delete;
-    std::string file(const char* name) const { return path_ + "/" + name; }
-
-  private:
-    std::string path_;
-};
 
 struct Close {
     void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
@@ -54,35 +37,26 @@ std::array<double, 6> geotransform(const dem::Affine& a) {
             a.y0 - (a.y_column + a.y_row) / 2, a.y_column, a.y_row};
 }
 
-GDALDataType type_of(const RasterBand& band) {
-    return std::holds_alternative<Array2d<float>>(band.values) ? GDT_Float32 : GDT_Byte;
+GDALDataType type_of(RasterType type) {
+    return type == RasterType::Float ? GDT_Float32 : GDT_Byte;
 }
 
-void describe(GDALDataset& dataset, const dem::Grid& grid, const RasterFile& about) {
+void describe(GDALDataset& dataset, const dem::Grid& grid, RasterType type,
+              const std::vector<RasterBand>& bands) {
     std::array<double, 6> transform = geotransform(grid.affine());
     dataset.SetGeoTransform(transform.data());
     OGRSpatialReference crs;
     crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     if (crs.SetFromUserInput(grid.crs().text().c_str()) == OGRERR_NONE) dataset.SetSpatialRef(&crs);
-    for (const auto& [key, value] : about.metadata)
-        dataset.SetMetadataItem(key.c_str(), value.c_str());
-}
-
-/// @return whether GDAL took it
-bool put(GDALRasterBand& to, const dem::Grid& grid, const RasterBand& band) {
-    to.SetDescription(band.name.c_str());
-    to.SetUnitType(band.unit.c_str());
-    to.SetNoDataValue(type_of(band) == GDT_Byte ? 255 : std::numeric_limits<double>::quiet_NaN());
-    for (const auto& [key, value] : band.metadata)
-        to.SetMetadataItem(key.c_str(), value.c_str());
-    return std::visit(
-        [&](const auto& values) {
-            const void* const first = values.data();
-            return to.RasterIO(GF_Write, 0, 0, grid.columns(), grid.rows(),
-                               const_cast<void*>(first), grid.columns(), grid.rows(), type_of(band),
-                               0, 0, nullptr) == CE_None;
-        },
-        band.values);
+    for (std::size_t k = 0; k < bands.size(); ++k) {
+        GDALRasterBand& to = *dataset.GetRasterBand(static_cast<int>(k) + 1);
+        to.SetDescription(bands[k].name.c_str());
+        to.SetUnitType(bands[k].unit.c_str());
+        to.SetNoDataValue(type == RasterType::Byte ? 255
+                                                   : std::numeric_limits<double>::quiet_NaN());
+        for (const auto& [key, value] : bands[k].metadata)
+            to.SetMetadataItem(key.c_str(), value.c_str());
+    }
 }
 
 /// The driver's options: ours, and over them the user's.
@@ -110,44 +84,91 @@ void check_creation_options(const std::vector<std::string>& given) {
         bad_usage(fmt::format("--co: GDAL's COG driver says: {}", messages.failure("--co")));
 }
 
-void write_raster(OutputFile& file, const dem::Grid& grid, const std::vector<RasterBand>& bands,
-                  const RasterFile& about) {
+struct RasterWriter::Impl {
+    OutputFile& file;
+    RasterType type;
+    std::vector<std::string> options;
+    ScratchFiles scratch;
+    Dataset plain;
+
+    Impl(OutputFile& to, RasterType of, std::vector<std::string> given)
+        : file(to),
+          type(of),
+          options(std::move(given)),
+          scratch([&to] { return to.open_scratch(); }) {}
+
+    [[noreturn]] void refuse(const dem::GdalMessages& messages) const {
+        const std::string path = file.path().string();
+        failed(fmt::format(
+            "{}: {}: cannot be written, {}", file.who(), printable(path),
+            scratch.error() != 0 ? std::strerror(scratch.error()) : messages.failure(path)));
+    }
+
+    void put(std::size_t band, const dem::Window& where, const void* values) {
+        const dem::GdalMessages messages;
+        if (plain->GetRasterBand(static_cast<int>(band) + 1)
+                ->RasterIO(GF_Write, where.column, where.row, where.columns, where.rows,
+                           const_cast<void*>(values), where.columns, where.rows, type_of(type), 0,
+                           0, nullptr) != CE_None)
+            refuse(messages);
+    }
+};
+
+RasterWriter::RasterWriter(OutputFile& file, const dem::Grid& grid, RasterType type,
+                           const std::vector<RasterBand>& bands, std::vector<std::string> options) {
     dem::prepare_gdal();
+    creation_options(options, type_of(type));  // what is wrong with them is said before any work
+    impl_ = std::make_unique<Impl>(file, type, std::move(options));
     const dem::GdalMessages messages;
-    const auto refuse = [&]() {
-        failed(fmt::format("{}: {}: cannot be written, {}", file.who(),
-                           printable(file.path().string()),
-                           messages.failure(file.path().string())));
-    };
-    const MemoryFolder folder;
-    const std::string plain = folder.file("plain.tif"), whole = folder.file("whole.tif");
+    CPLStringList plain;
+    plain.SetNameValue("TILED", "YES");
+    plain.SetNameValue("BLOCKXSIZE", "512");  // those of the result
+    plain.SetNameValue("BLOCKYSIZE", "512");
+    plain.SetNameValue("INTERLEAVE", "BAND");
+    plain.SetNameValue("PHOTOMETRIC", "MINISBLACK");  // three bands are no colours
+    plain.SetNameValue("BIGTIFF", "IF_SAFER");
+    impl_->plain.reset(driver("GTiff")->Create(
+        impl_->scratch.path("plain.tif").c_str(), grid.columns(), grid.rows(),
+        static_cast<int>(bands.size()), type_of(type), plain.List()));
+    if (!impl_->plain) impl_->refuse(messages);
+    describe(*impl_->plain, grid, type, bands);
+}
+
+RasterWriter::~RasterWriter() {
+    const dem::GdalMessages messages;  // of what is given up, nobody wants to know
+    impl_.reset();
+}
+
+void RasterWriter::put(std::size_t band, int column, int row, const Array2d<float>& values) {
+    assert(impl_->type == RasterType::Float);
+    impl_->put(band, {column, row, values.width(), values.height()}, values.data());
+}
+
+void RasterWriter::put(std::size_t band, int column, int row, const Array2d<std::uint8_t>& values) {
+    assert(impl_->type == RasterType::Byte);
+    impl_->put(band, {column, row, values.width(), values.height()}, values.data());
+}
+
+void RasterWriter::finish(const RasterMetadata& metadata) {
+    const dem::GdalMessages messages;
+    for (const auto& [key, value] : metadata)
+        impl_->plain->SetMetadataItem(key.c_str(), value.c_str());
+    impl_->plain->FlushCache();
+    if (impl_->scratch.error() != 0) impl_->refuse(messages);
     {
-        const GDALDataType type = type_of(bands.front());
-        GDALDriver& cog = *driver("COG");
-        const CPLStringList wanted = creation_options(about.creation_options, type);
-        CPLStringList options;
-        options.SetNameValue("TILED", "YES");
-        options.SetNameValue("INTERLEAVE", "BAND");
-        options.SetNameValue("BIGTIFF", "IF_SAFER");
-        const Dataset source(driver("GTiff")->Create(plain.c_str(), grid.columns(), grid.rows(),
-                                                     static_cast<int>(bands.size()), type,
-                                                     options.List()));
-        if (!source) refuse();
-        describe(*source, grid, about);
-        for (std::size_t k = 0; k < bands.size(); ++k)
-            if (!put(*source->GetRasterBand(static_cast<int>(k) + 1), grid, bands[k])) refuse();
-        source->FlushCache();
-        const Dataset copy(
-            cog.CreateCopy(whole.c_str(), source.get(), FALSE, wanted.List(), nullptr, nullptr));
-        if (!copy) refuse();
+        const CPLStringList wanted = creation_options(impl_->options, type_of(impl_->type));
+        const Dataset whole(driver("COG")->CreateCopy(impl_->scratch.path("whole.tif").c_str(),
+                                                      impl_->plain.get(), FALSE, wanted.List(),
+                                                      nullptr, nullptr));
+        if (!whole) impl_->refuse(messages);
     }
     // What is written when it is closed may fail, too.
-    if (messages.any_failure()) refuse();
-    vsi_l_offset size = 0;
-    const GByte* const bytes = VSIGetMemFileBuffer(whole.c_str(), &size, FALSE);
-    if (!bytes) refuse();
-    file.write(std::as_bytes(std::span(bytes, static_cast<std::size_t>(size))));
-    file.finish();
+    if (messages.any_failure() || impl_->scratch.error() != 0) impl_->refuse(messages);
+    impl_->plain.reset();
+    if (!impl_->scratch.read("whole.tif",
+                             [&](std::span<const std::byte> bytes) { impl_->file.write(bytes); }))
+        impl_->refuse(messages);
+    impl_->file.finish();
 }
 
 }  // namespace relevo::light

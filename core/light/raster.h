@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "base/array2d.h"
@@ -14,31 +14,45 @@ namespace relevo::light {
 
 using RasterMetadata = std::vector<std::pair<std::string, std::string>>;
 
-/// Figures of all posts of a grid.
+/// What a band of a raster says of itself.
 struct RasterBand {
     std::string name;  ///< "shadow"
     std::string unit;  ///< "1" for shares
-    /// As many as the grid has posts. A hole is NaN; among bytes 255.
-    std::variant<Array2d<std::uint8_t>, Array2d<float>> values;
     RasterMetadata metadata{};
 };
 
-/// What the bands of a file have in common.
-struct RasterFile {
-    RasterMetadata metadata;
-    /// For GDAL's COG driver besides its own defaults and ours: "COMPRESS=ZSTD".
-    std::vector<std::string> creation_options{};
-};
+/// What the values of a file are stored as. A hole is NaN; among bytes 255.
+enum class RasterType { Byte, Float };
 
 /// @throws Error (Usage) for one that GDAL's COG driver does not have
 void check_creation_options(const std::vector<std::string>& options);
 
-/// Writes bands of one type on a grid as a cloud-optimised GeoTIFF, in the grid's CRS, and gives it
-/// its name. Until it is whole it is in memory: nothing is left beside it, however the program
-/// ends.
-/// @throws Error (Usage) for a creation option that the driver does not have, (Failed) where GDAL
-///     or the disk refuses
-void write_raster(OutputFile& file, const dem::Grid& grid, const std::vector<RasterBand>& bands,
-                  const RasterFile& about);
+/// A cloud-optimised GeoTIFF on its way, in the CRS of a grid. Its parts are put where they belong
+/// in any order; until it is whole it is in files without a name in the folder of the result, so
+/// that it takes no memory, and nothing is left beside it, however the program ends.
+class RasterWriter {
+  public:
+    /// @param grid     of the result
+    /// @param options  for GDAL's COG driver besides its own defaults and ours: "COMPRESS=ZSTD"
+    /// @throws Error (Usage) for a creation option that the driver does not have, (Failed) where
+    ///     GDAL or the disk refuses, here and below
+    RasterWriter(OutputFile& file, const dem::Grid& grid, RasterType type,
+                 const std::vector<RasterBand>& bands, std::vector<std::string> options = {});
+    ~RasterWriter();
+    RasterWriter(const RasterWriter&) = delete;
+    RasterWriter& operator=(const RasterWriter&) = delete;
+
+    /// Values of a part of a band, whose upper left post is at (column, row) of the result.
+    /// @param band  from 0
+    void put(std::size_t band, int column, int row, const Array2d<float>& values);
+    void put(std::size_t band, int column, int row, const Array2d<std::uint8_t>& values);
+
+    /// Gives the file its name, once all has been put.
+    void finish(const RasterMetadata& metadata);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace relevo::light

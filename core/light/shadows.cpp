@@ -14,11 +14,12 @@
 namespace relevo::light {
 namespace {
 
+/// @param of  what `lit` has the posts of
 void light_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double radius_rad,
-                Array2d<float>& lit) {
+                Array2d<float>& lit, const SweepWindow& of) {
     const bool soft = radius_rad > 0;
-    TileValues values(tile.window, 0), upper(soft ? tile.window : SweepWindow{}, 0),
-        scratch(sky.levels() > 1 ? tile.window : SweepWindow{}, 0);
+    TileValues values(tile.part, 0), upper(soft ? tile.part : SweepWindow{}, 0),
+        scratch(sky.levels() > 1 ? tile.part : SweepWindow{}, 0);
     for (TileValues* const each : {&values, &upper, &scratch})
         each->turn(tile.path.along_columns());
     each_edge(sky, sweep, tile, radius_rad, scratch, [&](const SweepRun& run) {
@@ -42,7 +43,7 @@ void light_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doub
                     out[i] = h >= run.found[i] ? 1 : 0;
             }
         });
-    values.put(lit);
+    values.put(lit, of);
 }
 
 }  // namespace
@@ -66,26 +67,28 @@ double true_azimuth_rad(const dem::Grid& grid, double azimuth_rad) {
 
 Shadows shadows(const dem::Posts& posts, const SunOverDem& sun, const ShadowOptions& options) {
     const dem::Grid& grid = posts.grid();
-    const dem::Posts::View heights = view_in_memory(posts);
     const DemSky dem(posts, options);
     const SunSky sky(dem, sun);
+    const SweepWindow part = window_of(options.part, grid);
     Shadows result;
-    result.lit = Array2d<float>(grid.columns(), grid.rows());
+    result.lit = Array2d<float>(part.columns, part.rows);
     if (sky.is_night()) {
-        for (int row = 0; row < grid.rows(); ++row)
-            for (int column = 0; column < grid.columns(); ++column) {
-                const float h = *heights.at(column, row);
+        const PartHeights heights(posts, part);
+        for (int row = 0; row < part.rows; ++row)
+            for (int column = 0; column < part.columns; ++column) {
+                const float h = heights.at(part.column + column, part.row + row);
                 result.lit.at(column, row) = std::isnan(h) ? h : 0;
             }
     } else {
-        const Sweep sweep(heights.first_m, grid.columns(), grid.rows(), heights.stride);
-        const std::vector<SweepWindow> windows = divide({sky}, whole(grid));
+        const Sweep sweep = sweep_over(posts);
+        const std::vector<SweepWindow> windows = divide({sky}, whole(grid), part);
         each_window(windows, [&](const SweepWindow& window) {
-            light_tile(sky, sweep, *sky.tile(window), options.soft ? sun.semidiameter_rad : 0,
-                       result.lit);
+            light_tile(sky, sweep, tile_of(sky, window, part),
+                       options.soft ? sun.semidiameter_rad : 0, result.lit, part);
         });
         result.tiles = static_cast<int>(windows.size());
     }
+    if (options.done) options.done(1);
     for (const float lit : result.lit) {
         result.holes += std::isnan(lit);
         result.lit_posts += lit > 0;

@@ -34,12 +34,18 @@ struct ShadowOptions {
     std::function<sun::Refraction(const geo::Geodetic&)> air;
     /// How much of the disc is seen, instead of whether its centre is.
     bool soft = false;
+    /// Whose posts are wanted; without columns: all. Ground around it shades all the same, and the
+    /// figures are those, to the bit, that they have among all.
+    dem::Window part{};
+    /// Told now and then which share of the work has been done since it was told last, on the
+    /// thread that called. What it throws ends the work.
+    std::function<void(double)> done;
 };
 
 /// Light and shade of a moment.
 struct Shadows {
-    /// Of every post: 0 in the shade, 1 lit, and with ShadowOptions::soft the share of the sun's
-    /// disc that is seen, in between; NaN in holes.
+    /// Of every post of the part: 0 in the shade, 1 lit, and with ShadowOptions::soft the share of
+    /// the sun's disc that is seen, in between; NaN in holes.
     Array2d<float> lit;
     std::int64_t lit_posts = 0;     ///< that see any of what is asked for
     std::int64_t shaded_posts = 0;  ///< that see nothing of it

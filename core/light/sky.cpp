@@ -25,6 +25,16 @@ constexpr int kLeastTile = 2;                        // posts a side
 constexpr int kLarge = 64;                           // likewise
 constexpr double kNight_rad = radians(-4);           // no ground of the Earth sees the sun so low
 
+/// @param soft  shares of discs are asked for
+float floor_under(float lowest_m, double relief_m, double curvature, bool soft) {
+    // Rays of the disc's upper and lower limb part by its width with each metre, and meet ground no
+    // farther off than that which sees the smooth Earth's horizon from both sides.
+    constexpr double kDisc_rad = 0.0095;
+    const double farthest_m = 2 * std::sqrt(2 * relief_m / curvature);
+    const double under_m = 50 + relief_m / 4 + (soft ? kDisc_rad * farthest_m : 0);
+    return static_cast<float>(lowest_m - under_m);
+}
+
 /// The wider of the two spacings of posts.
 double grid_spacing_m(const dem::Grid& grid) {
     const glm::dvec2 spacing_m = grid.post_spacing_m();
@@ -46,19 +56,22 @@ glm::dvec2 moved(const dem::Grid& grid, const geo::Geodetic& from, double azimut
 
 constexpr int kRun = 512;  // posts whose edges are looked at together
 
-/// The smooth Earth around the DEM hides a sun that is lower than level.
+/// The smooth Earth around the DEM hides a sun that is lower than level. From the reference on, so
+/// that bits do not hang on where a run begins.
 void add_earth(const SweepSun& sun, const SweepRun& run, double lowest_m, double curvature,
                float* edge_m) {
-    const auto tangent = [&](int i) {
-        const double at = run.first + i;
-        return run.along_column ? sun.tangent_at(run.line, at) : sun.tangent_at(at, run.line);
-    };
-    const auto first = static_cast<float>(tangent(0)),
-               a_post = static_cast<float>(tangent(1) - tangent(0)),
+    const GridPair& middle = sun.reference;
+    const auto base =
+                   static_cast<float>(run.along_column ? sun.tangent_at(run.line, middle.row)
+                                                       : sun.tangent_at(middle.column, run.line)),
+               a_post = static_cast<float>(run.along_column ? sun.tangent_a_post.row
+                                                            : sun.tangent_a_post.column),
+               from =
+                   static_cast<float>(run.first - (run.along_column ? middle.row : middle.column)),
                scale = static_cast<float>(1 / (2 * curvature)),
                lowest = static_cast<float>(lowest_m);
     for (int i = 0; i < run.count; ++i) {
-        const float t = first + a_post * static_cast<float>(i);
+        const float t = base + a_post * (from + static_cast<float>(i));
         const float earth_m = lowest + t * t * scale;
         edge_m[i] = t < 0 && earth_m > edge_m[i] ? earth_m : edge_m[i];
     }
@@ -117,7 +130,9 @@ std::array<SweepWindow, 2> halves(const SweepWindow& window, bool of_columns) {
 }
 
 void divide(const std::vector<SunSky>& suns, double tolerance_rad, const SweepWindow& window,
-            std::vector<SweepWindow>& windows) {
+            const SweepWindow& part, std::vector<SweepWindow>& windows) {
+    const SweepWindow wanted = common(window, part);
+    if (wanted.columns == 0 || wanted.rows == 0) return;
     if (error_rad(suns, window) <= tolerance_rad) return windows.push_back(window);
     const bool wide = window.columns > kLeastTile, high = window.rows > kLeastTile;
     if (!wide && !high) no_tile(suns.front().dem().grid());
@@ -129,26 +144,36 @@ void divide(const std::vector<SunSky>& suns, double tolerance_rad, const SweepWi
                                         error_rad(suns, halves(window, false)[0])
                                   : wide && (!high || size_m.x > size_m.y);
     for (const SweepWindow& half : halves(window, by_columns))
-        divide(suns, tolerance_rad, half, windows);
+        divide(suns, tolerance_rad, half, part, windows);
 }
 
 }  // namespace
 
-dem::Posts::View view_in_memory(const dem::Posts& posts) {
+Sweep sweep_over(const dem::Posts& posts) {
     const dem::Grid& grid = posts.grid();
     if (!posts.in_memory())
-        bad_input(fmt::format("{}: {} x {} posts are more than --memory allows; pass --memory {}",
-                              posts.about().path, grid.columns(), grid.rows(),
-                              ((std::int64_t{grid.columns()} * grid.rows()) >> 18) + 1));
+        return Sweep(
+            [&posts](const SweepWindow& window, std::vector<float>& height_m) {
+                posts.view({window.column, window.row, window.columns, window.rows}, height_m);
+            },
+            grid.columns(), grid.rows(), posts.lowest_m(), posts.highest_m());
     std::vector<float> unused;
-    return posts.view({0, 0, grid.columns(), grid.rows()}, unused);
+    const dem::Posts::View all = posts.view({0, 0, grid.columns(), grid.rows()}, unused);
+    return Sweep(all.first_m, grid.columns(), grid.rows(), all.stride);
+}
+
+PartHeights::PartHeights(const dem::Posts& posts, const SweepWindow& part) {
+    const SweepWindow w = common({part.column - 1, part.row - 1, part.columns + 2, part.rows + 2},
+                                 whole(posts.grid()));
+    view = posts.view({w.column, w.row, w.columns, w.rows}, buffer);
 }
 
 DemSky::DemSky(const dem::Posts& posts, const ShadowOptions& options)
     : posts_(posts),
       frame_(posts.grid().center()),
       curvature_((1 - options.refraction) / geo::kEquatorialRadius_m),
-      relief_m_(double{posts.highest_m()} - posts.lowest_m()) {
+      relief_m_(double{posts.highest_m()} - posts.lowest_m()),
+      floor_m_(floor_under(posts.lowest_m(), relief_m_, curvature_, options.soft)) {
     if (!(options.refraction >= -1 && options.refraction <= 0.9))
         bad_input(fmt::format(
             "light::DemSky: refraction {:.10g}: no air bends light so, expected -1 to 0.9 of the "
@@ -160,6 +185,11 @@ DemSky::DemSky(const dem::Posts& posts, const ShadowOptions& options)
         place.height_m = height_m;
         airs_.push_back(options.air(place));
     }
+}
+
+double DemSky::horizon_reach_m() const {
+    // Both at the highest post see each other no farther than this, and any others less far.
+    return 2.05 * std::sqrt(2 * relief_m_ / curvature_);
 }
 
 std::size_t DemSky::levels(double elevation_rad) const {
@@ -191,6 +221,13 @@ SunSky::SunSky(const DemSky& dem, const geo::Geodetic& place, const SunOverDem& 
 SunSky::SunSky(const DemSky& dem, double azimuth_rad)
     : dem_(dem), levels_(1), azimuth_rad_(azimuth_rad) {
     along_columns_ = goes_along_columns();
+}
+
+glm::dvec3 SunSky::direction(double column, double row) const {
+    const Local sun = at(column, row);
+    const double level = std::cos(sun.elevation_rad);
+    return {level * std::sin(sun.azimuth_rad), level * std::cos(sun.azimuth_rad),
+            std::sin(sun.elevation_rad)};
 }
 
 bool SunSky::goes_along_columns() const {
@@ -271,7 +308,7 @@ std::optional<SunTile> SunSky::tile(const SweepWindow& window) const {
                            terms[2].y))
             continue;
         const auto pair = [](const glm::dvec2& v) { return GridPair{v.x, v.y}; };
-        SunTile tile{window, {}};
+        SunTile tile{window, window, {}};
         tile.path.columns_set = along_columns_;
         tile.path.reference = pair(middle);
         tile.path.towards = pair(terms[0] / far_m);
@@ -337,10 +374,22 @@ double SunSky::error_rad(const SunTile& tile) const {
 }
 
 std::vector<SweepWindow> divide(const std::vector<SunSky>& suns, const SweepWindow& window,
-                                double tolerance_rad) {
+                                const SweepWindow& part, double tolerance_rad) {
     std::vector<SweepWindow> windows;
-    divide(suns, tolerance_rad, window, windows);
+    divide(suns, tolerance_rad, window, part, windows);
     return windows;
+}
+
+SweepWindow common(const SweepWindow& a, const SweepWindow& b) {
+    const int column = std::max(a.column, b.column), row = std::max(a.row, b.row);
+    return {column, row, std::max(0, std::min(a.column + a.columns, b.column + b.columns) - column),
+            std::max(0, std::min(a.row + a.rows, b.row + b.rows) - row)};
+}
+
+SunTile tile_of(const SunSky& sky, const SweepWindow& window, const SweepWindow& part) {
+    SunTile tile = *sky.tile(window);
+    tile.part = common(window, part);
+    return tile;
 }
 
 void each_window(const std::vector<SweepWindow>& windows,
@@ -354,8 +403,11 @@ void each_window(const std::vector<SweepWindow>& windows,
 void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
                TileValues& scratch, const Sweep::Use& use) {
     const DemSky& dem = sky.dem();
-    const SweepWindow& w = tile.window;
+    const SweepWindow &w = tile.window, &part_of = tile.part;
     const SweepSun lower = sky.sun(tile, 0, offset_rad);
+    const auto sweep_edges = [&](const SweepSun& sun, const Sweep::Use& each) {
+        sweep.each_edge(sun, part_of, each, Sweep::kMostLanes, dem.floor_m());
+    };
     const auto is_over = [&](double column, double row) {
         return lower.tangent_at(column, row) >= 0;
     };
@@ -363,30 +415,30 @@ void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doubl
     const bool over_earth = is_over(w.column, w.row) && is_over(right, w.row) &&
                             is_over(w.column, end) && is_over(right, end);
     const bool two = sky.levels() == 2;
-    if (over_earth && !two) return sweep.each_edge(lower, w, use);
+    if (over_earth && !two) return sweep_edges(lower, use);
 
     if (two)
-        sweep.each_edge(lower, w, [&](const SweepRun& run) {
+        sweep_edges(lower, [&](const SweepRun& run) {
             std::copy_n(run.found, run.count, scratch.of(run));
         });
     const SweepSun sun = two ? sky.sun(tile, 1, offset_rad) : lower;
     const double low_m = dem.level_height_m(0), span_m = dem.level_height_m(1) - low_m;
     const auto fill = [&](const SweepRun& part, float* edge_m) {
         std::copy_n(part.found, part.count, edge_m);
-        add_earth(sun, part, sweep.lowest_m(), dem.curvature(), edge_m);
+        add_earth(sun, part, low_m, dem.curvature(), edge_m);
         if (!two) return;
         float* const other_m = scratch.of(part);
-        add_earth(lower, part, sweep.lowest_m(), dem.curvature(), other_m);
+        add_earth(lower, part, low_m, dem.curvature(), other_m);
         mix(part, other_m, low_m, span_m, edge_m);
     };
-    sweep.each_edge(sun, w, [&](const SweepRun& run) { each_part(run, fill, use); });
+    sweep_edges(sun, [&](const SweepRun& run) { each_part(run, fill, use); });
 }
 
 void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& tile,
                   const Sweep::Use& use) {
     const DemSky& dem = direction.dem();
     const auto curvature = static_cast<float>(dem.curvature());
-    const float lowest_m = sweep.lowest_m();
+    const auto lowest_m = static_cast<float>(dem.level_height_m(0));
     const auto fill = [&](const SweepRun& part, float* tangent) {
         for (int i = 0; i < part.count; ++i) {
             const float dip =
@@ -394,7 +446,7 @@ void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& ti
             tangent[i] = std::max(part.found[i], dip);
         }
     };
-    sweep.each_horizon(tile.path, dem.curvature(), direction.reach_m(0), tile.window,
+    sweep.each_horizon(tile.path, dem.curvature(), dem.horizon_reach_m(), tile.part,
                        [&](const SweepRun& run) { each_part(run, fill, use); });
 }
 
@@ -413,14 +465,14 @@ void TileValues::turn(bool along_columns) {
     along_columns_ = along_columns;
 }
 
-void TileValues::put(Array2d<float>& whole) const {
-    float* const to = &whole.at(window_.column, window_.row);
+void TileValues::put(Array2d<float>& all, const SweepWindow& of) const {
+    float* const to = &all.at(window_.column - of.column, window_.row - of.row);
     if (along_columns_)
         return transpose(values_.data(), window_.rows, window_.columns, window_.rows, to,
-                         whole.width());
+                         all.width());
     for (int row = 0; row < window_.rows; ++row)
         std::copy_n(values_.data() + std::ptrdiff_t{row} * window_.columns, window_.columns,
-                    to + std::ptrdiff_t{row} * whole.width());
+                    to + std::ptrdiff_t{row} * all.width());
 }
 
 }  // namespace relevo::light

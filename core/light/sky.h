@@ -18,14 +18,24 @@
 /// The sun over the grid of a DEM, as sweeps need it; shared by what makes rasters.
 namespace relevo::light {
 
-/// All heights of a DEM that is in memory.
-/// @throws Error (BadInput) for one that is not
-dem::Posts::View view_in_memory(const dem::Posts& posts);
+/// Sweeps over all posts of a DEM, in memory or not.
+/// @param posts  outlives it
+Sweep sweep_over(const dem::Posts& posts);
 
-/// A part of a DEM, and the sun over it but for its height.
+/// The heights of a part, and of the posts beside it.
+struct PartHeights {
+    std::vector<float> buffer;
+    dem::Posts::View view;
+
+    PartHeights(const dem::Posts& posts, const SweepWindow& part);
+    float at(int column, int row) const { return *view.at(column, row); }
+};
+
+/// A tile of a DEM, and the sun over it but for its height.
 struct SunTile {
-    SweepWindow window;
-    SweepSun path;  ///< its tangents are not set
+    SweepWindow window;  ///< that the sun is made for
+    SweepWindow part;    ///< of it, whose posts are wanted; they have the same figures in any part
+    SweepSun path;       ///< its tangents are not set
 };
 
 /// What is the same of a DEM for all suns.
@@ -40,6 +50,13 @@ class DemSky {
     const geo::LocalFrame& frame() const { return frame_; }
     double curvature() const { return curvature_; }  ///< of lines of sight over the ground [1/m]
     double relief_m() const { return relief_m_; }
+    /// Edges of shadows need be no lower. That is so far under the lowest post that a margin which
+    /// it bounds tells nothing of when shade will come, nor, where discs are asked for, of the
+    /// part of one that any ground in sight hides.
+    float floor_m() const { return floor_m_; }
+    /// Ground that is farther off is under the horizon of the smooth Earth, be it and the eye on
+    /// whatever height.
+    double horizon_reach_m() const;
     bool has_air() const { return !airs_.empty(); }
     /// How many levels of air matter to a sun: its lowest post's, and its highest one's where the
     /// two see it otherwise.
@@ -51,6 +68,7 @@ class DemSky {
     const dem::Posts& posts_;
     geo::LocalFrame frame_;
     double curvature_, relief_m_;
+    float floor_m_;
     std::vector<sun::Refraction> airs_;  // over the lowest post and the highest one, or none
 };
 
@@ -73,6 +91,9 @@ class SunSky {
 
     /// Of the sun without air at a post.
     double elevation_rad(double column, double row) const { return at(column, row).elevation_rad; }
+
+    /// Likewise towards it, local ENU, a unit vector.
+    glm::dvec3 direction(double column, double row) const;
 
     /// The ray through the middle of a window, as a cubic over the grid.
     std::optional<SunTile> tile(const SweepWindow& window) const;
@@ -107,11 +128,12 @@ class SunSky {
 /// moved by a tenth of a post for it; 0.05 degrees anywhere.
 constexpr double kSunTolerance_rad = radians(0.04);
 
-/// The parts of a window over each of which a sun is one, for all suns given. They are long towards
+/// The tiles of a window over each of which a sun is one, for all suns given. They are long towards
 /// suns that stand alike, so that little is swept twice.
+/// @param part  of the window: tiles without a post of it are left out
 /// @throws Error (BadInput) where a grid is so coarse or so near to a pole that there are none
 std::vector<SweepWindow> divide(const std::vector<SunSky>& suns, const SweepWindow& window,
-                                double tolerance_rad = kSunTolerance_rad);
+                                const SweepWindow& part, double tolerance_rad = kSunTolerance_rad);
 
 /// Calls `body` with each of them, on several threads.
 void each_window(const std::vector<SweepWindow>& windows,
@@ -120,6 +142,18 @@ void each_window(const std::vector<SweepWindow>& windows,
 inline SweepWindow whole(const dem::Grid& grid) {
     return {0, 0, grid.columns(), grid.rows()};
 }
+
+/// The window of options, where one without posts stands for all.
+inline SweepWindow window_of(const dem::Window& asked, const dem::Grid& grid) {
+    if (asked.columns == 0) return whole(grid);
+    return {asked.column, asked.row, asked.columns, asked.rows};
+}
+
+/// What two windows have in common; without columns or rows where that is nothing.
+SweepWindow common(const SweepWindow& a, const SweepWindow& b);
+
+/// The tile of a sun on one of its windows, where the posts of a part are wanted.
+SunTile tile_of(const SunSky& sky, const SweepWindow& window, const SweepWindow& part);
 
 /// A figure for each post of a window, in the order in which sweeps come to them.
 class TileValues {
@@ -135,7 +169,8 @@ class TileValues {
                std::ptrdiff_t{line} * (run.along_column ? window_.rows : window_.columns) + first;
     }
     /// Puts them where the window is.
-    void put(Array2d<float>& whole) const;
+    /// @param of  the window that `all` has the posts of
+    void put(Array2d<float>& all, const SweepWindow& of) const;
 
   private:
     SweepWindow window_;
@@ -143,10 +178,10 @@ class TileValues {
     std::vector<float> values_;
 };
 
-/// Calls `use` with all posts of a tile and the edge of the shadow over each, the post's own air
-/// and the smooth Earth around the DEM considered, on several threads.
+/// Calls `use` with the posts of a tile's part and the edge of the shadow over each, the post's own
+/// air and the smooth Earth around the DEM considered, on several threads.
 /// @param offset_rad  of the part of the disc over its centre
-/// @param scratch     of a window that holds the tile's, turned as the sun's sweeps go
+/// @param scratch     of a window that holds that part, turned as the sun's sweeps go
 void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
                TileValues& scratch, const Sweep::Use& use);
 

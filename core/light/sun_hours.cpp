@@ -8,9 +8,13 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "base/units.h"
+#include "light/horizons.h"
+#include "light/irradiation.h"
 #include "light/quick_math.h"
 #include "light/sky.h"
 #include "sun/position.h"
@@ -21,14 +25,18 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kDay_s = 86400, kHour_s = 3600;
-constexpr double kLow_rad = radians(1.5);              // a sun under that is near the horizon
-constexpr int kFiner = 3;                              // as many steps there as one elsewhere
+constexpr float kOpen_m = 1e6F;            // margin where nothing of the DEM lies towards the sun
+constexpr double kLow_rad = radians(1.5);  // a sun under that is near the horizon
+constexpr int kFiner = 3;                  // as many steps there as one elsewhere
 constexpr double kPeriodTolerance_rad = radians(0.1);  // of suns that are put together anyway
 
 /// Moments of a time, each with the sun.
 struct Moments {
     std::vector<double> at_s;  // from the beginning
     std::vector<SunOverDem> suns;
+    /// Half way from each to the next, and how far off the sun is then.
+    std::vector<SunOverDem> middles{};
+    std::vector<double> distances_au{};
 };
 
 SunOverDem sun_over(const sun::PositionTable& table, sun::Instant utc,
@@ -55,8 +63,13 @@ Moments moments(const DemSky& dem, sun::Instant begin, double length_s, double s
         const double from_s = moments.at_s.back(), to_s = std::min(k * step_s, length_s);
         const int parts = is_low(moments.suns.back()) || is_low(sun_at(to_s)) ? finer : 1;
         for (int part = 1; part <= parts; ++part) {
+            const double before_s = moments.at_s.back();
             moments.at_s.push_back(part == parts ? to_s : from_s + (to_s - from_s) * part / parts);
             moments.suns.push_back(sun_at(moments.at_s.back()));
+            const double middle_s = (before_s + moments.at_s.back()) / 2;
+            moments.middles.push_back(sun_at(middle_s));
+            moments.distances_au.push_back(
+                glm::length(table.vector_au(begin + middle_s, observer)));
         }
     }
     return moments;
@@ -67,6 +80,7 @@ Moments moments(const DemSky& dem, sun::Instant begin, double length_s, double s
 /// What is known of each post so far.
 struct PostLight {
     TileValues margin_m, lit_h, first_h, last_h, spells, scratch;
+    std::optional<GroundForBeams> beams;
 
     PostLight(const SweepWindow& window, bool with_spells)
         : margin_m(window, -1),
@@ -79,6 +93,7 @@ struct PostLight {
     void turn(bool along_columns) {
         for (TileValues* const each : {&margin_m, &lit_h, &first_h, &last_h, &spells, &scratch})
             each->turn(along_columns);
+        if (beams) beams->turn(along_columns);
     }
 };
 
@@ -88,10 +103,9 @@ struct Step {
 };
 
 /// Margins now; a hole has none.
-/// @param floor_m  under which it does not matter where an edge is
-void measure(const SweepRun& run, float floor_m, float* margin_m) {
+void measure(const SweepRun& run, float* margin_m) {
     for (int i = 0; i < run.count; ++i)
-        margin_m[i] = run.height_m[i] - std::max(run.found[i], floor_m);
+        margin_m[i] = std::min(run.height_m[i] - run.found[i], kOpen_m);
 }
 
 /// Posts next to each other at a moment, and what is known of them from the moment before.
@@ -101,15 +115,14 @@ void measure(const SweepRun& run, float floor_m, float* margin_m) {
 /// their hours touched.
 struct Light {
     float from_h, hours;  // the moment before, and how long ago
-    float floor_m;        // as in measure()
     const float *height_m, *edge_m;
     float *margin_m, *lit_h;
 };
 
 [[gnu::always_inline]] inline void add_light_of_one(const Light& light, int i) {
     const float before = light.margin_m[i];
-    const float edge_m = light.edge_m[i];
-    const float now = light.height_m[i] - (edge_m > light.floor_m ? edge_m : light.floor_m);
+    const float open = light.height_m[i] - light.edge_m[i];
+    const float now = open > kOpen_m ? kOpen_m : open;
     light.margin_m[i] = now;
     if ((before >= 0) == (now >= 0)) return;
     const float when_h = light.from_h + light.hours * (before / (before - now));
@@ -124,7 +137,8 @@ using Numbers [[gnu::vector_size(kPosts * sizeof(float))]] = float;
     std::memcpy(&height, light.height_m + i, sizeof height);
     std::memcpy(&edge, light.edge_m + i, sizeof edge);
     std::memcpy(&before, light.margin_m + i, sizeof before);
-    const Numbers now = height - (edge > light.floor_m ? edge : Numbers{} + light.floor_m);
+    Numbers now = height - edge;
+    now = now > kOpen_m ? Numbers{} + kOpen_m : now;
     const auto changes = (before >= 0) ^ (now >= 0);
     bool any = false;
     for (int k = 0; k < kPosts; ++k)
@@ -170,13 +184,13 @@ void add_lit(const SweepRun& run, double at_h, bool comes, const float* margin_m
 }
 
 /// Where light comes or goes between two moments. Call before add_light().
-void add_spells(const SweepRun& run, const Step& step, float floor_m, PostLight& posts) {
+void add_spells(const SweepRun& run, const Step& step, PostLight& posts) {
     const float* const margin_m = posts.margin_m.of(run);
     float *const first_h = posts.first_h.of(run), *const last_h = posts.last_h.of(run),
                  *const spells = posts.spells.of(run);
     for (int i = 0; i < run.count; ++i) {
         const float before = margin_m[i];
-        const float now = run.height_m[i] - std::max(run.found[i], floor_m);
+        const float now = std::min(run.height_m[i] - run.found[i], kOpen_m);
         if ((before >= 0) == (now >= 0)) continue;
         const auto when =
             static_cast<float>(step.from_h + step.hours * before / (double{before} - now));
@@ -203,16 +217,25 @@ void add_end(const SweepRun& run, double at_h, bool is_first, PostLight& posts) 
 
 class FewDays {
   public:
-    FewDays(const DemSky& dem, const Sweep& sweep, const Moments& moments, bool spells)
-        : dem_(dem), sweep_(sweep), moments_(moments), spells_(spells) {
+    FewDays(const DemSky& dem, const Sweep& sweep, const Moments& moments,
+            const SunHoursOptions& options, const SweepWindow& part)
+        : dem_(dem),
+          sweep_(sweep),
+          moments_(moments),
+          spells_(options.spells),
+          irradiation_(options.irradiation),
+          part_(part) {
         for (const SunOverDem& sun : moments.suns)
             skies_.emplace_back(dem, sun);
         for (const SunSky& sky : skies_)
             night_.push_back(sky.is_night());
     }
 
-    void light(SunHours& result) const {
-        PostLight posts(whole(dem_.grid()), spells_);
+    void light(SunHours& result, const std::function<void(double)>& done) const {
+        const double all = std::max<double>(
+            1, static_cast<double>(std::count(night_.begin(), night_.end(), false)));
+        PostLight posts(part_, spells_);
+        if (irradiation_) posts.beams.emplace(dem_, part_);
         std::vector<SweepWindow> windows;
         for (std::size_t k = 0; k < skies_.size(); ++k) {
             if (night_[k]) continue;
@@ -220,12 +243,14 @@ class FewDays {
             result.windows = std::max(result.windows, static_cast<int>(windows.size()));
             posts.turn(skies_[k].along_columns());
             each_window(windows, [&](const SweepWindow& window) { add(window, k, posts); });
+            if (done) done(1 / all);
         }
-        posts.lit_h.put(result.hours);
+        posts.lit_h.put(result.hours, part_);
+        if (irradiation_) posts.beams->beam_wh.put(result.beam_kwh, part_);
         if (!spells_) return;
-        posts.first_h.put(result.first_h);
-        posts.last_h.put(result.last_h);
-        posts.spells.put(result.spells);
+        posts.first_h.put(result.first_h, part_);
+        posts.last_h.put(result.last_h, part_);
+        posts.spells.put(result.spells, part_);
     }
 
   private:
@@ -237,27 +262,35 @@ class FewDays {
         while (last + 1 < skies_.size() && !night_[last + 1] && (last + 1) % kTogether != 0)
             ++last;
         if (last > k) suns.push_back(skies_[last]);
-        return divide(suns, whole(dem_.grid()));
+        return divide(suns, whole(dem_.grid()), part_);
     }
 
     void add(const SweepWindow& window, std::size_t k, PostLight& posts) const {
-        const SunTile tile = *skies_[k].tile(window);
+        const SunTile tile = tile_of(skies_[k], window, part_);
         // A night leaves all posts in the shade.
         const bool is_first = k == 0 || night_[k - 1],
                    is_last = k + 1 == skies_.size() || night_[k + 1];
         const double now_h = moments_.at_s[k] / kHour_s;
         const Step step{k == 0 ? 0 : moments_.at_s[k - 1] / kHour_s,
                         k == 0 ? 0 : (moments_.at_s[k] - moments_.at_s[k - 1]) / kHour_s};
+        std::optional<SunBeam> beam;
+        if (irradiation_ && !is_first) {
+            const SunOverDem& middle = moments_.middles[k - 1];
+            const SunSky sky(dem_, middle);
+            beam.emplace(sky, tile, ClearSky(irradiation_->linke, moments_.distances_au[k - 1]),
+                         step.hours);
+        }
         each_edge(skies_[k], sweep_, tile, 0, posts.scratch, [&](const SweepRun& run) {
             float *const margin_m = posts.margin_m.of(run), *const lit_h = posts.lit_h.of(run);
             if (is_first) {
-                measure(run, sweep_.floor_m(), margin_m);
+                measure(run, margin_m);
                 add_lit(run, now_h, true, margin_m, lit_h);
                 if (spells_ && k == 0) add_end(run, 0, true, posts);
             } else {
-                if (spells_) add_spells(run, step, sweep_.floor_m(), posts);
+                if (spells_) add_spells(run, step, posts);
+                if (beam && beam->given.back() > 0) add_beam(run, *beam, margin_m, *posts.beams);
                 add_light({static_cast<float>(step.from_h), static_cast<float>(step.hours),
-                           sweep_.floor_m(), run.height_m, run.found, margin_m, lit_h},
+                           run.height_m, run.found, margin_m, lit_h},
                           run.count);
             }
             if (is_last) add_lit(run, now_h, false, margin_m, lit_h);
@@ -269,6 +302,8 @@ class FewDays {
     const Sweep& sweep_;
     const Moments& moments_;
     bool spells_;
+    std::optional<SunHoursOptions::Irradiation> irradiation_;
+    SweepWindow part_;
     std::vector<SunSky> skies_;
     std::vector<bool> night_;
 };
@@ -283,8 +318,12 @@ class Direction {
     static constexpr double kStep_rad = radians(96) / (kEntries - 1);
 
     /// @param elevation_rad  as seen
-    void add(double azimuth_rad, double elevation_rad, double hours) {
-        if (hours_.empty()) hours_.resize(kEntries, 0);
+    /// @param level_wh, up_wh  of beams: along the azimuth, and from above
+    void add(double azimuth_rad, double elevation_rad, double hours, double level_wh,
+             double up_wh) {
+        if (hours_.empty())
+            for (auto* const each : {&hours_, &level_wh_, &up_wh_})
+                each->resize(kEntries, 0);
         azimuth_sum_rad_ += azimuth_rad * hours;
         sum_h_ += hours;
         // An entry between two: to each its share.
@@ -292,8 +331,13 @@ class Direction {
             std::clamp((elevation_rad - kLowest_rad) / kStep_rad, 0.0, double{kEntries} - 1.001);
         const auto entry = static_cast<std::size_t>(at);
         const double part = at - static_cast<double>(entry);
-        hours_[entry] += hours * (1 - part);
-        hours_[entry + 1] += hours * part;
+        const auto put = [&](std::vector<double>& to, double sum) {
+            to[entry] += sum * (1 - part);
+            to[entry + 1] += sum * part;
+        };
+        put(hours_, hours);
+        put(level_wh_, level_wh);
+        put(up_wh_, up_wh);
     }
 
     bool empty() const { return hours_.empty(); }
@@ -301,34 +345,51 @@ class Direction {
 
     /// To be called once all is added.
     void sum_up() {
-        // Half of what stands at an entry is over it.
-        double above = 0;
-        over_.resize(hours_.size());
-        for (std::size_t k = hours_.size(); k-- > 0;) {
-            over_[k] = static_cast<float>(above + hours_[k] / 2);
-            above += hours_[k];
-        }
+        over_ = summed(hours_);
+        level_over_ = summed(level_wh_);
+        up_over_ = summed(up_wh_);
     }
     const float* over() const { return over_.data(); }
+    const float* level_over() const { return level_over_.data(); }
+    const float* up_over() const { return up_over_.data(); }
 
   private:
+    /// Half of what stands at an entry is over it.
+    static std::vector<float> summed(const std::vector<double>& at) {
+        double above = 0;
+        std::vector<float> over(at.size());
+        for (std::size_t k = at.size(); k-- > 0;) {
+            over[k] = static_cast<float>(above + at[k] / 2);
+            above += at[k];
+        }
+        return over;
+    }
+
     double azimuth_sum_rad_ = 0, sum_h_ = 0;
-    std::vector<double> hours_;
-    std::vector<float> over_;
+    std::vector<double> hours_, level_wh_, up_wh_;
+    std::vector<float> over_, level_over_, up_over_;
 };
 
 class ManyDays {
   public:
-    ManyDays(const DemSky& dem, const Sweep& sweep, sun::Instant begin, double length_s)
+    ManyDays(const DemSky& dem, const Sweep& sweep, sun::Instant begin, double length_s,
+             const SunHoursOptions& options, const SweepWindow& part)
         : dem_(dem),
           sweep_(sweep),
           begin_(begin),
           length_s_(length_s),
-          table_(begin, begin + length_s) {}
+          table_(begin, begin + length_s),
+          irradiation_(options.irradiation),
+          part_(part) {}
 
-    void light(SunHours& result) const {
+    void light(SunHours& result, const std::function<void(double)>& done) const {
         for (const SweepWindow& block : blocks())
-            light_block(block, result);
+            if (const SweepWindow part = common(block, part_); part.columns > 0 && part.rows > 0) {
+                const double share = double(part.columns) * part.rows / part_.columns / part_.rows;
+                light_block(block, part, result, [&](double of_block) {
+                    if (done) done(share * of_block);
+                });
+            }
     }
 
   private:
@@ -352,11 +413,17 @@ class ManyDays {
         return blocks;
     }
 
-    void light_block(const SweepWindow& block, SunHours& result) const {
+    void light_block(const SweepWindow& block, const SweepWindow& part, SunHours& result,
+                     const std::function<void(double)>& done) const {
         const geo::Geodetic middle = dem_.grid().place(block.column + (block.columns - 1) / 2.0,
                                                        block.row + (block.rows - 1) / 2.0);
         Directions directions = directions_over(middle);
-        TileValues lit_h(block, 0);
+        const double all = static_cast<double>(
+            std::count_if(directions[0].begin(), directions[0].end(),
+                          [](const Direction& direction) { return !direction.empty(); }));
+        TileValues lit_h(part, 0);
+        std::optional<GroundForBeams> beams;
+        if (irradiation_) beams.emplace(dem_, part);
         for (std::size_t k = 0; k < kDirections; ++k) {
             Direction& low = directions[0][k];
             if (low.empty()) continue;
@@ -364,13 +431,17 @@ class ManyDays {
             directions[1][k].sum_up();
             const SunSky sky(dem_, middle, {low.azimuth_rad(), 0, 0});
             lit_h.turn(sky.along_columns());
-            const std::vector<SweepWindow> windows = divide({sky}, block, kPeriodTolerance_rad);
+            if (beams) beams->turn(sky.along_columns());
+            const std::vector<SweepWindow> windows =
+                divide({sky}, block, part, kPeriodTolerance_rad);
             result.windows = std::max(result.windows, static_cast<int>(windows.size()));
             each_window(windows, [&](const SweepWindow& window) {
-                add(sky, *sky.tile(window), low, directions[1][k], lit_h);
+                add(sky, tile_of(sky, window, part), low, directions[1][k], lit_h, beams);
             });
+            done(1 / all);
         }
-        lit_h.put(result.hours);
+        lit_h.put(result.hours, part_);
+        if (beams) beams->beam_wh.put(result.beam_kwh, part_);
     }
 
     Directions directions_over(const geo::Geodetic& middle) const {
@@ -381,21 +452,33 @@ class ManyDays {
         for (std::int64_t i = 0; i < steps; ++i) {
             const double from_s = static_cast<double>(i) * step_s;
             const double until_s = std::min(from_s + step_s, length_s_);
-            const SunOverDem sun = sun_over(table_, begin_ + (from_s + until_s) / 2, observer);
+            const glm::dvec3 towards_au =
+                table_.vector_au(begin_ + (from_s + until_s) / 2, observer);
+            const SunOverDem sun{sun::azimuth_of(towards_au), sun::elevation_of(towards_au), 0};
             if (sun.elevation_rad < Direction::kLowest_rad) continue;
+            const ClearSky clear(irradiation_ ? irradiation_->linke : 3, glm::length(towards_au));
+            const double hours = (until_s - from_s) / kHour_s;
             const auto k =
                 std::min(kDirections - 1,
                          static_cast<std::size_t>(sun.azimuth_rad / (2 * kPi) * kDirections));
-            for (std::size_t level = 0; level < 2; ++level)
-                directions[level][k].add(sun.azimuth_rad,
-                                         dem_.apparent_rad(sun.elevation_rad, level),
-                                         (until_s - from_s) / kHour_s);
+            for (std::size_t level = 0; level < 2; ++level) {
+                const double beam_wh =
+                    irradiation_ ? hours * clear.beam(sun.elevation_rad, level_m(level)) : 0;
+                directions[level][k].add(
+                    sun.azimuth_rad, dem_.apparent_rad(sun.elevation_rad, level), hours,
+                    beam_wh * std::cos(sun.elevation_rad), beam_wh * std::sin(sun.elevation_rad));
+            }
         }
         return directions;
     }
 
+    /// Of the lowest post and of the highest one, or a metre over that.
+    double level_m(std::size_t level) const {
+        return dem_.level_height_m(0) + (level == 0 ? 0 : std::max(1.0, dem_.relief_m()));
+    }
+
     void add(const SunSky& sky, const SunTile& tile, const Direction& low, const Direction& high,
-             TileValues& lit_h) const {
+             TileValues& lit_h, std::optional<GroundForBeams>& beams) const {
         // The sun is as much higher at a post than in the middle of the block as the ground turns
         // towards it.
         const GridPair& at = tile.path.reference;
@@ -408,27 +491,32 @@ class ManyDays {
         const double low_m = dem_.level_height_m(0);
         const double span_m = std::max(1.0, dem_.level_height_m(1) - low_m);
         each_horizon(sky, sweep_, tile, [&](const SweepRun& run) {
-            const double column = run.along_column ? run.line : run.first,
-                         row = run.along_column ? run.first : run.line;
-            look_up(run, lift_rad + more.column * (column - at.column) + more.row * (row - at.row),
-                    run.along_column ? more.row : more.column, low.over(), high.over(), low_m,
-                    span_m, lit_h.of(run));
+            // From the reference on, so that bits do not hang on where a run begins.
+            const double aside = run.along_column ? more.column * (run.line - at.column)
+                                                  : more.row * (run.line - at.row);
+            const double a_post = run.along_column ? more.row : more.column;
+            const double from = run.first - (run.along_column ? at.row : at.column);
+            look_up(run, lift_rad + aside, a_post, from, low.over(), high.over(), low_m, span_m,
+                    lit_h.of(run));
+            if (beams) look_up_beams(run, lift_rad + aside, a_post, from, low, high, *beams);
         });
     }
 
     /// @param lift, lift_a_post  of the sun over where it stands in the middle [rad]
-    static void look_up(const SweepRun& run, double lift, double lift_a_post, const float* low,
-                        const float* high, double low_m, double span_m, float* lit_h) {
+    /// @param from               where the run begins, posts from the middle on
+    static void look_up(const SweepRun& run, double lift, double lift_a_post, double from,
+                        const float* low, const float* high, double low_m, double span_m,
+                        float* lit_h) {
         constexpr auto kScale = static_cast<float>(1 / Direction::kStep_rad);
-        const auto a_post = static_cast<float>(lift_a_post);
+        const auto a_post = static_cast<float>(lift_a_post), first = static_cast<float>(from);
         const auto base = static_cast<float>(lift + Direction::kLowest_rad);
         const auto bottom_m = static_cast<float>(low_m), scale_m = static_cast<float>(1 / span_m);
         for (int i = 0; i < run.count; ++i) {
             const float t = run.found[i];
             const float elevation = std::copysign(quick_atan(std::abs(t)), t);
             const float at =
-                std::clamp((elevation - base - a_post * static_cast<float>(i)) * kScale, 0.0F,
-                           Direction::kEntries - 1.001F);
+                std::clamp((elevation - base - a_post * (first + static_cast<float>(i))) * kScale,
+                           0.0F, Direction::kEntries - 1.001F);
             const auto entry = static_cast<int>(at);
             const float part = at - static_cast<float>(entry);
             const float in_low = low[entry] + part * (low[entry + 1] - low[entry]);
@@ -437,11 +525,50 @@ class ManyDays {
         }
     }
 
+    /// Likewise the beams' sums, onto the ground as it is inclined; what comes from behind it is
+    /// none.
+    static void look_up_beams(const SweepRun& run, double lift, double lift_a_post, double from,
+                              const Direction& low, const Direction& high, GroundForBeams& ground) {
+        constexpr auto kScale = static_cast<float>(1 / Direction::kStep_rad);
+        const auto a_post = static_cast<float>(lift_a_post), first = static_cast<float>(from),
+                   base = static_cast<float>(lift),
+                   sin_azimuth = static_cast<float>(std::sin(low.azimuth_rad())),
+                   cos_azimuth = static_cast<float>(std::cos(low.azimuth_rad())),
+                   lowest = static_cast<float>(Direction::kLowest_rad);
+        const float *const east = ground.east.of(run), *const north = ground.north.of(run),
+                           *const air = ground.air.of(run);
+        float* const beam = ground.beam_wh.of(run);
+        for (int i = 0; i < run.count; ++i) {
+            const float t = run.found[i];
+            const float elevation = std::copysign(quick_atan(std::abs(t)), t);
+            const float lifted = base + a_post * (first + static_cast<float>(i));
+            const float at = std::clamp((elevation - lifted - lowest) * kScale, 0.0F,
+                                        Direction::kEntries - 1.001F);
+            const auto entry = static_cast<int>(at);
+            const float part = at - static_cast<float>(entry);
+            const auto sum = [&](const float* in_low, const float* in_high) {
+                const float l = in_low[entry] + part * (in_low[entry + 1] - in_low[entry]);
+                const float h = in_high[entry] + part * (in_high[entry + 1] - in_high[entry]);
+                return l + air[i] * (h - l);
+            };
+            const float level = sum(low.level_over(), high.level_over()),
+                        up = sum(low.up_over(), high.up_over());
+            const float e = east[i], n = north[i];
+            // The sun stands higher there by the lift.
+            const float onto =
+                (up + lifted * level) - (e * sin_azimuth + n * cos_azimuth) * (level - lifted * up);
+            const float gain = onto / std::sqrt(1 + e * e + n * n);
+            beam[i] += gain > 0 ? gain : 0;
+        }
+    }
+
     const DemSky& dem_;
     const Sweep& sweep_;
     sun::Instant begin_;
     double length_s_;
     sun::PositionTable table_;
+    std::optional<SunHoursOptions::Irradiation> irradiation_;
+    SweepWindow part_;
 };
 
 double level_hours(const DemSky& dem, const Moments& moments) {
@@ -473,12 +600,12 @@ void check(sun::Instant begin, sun::Instant end, const SunHoursOptions& options)
 }
 
 /// Holes, and the mean of the others.
-void sum_up(const dem::Posts::View& heights, SunHours& result) {
+void sum_up(const PartHeights& heights, const SweepWindow& part, SunHours& result) {
     std::int64_t posts = 0;
     for (int row = 0; row < result.hours.height(); ++row)
         for (int column = 0; column < result.hours.width(); ++column) {
             float& hours = result.hours.at(column, row);
-            if (std::isnan(*heights.at(column, row))) {
+            if (std::isnan(heights.at(part.column + column, part.row + row))) {
                 hours = kNaN;
                 if (result.spells.size() > 0) result.spells.at(column, row) = kNaN;
                 ++result.holes;
@@ -491,29 +618,67 @@ void sum_up(const dem::Posts::View& heights, SunHours& result) {
     result.mean_hours /= static_cast<double>(posts);
 }
 
+/// Light of the sky and of the ground around, and what is said of irradiation.
+void add_sky(const DemSky& dem, sun::Instant begin, double length_s, const SunHoursOptions& options,
+             SunHours& result) {
+    const SweepWindow part = window_of(options.part, dem.grid());
+    const SkyView view = sky_view(dem.posts(), {.directions = options.irradiation->sky_directions,
+                                                .refraction = options.refraction,
+                                                .level = false,
+                                                .part = options.part,
+                                                .done = {}});
+    const double step_s = length_s > 40 * kDay_s ? 600 : 60;
+    const OpenSky open(dem, sun::PositionTable(begin, begin + length_s), begin, length_s, step_s,
+                       options.irradiation->linke);
+    const PartHeights heights(dem.posts(), part);
+    const double albedo = options.irradiation->albedo;
+    parallel_for(0, part.rows, 16, [&](int first, int last) {
+        for (int row = first; row < last; ++row)
+            for (int column = 0; column < part.columns; ++column) {
+                const OpenSky::Energy energy = open.at(part.column + column, part.row + row);
+                const double height_m = heights.at(part.column + column, part.row + row);
+                const double level_wh =
+                    energy.beam_low_wh +
+                    air_left(dem, height_m) * (energy.beam_high_wh - energy.beam_low_wh);
+                const double share = view.share.at(column, row);  // NaN in holes
+                result.diffuse_kwh.at(column, row) =
+                    static_cast<float>(energy.diffuse_wh * share / 1000);
+                result.reflected_kwh.at(column, row) = static_cast<float>(
+                    albedo * (level_wh + energy.diffuse_wh) * (1 - share) / 1000);
+                float& beam = result.beam_kwh.at(column, row);
+                beam = std::isnan(share) ? kNaN : beam / 1000;
+            }
+    });
+}
+
 }  // namespace
 
 SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end,
                    const SunHoursOptions& options) {
     check(begin, end, options);
-    const dem::Posts::View heights = view_in_memory(posts);
     const dem::Grid& grid = posts.grid();
     const DemSky dem(posts, {.refraction = options.refraction, .air = options.air});
-    const Sweep sweep(heights.first_m, grid.columns(), grid.rows(), heights.stride);
+    const Sweep sweep = sweep_over(posts);
     const double length_s = end - begin;
     const bool few = length_s <= SunHoursOptions::kMostDays * kDay_s;
     const Moments times =
         moments(dem, begin, length_s, few ? options.step_s : 600, few ? kFiner : 1);
     SunHours result;
-    result.hours = Array2d<float>(grid.columns(), grid.rows(), 0);
+    const SweepWindow part = window_of(options.part, grid);
+    result.hours = Array2d<float>(part.columns, part.rows, 0);
     if (options.spells)
         for (Array2d<float>* const each : {&result.first_h, &result.last_h, &result.spells})
-            *each = Array2d<float>(grid.columns(), grid.rows(), kNaN);
+            *each = Array2d<float>(part.columns, part.rows, kNaN);
+    if (options.irradiation)
+        for (Array2d<float>* const each :
+             {&result.beam_kwh, &result.diffuse_kwh, &result.reflected_kwh})
+            *each = Array2d<float>(part.columns, part.rows);
     if (few)
-        FewDays(dem, sweep, times, options.spells).light(result);
+        FewDays(dem, sweep, times, options, part).light(result, options.done);
     else
-        ManyDays(dem, sweep, begin, length_s).light(result);
-    sum_up(heights, result);
+        ManyDays(dem, sweep, begin, length_s, options, part).light(result, options.done);
+    sum_up(PartHeights(posts, part), part, result);
+    if (options.irradiation) add_sky(dem, begin, length_s, options, result);
     result.level_hours = level_hours(dem, times);
     result.definition = fmt::format(
         "hours that the centre of the sun stands over the terrain, at the height of the ground, "

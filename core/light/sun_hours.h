@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "base/array2d.h"
@@ -20,6 +22,15 @@ struct SunHoursOptions {
     double step_s = 180;
     /// Of such a time: when each post is lit first and last, and how often, too.
     bool spells = false;
+    /// What the ground gets of sun and sky, as it is inclined, through air without clouds.
+    struct Irradiation {
+        double linke = 3;         ///< turbidity of the air, as in ClearSky
+        double albedo = 0.2;      ///< of the ground around
+        int sky_directions = 36;  ///< of the sky view, as in SkyViewOptions
+    };
+    std::optional<Irradiation> irradiation;
+    dem::Window part{};                ///< as in ShadowOptions
+    std::function<void(double)> done;  ///< likewise
 
     /// Beyond this time, every post's horizon is found in directions that are 2 degrees apart, at a
     /// cost that does not grow with the time.
@@ -34,6 +45,10 @@ struct SunHours {
     Array2d<float> first_h, last_h;
     /// With SunHoursOptions::spells: how often light comes, or is there from the beginning.
     Array2d<float> spells;
+    /// With SunHoursOptions::irradiation, else empty: kilowatt-hours on a square metre of the
+    /// ground. Beams of the sun, while its centre is over the terrain; the sky's light, by the
+    /// sky-view factor; and what ground of the same light throws back from the rest.
+    Array2d<float> beam_kwh, diffuse_kwh, reflected_kwh;
     double mean_hours = 0;
     double level_hours = 0;  ///< that it is over a level horizon in the middle of the DEM
     std::int64_t holes = 0;
@@ -43,7 +58,10 @@ struct SunHours {
 
 /// What shades is what shades in shadows(), for every sun from `begin` to `end`.
 ///
-/// Accuracy, speed: tests/light/test_sun_hours.cpp, bench_light.
+/// Irradiation by ClearSky: the beam's is summed up with the shade of every sun, of many days for
+/// each direction; diffuse light comes alike from all of the open sky.
+///
+/// Accuracy, speed: tests/light/test_sun_hours.cpp, test_clear_sky.cpp, bench_light.
 /// @throws Error (BadInput) as shadows(), for an end that is not after the beginning, for a step
 ///     that is not from 1 s to an hour, for times outside 1900-2100
 SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end,

@@ -56,8 +56,9 @@ struct Ground {
 /// Lines next to each other that rise to their ground: e[i] = max(before[i] - slope, all ground).
 struct Lift {
     float* e;
-    const float* before;  // or null: of ground alone
-    int line;             // the number of the first
+    const float* before;       // or null: of ground alone
+    float least = kNothing_m;  // without
+    int line;                  // the number of the first
     int lines;
     Slope slope;
     const Ground* ground;
@@ -73,7 +74,7 @@ template <typename V, int kVectors>
 #pragma GCC unroll 8
     for (int k = 0; k < kVectors; ++k) {
         line[k] = static_cast<float>(lift.line + i + k * kWidth) + lane;
-        height[k] = V{} + kNothing_m;
+        height[k] = V{} + lift.least;
         if (lift.before) std::memcpy(&height[k], lift.before + i + k * kWidth, sizeof(V));
         height[k] -= lift.slope.fall + lift.slope.ramp * line[k];
     }
@@ -204,36 +205,24 @@ struct Sheet {
 struct RowPlan {
     double distance_m = 0;  // from the reference towards the sun
     double shift = 0;       // column of line 0
-    double fall = 0;        // of line 0, from the first row on
+    double fall = 0;        // of line 0, from the row of the reference on
     double ramp = 0;        // likewise, more for each line
 };
 
 /// The rows that matter to a window, and all that is the same for their posts.
 class Plan {
   public:
-    /// @param height_m  through which shade falls, and is looked for
-    Plan(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double height_m)
+    /// @param drop_m  what lines may fall by before they matter no more
+    Plan(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double drop_m)
         : sheet_(sheet), sun_(sun) {
-        find_begin(window, height_m);
-        const int end_row = window.row + window.rows;
-        rows_.resize(static_cast<std::size_t>(end_row - begin_));
-        double before_tangent = 0;
-        for (int row = begin_; row < end_row; ++row) {
-            RowPlan& at = rows_[static_cast<std::size_t>(row - begin_)];
-            at.distance_m = sun.distance_m(row);
-            at.shift = sun.reference.column + sun.way(at.distance_m).column;
-            const double tangent = sun.tangent_at(at.shift, row);
-            if (row > begin_) {
-                const RowPlan& last = rows_[static_cast<std::size_t>(row - begin_ - 1)];
-                const double step_m = last.distance_m - at.distance_m;
-                at.fall = last.fall + step_m * (before_tangent + tangent) / 2;
-                at.ramp = last.ramp + step_m * sun.tangent_a_post.column;
-            }
-            before_tangent = tangent;
-        }
+        find_begin(window, drop_m);
+        rows_.resize(static_cast<std::size_t>(window.row + window.rows - begin_));
+        fill(1);
+        fill(-1);
     }
 
     int begin() const { return begin_; }
+    int end() const { return begin_ + static_cast<int>(rows_.size()); }
     const RowPlan& row(int row) const { return rows_[static_cast<std::size_t>(row - begin_)]; }
 
     /// Lines never turn back over the columns that they came from.
@@ -250,10 +239,19 @@ class Plan {
     /// @param from  such a row of one that is nearer to the sun
     int reached(int at, int from) const {
         int last = std::max(at, from);
-        while (last + 1 < begin_ + static_cast<int>(rows_.size()) &&
-               row(at).distance_m - row(last).distance_m <= reach_m_)
+        while (last + 1 < end() && row(at).distance_m - row(last).distance_m <= reach_m_)
             ++last;
         return last;
+    }
+
+    /// The columns that line 0 goes through over rows [first, end).
+    std::pair<double, double> columns(int first, int end_row) const {
+        std::pair<double, double> range{row(first).shift, row(first).shift};
+        for (int at = first + 1; at < end_row; ++at) {
+            range.first = std::min(range.first, row(at).shift);
+            range.second = std::max(range.second, row(at).shift);
+        }
+        return range;
     }
 
     /// The ground of a row, for rays that are at `shift` there, and fall from there to `to`.
@@ -301,22 +299,49 @@ class Plan {
     }
 
   private:
+    /// The rows from that of the reference on, so that what is found does not hang on where a sweep
+    /// begins. @param step  1: away from the sun, -1: towards it
+    void fill(int step) {
+        const int first = static_cast<int>(sun_.reference.row);
+        const int end = begin_ + static_cast<int>(rows_.size());
+        RowPlan last;
+        double before_m = 0, before_tangent = 0;
+        for (int row = first; step > 0 ? row < end : row >= begin_; row += step) {
+            RowPlan at;
+            const double s = at.distance_m = sun_.distance_m(row);
+            at.shift = sun_.reference.column + sun_.way(s).column;
+            const double tangent = sun_.tangent_at(at.shift, row);
+            if (row != first) {
+                const double step_m = before_m - s;
+                at.fall = last.fall + step_m * (before_tangent + tangent) / 2;
+                at.ramp = last.ramp + step_m * sun_.tangent_a_post.column;
+            }
+            if (row >= begin_ && row < end) rows_[static_cast<std::size_t>(row - begin_)] = at;
+            last = at;
+            before_m = s;
+            before_tangent = tangent;
+        }
+    }
+
     /// How far shade can reach over the window, and the first row from which it can.
-    void find_begin(const SweepWindow& window, double height_m) {
+    void find_begin(const SweepWindow& window, double drop_m) {
         const GridPair& more = sun_.tangent_a_post;
         const int right = window.column + window.columns - 1, end = window.row + window.rows - 1;
         const double tangent = sun_.tangent_at(more.column > 0 ? window.column : right,
                                                more.row > 0 ? window.row : end);
-        // Towards the sun it stands higher still.
-        const bool higher = more.column * sun_.towards.column + more.row * sun_.towards.row >= 0;
-        reach_m_ =
-            tangent > 0 && higher ? height_m / tangent : std::numeric_limits<double>::infinity();
+        // Towards the sun it stands higher still, by so much with each metre.
+        const double a_metre = more.column * sun_.towards.column + more.row * sun_.towards.row;
+        const double sum = tangent + std::sqrt(tangent * tangent + 2 * a_metre * drop_m);
+        reach_m_ = a_metre >= 0 && sum > 0 ? kMargin * 2 * drop_m / sum
+                                           : std::numeric_limits<double>::infinity();
         const double from_m = sun_.distance_m(window.row);
         begin_ = window.row;
         while (begin_ > 0 && sun_.distance_m(begin_) - from_m <= reach_m_ &&
                !std::isnan(sun_.distance_m(begin_ - 1)))
             --begin_;
     }
+
+    static constexpr double kMargin = 1.05;  // of a reach
 
     const Sheet& sheet_;
     const SweepSun& sun_;
@@ -330,11 +355,11 @@ struct Steps {
     struct Row {
         std::array<std::size_t, kLineSets + 1> lines{};  // where terms begin, and of the posts
         std::size_t end = 0;
-        int column = 0;                    // of the post that belongs to line 0
-        float between = 0;                 // how far on towards the next line each post stands
-        Slope slope;                       // of lines, from the row before
-        double fallen = 0;                 // line 0 from the first row on
-        Slope far_slope;                   // of posts' rays, from the last row that is not near
+        int column = 0;     // of the post that belongs to line 0
+        float between = 0;  // how far on towards the next line each post stands
+        Slope slope;        // of lines, from the row before
+        double fallen = 0;  // line 0 from the row of the reference on
+        Slope far_slope;    // of posts' rays, from the last row that is not near
         int first_line = 0, end_line = 0;  // which come over posts of the window that it shades
 
         std::size_t& posts() { return lines[kLineSets]; }
@@ -345,7 +370,7 @@ struct Steps {
     int begin = 0;
 
     const Row& row(int row) const { return rows[static_cast<std::size_t>(row - begin)]; }
-    /// How far line 0 has come from the first row on, where tangents are 1.
+    /// How far line 0 has come from the row of the reference on, where tangents are 1.
     double distance_m(int at) const { return row(at).fallen; }
 };
 
@@ -429,12 +454,17 @@ Steps steps_of(const Plan& plan, const SweepWindow& window) {
 /// Lines next to each other, from the sun to the end of the window.
 class Strip {
   public:
+    static constexpr int kWidth = kStripLines;
+
     /// @param line  the first one
-    Strip(const Sheet& sheet, const Steps& steps, Kernel kernel, int line)
-        : sheet_(sheet), steps_(steps), kernel_(kernel), line_(line) {
+    Strip(const Sheet& sheet, const Steps& steps, Kernel kernel, int line, float floor_m)
+        : sheet_(sheet), steps_(steps), kernel_(kernel), line_(line), floor_m_(floor_m) {
         for (Lines& lines : height_m_)
             lines.fill(kNothing_m);
     }
+
+    /// Where its ground is, from now on.
+    Sheet& sheet() { return sheet_; }
 
     /// To the next row, and the ground there.
     void advance(int row) {
@@ -476,8 +506,8 @@ class Strip {
             far.slope = step.far_slope;
         }
         float* const e = edge_m_.data();
-        raise({.e = e, .before = nullptr, .line = from, .lines = to - from}, far.p ? &far : nullptr,
-              step.posts(), step.end);
+        raise({.e = e, .before = nullptr, .least = floor_m_, .line = from, .lines = to - from},
+              far.p ? &far : nullptr, step.posts(), step.end);
         use(step.column + from, to - from, e);
     }
 
@@ -510,15 +540,16 @@ class Strip {
                 continue;
             }
             float* const e = lift.e + (from - first);
-            kernel_.raise({e, e, from, to - from, {}, ground.data(), 1});
+            kernel_.raise({e, e, kNothing_m, from, to - from, {}, ground.data(), 1});
         }
         settle();
     }
 
-    const Sheet& sheet_;
+    Sheet sheet_;
     const Steps& steps_;
     Kernel kernel_;
     int line_;
+    float floor_m_;
     using Lines = std::array<float, kLines>;
     std::array<Lines, kLineSets> height_m_;
     std::array<float, kStripLines> edge_m_;
@@ -567,7 +598,7 @@ class Hull {
 /// Lines next to each other, with the hulls of the ground under them.
 class HullStrip {
   public:
-    static constexpr int kLines = 128;
+    static constexpr int kLines = 128, kWidth = kLines;
 
     /// @param steps      for a tangent of 1 everywhere: what lines fall by is how far they go
     /// @param line       the first one
@@ -582,6 +613,8 @@ class HullStrip {
         for (std::size_t i = 0; i < kLineSets * (kLines + 1); ++i)
             hulls_[i / (kLines + 1)][i % (kLines + 1)] = Hull(points_.get() + i * most);
     }
+
+    Sheet& sheet() { return sheet_; }
 
     /// The ground of the next row, and of the columns before it.
     void advance(int row) {
@@ -648,7 +681,7 @@ class HullStrip {
         }
     }
 
-    const Sheet& sheet_;
+    Sheet sheet_;
     const Steps& steps_;
     const Kernel& kernel_;
     double curvature_;
@@ -669,24 +702,9 @@ struct Extent {
     }
 };
 
-/// Has strips of lines over a window go from its first row to the last.
-/// @param make  a strip from its first line
-/// @param look  at a row of the window with a strip
-template <typename Make, typename Look>
-void sweep_strips(const Steps& steps, const SweepWindow& window, int lines, const Make& make,
-                  const Look& look) {
-    const Extent extent(steps, window);
-    const int strips = (extent.end_line - extent.first_line + lines - 1) / lines;
-    parallel_for(0, strips, 1, [&](int begin, int end) {
-        for (int k = begin; k < end; ++k) {
-            auto strip = make(extent.first_line + k * lines);
-            for (int row = steps.begin; row < window.row + window.rows; ++row) {
-                if (const int at = row - kNearRows - 1; at >= steps.begin) strip->advance(at);
-                if (row >= window.row) look(*strip, row);
-            }
-        }
-    });
-}
+/// Rows that ground is read for together, and those before them that it takes besides: posts look
+/// back over kNearRows of them, and lines that are left behind those cross the columns before.
+constexpr int kReadRows = 256, kRowsBefore = kNearRows + 2;
 
 constexpr int kTransposeBlock = 4;  // posts a side
 
@@ -821,6 +839,15 @@ const float* Sweep::transposed() const {
     return transposed_.data();
 }
 
+Sweep::Sweep(Read read, int columns, int rows, float lowest_m, float highest_m)
+    : read_(std::move(read)),
+      columns_(columns),
+      rows_(rows),
+      lowest_m_(lowest_m),
+      highest_m_(highest_m) {
+    assert(columns > 0 && rows > 0);
+}
+
 /// The grid as a sweep goes over it.
 struct Sweep::View {
     Sheet sheet;
@@ -828,11 +855,32 @@ struct Sweep::View {
     SweepWindow window;
     bool along_columns, mirrored;
 
-    /// A piece of a row of the sheet, as it is on the grid.
-    SweepRun run(int row, int column, int count, const float* found) const {
+    /// A piece of a row of a sheet, as it is on the grid.
+    SweepRun run(const Sheet& of, int row, int column, int count, const float* found) const {
         const int line = mirrored ? sheet.rows - 1 - row : row;
-        return {along_columns, line, column, count, sheet.first + row * sheet.stride + column,
-                found};
+        return {along_columns, line, column, count, of.first + row * of.stride + column, found};
+    }
+
+    /// Reads rows [row, end_row) and columns [column, end_column) of the sheet, so that it has them
+    /// where it looks for them.
+    void read(const Read& from, Sheet& to, int row, int end_row, int column, int end_column,
+              std::vector<float>& buffer) const {
+        const int rows = end_row - row, columns = end_column - column;
+        const int line = mirrored ? sheet.rows - end_row : row;
+        std::vector<float> packed;
+        from(along_columns ? SweepWindow{line, column, rows, columns}
+                           : SweepWindow{column, line, columns, rows},
+             packed);
+        buffer.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(to.stride));
+        float* const first = buffer.data() + (mirrored ? (rows - 1) * to.stride : 0);
+        const std::ptrdiff_t stride = mirrored ? -to.stride : to.stride;
+        if (along_columns)
+            transpose(packed.data(), rows, columns, rows, first, stride);
+        else
+            for (int i = 0; i < rows; ++i)
+                std::copy_n(packed.data() + std::ptrdiff_t{i} * columns, columns,
+                            first + i * stride);
+        to.first = buffer.data() - (row * to.stride + column);
     }
 };
 
@@ -842,7 +890,7 @@ Sweep::View Sweep::view(const SweepSun& given, const SweepWindow& window) const 
     View view{{height_m_, stride_, columns_, rows_}, at_a_post(given), window, false, false};
     view.along_columns = given.along_columns();
     if (view.along_columns) {
-        view.sheet = {transposed(), rows_, rows_, columns_};
+        view.sheet = {read_ ? nullptr : transposed(), rows_, rows_, columns_};
         view.window = {window.row, window.column, window.rows, window.columns};
         view.sun = view.sun.transposed();
     }
@@ -850,15 +898,63 @@ Sweep::View Sweep::view(const SweepSun& given, const SweepWindow& window) const 
     view.mirrored = view.sun.towards.row > 0;
     if (view.mirrored) {
         view.sun = mirrored(view.sun, sheet.rows);
-        sheet.first += (sheet.rows - 1) * sheet.stride;
-        sheet.stride = -sheet.stride;
+        if (!read_) {
+            sheet.first += (sheet.rows - 1) * sheet.stride;
+            sheet.stride = -sheet.stride;
+        }
         view.window.row = sheet.rows - view.window.row - view.window.rows;
     }
     return view;
 }
 
-void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Use& use,
-                      int lanes) const {
+/// Has strips of lines over a window go from the first row that matters to its last.
+/// @param make  a strip from the steps and its first line
+/// @param look  at a row of the window with a strip
+template <typename OneStrip, typename Make, typename Look>
+void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look& look) const {
+    const SweepWindow& w = view.window;
+    Sheet& sheet = view.sheet;
+    const Plan plan(sheet, view.sun, w, drop_m);
+    constexpr int kLines = OneStrip::kWidth;
+    // Ground that is read has room for a strip, and how far that goes aside over the rows.
+    const auto rows_before = [&](int row) { return std::max(plan.begin(), row - kRowsBefore); };
+    if (read_) {
+        double aside = 0;
+        for (int row = plan.begin(); row < plan.end(); row += kReadRows) {
+            const auto [least, most] =
+                plan.columns(rows_before(row), std::min(row + kReadRows, plan.end()));
+            aside = std::max(aside, most - least);
+        }
+        sheet.stride = kLines + static_cast<int>(std::ceil(aside)) + 8;
+    }
+    const Steps steps = steps_of(plan, w);
+    const Extent extent(steps, w);
+    const int strips = (extent.end_line - extent.first_line + kLines - 1) / kLines;
+    parallel_for(0, strips, 1, [&](int begin, int end) {
+        std::vector<float> buffer;
+        for (int k = begin; k < end; ++k) {
+            const int line = extent.first_line + k * kLines;
+            auto strip = make(steps, line);
+            for (int row = steps.begin; row < plan.end(); ++row) {
+                if (read_ && (row - steps.begin) % kReadRows == 0) {
+                    const int first = rows_before(row),
+                              last = std::min(row + kReadRows, plan.end());
+                    const auto [least, most] = plan.columns(first, last);
+                    const int column = std::max(0, static_cast<int>(std::floor(least)) + line - 2);
+                    const int end_column = std::min(
+                        sheet.columns, static_cast<int>(std::ceil(most)) + line + kLines + 4);
+                    if (column < end_column)
+                        view.read(read_, strip->sheet(), first, last, column, end_column, buffer);
+                }
+                if (const int at = row - kNearRows - 1; at >= steps.begin) strip->advance(at);
+                if (row >= w.row) look(*strip, row);
+            }
+        }
+    });
+}
+
+void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Use& use, int lanes,
+                      float floor_m) const {
     View view = this->view(given, window);
     SweepSun& sun = view.sun;
     if (!(std::abs(sun.tangent) < kSteepest)) {
@@ -866,16 +962,18 @@ void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Us
         sun.tangent_a_post = {};
     }
     const SweepWindow& w = view.window;
-    const double height_m = highest_m_ > floor_m() ? double{highest_m_} - floor_m() : 0;
-    const Steps steps = steps_of(Plan(view.sheet, sun, w, height_m), w);
+    const double drop_m =
+        std::max(0.0, double{highest_m_} - (floor_m > kNoFloor_m ? floor_m : lowest_m_));
     const Kernel kernel = widest_kernel(lanes);
-    sweep_strips(
-        steps, w, kStripLines,
-        [&](int line) { return std::make_unique<Strip>(view.sheet, steps, kernel, line); },
+    sweep_strips<Strip>(
+        view, drop_m,
+        [&](const Steps& steps, int line) {
+            return std::make_unique<Strip>(view.sheet, steps, kernel, line, floor_m);
+        },
         [&](Strip& strip, int row) {
             strip.edge(row, w.column, w.column + w.columns,
                        [&](int column, int count, const float* edge_m) {
-                           use(view.run(row, column, count, edge_m));
+                           use(view.run(strip.sheet(), row, column, count, edge_m));
                        });
         });
 }
@@ -886,17 +984,16 @@ void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
     view.sun.tangent = 1;
     view.sun.tangent_a_post = {};
     const SweepWindow& w = view.window;
-    const Steps steps = steps_of(Plan(view.sheet, view.sun, w, reach_m), w);
     const Kernel kernel = widest_kernel(lanes);
-    sweep_strips(
-        steps, w, HullStrip::kLines,
-        [&](int line) {
+    sweep_strips<HullStrip>(
+        view, reach_m,
+        [&](const Steps& steps, int line) {
             return std::make_unique<HullStrip>(view.sheet, steps, kernel, curvature, line);
         },
         [&](HullStrip& strip, int row) {
             strip.look(row, w.column, w.column + w.columns,
                        [&](int column, int count, const float* tangent) {
-                           use(view.run(row, column, count, tangent));
+                           use(view.run(strip.sheet(), row, column, count, tangent));
                        });
         });
 }

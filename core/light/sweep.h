@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -94,6 +95,13 @@ class Sweep {
     /// @param stride    from row to row
     Sweep(const float* height_m, int columns, int rows, std::ptrdiff_t stride);
 
+    /// Puts the heights of a window into an array, row by row; called on several threads at once.
+    using Read = std::function<void(const SweepWindow&, std::vector<float>&)>;
+    /// Heights that are read where they are needed, strip by strip, so that a sweep of any length
+    /// takes little memory. What is found is the same, to the bit.
+    /// @param lowest_m, highest_m  of all posts
+    Sweep(Read read, int columns, int rows, float lowest_m, float highest_m);
+
     /// The height of the shadow's edge: how high the rays that pass over the ground before a post
     /// are at the post. What is lower there is in the shade; the post itself is lit where it is as
     /// high or higher, and its height less the edge is the margin. Minus infinity where nothing of
@@ -110,9 +118,11 @@ class Sweep {
     using Use = std::function<void(const SweepRun&)>;
     /// The same without an array for them: calls `use` on several threads, once for each post of
     /// the window. All runs are along rows or all along columns, as SweepSun::along_columns() has
-    /// it.
+    /// it. A post's edge is the same bits whatever the window, where there is a floor.
+    /// @param floor_m  edges are no lower, and ground so far off that it makes only lower ones is
+    ///     not swept. Under the lowest post it changes no shade
     void each_edge(const SweepSun& sun, const SweepWindow& window, const Use& use,
-                   int lanes = kMostLanes) const;
+                   int lanes = kMostLanes, float floor_m = kNoFloor_m) const;
 
     /// The tangent of the horizon's elevation for all posts of a window, each as seen from the
     /// ground there: minus infinity where nothing of the grid lies that way. Called on several
@@ -126,23 +136,22 @@ class Sweep {
                       const SweepWindow& window, const Use& use, int lanes = kMostLanes) const;
 
     static constexpr int kMostLanes = 16;
+    static constexpr float kNoFloor_m = -std::numeric_limits<float>::infinity();
 
     float lowest_m() const { return lowest_m_; }    ///< infinity where there are only holes
     float highest_m() const { return highest_m_; }  ///< minus infinity likewise
-    /// Edges over it are the same whatever the window; those under it may be lower than they are.
-    /// As far below the lowest post as half of the relief; infinity where there are only holes.
-    float floor_m() const {
-        return lowest_m_ < highest_m_ ? lowest_m_ - (highest_m_ - lowest_m_) / 2 : lowest_m_;
-    }
 
   private:
     struct View;
     View view(const SweepSun& sun, const SweepWindow& window) const;
     const float* transposed() const;
+    template <typename OneStrip, typename Make, typename Look>
+    void sweep_strips(View& view, double drop_m, const Make& make, const Look& look) const;
 
-    const float* height_m_;
+    const float* height_m_ = nullptr;
+    Read read_;  // instead
     int columns_, rows_;
-    std::ptrdiff_t stride_;
+    std::ptrdiff_t stride_ = 0;
     float lowest_m_, highest_m_;
     mutable std::once_flag once_;
     mutable std::vector<float> transposed_;  // made for the first sun that needs it

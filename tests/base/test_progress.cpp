@@ -1,3 +1,13 @@
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include <poll.h>
+#include <pty.h>
+#include <unistd.h>
+
 #include "base/log.h"
 #include "base/progress.h"
 #include "support/support.h"
@@ -17,6 +27,49 @@ TEST(Progress, TellsOfLongWorkAndNotOfShort) {
     at_once.add(3);  // all of it
     EXPECT_EQ(said.size(), 1);
     log::set_sink({});
+}
+
+/// Another end of a terminal, and what was written to it.
+class Terminal {
+  public:
+    Terminal() { EXPECT_EQ(openpty(&mine_, &theirs_, nullptr, nullptr, nullptr), 0); }
+    ~Terminal() {
+        close(mine_);
+        close(theirs_);
+    }
+    int descriptor() const { return theirs_; }
+    std::string text() const {
+        std::string text(4096, 0);
+        pollfd there{mine_, POLLIN, 0};
+        if (poll(&there, 1, 0) <= 0) return {};
+        text.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(mine_, text.data(), 4096))));
+        return text;
+    }
+
+  private:
+    int mine_ = -1, theirs_ = -1;
+};
+
+TEST(ProgressBar, IsOnATerminalAloneAndGoesWithItself) {
+    const Terminal terminal;
+    std::array<int, 2> pipe_ends{};
+    ASSERT_EQ(pipe(pipe_ends.data()), 0);
+    {
+        ProgressBar bar("shade.tif", terminal.descriptor()), none("shade.tif", pipe_ends[1]);
+        bar.show(0.5);
+        EXPECT_EQ(terminal.text(), "") << "short work has no word";
+        std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+        bar.show(0.5);
+        none.show(0.5);
+        EXPECT_EQ(terminal.text(), "\r\x1b[Kshade.tif [============            ] 50 %, 1 s left");
+        bar.show(0.6);
+        EXPECT_EQ(terminal.text(), "") << "not more often than one can read";
+    }
+    EXPECT_EQ(terminal.text(), "\r\x1b[K");
+    pollfd there{pipe_ends[0], POLLIN, 0};
+    EXPECT_EQ(poll(&there, 1, 0), 0) << "nothing on a pipe";
+    close(pipe_ends[0]);
+    close(pipe_ends[1]);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -94,6 +95,28 @@ TEST(SunHours, OfAYearAreOfItsDays) {
     EXPECT_LT(value_at(*year, 1, 59, 20), 3000);
 }
 
+TEST(SunHours, HaveTheEnergyOfClearDays) {
+    const Result run = relevo({"sun", "hours", walled(), "--date", "2026-03-20", "--tz", "UTC",
+                               "--bands", "global,beam,diffuse,reflected", "-o", out("e.tif")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("Linke turbidity 3:"), std::string::npos) << run.out;
+    const Dataset energy = opened(out("e.tif"));
+    ASSERT_TRUE(energy);
+    ASSERT_EQ(energy->GetRasterCount(), 4);
+    EXPECT_STREQ(energy->GetRasterBand(1)->GetDescription(), "global irradiation");
+    EXPECT_STREQ(energy->GetRasterBand(3)->GetUnitType(), "kWh/m2");
+    const auto at = [&](int band, int column) { return value_at(*energy, band, column, 20); };
+    EXPECT_NEAR(at(1, 2), at(2, 2) + at(3, 2) + at(4, 2), 1e-5);
+    // The model by hand, with a sun that goes through the zenith, from 9.8 degrees on.
+    EXPECT_NEAR(at(2, 2), 7.130, 0.01);
+    // 100 m before the wall the first three hours are without sun, and a part of the sky is.
+    EXPECT_NEAR(at(2, 50), 7.151 - 0.886, 0.02);
+    EXPECT_LT(at(3, 50), at(3, 2) * 0.95);
+    EXPECT_GT(at(4, 50), at(4, 2) + 0.05);
+    for (int band = 1; band <= 4; ++band)
+        EXPECT_TRUE(std::isnan(value_at(*energy, band, 60, 40))) << band;
+}
+
 TEST(SunHorizons, ABandForEachDirection) {
     const Result run =
         relevo({"sun", "horizons", walled(), "--directions", "4", "-o", out("horizons.tif")});
@@ -123,6 +146,187 @@ TEST(SunSkyView, IsAShareThatAWallTakesAway) {
     EXPECT_NEAR(value_at(*opened(out("level.tif")), 1, 50, 20), 0.855, 0.03);
 }
 
+/// All that a window of a file's bands holds, as bytes.
+std::string bytes_in(GDALDataset& dataset, const std::array<int, 4>& window) {
+    const auto [column, row, columns, rows] = window;
+    std::string bytes(static_cast<std::size_t>(dataset.GetRasterCount()) *
+                          static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) *
+                          sizeof(float),
+                      0);
+    EXPECT_EQ(dataset.RasterIO(GF_Read, column, row, columns, rows, bytes.data(), columns, rows,
+                               GDT_Float32, dataset.GetRasterCount(), nullptr, 0, 0, 0, nullptr),
+              CE_None);
+    return bytes;
+}
+std::string all_bytes(GDALDataset& dataset) {
+    return bytes_in(dataset, {0, 0, dataset.GetRasterXSize(), dataset.GetRasterYSize()});
+}
+
+/// Verbs under sun, and what they are asked.
+const std::vector<std::vector<std::string>>& questions() {
+    static const std::vector<std::vector<std::string>> all{
+        {"shadow", "--sun", "135,5"},
+        {"shadow", "--sun", "100,0.3", "--soft"},
+        {"shadow", "--time", "2026-01-10T13:00Z", "--soft"},
+        {"hours", "--date", "2026-12-21", "--tz", "UTC", "--step", "30", "--bands",
+         "hours,first,last,spells"},
+        {"hours", "--date", "2026-03-21", "--tz", "UTC", "--step", "60", "--bands",
+         "beam,diffuse,reflected,global"},
+        {"hours", "--from", "2026-12-21", "--to", "2026-12-26", "--tz", "UTC", "--bands",
+         "hours,beam"},
+        {"sky-view", "--directions", "12"},
+        {"horizons", "--directions", "3"}};
+    return all;
+}
+
+std::string said(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words)
+        text += word + " ";
+    return text;
+}
+
+/// Runs a question on a DEM. @return the file that it made
+std::string answer(const std::vector<std::string>& question, const std::string& dem,
+                   const std::string& name, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"sun"};
+    arguments.insert(arguments.end(), question.begin(), question.end());
+    arguments.insert(arguments.end(), {dem, "--overwrite", "-o", out(name)});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Result run = relevo(arguments);
+    EXPECT_EQ(run.status, 0) << said(arguments) << run.err;
+    return out(name);
+}
+
+/// A part is the whole cut out, to the last bit.
+void expect_parts_of_whole(const std::string& dem, const std::string& clip,
+                           const std::array<int, 4>& window) {
+    for (const std::vector<std::string>& question : questions()) {
+        const Dataset whole = opened(answer(question, dem, "whole.tif"));
+        const Dataset part = opened(answer(question, dem, "part.tif", {"--clip=" + clip}));
+        ASSERT_TRUE(whole && part) << said(question);
+        ASSERT_EQ(part->GetRasterXSize(), window[2]) << said(question);
+        ASSERT_EQ(part->GetRasterYSize(), window[3]) << said(question);
+        std::array<double, 6> a{}, b{};
+        whole->GetGeoTransform(a.data());
+        part->GetGeoTransform(b.data());
+        EXPECT_NEAR(a[0] + window[0] * a[1] + window[1] * a[2], b[0], 1e-9 * std::abs(b[0]));
+        EXPECT_NEAR(a[3] + window[0] * a[4] + window[1] * a[5], b[3], 1e-9 * std::abs(b[3]));
+        EXPECT_TRUE(bytes_in(*whole, window) == all_bytes(*part)) << said(question);
+    }
+}
+
+TEST(SunClip, APartIsTheWholeCutOut) {
+    // A grid of degrees, 3 seconds apart; posts from 84.41333 W and 36.44583 N on.
+    expect_parts_of_whole(bundled_dem(), "-84.3,36.2,-84.15,36.3", {136, 175, 181, 121});
+    SKIP_WITHOUT_TEST_DATA(data);
+    // One of metres, with long shadows from beyond the part.
+    expect_parts_of_whole((data / "dem" / "srtm_bigtujunga30m_utm11.tif").string(),
+                          "385000,3800000,391000,3803000", {290, 164, 200, 100});
+}
+
+/// Hills, more posts than 1 MiB has room for.
+std::string hills(const std::string& name, const std::string& crs,
+                  const std::array<double, 6>& geotransform) {
+    Raster raster;
+    raster.columns = 701;
+    raster.rows = 401;
+    raster.crs = crs;
+    raster.geotransform = geotransform;
+    raster.nodata = -9999;
+    raster.value = [](int column, int row, int) {
+        if (column % 97 == 5 && row % 89 == 7) return -9999.0;
+        return 700 + 300 * std::sin(column / 23.0) * std::cos(row / 31.0) +
+               150 * std::sin((column + 2 * row) / 11.0);
+    };
+    return write_raster(folder() / name, raster);
+}
+
+TEST(SunMemory, WhatABudgetIsMakesNoDifference) {
+    const std::vector<std::string> dems{
+        hills("metres.tif", "EPSG:32632", {{500000, 30, 0, 5300000, 0, -20}}),
+        hills("turned.tif", "EPSG:32632", {{500000, 25, 9, 5300000, 8, -27}}),
+        hills("degrees.tif", "EPSG:4326", {{11, 0.001, 0, 47.6, 0, -0.0007}})};
+    // Of a part, which takes four parts of that budget, for the time that all would take.
+    const std::vector<std::string> clips{"--clip=505000,5294000,509500,5297000",
+                                         "--clip=506000,5295000,509000,5298000",
+                                         "--clip=11.2,47.4,11.35,47.5"};
+    for (std::size_t k = 0; k < dems.size(); ++k)
+        for (const std::vector<std::string>& question : questions()) {
+            if (k == 1 && question.front() == "hours") continue;  // sweeps as those of metres
+            const std::string& dem = dems[k];
+            const Dataset all = opened(answer(question, dem, "all.tif", {clips[k]}));
+            const Dataset little =
+                opened(answer(question, dem, "little.tif", {clips[k], "--memory", "1"}));
+            ASSERT_TRUE(all && little) << said(question);
+            EXPECT_TRUE(all_bytes(*all) == all_bytes(*little)) << dem << said(question);
+            EXPECT_STREQ(all->GetMetadataItem("HOLES"), little->GetMetadataItem("HOLES"));
+        }
+    const Result dry = relevo(
+        {"sun", "sky-view", dems.front(), "--dry-run", "--memory", "1", "-o", out("dry.tif")});
+    EXPECT_TRUE(dry.out.starts_with(
+        "posts               281101, in 77 parts\nmemory              some 317 MiB, 257 of "
+        "them heights\n"))
+        << dry.out;
+}
+
+TEST(SunClip, IsOfTheGridsCrsOrAnother) {
+    const std::string dem = walled();  // 121 x 81 posts of 10 m from 500005 E, 395 N on
+    const auto size = [&](const std::vector<std::string>& more) {
+        const Dataset part =
+            opened(answer({"shadow", "--sun", "grid:90,10"}, dem, "part.tif", more));
+        return std::array{part->GetRasterXSize(), part->GetRasterYSize()};
+    };
+    // Posts on the sides are in it.
+    EXPECT_EQ(size({"--clip", "500105,105,500195,195"}), (std::array{10, 10}));
+    EXPECT_EQ(size({"--clip", "500106,106,500194,194"}), (std::array{8, 8}));
+    EXPECT_EQ(size({"--clip", "0,0,1e6,1e6"}), (std::array{121, 40}));
+    EXPECT_EQ(size({"--clip", "500105,105,500106,106"}), (std::array{1, 1}));
+    // A degree at the equator is 110.6 km to the north and 111.3 to the east, 0.9996 of it in UTM.
+    EXPECT_EQ(size({"--clip", "3.0,0.0,3.0045,0.001", "--clip-crs", "EPSG:4326"}),
+              (std::array{50, 11}));
+    const auto refused = [&](const std::vector<std::string>& more, int status,
+                             const std::string& message) {
+        std::vector<std::string> arguments{"sun", "sky-view", dem, "-o", out("x.tif")};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result run = relevo(arguments);
+        EXPECT_EQ(run.status, status);
+        EXPECT_TRUE(run.err.find("error: " + message + "\n") != std::string::npos ||
+                    run.err.find("error: " + message + "; see") != std::string::npos)
+            << run.err;
+        EXPECT_FALSE(std::filesystem::exists(out("x.tif")));
+    };
+    refused({"--clip", "3.0,0.0,3.0045,0.001"}, 3,
+            "--clip: 3.0,0.0,3.0045,0.001: not one post of the DEM is in it; in WGS 84 / UTM zone "
+            "31N they lie from 500005,-405 to 501205,395; for degrees pass --clip-crs EPSG:4326");
+    refused({"--clip", "500106,106,500109,194"}, 3,
+            "--clip: 500106,106,500109,194: not one post of the DEM is in it; in WGS 84 / UTM zone "
+            "31N they lie from 500005,-405 to 501205,395; for degrees pass --clip-crs EPSG:4326");
+    for (const std::string text : {"1,2,3", "1,2,x,4", "3,2,1,4", "1,4,3,2", "1,2,1,4"})
+        refused({"--clip", text}, 2,
+                fmt::format("--clip: {}: expected WEST,SOUTH,EAST,NORTH, numbers of the DEM's CRS "
+                            "or of --clip-crs, west less than east and south less than north",
+                            text));
+    refused({"--clip-crs", "EPSG:4326"}, 2, "--clip-crs: goes with --clip");
+}
+
+TEST(SunRasters, ADryRunSaysWhatARunTakesAndWritesNothing) {
+    const std::string dem = bundled_dem();
+    for (std::vector<std::string> arguments : questions()) {
+        arguments.insert(arguments.begin(), "sun");
+        arguments.insert(arguments.end(), {dem, "--dry-run", "-o", out("dry.tif")});
+        const Result run = relevo(arguments);
+        EXPECT_EQ(run.status, 0) << said(arguments) << run.err;
+        EXPECT_TRUE(run.out.starts_with("posts               138632, in 1 part\nmemory  "))
+            << run.out;
+        EXPECT_NE(run.out.find("\ncomputing           some "), std::string::npos) << run.out;
+        EXPECT_NE(run.out.find(" before compression"), std::string::npos) << run.out;
+    }
+    EXPECT_FALSE(std::filesystem::exists(out("dry.tif")));
+    for (const auto& entry : std::filesystem::directory_iterator(folder()))
+        EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
+}
+
 TEST(SunRasters, WhatMeansNothingIsRefused) {
     const std::string dem = walled();
     const auto hours = [&](const std::vector<std::string>& more) {
@@ -141,6 +345,10 @@ TEST(SunRasters, WhatMeansNothingIsRefused) {
                    "--bands: first is named twice");
     expect_failure(hours({"--year", "2026", "--bands", "first"}), 2,
                    "--bands: first, last and spells are known of 4 days at most");
+    expect_failure(hours({"--year", "2026", "--linke", "4"}), 2,
+                   "--linke: goes with --bands global, beam, diffuse or reflected");
+    expect_failure(hours({"--year", "2026", "--bands", "beam", "--albedo", "2"}), 2,
+                   "--albedo: expected 0 to 1 but got 2; see relevo sun hours --help");
     expect_failure(hours({"--year", "2026", "--step", "1"}), 2,
                    "--step: is of 4 days at most; a longer time has directions of the sun instead");
     expect_failure({"sun", "sky-view", dem, "-o", out("x.tif"), "--co", "ZSTD"}, 2,

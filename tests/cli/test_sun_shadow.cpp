@@ -21,11 +21,11 @@
 namespace relevo::test {
 namespace {
 
-std::vector<float> values_of(GDALDataset& dataset) {
+std::vector<float> values_of(GDALDataset& dataset, int band = 1) {
     const int columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
     std::vector<float> values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    EXPECT_EQ(dataset.GetRasterBand(1)->RasterIO(GF_Read, 0, 0, columns, rows, values.data(),
-                                                 columns, rows, GDT_Float32, 0, 0),
+    EXPECT_EQ(dataset.GetRasterBand(band)->RasterIO(GF_Read, 0, 0, columns, rows, values.data(),
+                                                    columns, rows, GDT_Float32, 0, 0),
               CE_None);
     return values;
 }
@@ -124,6 +124,85 @@ TEST(SunShadow, ATimeIsTheSunOfThatTime) {
         lit += value == 1;
     EXPECT_GT(lit / static_cast<double>(values.size()), 0.2);
     EXPECT_LT(lit / static_cast<double>(values.size()), 0.95);
+}
+
+std::string table(const std::string& name, const std::string& text) {
+    std::ofstream(out(name)) << text;
+    return out(name);
+}
+
+TEST(SunShadow, ATableOfTimesHasABandForEach) {
+    const std::string dem = bundled_dem();
+    const std::string times = table("times.csv",
+                                    "name;time\n# two mornings and an event\n"
+                                    "first;2026-01-10T13:30Z\n;2026-01-10T09:00\n"
+                                    "\"last; of all\";2026-01-10 sunset-45min\n");
+    for (const bool soft : {false, true}) {
+        const auto run_with = [&](std::vector<std::string> more, const std::string& name) {
+            std::vector<std::string> arguments{"sun",         "shadow", dem,
+                                               "--overwrite", "-o",     out(name)};
+            if (soft) arguments.push_back("--soft");
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            const Result run = relevo(arguments);
+            EXPECT_EQ(run.status, 0) << run.err;
+            return run;
+        };
+        const Result run = run_with({"--times", times}, "many.tif");
+        EXPECT_NE(run.out.find("\n   2  2026-01-10T09:00:00-05:00"), std::string::npos) << run.out;
+        EXPECT_NE(run.err.find("America/New_York"), std::string::npos) << run.err;
+        EXPECT_EQ(run.err.find("America/New_York"), run.err.rfind("America/New_York"))
+            << "said once: " << run.err;
+        const Dataset many = opened(out("many.tif"));
+        ASSERT_TRUE(many);
+        ASSERT_EQ(many->GetRasterCount(), 3);
+        EXPECT_STREQ(many->GetRasterBand(1)->GetDescription(), "2026-01-10T13:30:00+00:00 first");
+        EXPECT_STREQ(many->GetRasterBand(2)->GetDescription(), "2026-01-10T09:00:00-05:00");
+        EXPECT_STREQ(many->GetRasterBand(2)->GetMetadataItem("TIME_UTC"),
+                     "2026-01-10T14:00:00.000Z");
+        EXPECT_EQ(many->GetMetadataItem("TIME_UTC"), nullptr);
+        EXPECT_EQ(many->GetRasterBand(3)->GetRasterDataType(), soft ? GDT_Float32 : GDT_Byte);
+        const std::array<std::string, 3> alone{"2026-01-10T13:30Z", "2026-01-10T09:00",
+                                               "2026-01-10 sunset-45min"};
+        for (int band = 1; band <= 3; ++band) {
+            run_with({"--time", alone[static_cast<std::size_t>(band) - 1]}, "single.tif");
+            EXPECT_EQ(values_of(*many, band), values_of(*opened(out("single.tif")))) << band;
+        }
+        EXPECT_NE(values_of(*many, 1), values_of(*many, 2));
+    }
+}
+
+TEST(SunShadow, TablesThatAreNoneAreRefused) {
+    const std::string dem = bundled_dem();
+    const auto expect_refused = [&](const std::string& times, const std::string& message) {
+        const Result run = relevo({"sun", "shadow", dem, "--times", times, "-o", out("x.tif")});
+        EXPECT_EQ(run.status, 3) << run.err;
+        EXPECT_NE(run.err.find(message), std::string::npos) << run.err;
+        EXPECT_FALSE(std::filesystem::exists(out("x.tif")));
+    };
+    expect_refused(table("none.csv", "lat,lon\n1,2\n"),
+                   "none.csv: no column time, expected a first line that names it but got "
+                   "\"lat,lon\"");
+    expect_refused(table("empty.csv", "time\n"),
+                   "empty.csv: no times, expected a first line \"time\" and a line for each below "
+                   "it");
+    expect_refused(table("gap.csv", "time,name\n2026-01-10T13:30Z,a\n,b\n"),
+                   "gap.csv: line 3: no time in it");
+    expect_refused(table("odd.csv", "time\n2026-01-10T13:30Z\nnoonish\n"), "odd.csv: line 3: ");
+    expect_refused(out("nowhere.csv"), "nowhere.csv: cannot be read");
+    std::string text = "time\n";
+    for (int k = 0; k <= 10'000; ++k)
+        text += "2026-01-10T13:30Z\n";
+    expect_refused(table("long.csv", text), "long.csv: more than 10000 times; cut the file up");
+    const std::string times = table("one.csv", "time\n2026-01-10T13:30Z\n");
+    expect_failure({"sun", "shadow", dem, "--times", times, "--sun", "90,10", "-o", out("x.tif")},
+                   2, "--times and --sun exclude each other; give one of them");
+    expect_failure(
+        {"sun", "shadow", dem, "--times", times, "--time", "2026-01-10T13:30Z", "-o", out("x.tif")},
+        2, "--times: has its times and their days itself; leave out --time and --date");
+    expect_failure({"sun", "shadow", dem, "--times", times, "--overwrite", "-o", times}, 2,
+                   fmt::format("-o: {}: no format that this command writes, expected a name that "
+                               "ends in tif, tiff",
+                               times));
 }
 
 TEST(SunShadow, OneThreadAndManyGiveTheSameBytes) {
