@@ -8,11 +8,10 @@ tools/install_packages.sh
 cmake --build --preset release
 relevo=build/release/bin/relevo
 picture=build/first-picture.png
-$relevo -q capture build/release/share/relevo/data/dem/jacksboro.tif \
-    --time 2026-06-21T18:30 --tz America/New_York -o $picture --overwrite
+$relevo -q capture build/release/share/relevo/data/dem/jacksboro.tif -o $picture --overwrite
 cat <<EOT
 
-The Cumberland Mountains, Tennessee, on a midsummer evening: $picture
+The Cumberland Mountains, Tennessee: $picture
 
 Next, with a DEM of yours:
   $relevo info DEM.tif

@@ -355,11 +355,11 @@ struct Steps {
     struct Row {
         std::array<std::size_t, kLineSets + 1> lines{};  // where terms begin, and of the posts
         std::size_t end = 0;
-        int column = 0;     // of the post that belongs to line 0
-        float between = 0;  // how far on towards the next line each post stands
-        Slope slope;        // of lines, from the row before
-        double fallen = 0;  // line 0 from the row of the reference on
-        Slope far_slope;    // of posts' rays, from the last row that is not near
+        int column = 0;                    // of the post that belongs to line 0
+        float between = 0;                 // how far on towards the next line each post stands
+        Slope slope;                       // of lines, from the row before
+        double fallen = 0;                 // line 0 from the row of the reference on
+        Slope far_slope;                   // of posts' rays, from the last row that is not near
         int first_line = 0, end_line = 0;  // which come over posts of the window that it shades
 
         std::size_t& posts() { return lines[kLineSets]; }

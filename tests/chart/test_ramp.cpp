@@ -38,7 +38,8 @@ TEST(Ramp, BuiltInOnesGoFromOneEndToTheOther) {
         EXPECT_NEAR(ramp.stops.back().value, 6, 1e-12) << name;
     }
     EXPECT_EQ(error_of([] { named_ramp("rainbow", 0, 1); }),
-              "exit 3: --overlay-colours: rainbow: expected sun, shade, steel, viridis, inferno, grey or a "
+              "exit 3: --overlay-colours: rainbow: expected sun, shade, steel, viridis, inferno, "
+              "grey or a "
               "colour file of GDAL's with a slash or a dot in its name");
     EXPECT_EQ(error_of([] { named_ramp("sun", 1, 1); }),
               "exit 3: --overlay-colours: 1 to 1: expected an end over the beginning");

@@ -50,18 +50,19 @@ class Plugins : public testing::Test {
 
     Result capture(const std::vector<std::string>& more = {},
                    const std::vector<std::string>& environment = {}) const {
-        std::vector<std::string> arguments{"-q",
-                                           "capture",
-                                           bundled_dem(),
-                                           "-o",
-                                           picture(),
-                                           "--overwrite",
-                                           "--size",
-                                           "64x48",
-                                           "--disable",
-                                           "block,bump,cover,gloss,haze,layering,shadows,sky,skylight",
-                                           "--plugin-path",
-                                           (folder_ / "plugins").string()};
+        std::vector<std::string> arguments{
+            "-q",
+            "capture",
+            bundled_dem(),
+            "-o",
+            picture(),
+            "--overwrite",
+            "--size",
+            "64x48",
+            "--disable",
+            "block,bump,cover,gloss,haze,layering,shadows,sky,skylight",
+            "--plugin-path",
+            (folder_ / "plugins").string()};
         arguments.insert(arguments.end(), more.begin(), more.end());
         std::filesystem::remove(picture());
         Result result = relevo(arguments, environment);
