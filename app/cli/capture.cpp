@@ -124,6 +124,8 @@ void capture(const Arguments& arguments) {
     log::info(fmt::format(
         "{}, {}: sun at {}{}", where, when, sun,
         scene.moment.time.empty() ? "; no --time given, so a summer morning was taken" : ""));
+    for (const std::string& note : session.ground_notes())
+        log::info(note);
     const auto passes_began = Clock::now();
     session.draw(timings.passes());
     timings.add("passes", milliseconds_since(passes_began));

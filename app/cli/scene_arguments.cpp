@@ -4,6 +4,10 @@ namespace relevo::cli {
 
 void SceneArguments::add_to(CLI::App& verb) {
     dem.add_to(verb);
+    verb.add_option("--holes", holes,
+                    "How holes in the DEM are drawn: fill small ones and cut out the rest, cut out "
+                    "all, or fill and mark (fill)")
+        ->check(CLI::IsMember({"fill", "cut", "mark"}));
     verb.add_option("--size", size, "Width and height in pixels, 1280x1024");
     verb.add_option_function<std::string>(
         "--scene",
@@ -32,6 +36,7 @@ scene::Scene SceneArguments::scene() const {
     if (refraction.given()) result.refraction = refraction.name();
     view.apply_to(result);
     effects.apply_to(result.effects);
+    if (!holes.empty()) result.holes = dem::parse_holes(holes, "--holes");
     if (!size.empty()) {
         const glm::ivec2 sides = parse_size(size);
         result.width_px = sides.x;

@@ -16,7 +16,7 @@ struct SceneArguments {
     RefractionArguments refraction;
     ViewArguments view;
     EffectArguments effects;
-    std::string file, size;
+    std::string file, size, holes;
     std::optional<double> exposure_ev, pixel_error;
 
     void add_to(CLI::App& verb);

@@ -33,10 +33,11 @@ struct Water {
 /// Sea are connected posts at or below 0 m that reach the edge of the DEM or a hole in it, at
 /// least 64 and one in 2000 of all; others where they are exactly 0 on a square kilometre or more,
 /// or lower than any land (-450 m). Land below 0 that is known is dry: DryLand; zeros around a
-/// raster that was turned are no sea: find_collar(). Lakes are connected posts of one height, within
-/// a millimetre, at least 64 on 0.01 km2, with higher ground on 95 % of their rim. Heights in steps,
-/// such as whole metres, make terraces of plains that rise by one step: there the rim must rise by
-/// two and more on a quarter of it, or the flat be large and compact (water.cpp has the limits).
+/// raster that was turned are no sea: find_collar(). Lakes are connected posts of one height,
+/// within a millimetre, at least 64 on 0.01 km2, with higher ground on 95 % of their rim. Heights
+/// in steps, such as whole metres, make terraces of plains that rise by one step: there the rim
+/// must rise by two and more on a quarter of it, or the flat be large and compact (water.cpp has
+/// the limits).
 /// @param heights_m  NaN for holes
 /// @param grid       of as many posts
 /// Takes about 10 ms a million posts (tests/dem/bench_dem.cpp).

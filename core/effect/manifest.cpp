@@ -4,6 +4,7 @@
 #include <array>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/paths.h"
 #include "base/text.h"
@@ -26,6 +27,8 @@ constexpr std::array<std::string_view, 40> kReserved = {
 
 // A capability that core provides itself: render/programs.h.
 constexpr std::string_view kNightWord = "night";
+
+constexpr std::array<std::string_view, 2> kGroundWords = {"water", "marked_holes"};
 
 bool is_lower(char c) {
     return c >= 'a' && c <= 'z';
@@ -136,6 +139,12 @@ class ManifestReader {
         manifest_.description = object.string("description", "");
         manifest_.version = object.string("version");
         manifest_.enabled_by_default = object.boolean("enabled_by_default", true);
+        manifest_.default_where = object.strings("default_where");
+        for (const std::string& word : manifest_.default_where)
+            if (std::find(kGroundWords.begin(), kGroundWords.end(), word) == kGroundWords.end())
+                object.fail(object.line_of("default_where"), "default_where",
+                            fmt::format("expected words of {} but got \"{}\"",
+                                        fmt::join(kGroundWords, ", "), word));
     }
 
     void glsl(ObjectReader& object) {
@@ -269,6 +278,10 @@ class ManifestReader {
 };
 
 }  // namespace
+
+std::span<const std::string_view> ground_words() {
+    return kGroundWords;
+}
 
 Manifest load_manifest(const std::filesystem::path& folder, const std::filesystem::path& data_dir) {
     return ManifestReader(folder, data_dir).run();

@@ -84,7 +84,7 @@ struct Renderer::Impl {
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
     TileSelection tiles;  // of the last frame
-    bool reads_surface = false;
+    bool reads_surface = false, reads_water = false;
 
     gl::Texture gbuffer, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     gl::Texture varyings, height_steps;
@@ -118,7 +118,8 @@ struct Renderer::Impl {
         }
 
         make_targets();
-        reads_surface = reads("surface_pages");
+        reads_surface = reads(terrain, "surface_pages");
+        reads_water = reads(terrain, "water_pages") || reads(geometry, "water_pages");
         if (!effects.modules.empty()) depth_only = link("depth");
         for (const effect::NativeModule* module : effects.modules)
             natives.emplace_back(
@@ -149,7 +150,7 @@ struct Renderer::Impl {
             varyings.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
             outputs.push_back(&varyings);
         }
-        if (reads(kHeightStepsTexture)) {
+        if (reads(terrain, kHeightStepsTexture)) {
             height_steps = target(gl::Format::RG32F, kHeightStepsTexture);
             height_steps.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
             outputs.push_back(&height_steps);
@@ -167,10 +168,10 @@ struct Renderer::Impl {
         picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
     }
 
-    /// Whether the terrain program reads a texture.
-    bool reads(std::string_view resource) const {
+    /// Whether a program reads a texture.
+    static bool reads(const LinkedProgram& program, std::string_view resource) {
         return std::any_of(
-            terrain.textures.begin(), terrain.textures.end(),
+            program.textures.begin(), program.textures.end(),
             [&](const shader::TextureUnit& unit) { return unit.resource == resource; });
     }
 
@@ -315,6 +316,7 @@ struct Renderer::Impl {
         };
 
         if (reads_surface) ground.keep_surface();
+        if (reads_water) ground.keep_water();
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
                                           inputs.exaggeration, inputs.loading);
         passed("select");
