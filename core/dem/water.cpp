@@ -29,6 +29,8 @@ constexpr double kSteep = 0.25;   // of a lake's rim, where heights are terraced
 // and 24 to 110 of rim squared a post, flats of plains up to 0.57, or 150 and more.
 constexpr std::int64_t kLargePosts = 900;
 constexpr double kLargeClosed = 0.65, kCompact = 120;
+constexpr int kFar = 4;           // posts behind its shore, where land has risen by two steps
+constexpr double kRisesOn = 0.4;  // of the shore
 
 class WaterFinder {
   public:
@@ -94,6 +96,10 @@ class WaterFinder {
             const WaterKind kind = kinds[static_cast<std::size_t>(runs.root(i))];
             if (kind == WaterKind::None) continue;
             std::fill_n(&kind_.at(run.first, run.row), run.last - run.first + 1, kind);
+            if (kind != WaterKind::SeaFloor) continue;
+            // What is exactly 0 has been measured on the surface.
+            for (int column = run.first; column <= run.last; ++column)
+                if (h_.at(column, run.row) == 0) kind_.at(column, run.row) = WaterKind::Sea;
         }
     }
 
@@ -104,7 +110,8 @@ class WaterFinder {
             component.zeros += h[column] == 0;
             component.lowest_m = std::min(component.lowest_m, h[column]);
         }
-        if (dry_land_.at(run.first, run.row)) component.in_depression += run.last - run.first + 1;
+        const Depression* const box = dry_land_.at(run.first, run.row);
+        if (box && !box->on_coast) component.in_depression += run.last - run.first + 1;
         component.open = component.open || opens(run);
     }
 
@@ -171,7 +178,8 @@ class WaterFinder {
 
     /// What is around a flat.
     struct Rim {
-        std::vector<float> rises;  // where it is higher
+        std::vector<float> rises;      // where it is higher
+        std::vector<float> far_rises;  // kFar posts further out, straight on
         std::int64_t lower = 0, edge = 0;
         float deepest_m = 0;  // how far it is lower
 
@@ -203,6 +211,10 @@ class WaterFinder {
                     posts.push_back(at);
                 } else if (rise > 0) {
                     rim.rises.push_back(rise);
+                    const glm::ivec2 far = at + kFar * step;
+                    if (far.x >= 0 && far.y >= 0 && far.x < h_.width() && far.y < h_.height() &&
+                        !is_hole(far.x, far.y))
+                        rim.far_rises.push_back(h_.at(far.x, far.y) - level);
                 } else {
                     ++rim.lower;
                     rim.deepest_m = std::max(rim.deepest_m, -rise);
@@ -229,8 +241,11 @@ class WaterFinder {
         const auto steep = std::count_if(rim.rises.begin(), rim.rises.end(),
                                          [&](float rise) { return rise > 1.5f * step; });
         if (closed && static_cast<double>(steep) >= kSteep * rim.higher()) return true;
-        // Shores that were averaged rise by a step and waver by one.
-        return terraced && posts >= kLargePosts && rim.deepest_m < 1.5f * step &&
+        // Shores that were averaged rise by a step and waver by one, and then rise on.
+        const auto rises_on = std::count_if(rim.far_rises.begin(), rim.far_rises.end(),
+                                            [&](float rise) { return rise > 1.5f * step; });
+        return terraced && static_cast<double>(rises_on) >= kRisesOn * rim.higher() &&
+               posts >= kLargePosts && rim.deepest_m < 1.5f * step &&
                rim.higher() >= kLargeClosed * rim.all() && rim.all() * rim.all() <= kCompact * size;
     }
 

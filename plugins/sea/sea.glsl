@@ -18,7 +18,7 @@ uniform float sea_yellow = 0.2; //@ range(0, 10) unit(1/m) label("Yellow substan
 
 const vec3 sea_absorption = vec3(0.264, 0.0565, 0.0101);  // of pure water at 610, 550 and 465 nm [1/m]
 const vec3 sea_yellow_by_colour = vec3(0.0925, 0.214, 0.705);  // exp(-0.014 (wavelength - 440 nm))
-const vec3 sea_scattered = vec3(0.004, 0.018, 0.034);     // albedo of deep water, chosen by eye: ocean blue
+const vec3 sea_scattered = vec3(0.004, 0.026, 0.036);     // albedo of deep water, chosen by eye: blue-green
 
 const vec3 sea_sand = vec3(0.34, 0.30, 0.22);  // of a floor whose colour nobody knows, chosen by eye
 
@@ -92,7 +92,8 @@ void sea_on_material(inout Surface s) {
     s.diffuse = mix(s.diffuse, albedo, water);
     s.ambient = mix(s.ambient, albedo, water);
     s.shininess = mix(s.shininess, glitter.x, water);
-    s.specular = mix(s.specular, vec3(glitter.y), water);
+    // Low over the water the glitter is many times as bright as snow, which no picture can show.
+    s.specular = mix(s.specular, vec3(min(glitter.y, 0.4)), water);
 }
 
 void sea_on_lit(in Surface s, inout vec3 radiance) {
