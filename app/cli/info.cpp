@@ -12,6 +12,7 @@
 #include "cli/shared.h"
 #include "dem/pyramid.h"
 #include "dem/summary.h"
+#include "dem/water.h"
 #include "geo/local_frame.h"
 #include "render/patch_net.h"
 #include "sun/position.h"
@@ -63,6 +64,19 @@ NetError net_error(const dem::Grid& grid, double height_m) {
     return error;
 }
 
+/// Water as pictures have it; none where memory does not hold all posts. Figures do without it.
+std::optional<dem::Water> water_of(const dem::Source& source, std::int64_t max_posts) {
+    constexpr std::int64_t kMost = std::int64_t{1} << 26;  // a quarter of a GiB, a second
+    const dem::Grid& grid = source.grid();
+    if (std::int64_t{1} * grid.columns() * grid.rows() > std::min(kMost, max_posts))
+        return std::nullopt;
+    return dem::find_water(source.read(), grid);
+}
+
+double share(std::int64_t posts, const dem::Grid& grid) {
+    return static_cast<double>(posts) / grid.columns() / grid.rows();
+}
+
 /// A moment that needs the DEM.
 /// @param field  loaded where the moment needs heights
 sun::ParsedTime parse_over(const scene::Moment& moment, const dem::Source& source,
@@ -104,6 +118,7 @@ void add_info(CLI::App& app) {
         const sun::Position sun = sun::position(utc, summary.center);
         const sun::Refraction air = air_over(summary);
         const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
+        const std::optional<dem::Water> water = water_of(source, max_posts);
         if (arguments->json) {
             const NetError net = net_error(source.grid(), summary.max_m);
             auto json = nlohmann::ordered_json::parse(dem::to_json(summary));
@@ -115,10 +130,21 @@ void add_info(CLI::App& app) {
             if (given_time && !given_time->assumption.empty())
                 json["assumptions"].push_back(given_time->assumption);
             json["position_net"] = {{"piece_posts", net.posts}, {"error_m", net.worst_m}};
+            if (water)
+                json["water"] = {{"sea_share", share(water->sea_posts, source.grid())},
+                                 {"lake_share", share(water->lake_posts, source.grid())},
+                                 {"lakes", water->lakes},
+                                 {"assumptions", water->assumptions}};
+            else
+                json["water"] = nullptr;
             fmt::print("{}", json_text(json));
             return;
         }
         fmt::print("{}", dem::to_text(summary));
+        if (water && water->any())
+            fmt::print("{:<10} {:.3g} % sea, {:.3g} % lakes ({}), as pictures have it\n", "water",
+                       100 * share(water->sea_posts, source.grid()),
+                       100 * share(water->lake_posts, source.grid()), water->lakes);
         fmt::print("{:<10} {} at {}\n", "sun", session::sun_text(sun, air), sun::to_iso(utc));
         if (log::level() == log::Level::Debug) {
             const NetError net = net_error(source.grid(), summary.max_m);

@@ -18,12 +18,13 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and what its shaders' globals begin with.
-constexpr std::array<std::string_view, 40> kReserved = {
-    "all",    "antialias", "background", "camera",  "colour",   "core",   "data",     "depth",
-    "east",   "edges",     "frame",      "gbuffer", "geometry", "gl",     "ground",   "height",
-    "hook",   "light",     "load",       "net",     "none",     "normal", "overlay",  "page",
-    "place",  "post",      "scene",      "select",  "slope",    "srgb",   "steps",    "store",
-    "stored", "sun",       "surface",    "tangent", "terrain",  "up",     "varyings", "vertex"};
+constexpr std::array<std::string_view, 41> kReserved = {
+    "all",     "antialias", "background", "camera",   "colour",  "core",     "data",
+    "depth",   "east",      "edges",      "frame",    "gbuffer", "geometry", "gl",
+    "ground",  "height",    "hook",       "light",    "load",    "net",      "none",
+    "normal",  "overlay",   "page",       "place",    "post",    "scene",    "select",
+    "slope",   "srgb",      "steps",      "store",    "stored",  "sun",      "surface",
+    "tangent", "terrain",   "up",         "varyings", "vertex",  "water"};
 
 // A capability that core provides itself: render/programs.h.
 constexpr std::string_view kNightWord = "night";

@@ -20,7 +20,8 @@ const vec3 sea_absorption = vec3(0.264, 0.0565, 0.0101);  // of pure water at 61
 const vec3 sea_yellow_by_colour = vec3(0.0925, 0.214, 0.705);  // exp(-0.014 (wavelength - 440 nm))
 const vec3 sea_scattered = vec3(0.004, 0.026, 0.036);     // albedo of deep water, chosen by eye: blue-green
 
-const vec3 sea_sand = vec3(0.34, 0.30, 0.22);  // of a floor whose colour nobody knows, chosen by eye
+const vec3 sea_sand = vec3(0.30, 0.28, 0.21);  // of a floor whose colour nobody knows, chosen by eye
+const float sea_tide_m = 2.0;  // added to its depth: charts count from low water, posts are means
 
 /// How much of a flood a point is: all of it up to the level, none from 0.3 m above on.
 float sea_share(in float height_m) {
@@ -67,7 +68,7 @@ vec2 sea_water(in Surface s, in float height_m) {
         return vec2(sea_share(height_m), max(sea_level_m - height_m, 0.0) + sea_least_depth_m);
     const float unseen_m = 1000.0;
     vec4 water = water_of(s);
-    return vec2(water.x, mix(unseen_m, max(-height_m, 0.0), water.y * water.z));
+    return vec2(water.x, mix(unseen_m, max(-height_m, 0.0) + sea_tide_m, water.y * water.z));
 }
 
 void sea_on_displace(in VertexFrame v, inout vec3 position_m) {

@@ -154,8 +154,9 @@ std::string text(const std::string& members) {
 }
 
 constexpr const char* kKeys =
-    "format, id, name, description, version, enabled_by_default, provides, requires, wants, after, "
-    "module, glsl, textures, texts, displaces";
+    "format, id, name, description, version, enabled_by_default, default_where, provides, "
+    "requires, "
+    "wants, after, module, glsl, textures, texts, displaces";
 const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
 
 INSTANTIATE_TEST_SUITE_P(
