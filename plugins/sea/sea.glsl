@@ -71,13 +71,18 @@ vec2 sea_water(in Surface s, in float height_m) {
     return vec2(water.x, mix(unseen_m, max(-height_m, 0.0) + sea_tide_m, water.y * water.z));
 }
 
+/// From a floor up to the level.
+vec3 sea_lift_m(in VertexFrame v) {
+    return max(sea_level_m - v.height_m, 0.0) * frame.height_range.z * v.up;
+}
+
 void sea_on_displace(in VertexFrame v, inout vec3 position_m) {
     bool floods = sea_level_m != 0.0;
     float depth_m = sea_level_m - v.height_m;
     // A lake's heights are its surface already, whatever its level.
     vec4 water = floods || depth_m <= 0.0 ? vec4(1.0) : water_at(v.post, 1.0);
     float lifted = water.x > 0.0 && water.y > 0.5 ? 1.0 : 0.0;
-    position_m += lifted * max(depth_m, 0.0) * frame.height_range.z * v.up;
+    position_m += lifted * sea_lift_m(v);
 }
 
 void sea_on_material(inout Surface s) {

@@ -93,7 +93,7 @@ TEST(Sea, CoversItsFloorAndNotTheLand) {
         "v.height_m = 10.0 * float(x) - 50.0;\n"
         "v.up = vec3(0.0, 0.6, 0.8);\n"
         "vec3 position = vec3(1.0, 2.0, 3.0);\n"
-        "sea_on_displace(v, position);\n"
+        "position += sea_lift_m(v);\n"
         "result = vec4(position, 0.0);",
         11, 1);
     for (int x = 0; x <= 10; ++x) {
