@@ -77,6 +77,22 @@ double share(std::int64_t posts, const dem::Grid& grid) {
     return static_cast<double>(posts) / grid.columns() / grid.rows();
 }
 
+nlohmann::ordered_json json_of(const std::optional<dem::Water>& water, const dem::Grid& grid) {
+    if (!water) return nullptr;
+    return {{"sea_share", share(water->sea_posts, grid)},
+            {"lake_share", share(water->lake_posts, grid)},
+            {"lakes", water->lakes},
+            {"assumptions", water->assumptions}};
+}
+
+/// A line with its end; empty where there is no water.
+std::string text_of(const std::optional<dem::Water>& water, const dem::Grid& grid) {
+    if (!water || !water->any()) return "";
+    return fmt::format("{:<10} {:.3g} % sea, {:.3g} % lakes ({}), as pictures have it\n", "water",
+                       100 * share(water->sea_posts, grid), 100 * share(water->lake_posts, grid),
+                       water->lakes);
+}
+
 /// A moment that needs the DEM.
 /// @param field  loaded where the moment needs heights
 sun::ParsedTime parse_over(const scene::Moment& moment, const dem::Source& source,
@@ -130,21 +146,12 @@ void add_info(CLI::App& app) {
             if (given_time && !given_time->assumption.empty())
                 json["assumptions"].push_back(given_time->assumption);
             json["position_net"] = {{"piece_posts", net.posts}, {"error_m", net.worst_m}};
-            if (water)
-                json["water"] = {{"sea_share", share(water->sea_posts, source.grid())},
-                                 {"lake_share", share(water->lake_posts, source.grid())},
-                                 {"lakes", water->lakes},
-                                 {"assumptions", water->assumptions}};
-            else
-                json["water"] = nullptr;
+            json["water"] = json_of(water, source.grid());
             fmt::print("{}", json_text(json));
             return;
         }
         fmt::print("{}", dem::to_text(summary));
-        if (water && water->any())
-            fmt::print("{:<10} {:.3g} % sea, {:.3g} % lakes ({}), as pictures have it\n", "water",
-                       100 * share(water->sea_posts, source.grid()),
-                       100 * share(water->lake_posts, source.grid()), water->lakes);
+        fmt::print("{}", text_of(water, source.grid()));
         fmt::print("{:<10} {} at {}\n", "sun", session::sun_text(sun, air), sun::to_iso(utc));
         if (log::level() == log::Level::Debug) {
             const NetError net = net_error(source.grid(), summary.max_m);
