@@ -21,6 +21,13 @@ std::uint8_t unorm8(double value) {
     return static_cast<std::uint8_t>(std::lrint(std::clamp(value, 0.0, 1.0) * 255));
 }
 
+bool uniform(const WaterTexel* const* rows) {
+    const WaterTexel& own = rows[1][0];
+    for (int r = 0; r < 3; ++r)
+        if (rows[r][-1] != own || rows[r][0] != own || rows[r][1] != own) return false;
+    return true;
+}
+
 /// Mean of texels: of the shore and the filled by weight, of what kind of water it is by how much
 /// of it there is.
 class TexelMean {
@@ -42,6 +49,27 @@ class TexelMean {
   private:
     double whole_ = 0, wet_ = 0, sea_ = 0, floor_ = 0, filled_ = 0;
 };
+
+/// A node of the mean of finer ones. The last nodes lie on the last posts, as dem::Pyramid's do.
+/// @param finer  of the finer level, all columns, from row `top` on
+/// @param fine   columns and rows of the whole finer level
+WaterTexel coarser(const Array2d<WaterTexel>& finer, glm::ivec2 node, glm::ivec2 fine, int top) {
+    const glm::ivec2 middle = glm::min(2 * node, fine - 1);
+    if (middle == glm::clamp(middle, glm::ivec2(1), fine - 2)) {
+        const WaterTexel* const rows[3] = {&finer.at(middle.x, middle.y - 1 - top),
+                                           &finer.at(middle.x, middle.y - top),
+                                           &finer.at(middle.x, middle.y + 1 - top)};
+        if (uniform(rows)) return *rows[1];
+    }
+    TexelMean mean;
+    for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) {
+            const glm::ivec2 at = middle + glm::ivec2(dx, dy);
+            if (at != glm::clamp(at, glm::ivec2(0), fine - 1)) continue;
+            mean.add((2 - std::abs(dx)) * (2 - std::abs(dy)), finer.at(at.x, at.y - top));
+        }
+    return mean.mean();
+}
 
 }  // namespace
 
@@ -85,11 +113,30 @@ double WaterField::shore(int column, int row, bool wet) const {
     return wet ? std::max(blurred, kLeastShore) : std::min(blurred, -kLeastShore);
 }
 
+/// The kind of a post and all around it, where it is one; almost everywhere it is.
+std::optional<WaterKind> WaterField::kind_around(int column, int row) const {
+    const Array2d<WaterKind>& kind = water_.kind;
+    if (column < 1 || row < 1 || column + 1 >= kind.width() || row + 1 >= kind.height())
+        return std::nullopt;
+    const WaterKind own = kind.at(column, row);
+    for (int r = row - 1; r <= row + 1; ++r) {
+        const WaterKind* const k = &kind.at(column, r);
+        if (k[-1] != own || k[0] != own || k[1] != own) return std::nullopt;
+    }
+    return own;
+}
+
 WaterTexel WaterField::of_post(int column, int row) const {
     const std::uint8_t filled =
         filled_ && filled_->at(column, row) ? std::uint8_t{255} : std::uint8_t{0};
     const Array2d<WaterKind>& kind = water_.kind;
     if (kind.empty()) return {0, 0, 0, filled};
+    if (const std::optional<WaterKind> alone = kind_around(column, row)) {
+        const bool is_sea = *alone == WaterKind::Sea || *alone == WaterKind::SeaFloor;
+        const auto all_or_none = [](bool all) { return static_cast<std::uint8_t>(all ? 255 : 0); };
+        return {all_or_none(*alone != WaterKind::None), all_or_none(is_sea),
+                all_or_none(*alone == WaterKind::SeaFloor), filled};
+    }
     int wet = 0, sea = 0, floor = 0;
     for (int r = std::max(row - 1, 0); r <= std::min(row + 1, kind.height() - 1); ++r) {
         for (int c = std::max(column - 1, 0); c <= std::min(column + 1, kind.width() - 1); ++c) {
@@ -106,7 +153,7 @@ WaterTexel WaterField::of_post(int column, int row) const {
 }
 
 WaterTexel WaterField::at(int level, int column, int row) const {
-    if (level == 0)
+    if (level == 0 || levels_.empty())
         return of_post(std::clamp(column, 0, heights_m_.width() - 1),
                        std::clamp(row, 0, heights_m_.height() - 1));
     const Array2d<WaterTexel>& texels = levels_[static_cast<std::size_t>(
@@ -116,27 +163,23 @@ WaterTexel WaterField::at(int level, int column, int row) const {
 }
 
 void WaterField::make_levels() {
+    if (water_.kind.empty() && !filled_) return;
     glm::ivec2 fine(heights_m_.width(), heights_m_.height());
     while (std::max(fine.x, fine.y) > 2) {
         const glm::ivec2 size = fine / 2 + 1;
         Array2d<WaterTexel> texels(size.x, size.y);
         const int level = static_cast<int>(levels_.size());
         parallel_for(0, size.y, 16, [&](int first, int last) {
-            for (int row = first; row < last; ++row) {
-                for (int column = 0; column < size.x; ++column) {
-                    // The last nodes lie on the last posts, as dem::Pyramid's do.
-                    const glm::ivec2 middle = glm::min(2 * glm::ivec2(column, row), fine - 1);
-                    TexelMean mean;
-                    for (int dy = -1; dy <= 1; ++dy)
-                        for (int dx = -1; dx <= 1; ++dx) {
-                            const glm::ivec2 node = middle + glm::ivec2(dx, dy);
-                            if (node != glm::clamp(node, glm::ivec2(0), fine - 1)) continue;
-                            mean.add((2 - std::abs(dx)) * (2 - std::abs(dy)),
-                                     at(level, node.x, node.y));
-                        }
-                    texels.at(column, row) = mean.mean();
-                }
-            }
+            // The finer nodes of these rows, once each.
+            const int top = std::max(std::min(2 * first, fine.y - 1) - 1, 0),
+                      bottom = std::min(2 * last, fine.y);
+            Array2d<WaterTexel> finer(fine.x, bottom - top);
+            for (int row = top; row < bottom; ++row)
+                for (int column = 0; column < fine.x; ++column)
+                    finer.at(column, row - top) = at(level, column, row);
+            for (int row = first; row < last; ++row)
+                for (int column = 0; column < size.x; ++column)
+                    texels.at(column, row) = coarser(finer, {column, row}, fine, top);
         });
         levels_.push_back(std::move(texels));
         fine = size;

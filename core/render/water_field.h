@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -39,6 +40,7 @@ class WaterField {
 
   private:
     WaterTexel of_post(int column, int row) const;
+    std::optional<dem::WaterKind> kind_around(int column, int row) const;
     double shore(int column, int row, bool wet) const;
     void make_levels();
     WaterTexel between(int level, glm::dvec2 node) const;
