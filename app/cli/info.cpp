@@ -64,12 +64,12 @@ NetError net_error(const dem::Grid& grid, double height_m) {
     return error;
 }
 
-/// Water as pictures have it; none where memory does not hold all posts. Figures do without it.
-std::optional<dem::Water> water_of(const dem::Source& source, std::int64_t max_posts) {
-    constexpr std::int64_t kMost = std::int64_t{1} << 26;  // a quarter of a GiB, a second
+/// Water as pictures have it; none of DEMs that are too large to be held for this alone, whatever
+/// --memory is: what is told of a DEM does not hang on it.
+std::optional<dem::Water> water_of(const dem::Source& source) {
+    constexpr std::int64_t kMost = std::int64_t{1} << 24;  // 64 MiB
     const dem::Grid& grid = source.grid();
-    if (std::int64_t{1} * grid.columns() * grid.rows() > std::min(kMost, max_posts))
-        return std::nullopt;
+    if (std::int64_t{1} * grid.columns() * grid.rows() > kMost) return std::nullopt;
     return dem::find_water(source.read(), grid);
 }
 
@@ -134,7 +134,7 @@ void add_info(CLI::App& app) {
         const sun::Position sun = sun::position(utc, summary.center);
         const sun::Refraction air = air_over(summary);
         const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
-        const std::optional<dem::Water> water = water_of(source, max_posts);
+        const std::optional<dem::Water> water = water_of(source);
         if (arguments->json) {
             const NetError net = net_error(source.grid(), summary.max_m);
             auto json = nlohmann::ordered_json::parse(dem::to_json(summary));

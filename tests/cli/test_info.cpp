@@ -37,6 +37,7 @@ TEST(InfoVerb, SaysEverythingInLines) {
                   "above      unknown\n"
                   "assumed    heights are placed as ellipsoidal ones: the file does not say what "
                   "they are above\n"
+                  "water      0 % sea, 0.798 % lakes (2), as pictures have it\n"
                   "sun        azimuth 114.27, elevation 65.12 (65.13 with refraction) at "
                   "2026-06-21T16:00:00Z\n"
                   "net        pieces of 64 posts are drawn within 0.00024 m of where they are, "
