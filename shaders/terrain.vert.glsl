@@ -66,6 +66,8 @@ void main() {
     v.ground_m = ground_at(v.position_m, v.up, height.r);
     v.distance_m = length(v.position_m);
     v.drawn_height_m = height.r * frame.height_range.z;
+    // Short of the last post, so that it lies in a page as all others do.
+    v.post = vec2(net_v.w, net_uv.w) + clamp(vertex, vec2(0.0), limit - 0.01) * net_uuv.w;
     vec3 in_place = v.position_m;
     hook_displace(v, v.position_m);
 #ifdef DISPLACED
@@ -95,8 +97,7 @@ void main() {
     vec3 crossed = cross(beside - here, below - here);
     vertex_normal = normalize(dot(crossed, v.up) < 0.0 ? -crossed : crossed);
 #endif
-    // Short of the last post, so that it lies in a page as all others do.
-    post = vec2(net_v.w, net_uv.w) + clamp(vertex, vec2(0.0), limit - 0.01) * net_uuv.w;
+    post = v.post;
     height_m = height.r;
 #ifdef DISPLACED
     height_m = nowhere ? kNowhere_m : height_m;

@@ -144,6 +144,8 @@ void capture(const Arguments& arguments) {
     log::info(fmt::format("{}, {}: sun at {}{}", where, when, sun, chosen));
     if (const std::string climate = session.climate_text(); !climate.empty())
         log::info(fmt::format("natural ground of a normal year, in the DEM's middle: {}", climate));
+    for (const std::string& note : session.ground_notes())
+        log::info(note);
     const auto passes_began = Clock::now();
     session.draw(timings.passes());
     timings.add("passes", milliseconds_since(passes_began));

@@ -12,6 +12,7 @@
 #include "cli/shared.h"
 #include "dem/pyramid.h"
 #include "dem/summary.h"
+#include "dem/water.h"
 #include "geo/local_frame.h"
 #include "render/patch_net.h"
 #include "session/climate_words.h"
@@ -62,6 +63,35 @@ NetError net_error(const dem::Grid& grid, double height_m) {
         }
     }
     return error;
+}
+
+/// Water as pictures have it; none of DEMs that are too large to be held for this alone, whatever
+/// --memory is: what is told of a DEM does not hang on it.
+std::optional<dem::Water> water_of(const dem::Source& source) {
+    constexpr std::int64_t kMost = std::int64_t{1} << 24;  // 64 MiB
+    const dem::Grid& grid = source.grid();
+    if (std::int64_t{1} * grid.columns() * grid.rows() > kMost) return std::nullopt;
+    return dem::find_water(source.read(), grid);
+}
+
+double share(std::int64_t posts, const dem::Grid& grid) {
+    return static_cast<double>(posts) / grid.columns() / grid.rows();
+}
+
+nlohmann::ordered_json json_of(const std::optional<dem::Water>& water, const dem::Grid& grid) {
+    if (!water) return nullptr;
+    return {{"sea_share", share(water->sea_posts, grid)},
+            {"lake_share", share(water->lake_posts, grid)},
+            {"lakes", water->lakes},
+            {"assumptions", water->assumptions}};
+}
+
+/// A line with its end; empty where there is no water.
+std::string text_of(const std::optional<dem::Water>& water, const dem::Grid& grid) {
+    if (!water || !water->any()) return "";
+    return fmt::format("{:<10} {:.3g} % sea, {:.3g} % lakes ({}), as pictures have it\n", "water",
+                       100 * share(water->sea_posts, grid), 100 * share(water->lake_posts, grid),
+                       water->lakes);
 }
 
 /// A moment that needs the DEM.
@@ -128,6 +158,7 @@ void add_info(CLI::App& app) {
         const sun::Refraction air = air_over(summary);
         const session::ClimateReport climate = climate_over(summary, utc);
         const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
+        const std::optional<dem::Water> water = water_of(source);
         if (arguments->json) {
             const NetError net = net_error(source.grid(), summary.max_m);
             auto json = nlohmann::ordered_json::parse(dem::to_json(summary));
@@ -140,10 +171,12 @@ void add_info(CLI::App& app) {
             if (given_time && !given_time->assumption.empty())
                 json["assumptions"].push_back(given_time->assumption);
             json["position_net"] = {{"piece_posts", net.posts}, {"error_m", net.worst_m}};
+            json["water"] = json_of(water, source.grid());
             fmt::print("{}", json_text(json));
             return;
         }
         fmt::print("{}", dem::to_text(summary));
+        fmt::print("{}", text_of(water, source.grid()));
         fmt::print("{:<10} {} at {}\n", "sun", session::sun_text(sun, air), sun::to_iso(utc));
         fmt::print("{:<10} {}\n", "climate", session::climate_text(climate));
         fmt::print("{:<10} {}\n", "ground", session::ground_text(climate));

@@ -52,6 +52,10 @@ void OverlayArguments::apply_to(scene::Scene& scene) const {
 
 void SceneArguments::add_to(CLI::App& verb) {
     dem.add_to(verb);
+    verb.add_option("--holes", holes,
+                    "How holes in the DEM are drawn: fill small ones and cut out the rest, cut out "
+                    "all, or fill and mark (fill)")
+        ->check(CLI::IsMember({"fill", "cut", "mark"}));
     verb.add_option("--size", size, "Width and height in pixels, 1280x1024");
     verb.add_option_function<std::string>(
         "--scene",
@@ -82,6 +86,7 @@ scene::Scene SceneArguments::scene() const {
     view.apply_to(result);
     effects.apply_to(result.effects);
     overlay.apply_to(result);
+    if (!holes.empty()) result.holes = dem::parse_holes(holes, "--holes");
     if (!size.empty()) {
         const glm::ivec2 sides = parse_size(size);
         result.width_px = sides.x;

@@ -28,7 +28,7 @@ struct SceneArguments {
     ViewArguments view;
     EffectArguments effects;
     OverlayArguments overlay;
-    std::string file, size;
+    std::string file, size, holes;
     std::optional<double> exposure_ev, pixel_error;
 
     void add_to(CLI::App& verb);

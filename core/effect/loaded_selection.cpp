@@ -50,13 +50,13 @@ class Loader {
 
 LoadedSelection select_and_load(const Registry& registry, const std::vector<Preset>& presets,
                                 const Switches& command_line, const shader::ParamStore& values,
-                                const std::optional<TextureLimits>& limits,
-                                LoadedSelection loaded) {
+                                const std::optional<TextureLimits>& limits, LoadedSelection loaded,
+                                const GroundWords& ground) {
     LoadedSelection result;
     result.unusable = std::move(loaded.unusable);
     Loader loader(values, limits, std::move(loaded));
     while (true) {
-        result.selection = select(registry, presets, command_line, result.unusable);
+        result.selection = select(registry, presets, command_line, result.unusable, ground);
         const std::size_t before = result.unusable.size();
         for (const Effect* effect : result.selection.effects) {
             try {

@@ -26,6 +26,6 @@ struct LoadedSelection {
 LoadedSelection select_and_load(const Registry& registry, const std::vector<Preset>& presets,
                                 const Switches& command_line, const shader::ParamStore& values,
                                 const std::optional<TextureLimits>& limits = {},
-                                LoadedSelection loaded = {});
+                                LoadedSelection loaded = {}, const GroundWords& ground = {});
 
 }  // namespace relevo::effect

@@ -4,6 +4,7 @@
 #include <array>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/paths.h"
 #include "base/text.h"
@@ -17,16 +18,18 @@ constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
 // Words of core's command line, parameters and timings, and what its shaders' globals begin with.
-constexpr std::array<std::string_view, 44> kReserved = {
-    "all",     "antialias", "backdrop", "background", "camera", "climate", "colour",  "core",
-    "data",    "depth",     "east",     "edges",      "floor",  "frame",   "gbuffer", "geometry",
-    "gl",      "ground",    "height",   "hook",       "light",  "load",    "net",     "none",
-    "normal",  "overlay",   "page",     "place",      "post",   "scene",   "select",  "side",
-    "slope",   "srgb",      "steps",    "store",      "stored", "sun",     "surface", "tangent",
-    "terrain", "up",        "varyings", "vertex"};
+constexpr std::array<std::string_view, 46> kReserved = {
+    "all",      "antialias", "backdrop", "background", "camera", "climate", "colour", "core",
+    "data",     "depth",     "drape",    "east",       "edges",  "floor",   "frame",  "gbuffer",
+    "geometry", "gl",        "ground",   "height",     "hook",   "light",   "load",   "net",
+    "none",     "normal",    "overlay",  "page",       "place",  "post",    "scene",  "select",
+    "side",     "slope",     "srgb",     "steps",      "store",  "stored",  "sun",    "surface",
+    "tangent",  "terrain",   "up",       "varyings",   "vertex", "water"};
 
 // Capabilities that core provides itself: render/programs.h.
 constexpr std::array<std::string_view, 2> kCoreWords = {"night", "outside"};
+
+constexpr std::array<std::string_view, 2> kGroundWords = {"water", "marked_holes"};
 
 bool is_lower(char c) {
     return c >= 'a' && c <= 'z';
@@ -144,6 +147,12 @@ class ManifestReader {
         manifest_.description = object.string("description", "");
         manifest_.version = object.string("version");
         manifest_.enabled_by_default = object.boolean("enabled_by_default", true);
+        manifest_.default_where = object.strings("default_where");
+        for (const std::string& word : manifest_.default_where)
+            if (std::find(kGroundWords.begin(), kGroundWords.end(), word) == kGroundWords.end())
+                object.fail(object.line_of("default_where"), "default_where",
+                            fmt::format("expected words of {} but got \"{}\"",
+                                        fmt::join(kGroundWords, ", "), word));
     }
 
     void glsl(ObjectReader& object) {
@@ -277,6 +286,10 @@ class ManifestReader {
 };
 
 }  // namespace
+
+std::span<const std::string_view> ground_words() {
+    return kGroundWords;
+}
 
 Manifest load_manifest(const std::filesystem::path& folder, const std::filesystem::path& data_dir) {
     return ManifestReader(folder, data_dir).run();

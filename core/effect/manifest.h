@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,6 +60,7 @@ struct Manifest {
     std::string description;
     std::string version;
     bool enabled_by_default = true;
+    std::vector<std::string> default_where;  ///< what a DEM must have for that: ground_words()
 
     // Capability words, `[a-z][a-z0-9_]*`.
     std::vector<std::string> provides;
@@ -76,6 +78,10 @@ struct Manifest {
     std::filesystem::path folder;
     std::filesystem::path file;  ///< folder / "plugin.json"
 };
+
+/// What a DEM may have, as a plugin's "default_where" says it: "water", and "marked_holes", which
+/// are filled and to be painted.
+std::span<const std::string_view> ground_words();
 
 /// Reads `folder/plugin.json`.
 /// @param data_dir  where `data:ground/rock.png` is: `share_dir() / "data"`

@@ -22,10 +22,11 @@ bool contains(const std::vector<std::string>& words, std::string_view word) {
 class Selector {
   public:
     Selector(const Registry& registry, const std::vector<Preset>& presets,
-             const Switches& command_line, const Unusable& unusable)
+             const Switches& command_line, const Unusable& unusable, const GroundWords& ground)
         : registry_(registry), command_line_(command_line) {
         for (const Effect& effect : registry.effects())
-            if (effect.manifest.enabled_by_default) on_.insert(effect.id());
+            if (effect.manifest.enabled_by_default && !lacking(effect, ground))
+                on_.insert(effect.id());
         for (const Preset& preset : presets) {
             ++turn_;
             apply(known_of(preset));
@@ -33,6 +34,9 @@ class Selector {
         check_command_line(command_line);
         ++turn_;
         apply(command_line);
+        for (const std::string& id : on_)
+            if (const auto word = lacking(effect(id), ground))
+                notices_.push_back(fmt::format("{} is on, but this DEM has no {}", id, *word));
         for (const auto& [id, reason] : unusable) {
             if (on_.erase(id) > 0) warn_off(id, reason);
             asked_.erase(id);
@@ -60,6 +64,17 @@ class Selector {
 
   private:
     const Effect& effect(const std::string& id) const { return registry_.effect(id, kWho); }
+
+    /// What an effect is for and the DEM has not, for people.
+    static std::optional<std::string> lacking(const Effect& effect, const GroundWords& ground) {
+        if (!ground) return std::nullopt;
+        for (std::string word : effect.manifest.default_where) {
+            if (contains(*ground, word)) continue;
+            std::replace(word.begin(), word.end(), '_', ' ');
+            return word;
+        }
+        return std::nullopt;
+    }
 
     // ---- what was asked for
 
@@ -355,8 +370,9 @@ std::vector<const shader::Snippet*> Selection::snippets() const {
 }
 
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
-                 const Switches& command_line, const Unusable& unusable) {
-    return Selector(registry, presets, command_line, unusable).run();
+                 const Switches& command_line, const Unusable& unusable,
+                 const GroundWords& ground) {
+    return Selector(registry, presets, command_line, unusable, ground).run();
 }
 
 std::vector<std::string> apply_settings(shader::ParamStore& store, const Registry& registry,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,13 +25,16 @@ struct Selection {
 /// Effects that cannot be on, by id, and why.
 using Unusable = std::map<std::string, std::string>;
 
+/// What the DEM has, words of ground_words(). None: it is not known yet, and may have all.
+using GroundWords = std::optional<std::vector<std::string>>;
+
 /// Decides which effects are on, and in which order they are called.
 ///
-/// On are those with `enabled_by_default`; each preset, and then the command line, changes that:
-/// `only` puts its own list in its place, `enable` adds, `disable` takes away. What `only` and
-/// `enable` name pulls in effects that provide what it requires, except disabled ones. An effect
-/// whose requirement nobody provides goes off. Order: behind every provider of a word in
-/// `after`; ties by id.
+/// On are those with `enabled_by_default` where the DEM has what their `default_where` says; each
+/// preset, and then the command line, changes that: `only` puts its own list in its place, `enable`
+/// adds, `disable` takes away. What `only` and `enable` name pulls in effects that provide what it
+/// requires, except disabled ones. An effect whose requirement nobody provides goes off. Order:
+/// behind every provider of a word in `after`; ties by id.
 ///
 /// Of two that list a word as `exclusive`, the one that was asked for
 /// last is on, the command line's after those of presets and those after the defaults (of two
@@ -39,12 +43,14 @@ using Unusable = std::map<std::string, std::string>;
 /// What a preset names and is not there is a notice, so that deleting a plugin breaks no preset.
 /// @param unusable  effects that cannot be on: they are off, with a warning, and so is what
 ///                  requires them
+/// @param ground    an effect that is on although the DEM lacks what it is for is a notice
 /// @throws Error (BadInput) for an id on the command line that is unknown, or both on and off; one
 ///         that `only` or `enable` name there and that cannot be on; a circle of `after`; two
 ///         providers of an exclusive hook, or of an exclusive word where both were asked for at
 ///         once
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
-                 const Switches& command_line, const Unusable& unusable = {});
+                 const Switches& command_line, const Unusable& unusable = {},
+                 const GroundWords& ground = {});
 
 /// Sets the values of presets, then those of the command line. Never switches an effect on.
 /// @param store  has been told of all parameters there are

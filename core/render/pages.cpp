@@ -25,6 +25,30 @@ std::int16_t snorm16(float value) {
     return static_cast<std::int16_t>(std::lrint(std::clamp(value, -1.0f, 1.0f) * 32767.0f));
 }
 
+/// A block of a level with its coverage blurred, so that the cut beside holes, at one half, is
+/// smooth where posts would make steps. Nodes stay on the side of the cut that they are on.
+dem::Pyramid::Block smoothly_cut(const dem::Pyramid& pyramid, int level, glm::ivec2 first,
+                                 int columns, int rows) {
+    if (!pyramid.has_holes()) return pyramid.block(level, first, columns, rows);
+    constexpr float kLeastAside = 0.05f;
+    const auto wide = pyramid.block(level, first - 1, columns + 2, rows + 2);
+    dem::Pyramid::Block block{Array2d<float>(columns, rows), Array2d<float>(columns, rows)};
+    for (int y = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x) {
+            float sum = 0;
+            for (int dy = 0; dy <= 2; ++dy)
+                for (int dx = 0; dx <= 2; ++dx)
+                    sum += static_cast<float>((1 + dx % 2) * (1 + dy % 2)) *
+                           wide.coverage.at(x + dx, y + dy);
+            const float blurred = sum / 16, own = wide.coverage.at(x + 1, y + 1);
+            block.coverage.at(x, y) = own >= 0.5f ? std::max(blurred, 0.5f + kLeastAside)
+                                                  : std::min(blurred, 0.5f - kLeastAside);
+            block.height_m.at(x, y) = wide.height_m.at(x + 1, y + 1);
+        }
+    }
+    return block;
+}
+
 }  // namespace
 
 glm::ivec2 span_on_dem(const dem::Pyramid& pyramid, glm::ivec2 first, int side) {
@@ -34,7 +58,7 @@ glm::ivec2 span_on_dem(const dem::Pyramid& pyramid, glm::ivec2 first, int side) 
 
 std::vector<float> height_page(const dem::Pyramid& pyramid, int level, glm::ivec2 tile) {
     const glm::ivec2 first = tile * kTileQuads - 1;
-    const auto fine = pyramid.block(level, first, kHeightPage_px, kHeightPage_px);
+    const auto fine = smoothly_cut(pyramid, level, first, kHeightPage_px, kHeightPage_px);
     const bool top = level + 1 == pyramid.levels();
     std::vector<float> page;
     page.reserve(std::size_t{4} * kHeightPage_px * kHeightPage_px);
@@ -51,7 +75,7 @@ std::vector<float> height_page(const dem::Pyramid& pyramid, int level, glm::ivec
     const int left = pyramid.column_in_coarser(level, on_level(first.x, last.x)).from;
     const int above = pyramid.row_in_coarser(level, on_level(first.y, last.y)).from;
     constexpr int kCoarse = kHeightPage_px / 2 + 3;
-    const auto coarse = pyramid.block(level + 1, {left, above}, kCoarse, kCoarse);
+    const auto coarse = smoothly_cut(pyramid, level + 1, {left, above}, kCoarse, kCoarse);
     for (int y = 0; y < kHeightPage_px; ++y) {
         const auto row = pyramid.row_in_coarser(level, on_level(first.y + y, last.y));
         for (int x = 0; x < kHeightPage_px; ++x) {

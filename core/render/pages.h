@@ -18,9 +18,10 @@ inline constexpr int kNormalPage_px = kNormalNodes + 2;  ///< they and a border 
 inline constexpr int kNormalPageLevels = 2;
 static_assert(kNormalNodes == kTileQuads << kNormalPageLevels);
 
-/// Four floats a node, kHeightPage_px a side, the first one a border: height [m] and coverage (1 on
-/// posts, 0 on holes, see dem::Pyramid), and both of the next coarser level's triangles at the same
-/// place, towards which the vertex program morphs. Nodes beyond the DEM repeat its rim.
+/// Four floats a node, kHeightPage_px a side, the first one a border: height [m] and coverage (of
+/// dem::Pyramid, blurred where some is a hole; holes are cut out at one half), and both of the next
+/// coarser level's triangles at the same place, towards which the vertex program morphs. Nodes
+/// beyond the DEM repeat its rim.
 std::vector<float> height_page(const dem::Pyramid& pyramid, int level, glm::ivec2 tile);
 
 /// East and north part of the unit normals of the nodes of a page and its border, as 16-bit signed

@@ -126,7 +126,8 @@ struct Renderer::Impl {
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
     TileSelection tiles;  // of the last frame
-    bool reads_surface = false, reads_climate = false, reads_sun = false, reads_sky = false;
+    bool reads_surface = false, reads_climate = false, reads_sun = false, reads_sky = false,
+         reads_water = false;
 
     gl::Texture gbuffer, depth, radiance, overlay, tone_mapped, edge_marks, picture;
     gl::Texture varyings, height_steps;
@@ -194,6 +195,9 @@ struct Renderer::Impl {
         reads_climate = reads(kClimateTexture);
         reads_sun = reads("light_margins");
         reads_sky = reads("light_sky");
+        reads_water = false;
+        for (const char* const pass : {"geometry", "terrain", "side", "depth"})
+            reads_water |= reads("water_pages", pass);
         const gl::Extent size{options.width_px, options.height_px, 1};
         const auto target = [&](gl::Format format, const char* label) {
             gl::Texture texture(gl::TextureKind::D2, format, size, 1, label);
@@ -215,7 +219,7 @@ struct Renderer::Impl {
             varyings.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
             outputs.push_back(&varyings);
         }
-        if (reads(kHeightStepsTexture)) {
+        if (reads(terrain, kHeightStepsTexture)) {
             height_steps = target(gl::Format::RG32F, kHeightStepsTexture);
             height_steps.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
             outputs.push_back(&height_steps);
@@ -233,9 +237,11 @@ struct Renderer::Impl {
         picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
     }
 
-    /// Whether the terrain program reads a texture.
-    bool reads(std::string_view resource) const {
-        const std::vector<shader::TextureUnit>& textures = text(here("terrain")).stitched.textures;
+    /// Whether the program of a pass reads a texture.
+    bool reads(std::string_view resource, const char* pass = "terrain") const {
+        const ProgramText* const found = find_text(here(pass));
+        if (!found) return false;
+        const std::vector<shader::TextureUnit>& textures = found->stitched.textures;
         return std::any_of(textures.begin(), textures.end(), [&](const shader::TextureUnit& unit) {
             return unit.resource == resource;
         });
@@ -403,6 +409,7 @@ struct Renderer::Impl {
             footprint_of = ground.serial();
         }
         if (reads_surface) ground.keep_surface();
+        if (reads_water) ground.keep_water();
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
                                           inputs.exaggeration, inputs.loading);
         passed("select");

@@ -118,6 +118,9 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       frame_(frame),
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),
+      drawn_m_(&heightfield.height_m),
+      drawn_grid_(&heightfield.grid),
+      reduction_(finer ? heightfield.reduction : 1),
       light_(heightfield, frame),
       grid_vertices_(gl::Buffer::of<float>(grid_vertices(), "terrain grid")),
       grid_indices_(gl::Buffer::of<std::uint16_t>(grid_indices(), "terrain grid indices")),
@@ -196,12 +199,26 @@ void Terrain::clear_surface() {
                           [this, drape = drape_](const TileKey& key) {
                               return bytes_of(drape_page(*drape, pyramid_, key.level, key.at));
                           }});
+    if (keeps_water_)
+        layers.push_back({"water_pages", gl::Format::RGBA8, kNormalPage_px, gl::Filter::Linear,
+                          [this](const TileKey& key) {
+                              return bytes_of(water_->page(pyramid_, key.level, key.at));
+                          }});
     surface_ = PageCache(std::move(layers), normal_layers_);
 }
 
 void Terrain::drape(std::shared_ptr<const Drape> drape) {
     if (drape == drape_) return;
     drape_ = std::move(drape);
+    clear_surface();
+}
+
+void Terrain::keep_water() {
+    if (keeps_water_) return;
+    keeps_water_ = true;
+    if (!options_.water) own_water_ = dem::find_water(*drawn_m_, *drawn_grid_);
+    water_.emplace(*drawn_m_, options_.water ? *options_.water : *own_water_, options_.filled,
+                   reduction_);
     clear_surface();
 }
 

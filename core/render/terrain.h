@@ -12,6 +12,7 @@
 
 #include "dem/heightfield.h"
 #include "dem/pyramid.h"
+#include "dem/water.h"
 #include "geo/local_frame.h"
 #include "gl/buffer.h"
 #include "gl/texture.h"
@@ -23,6 +24,7 @@
 #include "render/lod.h"
 #include "render/page_cache.h"
 #include "render/sides.h"
+#include "render/water_field.h"
 
 namespace relevo::render {
 
@@ -33,6 +35,9 @@ struct TerrainOptions {
     /// Vertices in a frame above which the error is let grow.
     int vertex_budget = 250000;
     int max_array_layers = 2048;  ///< the device's
+    /// Of the heightfield's posts, for lib/water.glsl; both must outlive the terrain.
+    const dem::Water* water = nullptr;              ///< null: it is looked for when needed
+    const Array2d<std::uint8_t>* filled = nullptr;  ///< not 0 on posts that were holes
 };
 
 /// The tiles of a view with their pages on the device, ready to draw any number of times.
@@ -105,6 +110,9 @@ class Terrain {
     /// them.
     void keep_surface();
 
+    /// Likewise water pages.
+    void keep_water();
+
     /// From now on the ground of pictures has these colours, for programs that read them; null:
     /// none.
     void drape(std::shared_ptr<const Drape> drape);
@@ -158,10 +166,15 @@ class Terrain {
     int normal_levels_ = 1;
     int normal_layers_ = 1;
 
-    bool keeps_surface_ = false;
     std::shared_ptr<const Drape> drape_;
     std::optional<climate::ClimateMap> climate_map_;
     std::optional<ClimateVolume> climate_;
+    bool keeps_surface_ = false, keeps_water_ = false;
+    const Array2d<float>* drawn_m_;  // as many posts as are in memory
+    const dem::Grid* drawn_grid_;
+    int reduction_;
+    std::optional<dem::Water> own_water_;  // where none was given
+    std::optional<WaterField> water_;
     bool complete_ = true;
     gl::Texture page_table_;
     gl::Buffer grid_vertices_, grid_indices_, instances_;

@@ -123,6 +123,7 @@ class SceneReader {
         if (const auto mib =
                 static_cast<std::int64_t>(object.number("memory_mib", 0, 1, 1 << 20, true)))
             options.max_posts = dem::posts_in_mib(mib);
+        scene_.holes = static_cast<dem::Holes>(object.choice("holes", {"fill", "cut", "mark"}, 0));
         object.finish();
     }
 
@@ -320,6 +321,7 @@ ordered_json dem_json(const Scene& scene, const fs::path& folder) {
     }
     if (options.max_posts != dem::LoadOptions{}.max_posts)
         json["memory_mib"] = dem::mib_of_posts(options.max_posts);
+    if (scene.holes != dem::Holes::Fill) json["holes"] = dem::name_of(scene.holes);
     return json;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "dem/fill_holes.h"
 #include "dem/source.h"
 #include "effect/preset.h"
 #include "scene/view.h"
@@ -41,8 +42,9 @@ struct Overlay {
 /// Everything that decides about a picture but the device it is drawn on: a value, which the
 /// command line, files and windows make, and a session draws.
 struct Scene {
-    std::vector<std::string> dems;  ///< names that GDAL opens; several are one DEM
-    dem::LoadOptions dem;           ///< how they are read
+    std::vector<std::string> dems;        ///< names that GDAL opens; several are one DEM
+    dem::LoadOptions dem;                 ///< how they are read
+    dem::Holes holes = dem::Holes::Fill;  ///< how they are drawn
     Moment moment;
     std::string refraction = "standard";  ///< standard, saemundsson or none
     View view;

@@ -37,8 +37,28 @@ void ActiveEffects::fit(const gl::DeviceInfo& device, bool aloud) {
         registry, presets, switches, values,
         effect::TextureLimits{device.max_texture_size, device.max_volume_size,
                               device.max_array_layers},
-        std::move(loaded));
+        std::move(loaded), ground);
     if (aloud && loaded.unusable.size() > unusable) say(loaded.selection);
+}
+
+void ActiveEffects::take_ground(const effect::GroundWords& words, const scene::Effects& asked,
+                                bool aloud) {
+    const std::vector<std::string> said = loaded.selection.notices;
+    const effect::Selection before = std::move(loaded.selection);
+    ground = words;
+    loaded =
+        effect::select_and_load(registry, presets, switches, values, {}, std::move(loaded), ground);
+    if (!aloud) return;
+    for (const std::string& notice : loaded.selection.notices)
+        if (std::find(said.begin(), said.end(), notice) == said.end()) log::info(notice);
+    for (const effect::Setting& setting : asked.settings) {
+        const std::string id = setting.address.substr(0, setting.address.find('.'));
+        if (before.has(id) && !loaded.selection.has(id))
+            log::info(fmt::format(
+                "{} is set, but {} is off, because this DEM has nothing for it; --enable {} "
+                "switches it on",
+                setting.address, id, id));
+    }
 }
 
 render::EffectInputs ActiveEffects::inputs() const {
@@ -114,11 +134,13 @@ scene::Effects without(scene::Effects effects, const std::vector<std::string>& i
     return effects;
 }
 
-std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, bool aloud) {
+std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, bool aloud,
+                                                 const effect::GroundWords& ground) {
     auto active = std::make_unique<ActiveEffects>(effects);
+    active->ground = ground;
     active->switches = effects.switches;
     active->loaded = effect::select_and_load(active->registry, active->presets, active->switches,
-                                             active->values);
+                                             active->values, {}, {}, ground);
     const std::vector<std::string> notices =
         effect::apply_settings(active->values, active->registry, active->loaded.selection,
                                active->presets, effects.settings);

@@ -26,6 +26,7 @@ struct InstalledEffects {
 /// Those that are on as well, with what they load, and the values that a scene gives.
 struct ActiveEffects : InstalledEffects {
     effect::Switches switches;
+    effect::GroundWords ground;
     effect::LoadedSelection loaded;  // points into registry
 
     using InstalledEffects::InstalledEffects;
@@ -33,7 +34,13 @@ struct ActiveEffects : InstalledEffects {
     /// Loads the plugins and switches them.
     /// @param aloud  says with log what is not as asked
     /// @throws Error (BadInput) as effect::select_and_load and effect::apply_settings
-    static std::unique_ptr<ActiveEffects> of(const scene::Effects& effects, bool aloud = true);
+    static std::unique_ptr<ActiveEffects> of(const scene::Effects& effects, bool aloud = true,
+                                             const effect::GroundWords& ground = {});
+
+    /// Switches off what the DEM is not for.
+    /// @throws Error (BadInput) as effect::select_and_load
+    void take_ground(const effect::GroundWords& words, const scene::Effects& asked,
+                     bool aloud = true);
 
     /// Switches off, with a warning, what brings larger textures than a device takes.
     /// @throws Error (BadInput) for what was asked for by name

@@ -40,12 +40,34 @@ geo::Geodetic middle_of(const render::Ground& ground) {
     return middle;
 }
 
+LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
+    LoadedDem::Drawn drawn;
+    // Finer levels of means are read from the file, holes and all: they would disagree.
+    const bool all = field.reduction == 1;
+    if (field.about.statistics.holes > 0) {
+        const dem::Holes done = all ? holes : dem::Holes::Cut;
+        dem::FilledHoles filled = dem::fill_small_holes(field.height_m, done);
+        drawn.holes_text = filled.text(done);
+        if (!all && holes != dem::Holes::Cut)
+            drawn.holes_text += ", because the DEM is larger than --memory";
+        if (filled.filled_posts > 0) {
+            drawn.filled.emplace(dem::Heightfield{std::move(filled.height_m), field.grid,
+                                                  field.about, field.reduction});
+            drawn.is_filled = std::move(filled.filled);
+        }
+    }
+    drawn.water =
+        dem::find_water(drawn.filled ? drawn.filled->height_m : field.height_m, field.grid);
+    return drawn;
+}
+
 std::shared_ptr<const LoadedDem> load(const scene::Scene& scene) {
     const auto began = Clock::now();
     dem::Source source = dem::Source::open(scene.dems, scene.dem);
     dem::Heightfield field = dem::load(source, scene.dem.max_posts);
-    return std::make_shared<const LoadedDem>(
-        LoadedDem{std::move(source), std::move(field), milliseconds_since(began)});
+    LoadedDem::Drawn drawn = drawn_of(field, scene.holes);
+    return std::make_shared<const LoadedDem>(LoadedDem{
+        std::move(source), std::move(field), milliseconds_since(began), std::move(drawn)});
 }
 
 constexpr int kDivider_px = 2;
@@ -69,6 +91,13 @@ double LoadedDem::height_m(const geo::Geodetic& at) const {
     if (field.reduction > 1) return source.height_at(at);
     const glm::dvec2 post = field.grid.post(at);
     return field.height_at(post.x, post.y);
+}
+
+std::vector<std::string> LoadedDem::ground_words(dem::Holes holes) const {
+    std::vector<std::string> words;
+    if (drawn.water.any()) words.emplace_back("water");
+    if (holes == dem::Holes::Mark && !drawn.is_filled.empty()) words.emplace_back("marked_holes");
+    return words;
 }
 
 /// What draws a scene: some effects, and of a comparison the rest of them.
@@ -112,10 +141,12 @@ struct Session::Impl {
         auto loading = std::async(std::launch::async | std::launch::deferred,
                                   [this] { return options.dem ? options.dem : load(scene); });
         open_device(files);
+        // Which effects are on may depend on the ground.
+        loaded = loading.get();
+        take_ground(drawn);
         const auto began = Clock::now();
         compile(drawn);
         stages.emplace_back("compile", milliseconds_since(began));
-        loaded = loading.get();
         stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
         if (timed && !time) time = parse_over(scene.moment, loaded->source, loaded->field);
         upload();
@@ -133,12 +164,23 @@ struct Session::Impl {
     DrawnEffects load_effects(const scene::Effects& asked) const {
         DrawnEffects result;
         const bool compared = !options.compared.empty();
-        result.effects = ActiveEffects::of(compared ? with(asked, options.compared) : asked);
+        result.effects = ActiveEffects::of(compared ? with(asked, options.compared) : asked,
+                                           /*aloud=*/true, ground_words());
         if (compared)
             result.others =
                 ActiveEffects::of(session::without(asked, options.compared, *result.effects),
-                                  /*aloud=*/false);
+                                  /*aloud=*/false, ground_words());
         return result;
+    }
+
+    effect::GroundWords ground_words() const {
+        if (!loaded) return std::nullopt;
+        return loaded->ground_words(scene.holes);
+    }
+
+    void take_ground(DrawnEffects& drawing) const {
+        drawing.effects->take_ground(ground_words(), scene.effects);
+        if (drawing.others) drawing.others->take_ground(ground_words(), scene.effects, false);
     }
 
     void open_device(FilesInUse& files) {
@@ -200,9 +242,12 @@ struct Session::Impl {
         const auto began = Clock::now();
         ground = render::make_ground(loaded->field);
         terrain.emplace(
-            loaded->field, ground->frame,
-            render::TerrainOptions{.pixel_error = scene.pixel_error,
-                                   .max_array_layers = context->info().max_array_layers},
+            loaded->to_draw(), ground->frame,
+            render::TerrainOptions{
+                .pixel_error = scene.pixel_error,
+                .max_array_layers = context->info().max_array_layers,
+                .water = &loaded->drawn.water,
+                .filled = loaded->drawn.is_filled.empty() ? nullptr : &loaded->drawn.is_filled},
             &loaded->source);
         if (scene.overlay) {
             Overlay overlay = read_overlay(*scene.overlay, terrain->grid());
@@ -426,6 +471,15 @@ const std::shared_ptr<const LoadedDem>& Session::dem() const {
 
 const render::Ground& Session::ground() const {
     return *impl_->ground;
+}
+
+std::vector<std::string> Session::ground_notes() const {
+    std::vector<std::string> notes;
+    const LoadedDem::Drawn& drawn = impl_->loaded->drawn;
+    if (!drawn.holes_text.empty()) notes.push_back(drawn.holes_text);
+    for (const std::string& assumption : drawn.water.assumptions)
+        notes.push_back(assumption);
+    return notes;
 }
 
 std::string Session::place_text() const {

@@ -2,14 +2,17 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/files_in_use.h"
 #include "chart/legend.h"
+#include "dem/fill_holes.h"
 #include "dem/heightfield.h"
 #include "dem/source.h"
+#include "dem/water.h"
 #include "gl/context.h"
 #include "image/image.h"
 #include "render/renderer.h"
@@ -24,7 +27,18 @@ struct LoadedDem {
     dem::Source source;
     dem::Heightfield field;  ///< all posts, or means of them
     double took_ms = 0;
+    /// For pictures alone, where holes were filled.
+    struct Drawn {
+        std::optional<dem::Heightfield> filled;  ///< none: as `field`
+        Array2d<std::uint8_t> is_filled;         ///< not 0 on filled posts; empty where none is
+        dem::Water water;                        ///< of what is drawn
+        std::string holes_text;                  ///< for people; empty where there are none
+    };
+    Drawn drawn{};
 
+    const dem::Heightfield& to_draw() const { return drawn.filled ? *drawn.filled : field; }
+    /// Words of effect::ground_words() that hold.
+    std::vector<std::string> ground_words(dem::Holes holes) const;
     /// The height of the posts there [m], also where only means of them are in memory; NaN where
     /// there is no ground.
     double height_m(const geo::Geodetic& at) const;
@@ -113,6 +127,9 @@ class Session {
     const std::shared_ptr<const LoadedDem>& dem() const;
     /// The DEM's ground; its local frame is the camera's.
     const render::Ground& ground() const;
+
+    /// What is drawn of holes, and what was assumed of water: whole sentences.
+    std::vector<std::string> ground_notes() const;
 
     /// "46.50 N 8.00 E", with " (the eye)" where it is that and not the DEM's middle.
     std::string place_text() const;

@@ -1,6 +1,7 @@
-//! provides  water up to a level: a mirror of the sky with the sun's glitter, and the floor seen through it
+//! provides  water where the DEM has sea and lakes, or up to a level: a mirror of the sky with the sun's
+//!           glitter, and the floor seen through it
 //! hook      displace, material, lit
-//! reads     height [m], diffuse, the sky's radiance without the sun's disc
+//! reads     water pages, height [m], diffuse, the sky's radiance without the sun's disc
 //! writes    position; normal, diffuse, ambient, specular, shininess; radiance
 //! source    light in water: R. M. Pope and E. S. Fry, Applied Optics 36 (1997), 8710, and A. Bricaud, A. Morel
 //!           and L. Prieur, Limnology and Oceanography 26 (1981), 43; waves: C. Cox and W. Munk,
@@ -8,17 +9,21 @@
 //!           Holzschuch, Real-time realistic ocean lighting, Computer Graphics Forum 29 (2010), 487
 
 //@ include lib/surface.glsl
+//@ include lib/water.glsl
 
-uniform float sea_level_m = 0.0; //@ range(-500, 9000) unit(m) label("Level") description("Ground at this height and below is under water")
-uniform float sea_least_depth_m = 10.0; //@ range(0, 1000) unit(m) label("Least depth") description("Added to the depth: many DEMs have no sea floor, but the level itself")
+uniform float sea_level_m = 0.0; //@ range(-500, 9000) unit(m) label("Level") description("0: water stands where the DEM has sea and lakes. Else all ground at this height and below is flooded")
+uniform float sea_least_depth_m = 10.0; //@ range(0, 1000) unit(m) label("Least depth") description("Added to the depth where ground is flooded: its level may be the level itself")
 uniform float sea_wind_m_s = 5.0; //@ range(0, 20) unit(m/s) label("Wind") description("Roughens the water: the more, the wider the sun's glitter")
 uniform float sea_yellow = 0.2; //@ range(0, 10) unit(1/m) label("Yellow substance") description("What rivers and plankton make water swallow of light of 440 nm: 0.01 in the blue ocean, 0.2 off a coast, above 1 in an estuary")
 
 const vec3 sea_absorption = vec3(0.264, 0.0565, 0.0101);  // of pure water at 610, 550 and 465 nm [1/m]
 const vec3 sea_yellow_by_colour = vec3(0.0925, 0.214, 0.705);  // exp(-0.014 (wavelength - 440 nm))
-const vec3 sea_scattered = vec3(0.004, 0.018, 0.034);     // albedo of deep water, chosen by eye: ocean blue
+const vec3 sea_scattered = vec3(0.004, 0.026, 0.036);     // albedo of deep water, chosen by eye: blue-green
 
-/// How much of a point is water: all of it up to the level, none from 0.3 m above on.
+const vec3 sea_sand = vec3(0.30, 0.28, 0.21);  // of a floor whose colour nobody knows, chosen by eye
+const float sea_tide_m = 2.0;  // added to its depth: charts count from low water, posts are means
+
+/// How much of a flood a point is: all of it up to the level, none from 0.3 m above on.
 float sea_share(in float height_m) {
     return 1.0 - smoothstep(sea_level_m, sea_level_m + 0.3, height_m);
 }
@@ -57,14 +62,34 @@ vec2 sea_glitter(in float cosine) {
     return vec2(0.5 / variance, sea_mirrored(cosine) / (4.0 * variance * max(cosine, 0.15)));
 }
 
+/// What stands on a point: x, the share that is water; y, how deep its floor is seen [m].
+vec2 sea_water(in Surface s, in float height_m) {
+    if (sea_level_m != 0.0)
+        return vec2(sea_share(height_m), max(sea_level_m - height_m, 0.0) + sea_least_depth_m);
+    const float unseen_m = 1000.0;
+    vec4 water = water_of(s);
+    return vec2(water.x, mix(unseen_m, max(-height_m, 0.0) + sea_tide_m, water.y * water.z));
+}
+
+/// From a floor up to the level.
+vec3 sea_lift_m(in VertexFrame v) {
+    return max(sea_level_m - v.height_m, 0.0) * frame.height_range.z * v.up;
+}
+
 void sea_on_displace(in VertexFrame v, inout vec3 position_m) {
-    position_m += max(sea_level_m - v.height_m, 0.0) * frame.height_range.z * v.up;
+    bool floods = sea_level_m != 0.0;
+    float depth_m = sea_level_m - v.height_m;
+    // A lake's heights are its surface already, whatever its level.
+    vec4 water = floods || depth_m <= 0.0 ? vec4(1.0) : water_at(v.post, 1.0);
+    float lifted = water.x > 0.0 && water.y > 0.5 ? 1.0 : 0.0;
+    position_m += lifted * sea_lift_m(v);
 }
 
 void sea_on_material(inout Surface s) {
     float height_m = sea_height_m(s);
-    float water = sea_share(height_m);
-    vec3 albedo = sea_albedo(s.diffuse, max(sea_level_m - height_m, 0.0) + sea_least_depth_m);
+    vec2 stands = sea_water(s, height_m);
+    float water = stands.x;
+    vec3 albedo = sea_albedo(sea_level_m != 0.0 ? s.diffuse : sea_sand, stands.y);
     vec2 glitter = sea_glitter(-dot(s.position_m, s.up) / s.distance_m);
     // Who asks for the surface gets that of the water, not how far the drawn floor is off.
     s.height_m = mix(s.height_m, height_m, water);
@@ -73,7 +98,8 @@ void sea_on_material(inout Surface s) {
     s.diffuse = mix(s.diffuse, albedo, water);
     s.ambient = mix(s.ambient, albedo, water);
     s.shininess = mix(s.shininess, glitter.x, water);
-    s.specular = mix(s.specular, vec3(glitter.y), water);
+    // Low over the water the glitter is many times as bright as snow, which no picture can show.
+    s.specular = mix(s.specular, vec3(min(glitter.y, 0.4)), water);
 }
 
 void sea_on_lit(in Surface s, inout vec3 radiance) {
@@ -81,6 +107,6 @@ void sea_on_lit(in Surface s, inout vec3 radiance) {
     float cosine = -dot(view, s.up);
     // What is mirrored in waves lies higher than in a level mirror, and never below the horizon.
     vec3 mirrored = view + (2.0 * max(cosine, 0.0) + sqrt(sea_roughness())) * s.up;
-    float share = sea_share(sea_height_m(s)) * sea_mirrored(cosine);
+    float share = sea_water(s, sea_height_m(s)).x * sea_mirrored(cosine);
     radiance = mix(radiance, background_radiance(normalize(mirrored), false), share);
 }

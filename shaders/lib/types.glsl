@@ -13,6 +13,7 @@ struct VertexFrame {
     vec3 up;            // normal of the ellipsoid, unit
     float distance_m;   // from the eye [m]; in `vertex` of the displaced position
     float drawn_height_m;  // above the DEM's zero, exaggerated; in `vertex` also displaced [m]
+    vec2 post;             // column and row of the DEM
 };
 
 /// A visible point of the terrain.

@@ -37,6 +37,7 @@ TEST(InfoVerb, SaysEverythingInLines) {
                   "above      unknown\n"
                   "assumed    heights are placed as ellipsoidal ones: the file does not say what "
                   "they are above\n"
+                  "water      0 % sea, 0.798 % lakes (2), as pictures have it\n"
                   "sun        azimuth 114.27, elevation 65.12 (65.13 with refraction) at "
                   "2026-06-21T16:00:00Z\n"
                   "climate    January 1.4, July 22.8 degC at 656 m, 1250 mm of rain a year\n"

@@ -154,10 +154,9 @@ std::string text(const std::string& members) {
 }
 
 constexpr const char* kKeys =
-    "format, id, name, description, version, enabled_by_default, provides, exclusive, requires, "
-    "wants, "
-    "after, "
-    "module, glsl, textures, texts, displaces";
+    "format, id, name, description, version, enabled_by_default, default_where, provides, "
+    "exclusive, requires, "
+    "wants, after, module, glsl, textures, texts, displaces";
 const std::string kUnknown = std::string("2: licence: no such key; there are ") + kKeys;
 
 INSTANTIATE_TEST_SUITE_P(
@@ -246,6 +245,8 @@ INSTANTIATE_TEST_SUITE_P(
             "2: texts.track.kind: expected one of text, file but got \"path\""},
         Bad{"TextFile", text(R"("kind": "file", "default": "../a.gpx")"),
             "2: texts.track.default: expected a file of the plugin's own folder but got ../a.gpx"},
+        Bad{"DefaultWhere", with(R"("default_where": ["snow"])"),
+            "2: default_where: expected words of water, marked_holes but got \"snow\""},
         Bad{"Displaces", with(R"("displaces": 5)"), "2: displaces: expected an object but got 5"},
         Bad{"DisplacesKey", with(R"("displaces": {"by_m": 5})"),
             "2: displaces.by_m: no such key; there are down_m, up_m, aside_m, to_m"},

@@ -97,6 +97,29 @@ TEST(Selection, DefaultsAreOn) {
     EXPECT_EQ(selection.snippets().size(), 3u);
 }
 
+TEST(Selection, WhatADemLacksIsOffByDefaultAndAskedForByNameANotice) {
+    const Plugins plugins;
+    add_ground(plugins);
+    plugins.add("lake", R"("default_where": ["water"])");
+    const Registry registry = plugins.load();
+    const auto on = [&](const Switches& switches, const GroundWords& ground) {
+        return select(registry, {}, switches, {}, ground);
+    };
+    // Not known yet; it has water; it has none.
+    EXPECT_TRUE(on({}, {}).has("lake"));
+    EXPECT_TRUE(on({}, Words{"water"}).has("lake"));
+    const Selection dry = on({}, Words{});
+    EXPECT_FALSE(dry.has("lake"));
+    EXPECT_TRUE(dry.has("layering"));
+    EXPECT_THAT(dry.notices, IsEmpty());
+    EXPECT_THAT(dry.warnings, IsEmpty());
+    const Selection asked = on({.enable = {"lake"}}, Words{"marked_holes"});
+    EXPECT_TRUE(asked.has("lake"));
+    EXPECT_THAT(asked.notices, ElementsAre("lake is on, but this DEM has no water"));
+    EXPECT_THAT(on({.enable = {"lake"}}, Words{"water"}).notices, IsEmpty());
+    EXPECT_FALSE(on({.disable = {"lake"}}, Words{"water"}).has("lake"));
+}
+
 TEST(Selection, NothingIsOnWithoutPlugins) {
     const Selection selection = select(Registry(), {}, {});
     EXPECT_THAT(selection.effects, IsEmpty());
@@ -296,7 +319,8 @@ TEST(Selection, AfterAWordIsBehindAllItsProviders) {
 
 // Both cast shadows; maps are off by default.
 void add_shadows(const Plugins& plugins) {
-    plugins.add("maps", R"("provides": ["shadow"], "enabled_by_default": false)");
+    plugins.add("maps", R"("provides": ["shadow"], "exclusive": ["shadow"],
+                           "enabled_by_default": false)");
     plugins.add("sweep", R"("provides": ["shadow"], "exclusive": ["shadow"])");
 }
 
@@ -319,7 +343,7 @@ TEST(Selection, OfTwoProvidersOfAnExclusiveWordTheOneAskedForLastIsOn) {
 
 TEST(Selection, OfTwoDefaultsThatExcludeEachOtherTheFirstIsOn) {
     const Plugins plugins;
-    plugins.add("b", R"("provides": ["shadow"])");
+    plugins.add("b", R"("provides": ["shadow"], "exclusive": ["shadow"])");
     plugins.add("a", R"("provides": ["shadow"], "exclusive": ["shadow"])");
     const Registry registry = plugins.load();
     EXPECT_THAT(ids(select(registry, {}, {})), ElementsAre("a"));

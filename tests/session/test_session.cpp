@@ -1,4 +1,5 @@
 // A session that goes on is one that began there.
+#include <bit>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -151,6 +152,32 @@ TEST(Session, DrawsADemThatAnotherHasRead) {
     EXPECT_EQ(session.dem(), read);
     session.draw();
     EXPECT_EQ(session.picture().values, first.values);
+}
+
+TEST(Session, FiguresHaveHolesWhateverIsDrawn) {
+    scene::Scene scene = bundled_scene();
+    scene.dem.nodata = 500;  // some hundred posts, here and there
+    std::vector<std::uint32_t> bits[3];
+    std::vector<std::uint8_t> pictures[3];
+    for (const dem::Holes holes : {dem::Holes::Fill, dem::Holes::Cut, dem::Holes::Mark}) {
+        scene.holes = holes;
+        FilesInUse files;
+        Session session(scene, {.device = "software"}, files);
+        session.draw();
+        const LoadedDem& dem = *session.dem();
+        const auto i = static_cast<std::size_t>(holes);
+        for (const float height_m : dem.field.height_m)
+            bits[i].push_back(std::bit_cast<std::uint32_t>(height_m));
+        EXPECT_GT(dem.field.about.statistics.holes, 100);
+        EXPECT_EQ(dem.drawn.is_filled.empty(), holes == dem::Holes::Cut);
+        ASSERT_EQ(session.ground_notes().size(), 1u);
+        EXPECT_NE(session.ground_notes()[0].find("% of the posts have no height"),
+                  std::string::npos);
+        pictures[i] = session.picture().values;
+    }
+    EXPECT_EQ(bits[0], bits[1]);
+    EXPECT_EQ(bits[0], bits[2]);
+    EXPECT_NE(pictures[0], pictures[1]);
 }
 
 TEST(Session, RefusesWhatNeedsAnotherProgram) {

@@ -30,7 +30,7 @@ TEST(Sea, SwallowsLightByDepthAndColour) {
     // Pope and Fry's table at 610, 550 and 465 nm, and the spectrum of yellow substance.
     constexpr std::array<double, 3> kWater{0.2644, 0.0565, 0.0101};
     constexpr std::array<double, 3> kWavelength_nm{610, 550, 465};
-    constexpr std::array<double, 3> kDeep{0.004, 0.018, 0.034};
+    constexpr std::array<double, 3> kDeep{0.004, 0.026, 0.036};
     std::vector<double> errors;
     for (const double yellow : {0.0, 0.2, 3.0}) {
         test::GpuSnippet gpu("sea");
@@ -93,7 +93,7 @@ TEST(Sea, CoversItsFloorAndNotTheLand) {
         "v.height_m = 10.0 * float(x) - 50.0;\n"
         "v.up = vec3(0.0, 0.6, 0.8);\n"
         "vec3 position = vec3(1.0, 2.0, 3.0);\n"
-        "sea_on_displace(v, position);\n"
+        "position += sea_lift_m(v);\n"
         "result = vec4(position, 0.0);",
         11, 1);
     for (int x = 0; x <= 10; ++x) {

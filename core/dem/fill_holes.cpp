@@ -1,0 +1,155 @@
+#include "dem/fill_holes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gdal.h>
+#include <gdal_alg.h>
+
+#include "base/error.h"
+#include "dem/gdal_support.h"
+#include "dem/grid.h"
+#include "dem/runs.h"
+
+namespace relevo::dem {
+namespace {
+
+constexpr int kAround = 8;  // posts beside a hole that its heights are made of
+
+struct Hole {
+    int west = std::numeric_limits<int>::max(), north = west, east = -1, south = -1;
+    std::int64_t posts = 0;
+
+    void add(const Run& run) {
+        west = std::min(west, run.first);
+        east = std::max(east, run.last);
+        north = std::min(north, run.row);
+        south = std::max(south, run.row);
+        posts += run.last - run.first + 1;
+    }
+    bool is_small(int columns, int rows) const {
+        return posts > 0 && west > 0 && north > 0 && east < columns - 1 && south < rows - 1 &&
+               east - west < kSmallHole_posts && south - north < kSmallHole_posts;
+    }
+};
+
+/// A window with all its holes filled. @returns empty where GDAL has no memory
+Array2d<float> filled_window(const Array2d<float>& height_m, const Window& w) {
+    Array2d<float> heights(w.columns, w.rows);
+    Array2d<std::uint8_t> valid(w.columns, w.rows);
+    for (int y = 0; y < w.rows; ++y)
+        for (int x = 0; x < w.columns; ++x) {
+            const float h = height_m.at(w.column + x, w.row + y);
+            valid.at(x, y) = std::isnan(h) ? 0 : 255;
+            heights.at(x, y) = std::isnan(h) ? 0 : h;
+        }
+    const auto raster = [&](GDALDataType type, void* texels) {
+        const GDALDatasetH dataset =
+            GDALCreate(GDALGetDriverByName("MEM"), "", w.columns, w.rows, 1, type, nullptr);
+        if (dataset && GDALRasterIO(GDALGetRasterBand(dataset, 1), GF_Write, 0, 0, w.columns,
+                                    w.rows, texels, w.columns, w.rows, type, 0, 0) != CE_None)
+            failed("dem::fill_small_holes: GDAL refuses a raster in memory");
+        return dataset;
+    };
+    const GDALDatasetH to = raster(GDT_Float32, heights.data());
+    const GDALDatasetH mask = raster(GDT_Byte, valid.data());
+    constexpr int kSmoothed = 2;
+    const bool done =
+        to && mask &&
+        GDALFillNodata(GDALGetRasterBand(to, 1), GDALGetRasterBand(mask, 1), kSmallHole_posts, 0,
+                       kSmoothed, nullptr, nullptr, nullptr) == CE_None &&
+        GDALRasterIO(GDALGetRasterBand(to, 1), GF_Read, 0, 0, w.columns, w.rows, heights.data(),
+                     w.columns, w.rows, GDT_Float32, 0, 0) == CE_None;
+    if (to) GDALClose(to);
+    if (mask) GDALClose(mask);
+    if (!done) failed("dem::fill_small_holes: GDAL cannot fill a hole");
+    return heights;
+}
+
+}  // namespace
+
+Holes parse_holes(const std::string& text, const std::string& who) {
+    for (const Holes holes : {Holes::Fill, Holes::Cut, Holes::Mark})
+        if (text == name_of(holes)) return holes;
+    bad_usage(fmt::format("{}: expected fill, cut or mark but got \"{}\"", who, text));
+}
+
+const char* name_of(Holes holes) {
+    return holes == Holes::Fill ? "fill" : holes == Holes::Cut ? "cut" : "mark";
+}
+
+std::string FilledHoles::text(Holes holes) const {
+    if (filled_posts + cut_posts == 0) return "";
+    const auto share = [&](std::int64_t some) {
+        return 100 * static_cast<double>(some) / static_cast<double>(posts);
+    };
+    std::string text =
+        fmt::format("{:.3g} % of the posts have no height: ", share(filled_posts + cut_posts));
+    if (filled_posts > 0)
+        text += fmt::format("{}{} drawn filled{}",
+                            cut_posts > 0 ? fmt::format("{:.3g} % ", share(filled_posts)) : "",
+                            cut_posts > 0 ? "are" : "they are",
+                            holes == Holes::Mark ? " and painted" : " (--holes mark shows where)");
+    if (cut_posts > 0)
+        text += fmt::format("{}cut out{}", filled_posts > 0 ? ", the rest is " : "they are ",
+                            holes == Holes::Cut
+                                ? ""
+                                : fmt::format(", which is at the edge or more than {} posts wide",
+                                              kSmallHole_posts));
+    return text;
+}
+
+FilledHoles fill_small_holes(const Array2d<float>& height_m, Holes holes) {
+    const int columns = height_m.width(), rows = height_m.height();
+    FilledHoles result;
+    result.posts = std::ssize(height_m);
+    Runs runs(rows);
+    for (int row = 0; row < rows; ++row) {
+        runs.begin_row();
+        const float* const h = height_m.row(row).data();
+        for (int column = 0; column < columns; ++column) {
+            if (!std::isnan(h[column])) continue;
+            const int first = column;
+            while (column + 1 < columns && std::isnan(h[column + 1]))
+                ++column;
+            runs.add(row, first, column, [](int) { return true; });
+        }
+    }
+    std::vector<Hole> found(static_cast<std::size_t>(runs.size()));
+    for (int i = 0; i < runs.size(); ++i) {
+        found[static_cast<std::size_t>(runs.root(i))].add(runs.at(i));
+        result.cut_posts += runs.at(i).last - runs.at(i).first + 1;
+    }
+    if (holes == Holes::Cut) return result;
+    prepare_gdal();
+    std::vector<std::vector<Run>> runs_of(found.size());
+    for (int i = 0; i < runs.size(); ++i)
+        if (found[static_cast<std::size_t>(runs.root(i))].is_small(columns, rows))
+            runs_of[static_cast<std::size_t>(runs.root(i))].push_back(runs.at(i));
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (runs_of[i].empty()) continue;
+        const Hole& hole = found[i];
+        if (result.filled.empty()) {
+            result.height_m = height_m;
+            result.filled = Array2d<std::uint8_t>(columns, rows, 0);
+        }
+        const int west = std::max(hole.west - kAround, 0),
+                  north = std::max(hole.north - kAround, 0);
+        const Window window{west, north, std::min(hole.east + kAround, columns - 1) - west + 1,
+                            std::min(hole.south + kAround, rows - 1) - north + 1};
+        const Array2d<float> filled = filled_window(height_m, window);
+        for (const Run& run : runs_of[i])
+            for (int column = run.first; column <= run.last; ++column) {
+                result.height_m.at(column, run.row) = filled.at(column - west, run.row - north);
+                result.filled.at(column, run.row) = 1;
+            }
+        result.filled_posts += hole.posts;
+        result.cut_posts -= hole.posts;
+    }
+    return result;
+}
+
+}  // namespace relevo::dem

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/array2d.h"
+
+namespace relevo::dem {
+
+/// What is done with holes where a DEM is drawn. Figures never see it.
+enum class Holes {
+    Fill,  ///< small ones are filled, others are cut out
+    Cut,   ///< all are cut out
+    Mark,  ///< as Fill, and what is filled is painted
+};
+
+/// Reads "fill", "cut" or "mark". @throws Error (Usage) `who: ...`
+Holes parse_holes(const std::string& text, const std::string& who);
+const char* name_of(Holes holes);
+
+/// Posts that a hole may be wide and high to be filled.
+inline constexpr int kSmallHole_posts = 64;
+
+struct FilledHoles {
+    Array2d<float> height_m;       ///< NaN in the holes that are left; empty where none was filled
+    Array2d<std::uint8_t> filled;  ///< 1 where it was; empty likewise
+    std::int64_t filled_posts = 0, cut_posts = 0;
+
+    std::int64_t posts = 0;  ///< of the whole DEM
+
+    /// "0.53 % of the posts have no height: ..."; empty where all have one.
+    std::string text(Holes holes) const;
+};
+
+/// Fills the holes that do not reach the edge and are no more than kSmallHole_posts wide and high,
+/// with heights from around them. For drawing alone: these heights are invented.
+/// source: GDALFillNodata, inverse distance to what is nearest in each direction, smoothed twice
+FilledHoles fill_small_holes(const Array2d<float>& height_m, Holes holes);
+
+}  // namespace relevo::dem

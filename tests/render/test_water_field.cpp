@@ -1,0 +1,122 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "render/pages.h"
+#include "render/water_field.h"
+
+namespace relevo::render {
+namespace {
+
+using dem::WaterKind;
+
+/// A coast at a slant over a square DEM: wet where it is true.
+template <typename IsWet>
+dem::Water water_where(int side, WaterKind kind, const IsWet& is_wet) {
+    dem::Water water;
+    water.kind = Array2d<WaterKind>(side, side, WaterKind::None);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            if (is_wet(x, y)) water.kind.at(x, y) = kind;
+    return water;
+}
+
+TEST(WaterField, EveryPostIsOnItsSideOfTheShore) {
+    // Spits, inlets and islands a post wide are there too.
+    const auto wet = [](int x, int y) {
+        return (2 * x + y < 90 && !(x == 5 && y > 20)) || (y == 40 && x < 60) ||
+               (x == 60 && y == 9);
+    };
+    const dem::Water water = water_where(65, WaterKind::Lake, wet);
+    const Array2d<float> heights(65, 65, 100.0f);
+    const WaterField field(heights, water, nullptr, 1);
+    for (int y = 0; y < 65; ++y)
+        for (int x = 0; x < 65; ++x) {
+            EXPECT_EQ(field.at(0, x, y)[0] > 127, wet(x, y)) << x << ' ' << y;
+            EXPECT_EQ(field.at(0, x, y)[1], 0);  // no sea
+        }
+}
+
+TEST(WaterField, AShoreWithAFloorIsWhereTheHeightsCrossZero) {
+    Array2d<float> heights(65, 65);
+    for (int y = 0; y < 65; ++y)
+        for (int x = 0; x < 65; ++x)
+            heights.at(x, y) = static_cast<float>(x) - 20.25f;
+    const dem::Water water =
+        water_where(65, WaterKind::SeaFloor, [](int x, int) { return x <= 20; });
+    const WaterField field(heights, water, nullptr, 1);
+    const double wet = field.at(0, 20, 30)[0] / 255.0 - 0.5,
+                 dry = 0.5 - field.at(0, 21, 30)[0] / 255.0;
+    EXPECT_NEAR(wet / (wet + dry), 0.25, 0.01);
+    EXPECT_EQ(field.at(0, 20, 30)[1], 255);
+    EXPECT_EQ(field.at(0, 20, 30)[2], 255);
+}
+
+TEST(WaterField, ASlantedShoreIsSmooth) {
+    // Its contour lies on a line within a quarter of a post's spacing; the mask's own is off by a
+    // half.
+    const auto wet = [](int x, int y) { return x + 3 * y < 100; };
+    const dem::Water water = water_where(65, WaterKind::Sea, wet);
+    const Array2d<float> heights(65, 65, 0.0f);
+    const WaterField field(heights, water, nullptr, 1);
+    double worst = 0;
+    for (int x = 5; x < 60; ++x)
+        for (int y = 1; y < 63; ++y) {
+            const double here = field.at(0, x, y)[0] - 127.5,
+                         below = field.at(0, x, y + 1)[0] - 127.5;
+            if (here <= 0 || below > 0) continue;
+            const double shore = y + here / (here - below);
+            worst = std::max(worst, std::abs(shore - (99.0 / 3 - x / 3.0 + 0.5 / 3)));
+        }
+    EXPECT_GT(worst, 0);
+    EXPECT_LT(worst, 0.3);
+}
+
+TEST(WaterField, CoarserLevelsKeepTheWatersArea) {
+    const auto wet = [](int x, int y) { return std::hypot(x - 130, y - 120) < 70; };
+    const dem::Water water = water_where(257, WaterKind::Lake, wet);
+    const Array2d<float> heights(257, 257, 50.0f);
+    const WaterField field(heights, water, nullptr, 1);
+    const double area = 3.14159 * 70 * 70;
+    for (int level = 0; level <= 4; ++level) {
+        int nodes = 0;
+        for (int y = 0; y <= 256 >> level; ++y)
+            for (int x = 0; x <= 256 >> level; ++x)
+                nodes += field.at(level, x, y)[0] > 127;
+        EXPECT_NEAR(nodes * std::exp2(2 * level) / area, 1, 0.02 * std::exp2(level)) << level;
+    }
+}
+
+TEST(WaterField, FilledHolesAreTold) {
+    Array2d<std::uint8_t> filled(65, 65, 0);
+    filled.at(7, 9) = 1;
+    const Array2d<float> heights(65, 65, 50.0f);
+    const dem::Water dry;
+    const WaterField field(heights, dry, &filled, 1);
+    EXPECT_EQ(field.at(0, 7, 9), (WaterTexel{0, 0, 0, 255}));
+    EXPECT_EQ(field.at(0, 8, 9), (WaterTexel{0, 0, 0, 0}));
+}
+
+TEST(WaterField, MeansOfADemLieInTheMiddleOfTheirPosts) {
+    // 64 means of 4 x 4 posts, wet to the left of post 128.
+    const dem::Water water = water_where(64, WaterKind::Sea, [](int x, int) { return x < 32; });
+    const Array2d<float> heights(64, 64, 0.0f);
+    const WaterField field(heights, water, nullptr, 4);
+    const Array2d<float> posts(256, 256, 0.0f);
+    const dem::Pyramid pyramid(posts);
+    for (int level = 0; level <= 3; ++level) {
+        const auto page = field.page(pyramid, level, {0, 0});
+        const int row = 20 * kNormalPage_px;
+        for (int x = 0; x < kNormalPage_px; ++x) {
+            const int node = std::clamp(x - 1, 0, pyramid.size(level).x - 1);
+            const int post = pyramid.post(level, {node, 0}).x;
+            const int off = post - 128;
+            if (std::abs(off) < 1 << level) continue;
+            EXPECT_EQ(page[static_cast<std::size_t>(row + x)][0] > 127, off < 0)
+                << level << ' ' << post;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace relevo::render
