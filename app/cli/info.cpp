@@ -126,6 +126,14 @@ nlohmann::ordered_json to_json(const session::ClimateReport& report) {
             {"ground_cover", climate::name_of(report.cover)}};
 }
 
+nlohmann::ordered_json sun_json(const sun::Position& sun, const sun::Refraction& air,
+                                sun::Instant utc) {
+    return {{"utc", sun::to_iso(utc)},
+            {"azimuth_deg", degrees(sun.azimuth_rad)},
+            {"elevation_deg", degrees(sun.elevation_rad)},
+            {"apparent_elevation_deg", degrees(air.apparent_rad(sun.elevation_rad))}};
+}
+
 }  // namespace
 
 void add_info(CLI::App& app) {
@@ -157,16 +165,11 @@ void add_info(CLI::App& app) {
         const sun::Position sun = sun::position(utc, summary.center);
         const sun::Refraction air = air_over(summary);
         const session::ClimateReport climate = climate_over(summary, utc);
-        const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
         const std::optional<dem::Water> water = water_of(source);
         if (arguments->json) {
             const NetError net = net_error(source.grid(), summary.max_m);
             auto json = nlohmann::ordered_json::parse(dem::to_json(summary));
-            json["sun"] = {
-                {"utc", sun::to_iso(utc)},
-                {"azimuth_deg", degrees(sun.azimuth_rad)},
-                {"elevation_deg", degrees(sun.elevation_rad)},
-                {"apparent_elevation_deg", degrees(air.apparent_rad(sun.elevation_rad))}};
+            json["sun"] = sun_json(sun, air, utc);
             json["climate"] = to_json(climate);
             if (given_time && !given_time->assumption.empty())
                 json["assumptions"].push_back(given_time->assumption);
@@ -182,6 +185,7 @@ void add_info(CLI::App& app) {
         fmt::print("{:<10} {}\n", "ground", session::ground_text(climate));
         if (log::level() == log::Level::Debug) {
             const NetError net = net_error(source.grid(), summary.max_m);
+            const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
             fmt::print(
                 "{:<10} pieces of {} posts are drawn within {:.2g} m of where they are, "
                 "{:.2g} of the post spacing\n",
