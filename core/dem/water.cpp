@@ -41,7 +41,6 @@ class WaterFinder {
     }
 
     Water run() {
-        kind_ = Array2d<WaterKind>(h_.width(), h_.height(), WaterKind::None);
         find_sea();
         find_lakes();
         if (water_.sea_posts + water_.lake_posts > 0) water_.kind = std::move(kind_);
@@ -95,11 +94,12 @@ class WaterFinder {
             const Run& run = runs.at(i);
             const WaterKind kind = kinds[static_cast<std::size_t>(runs.root(i))];
             if (kind == WaterKind::None) continue;
-            std::fill_n(&kind_.at(run.first, run.row), run.last - run.first + 1, kind);
+            std::fill_n(&kind_of_posts().at(run.first, run.row), run.last - run.first + 1, kind);
             if (kind != WaterKind::SeaFloor) continue;
             // What is exactly 0 has been measured on the surface.
             for (int column = run.first; column <= run.last; ++column)
-                if (h_.at(column, run.row) == 0) kind_.at(column, run.row) = WaterKind::Sea;
+                if (h_.at(column, run.row) == 0)
+                    kind_of_posts().at(column, run.row) = WaterKind::Sea;
         }
     }
 
@@ -159,7 +159,8 @@ class WaterFinder {
             for (int column = 0; column + kLeastRun <= h_.width();) {
                 const int first = column++;
                 // Almost all posts end here.
-                if (!same(h[first], h[first + 1]) || kind_.at(first, row) != WaterKind::None)
+                if (!same(h[first], h[first + 1]) ||
+                    (!kind_.empty() && kind_.at(first, row) != WaterKind::None))
                     continue;
                 while (column < h_.width() && same(h[first], h[column]))
                     ++column;
@@ -223,7 +224,7 @@ class WaterFinder {
         }
         if (!is_lake(std::ssize(posts), rim) || (rim.edge > 0 && is_collar(level))) return;
         for (const glm::ivec2& post : posts)
-            kind_.at(post.x, post.y) = WaterKind::Lake;
+            kind_of_posts().at(post.x, post.y) = WaterKind::Lake;
         water_.lake_posts += std::ssize(posts);
         ++water_.lakes;
     }
@@ -254,6 +255,12 @@ class WaterFinder {
     std::optional<Collar> collar_;
     bool looked_for_collar_ = false;
     double post_m2_ = 0;
+    /// Of all posts, made when there is the first water.
+    Array2d<WaterKind>& kind_of_posts() {
+        if (kind_.empty()) kind_ = Array2d<WaterKind>(h_.width(), h_.height(), WaterKind::None);
+        return kind_;
+    }
+
     Array2d<WaterKind> kind_;
     Array2d<std::uint8_t> seen_;
     Water water_;
