@@ -219,7 +219,7 @@ struct Renderer::Impl {
             varyings.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
             outputs.push_back(&varyings);
         }
-        if (reads(terrain, kHeightStepsTexture)) {
+        if (reads(kHeightStepsTexture)) {
             height_steps = target(gl::Format::RG32F, kHeightStepsTexture);
             height_steps.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
             outputs.push_back(&height_steps);
