@@ -14,6 +14,8 @@
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
 #include "dem/files_of.h"
+#include "session/batch.h"
+#include "session/record.h"
 #include "session/session.h"
 
 namespace relevo::cli {
@@ -21,11 +23,38 @@ namespace {
 
 struct Arguments {
     SceneArguments scene;
-    std::string output, device = "auto", timings, dump_shaders, save_scene;
+    std::string output, device = "auto", timings, dump_shaders, save_scene, from;
     std::vector<std::string> ab;
     int repeat = 0;
-    bool overwrite = false;
+    bool overwrite = false, sidecar = false, allow_blank = false;
 };
+
+/// What is to be drawn.
+struct Wanted {
+    scene::Scene scene;
+    std::vector<std::string> compared;
+};
+
+Wanted wanted(const Arguments& arguments) {
+    if (arguments.from.empty()) return {arguments.scene.scene(), arguments.ab};
+    if (!arguments.scene.file.empty())
+        bad_usage("--scene and --from exclude each other; give one of them");
+    const image::Metadata metadata = image::read_metadata(arguments.from);
+    const auto text = metadata.find(session::kSceneKeyword);
+    if (text == metadata.end())
+        bad_input(
+            fmt::format("--from: {}: carries no scene, expected a picture of relevo capture "
+                        "or run whose metadata nobody took out",
+                        printable(arguments.from)));
+    const std::filesystem::path path = arguments.from;
+    Wanted result{scene::read_scene_text(text->second, path.string(), path.parent_path()),
+                  arguments.ab};
+    arguments.scene.apply_to(result.scene);
+    const auto compared = metadata.find(session::kComparedKeyword);
+    if (compared != metadata.end() && arguments.ab.empty())
+        result.compared = split(compared->second, ',');
+    return result;
+}
 
 using Clock = std::chrono::steady_clock;
 
@@ -95,10 +124,11 @@ void write_picture(OutputFile& file, const image::Metadata& metadata, Timings& t
 
 void capture(const Arguments& arguments) {
     const std::filesystem::path output = arguments.output;
-    const scene::Scene scene = arguments.scene.scene();
+    const auto [scene, compared] = wanted(arguments);
     image::check_format(output, scene.width_px, scene.height_px);
     FilesInUse files;
     if (!arguments.scene.file.empty()) files.add_input(arguments.scene.file, "the scene");
+    if (!arguments.from.empty()) files.add_input(arguments.from, "the picture");
     dem::add_named(scene.dems, files);  // before any output is opened
     const auto open = [&](const std::string& path, const char* who) {
         return path.empty() ? nullptr : &files.open_output(path, arguments.overwrite, who);
@@ -106,10 +136,12 @@ void capture(const Arguments& arguments) {
     OutputFile& picture_file = *open(arguments.output, "image");
     Timings timings(open(arguments.timings, "--timings"));
     OutputFile* const scene_file = open(arguments.save_scene, "--save-scene");
+    OutputFile* const sidecar_file =
+        open(arguments.sidecar ? session::sidecar_of(output).string() : "", "--sidecar");
 
     session::Options options{.device = arguments.device,
                              .radiance = image::holds_linear_light(output),
-                             .compared = arguments.ab};
+                             .compared = compared};
     if (!arguments.dump_shaders.empty())
         options.stitched = [&](const std::vector<render::ProgramText>& texts) {
             render::dump_programs(texts, arguments.dump_shaders, arguments.overwrite);
@@ -128,9 +160,8 @@ void capture(const Arguments& arguments) {
     session.draw(timings.passes());
     timings.add("passes", milliseconds_since(passes_began));
 
-    const image::Metadata metadata{
-        {"Software", "Relevo " RELEVO_VERSION},
-        {"Description", fmt::format("{}; {}; sun at {}", where, when, sun)}};
+    if (!arguments.allow_blank && !session.shows_ground()) session::refuse_blank("capture");
+    const image::Metadata metadata = session::metadata_of(session, RELEVO_VERSION, compared);
     if (options.radiance)
         write_picture(picture_file, metadata, timings, [&] { return session.radiance(); });
     else
@@ -138,6 +169,10 @@ void capture(const Arguments& arguments) {
     if (scene_file)
         scene_file->write(scene::scene_text(
             session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));
+    if (sidecar_file)
+        sidecar_file->write(session::sidecar_text(session, RELEVO_VERSION,
+                                                  output.filename().string(),
+                                                  session::hashed_files(scene.dems)));
     timings.write(session, arguments.repeat);
     files.finish_outputs();
 }
@@ -153,6 +188,17 @@ void add_capture(CLI::App& app) {
         ->required();
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
     verb.add_option("--save-scene", arguments->save_scene, "Write what is drawn as a scene, JSON");
+    verb.add_option_function<std::string>(
+        "--from",
+        [arguments](const std::string& path) {
+            arguments->from = path;
+            arguments->scene.dem.dem_option->required(false);
+        },
+        "Picture to make again, by the scene that it carries; other options replace what it says");
+    verb.add_flag("--sidecar", arguments->sidecar,
+                  "Write a JSON beside the picture: sun, camera, device, versions, DEM");
+    verb.add_flag("--allow-blank", arguments->allow_blank,
+                  "Take a picture without ground in it too");
     verb.add_option("--ab", arguments->ab,
                     "Compare: the left half with these effects, the right half without them")
         ->delimiter(',')

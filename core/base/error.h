@@ -11,6 +11,8 @@ enum class ErrorCode {
     Usage = 2,     ///< the command line is wrong
     BadInput = 3,  ///< a file or a value given by the user cannot be used
     NoDevice = 4,  ///< no GL device that can draw
+    Incomplete = 5,  ///< some of many results could not be made; the others are there
+    Differ = 6,      ///< what was compared is not the same
 };
 
 /// An operation cannot continue. Caught once, in main.

@@ -1,14 +1,15 @@
 #include "base/progress.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "base/log.h"
 
 namespace relevo {
-namespace {
 
 std::string duration_text(double seconds) {
     if (seconds < 100) return fmt::format("{:.0f} s", seconds);
@@ -16,7 +17,33 @@ std::string duration_text(double seconds) {
                           : fmt::format("{:.0f} h", seconds / 3600);
 }
 
-}  // namespace
+ProgressBar::ProgressBar(std::size_t total)
+    : total_(total), shown_(isatty(STDERR_FILENO) == 1 && log::level() <= log::Level::Info) {
+    if (shown_) log::set_before([] { fmt::print(stderr, "\r\x1b[K"); });
+}
+
+ProgressBar::~ProgressBar() {
+    if (!shown_) return;
+    log::set_before({});
+    fmt::print(stderr, "\r\x1b[K");
+}
+
+void ProgressBar::add() {
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    if (shown_) show();
+}
+
+void ProgressBar::show() const {
+    constexpr std::size_t kWidth = 32;
+    const std::size_t full = total_ > 0 ? kWidth * done_ / total_ : kWidth;
+    const double passed_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+    const double left_s =
+        passed_s / static_cast<double>(done_) * static_cast<double>(total_ - done_);
+    fmt::print(stderr, "\r[{}{}] {} of {}, {} left\x1b[K", std::string(full, '#'),
+               std::string(kWidth - full, '.'), done_, total_, duration_text(left_s));
+}
 
 Progress::Progress(std::string what, double total, double patience_s)
     : what_(std::move(what)), total_(total), next_s_(patience_s) {}

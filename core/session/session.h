@@ -68,6 +68,11 @@ class Session {
     void look(const scene::View& view);
     /// Moves the sun.
     void set_moment(sun::Instant utc);
+    /// Shows another scene of the same DEM, with no more work than what differs takes. Its frames
+    /// are the same bytes whatever was drawn before them.
+    /// @param utc  the scene's moment
+    /// @throws Error as look(), set(), set_effects() and resize(); another scene may be shown then
+    void show(const scene::Scene& scene, sun::Instant utc);
     /// Draws with other effects, or with what their files have become, from the next frame on.
     /// @throws Error as those who load, compile and draw; the session then goes on as it was
     void set_effects(const scene::Effects& effects);
@@ -99,6 +104,8 @@ class Session {
     image::ImageF radiance() const;
     /// The picture on the device, RGBA with rows from below, until the next frame.
     const gl::Texture& texture() const;
+    /// Whether ground of the DEM is in the last frame; of a comparison, in its left half's.
+    bool shows_ground() const;
     /// As render::Renderer::read_depths().
     void read_depths(std::vector<float>& depths_m) const;
 
