@@ -160,12 +160,15 @@ void capture(const Arguments& arguments) {
     session.draw(timings.passes());
     timings.add("passes", milliseconds_since(passes_began));
 
-    if (!arguments.allow_blank && !session.shows_ground()) session::refuse_blank("capture");
+    const auto shown = [&](auto picture) {
+        if (!arguments.allow_blank && !session.shows_ground()) session::refuse_blank("capture");
+        return picture;
+    };
     const image::Metadata metadata = session::metadata_of(session, RELEVO_VERSION, compared);
     if (options.radiance)
-        write_picture(picture_file, metadata, timings, [&] { return session.radiance(); });
+        write_picture(picture_file, metadata, timings, [&] { return shown(session.radiance()); });
     else
-        write_picture(picture_file, metadata, timings, [&] { return session.picture(); });
+        write_picture(picture_file, metadata, timings, [&] { return shown(session.picture()); });
     if (scene_file)
         scene_file->write(scene::scene_text(
             session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));

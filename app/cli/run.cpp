@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/parallel_for.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/commands.h"
@@ -109,13 +110,7 @@ class Run {
     /// unless --overwrite is there.
     void leave_out_what_is_there() {
         const std::size_t before = shots_.size();
-        if (arguments_.resume)
-            std::erase_if(shots_, [&](const scene::Shot& shot) {
-                std::error_code missing;
-                return session::is_made(shot, inputs_) &&
-                       (!arguments_.sidecar ||
-                        fs::exists(session::sidecar_of(shot.output), missing));
-            });
+        if (arguments_.resume) leave_out_made();
         made_ = before - shots_.size();
         if (arguments_.overwrite) return;
         std::size_t there = 0;
@@ -133,6 +128,21 @@ class Run {
                                   : "",
                 there == 1 ? "it" : "them",
                 arguments_.resume ? "" : ", or --resume to make what is missing"));
+    }
+
+    void leave_out_made() {
+        std::vector<char> made(shots_.size());
+        parallel_for(0, static_cast<int>(shots_.size()), 1, [&](int first, int last) {
+            for (int i = first; i < last; ++i) {
+                const auto at = static_cast<std::size_t>(i);
+                std::error_code missing;
+                made[at] = session::is_made(shots_[at], inputs_) &&
+                           (!arguments_.sidecar ||
+                            fs::exists(session::sidecar_of(shots_[at].output), missing));
+            }
+        });
+        std::size_t at = 0;
+        std::erase_if(shots_, [&](const scene::Shot&) { return made[at++]; });
     }
 
     /// Says before any work is done where nothing can be written.

@@ -131,12 +131,12 @@ class Batch {
                 files_.open_alone(sidecar_of(shot.output), options_.overwrite, "--sidecar"));
         session_->show(shot.scene, shot.utc);
         session_->draw();
-        if (!options_.allow_blank && !session_->shows_ground()) refuse_blank("run");
         if (outputs->sidecar)
             outputs->sidecar->write(sidecar_text(*session_, options_.version,
                                                  shot.output.filename().string(), hashes_));
         const image::Metadata metadata = metadata_of(*session_, options_.version);
         const auto write = [&](auto picture) {
+            if (!options_.allow_blank && !session_->shows_ground()) refuse_blank("run");
             auto kept = std::make_shared<decltype(picture)>(std::move(picture));
             crew.add([this, &shot, outputs, metadata, kept] {
                 write_files(shot, *outputs, metadata, *kept);

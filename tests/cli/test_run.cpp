@@ -115,10 +115,10 @@ TEST_F(Run, TheExamplesOfTheDocumentationAreAsTheySay) {
     EXPECT_TRUE(fs::exists(dir_ / "day/2345.png"));
     EXPECT_TRUE(fs::exists(dir_ / "noons/2026-12-31.png"));
     EXPECT_TRUE(fs::exists(dir_ / "sites/valley_east.png"));
-    EXPECT_TRUE(fs::exists(dir_ / "effects/core_haze0.5.png"));
+    EXPECT_TRUE(fs::exists(dir_ / "effects/core_haze0.02.png"));
     // What is switched is seen.
     EXPECT_NE(image::read(dir_ / "effects/dry_haze0.png").values,
-              image::read(dir_ / "effects/dry_haze1.png").values);
+              image::read(dir_ / "effects/dry_haze0.2.png").values);
     EXPECT_NE(image::read(dir_ / "effects/dry_haze0.png").values,
               image::read(dir_ / "effects/wet_haze0.png").values);
 }
