@@ -316,7 +316,7 @@ struct Renderer::Impl {
 
         if (reads_surface) ground.keep_surface();
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
-                                          inputs.exaggeration, inputs.loading);
+                                          inputs.exaggeration, inputs.loading, inputs.afresh);
         passed("select");
 
         if (!natives.empty()) {

@@ -92,6 +92,12 @@ std::string reason_of(const std::exception_ptr& thrown) {
     }
 }
 
+/// A scene whose camera stands where one can stand: what opens a session is not yet a picture.
+scene::Scene of_any_view(scene::Scene scene) {
+    scene.view = {};
+    return scene;
+}
+
 /// The files of a picture, open and without names.
 struct Outputs {
     OutputFile picture;
@@ -180,7 +186,7 @@ class Batch {
         moments_.keep_only(shot.scene);
         options.dem = moments_.loaded(shot.scene);
         if (options_.sidecar) hashes_ = hashed_files(shot.scene.dems);
-        session_ = std::make_unique<Session>(shot.scene, options, files_);
+        session_ = std::make_unique<Session>(of_any_view(shot.scene), options, files_);
         dem_ = std::move(key);
         opened_ = true;
     }
@@ -304,7 +310,7 @@ double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& opt
     Options session_options;
     session_options.device = options.device;
     session_options.dem = moments.loaded(shots.front().scene);
-    Session session(shots.front().scene, session_options, files);
+    Session session(of_any_view(shots.front().scene), session_options, files);
     const auto draw = [&](const scene::Shot& shot) {
         const auto began = Clock::now();
         session.show(shot.scene, shot.utc);

@@ -231,14 +231,14 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
     EXPECT_EQ(error(write("job.json", "{\"format\": 1,\n oops}")),
               "job: " + file +
                   ":2: syntax error while parsing object key - invalid literal; last read: "
-                  "'<U+000A> o'; expected string literal");
+                  "'1,<U+000A> o'; expected string literal");
     EXPECT_EQ(
         error(job("\"exaggeration\": \"high\"")),
         "job: " + file + ":2: exaggeration: expected a number in [0.01, 1000] but got \"high\"");
     EXPECT_EQ(error(job("\"swep\": []")),
               "job: " + file + ":2: swep: no such key; did you mean \"sweep\"?");
     EXPECT_EQ(error(job(at + ", \"effects\": {\"enable\": [\"hase\"]}")),
-              "effect::select: hase: no such effect; did you mean haze?");
+              "effect::select: hase: no such plugin; did you mean haze?");
     EXPECT_EQ(
         error(write("job.json", "{\"format\": 1, \"dem\": {\"files\": [\"no.tif\"]}," + at + "}")),
         fmt::format("dem::load: {}: cannot be read, no such file", (dir_ / "no.tif").string()));
@@ -329,7 +329,7 @@ TEST_F(Run, ASidecarSaysWhatThePictureWasMadeOf) {
     const nlohmann::json json = nlohmann::json::parse(bytes_of(dir_ / "a.png.json"));
     EXPECT_EQ(json["picture"], "a.png");
     EXPECT_EQ(json["utc"], "2026-06-21T16:00:00Z");
-    EXPECT_EQ(json["effects"], nlohmann::json::array({"haze"}));
+    EXPECT_EQ(json["effects"], nlohmann::json::array({"haze", "sky"}));
     const Result sha = test::run("/usr/bin/sha256sum", {bundled_dem()});
     EXPECT_EQ(json["dem"]["files"][0]["sha256"], sha.out.substr(0, 64));
     const nlohmann::json sun =
