@@ -107,6 +107,8 @@ int run(int argc, char** argv) {
     app.fallthrough();
     relevo::cli::add_view(app);
     relevo::cli::add_capture(app);
+    relevo::cli::add_run(app);
+    relevo::cli::add_compare(app);
     relevo::cli::add_info(app);
     relevo::cli::add_sun(app);
     relevo::cli::add_plugins(app);

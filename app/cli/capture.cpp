@@ -14,6 +14,8 @@
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
 #include "dem/files_of.h"
+#include "session/batch.h"
+#include "session/record.h"
 #include "session/session.h"
 
 namespace relevo::cli {
@@ -21,11 +23,38 @@ namespace {
 
 struct Arguments {
     SceneArguments scene;
-    std::string output, device = "auto", timings, dump_shaders, save_scene;
+    std::string output, device = "auto", timings, dump_shaders, save_scene, from;
     std::vector<std::string> ab;
     int repeat = 0;
-    bool overwrite = false, no_legend = false;
+    bool overwrite = false, sidecar = false, allow_blank = false, no_legend = false;
 };
+
+/// What is to be drawn.
+struct Wanted {
+    scene::Scene scene;
+    std::vector<std::string> compared;
+};
+
+Wanted wanted(const Arguments& arguments) {
+    if (arguments.from.empty()) return {arguments.scene.scene(), arguments.ab};
+    if (!arguments.scene.file.empty())
+        bad_usage("--scene and --from exclude each other; give one of them");
+    const image::Metadata metadata = image::read_metadata(arguments.from);
+    const auto text = metadata.find(session::kSceneKeyword);
+    if (text == metadata.end())
+        bad_input(
+            fmt::format("--from: {}: carries no scene, expected a picture of relevo capture "
+                        "or run whose metadata nobody took out",
+                        printable(arguments.from)));
+    const std::filesystem::path path = arguments.from;
+    Wanted result{scene::read_scene_text(text->second, path.string(), path.parent_path()),
+                  arguments.ab};
+    arguments.scene.apply_to(result.scene);
+    const auto compared = metadata.find(session::kComparedKeyword);
+    if (compared != metadata.end() && arguments.ab.empty())
+        result.compared = split(compared->second, ',');
+    return result;
+}
 
 using Clock = std::chrono::steady_clock;
 
@@ -100,21 +129,13 @@ void write_picture(OutputFile& file, const image::Metadata& metadata, Timings& t
     timings.add("write", milliseconds_since(write_began));
 }
 
-/// Into the upper right corner, as large as the picture has room for.
-void add_legend(const chart::Legend& about, image::Image8& picture) {
-    constexpr double kUsual_px = 1024, kMargin = 12;
-    const chart::Drawing drawing = chart::legend(about);
-    const double scale = std::clamp(std::min(picture.width, picture.height) / kUsual_px, 0.5, 8.0);
-    const int x = static_cast<int>(picture.width - scale * (drawing.width() + kMargin));
-    chart::paint(drawing, x, static_cast<int>(scale * kMargin), scale, picture);
-}
-
 void capture(const Arguments& arguments) {
     const std::filesystem::path output = arguments.output;
-    const scene::Scene scene = arguments.scene.scene();
+    const auto [scene, compared] = wanted(arguments);
     image::check_format(output, scene.width_px, scene.height_px);
     FilesInUse files;
     if (!arguments.scene.file.empty()) files.add_input(arguments.scene.file, "the scene");
+    if (!arguments.from.empty()) files.add_input(arguments.from, "the picture");
     dem::add_named(scene.dems, files);  // before any output is opened
     const auto open = [&](const std::string& path, const char* who) {
         return path.empty() ? nullptr : &files.open_output(path, arguments.overwrite, who);
@@ -122,10 +143,13 @@ void capture(const Arguments& arguments) {
     OutputFile& picture_file = *open(arguments.output, "image");
     Timings timings(open(arguments.timings, "--timings"));
     OutputFile* const scene_file = open(arguments.save_scene, "--save-scene");
+    OutputFile* const sidecar_file =
+        open(arguments.sidecar ? session::sidecar_of(output).string() : "", "--sidecar");
 
     session::Options options{.device = arguments.device,
                              .radiance = image::holds_linear_light(output),
-                             .compared = arguments.ab};
+                             .legend = !arguments.no_legend,
+                             .compared = compared};
     if (!arguments.dump_shaders.empty())
         options.stitched = [&](const std::vector<render::ProgramText>& texts) {
             render::dump_programs(texts, arguments.dump_shaders, arguments.overwrite);
@@ -150,20 +174,22 @@ void capture(const Arguments& arguments) {
     session.draw(timings.passes());
     timings.add("passes", milliseconds_since(passes_began));
 
-    const image::Metadata metadata{
-        {"Software", "Relevo " RELEVO_VERSION},
-        {"Description", fmt::format("{}; {}; sun at {}", where, when, sun)}};
+    const auto shown = [&](auto picture) {
+        if (!arguments.allow_blank && !session.shows_ground()) session::refuse_blank("capture");
+        return picture;
+    };
+    const image::Metadata metadata = session::metadata_of(session, RELEVO_VERSION, compared);
     if (options.radiance)
-        write_picture(picture_file, metadata, timings, [&] { return session.radiance(); });
+        write_picture(picture_file, metadata, timings, [&] { return shown(session.radiance()); });
     else
-        write_picture(picture_file, metadata, timings, [&] {
-            image::Image8 picture = session.picture();
-            if (session.legend() && !arguments.no_legend) add_legend(*session.legend(), picture);
-            return picture;
-        });
+        write_picture(picture_file, metadata, timings, [&] { return shown(session.picture()); });
     if (scene_file)
         scene_file->write(scene::scene_text(
             session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));
+    if (sidecar_file)
+        sidecar_file->write(session::sidecar_text(session, RELEVO_VERSION,
+                                                  output.filename().string(),
+                                                  session::hashed_files(scene.dems)));
     timings.write(session, arguments.repeat);
     files.finish_outputs();
 }
@@ -181,6 +207,17 @@ void add_capture(CLI::App& app) {
     verb.add_flag("--no-legend", arguments->no_legend, "Leave the overlay's legend out")
         ->group("Overlay");
     verb.add_option("--save-scene", arguments->save_scene, "Write what is drawn as a scene, JSON");
+    verb.add_option_function<std::string>(
+        "--from",
+        [arguments](const std::string& path) {
+            arguments->from = path;
+            arguments->scene.dem.dem_option->required(false);
+        },
+        "Picture to make again, by the scene that it carries; other options replace what it says");
+    verb.add_flag("--sidecar", arguments->sidecar,
+                  "Write a JSON beside the picture: sun, camera, device, versions, DEM");
+    verb.add_flag("--allow-blank", arguments->allow_blank,
+                  "Take a picture without ground in it too");
     verb.add_option("--ab", arguments->ab,
                     "Compare: the left half with these effects, the right half without them")
         ->delimiter(',')

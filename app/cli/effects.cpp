@@ -1,6 +1,6 @@
 #include "cli/effects.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "effect/preset.h"
 
@@ -27,34 +27,20 @@ void EffectArguments::add_to(CLI::App& verb) {
         ->group("Effects");
 }
 
-namespace {
-
-void remove(const std::vector<std::string>& ids, std::vector<std::string>& from) {
-    for (const std::string& id : ids)
-        from.erase(std::remove(from.begin(), from.end(), id), from.end());
-}
-
-}  // namespace
-
 void EffectArguments::apply_to(scene::Effects& effects) const {
-    effect::Switches& switches = effects.switches;
+    scene::Effects change;
     if (only_option && only_option->count() > 0) {
-        switches = {};
-        switches.only.emplace();
+        change.switches.only.emplace();
         for (const std::string& id : only)
-            if (!id.empty()) switches.only->push_back(id);
-    } else if (switches.only) {
-        remove(disable, *switches.only);
+            if (!id.empty()) change.switches.only->push_back(id);
     }
-    // What the command line has both on and off is an error that the selection finds.
-    remove(enable, switches.disable);
-    remove(disable, switches.enable);
-    switches.enable.insert(switches.enable.end(), enable.begin(), enable.end());
-    switches.disable.insert(switches.disable.end(), disable.begin(), disable.end());
-    if (!presets.empty()) effects.presets = presets;
+    change.switches.enable = enable;
+    change.switches.disable = disable;
+    change.presets = presets;
     for (const std::string& setting : settings)
-        effects.settings.push_back(effect::parse_setting(setting));
-    effects.plugin_path.insert(effects.plugin_path.end(), plugin_path.begin(), plugin_path.end());
+        change.settings.push_back(effect::parse_setting(setting));
+    change.plugin_path = plugin_path;
+    effects = scene::merge(std::move(effects), change);
 }
 
 }  // namespace relevo::cli

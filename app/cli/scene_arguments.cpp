@@ -50,20 +50,21 @@ void OverlayArguments::apply_to(scene::Scene& scene) const {
     scene.overlay->range = {*low, *high};
 }
 
-void SceneArguments::add_to(CLI::App& verb) {
+void SceneArguments::add_to(CLI::App& verb, bool with_file) {
     dem.add_to(verb);
     verb.add_option("--holes", holes,
                     "How holes in the DEM are drawn: fill small ones and cut out the rest, cut out "
                     "all, or fill and mark (fill)")
         ->check(CLI::IsMember({"fill", "cut", "mark"}));
     verb.add_option("--size", size, "Width and height in pixels, 1280x1024");
-    verb.add_option_function<std::string>(
-        "--scene",
-        [this](const std::string& path) {
-            file = path;
-            dem.dem_option->required(false);
-        },
-        "Scene to draw, a file of --save-scene; other options replace what it says");
+    if (with_file)
+        verb.add_option_function<std::string>(
+            "--scene",
+            [this](const std::string& path) {
+                file = path;
+                dem.dem_option->required(false);
+            },
+            "Scene to draw, a file of --save-scene; other options replace what it says");
     time.add_to(verb);
     refraction.add_to(verb);
     view.add_to(verb);
@@ -80,6 +81,11 @@ void SceneArguments::add_to(CLI::App& verb) {
 scene::Scene SceneArguments::scene() const {
     scene::Scene result;
     if (!file.empty()) result = scene::read_scene(file);
+    apply_to(result);
+    return result;
+}
+
+void SceneArguments::apply_to(scene::Scene& result) const {
     dem.apply_to(result);
     if (time.given()) result.moment = time.moment();
     if (refraction.given()) result.refraction = refraction.name();
@@ -94,7 +100,6 @@ scene::Scene SceneArguments::scene() const {
     }
     if (exposure_ev) result.exposure_ev = *exposure_ev;
     if (pixel_error) result.pixel_error = *pixel_error;
-    return result;
 }
 
 }  // namespace relevo::cli

@@ -31,7 +31,10 @@ struct SceneArguments {
     std::string file, size, holes;
     std::optional<double> exposure_ev, pixel_error;
 
-    void add_to(CLI::App& verb);
+    /// @param with_file  there is --scene
+    void add_to(CLI::App& verb, bool with_file = true);
+    /// Puts what was given in the place of what a scene says. @throws Error as those who read
+    void apply_to(scene::Scene& scene) const;
     /// The scene of --scene, if there is one, with what else was given in the place of its own.
     /// @throws Error as those who read
     scene::Scene scene() const;

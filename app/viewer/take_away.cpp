@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "image/image.h"
+#include "session/record.h"
 #include "viewer/settings.h"
 
 namespace relevo::viewer {
@@ -55,7 +56,8 @@ std::string save_picture(const Picture& picture, const scene::Scene& scene) {
     const image::Image8 image =
         image::from_device(picture.width_px, picture.height_px, picture.rgba);
     const image::Metadata metadata{{"Software", "Relevo"},
-                                   {"Description", capture_command(scene, "picture.png")}};
+                                   {"Description", capture_command(scene, "picture.png")},
+                                   {session::kSceneKeyword, scene::scene_line(scene)}};
     const std::string name = write_under_free_name(
         "png", [&](OutputFile& file) { image::write(file, image, metadata); });
     return name + " has the picture";

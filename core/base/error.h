@@ -7,10 +7,12 @@ namespace relevo {
 
 /// What went wrong, as the exit status of the program says it (docs/cli.md).
 enum class ErrorCode {
-    Failed = 1,    ///< the operation could not be carried out
-    Usage = 2,     ///< the command line is wrong
-    BadInput = 3,  ///< a file or a value given by the user cannot be used
-    NoDevice = 4,  ///< no GL device that can draw
+    Failed = 1,      ///< the operation could not be carried out
+    Usage = 2,       ///< the command line is wrong
+    BadInput = 3,    ///< a file or a value given by the user cannot be used
+    NoDevice = 4,    ///< no GL device that can draw
+    Incomplete = 5,  ///< some of many results could not be made; the others are there
+    Differ = 6,      ///< what was compared is not the same
 };
 
 /// An operation cannot continue. Caught once, in main.

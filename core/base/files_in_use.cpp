@@ -26,6 +26,11 @@ void FilesInUse::add_input(const std::filesystem::path& path, std::string_view w
 
 OutputFile& FilesInUse::open_output(const std::filesystem::path& path, bool overwrite,
                                     std::string_view who) {
+    return outputs_.emplace_back(open_alone(path, overwrite, who));
+}
+
+OutputFile FilesInUse::open_alone(const std::filesystem::path& path, bool overwrite,
+                                  std::string_view who) const {
     for (const Input& input : inputs_) {
         // Before OutputFile says that --overwrite would help.
         std::error_code ignored;
@@ -38,7 +43,7 @@ OutputFile& FilesInUse::open_output(const std::filesystem::path& path, bool over
         if (opened.same_as(other))
             bad_usage(fmt::format("{}: {}: another result goes there; give each a file of its own",
                                   who, printable(path.string())));
-    return outputs_.emplace_back(std::move(opened));
+    return opened;
 }
 
 void FilesInUse::finish_outputs() {

@@ -26,6 +26,11 @@ class FilesInUse {
     OutputFile& open_output(const std::filesystem::path& path, bool overwrite,
                             std::string_view who);
 
+    /// The same, but its life, and its finish(), are the caller's: for results that come one after
+    /// the other. Later inputs are not held against it.
+    OutputFile open_alone(const std::filesystem::path& path, bool overwrite,
+                          std::string_view who) const;
+
     /// Finishes all that was opened: results of one run appear together or not at all.
     /// @throws Error as OutputFile::finish_all()
     void finish_outputs();

@@ -18,6 +18,7 @@ struct State {
     std::mutex mutex;
     Level level = Level::Info;
     std::function<void(Level, std::string_view)> sink;
+    std::function<void()> before;
     std::shared_ptr<spdlog::logger> logger;
 
     State() {
@@ -76,6 +77,7 @@ void write(Level level, std::string_view message) {
         s.sink(level, message);
         return;
     }
+    if (s.before) s.before();
     const std::string text = shown(level, message);
     switch (level) {
         case Level::Debug:
@@ -121,6 +123,12 @@ void warning(std::string_view message) {
 
 void error(std::string_view message) {
     write(Level::Error, message);
+}
+
+void set_before(std::function<void()> before) {
+    State& s = state();
+    const std::lock_guard lock(s.mutex);
+    s.before = std::move(before);
 }
 
 void set_sink(std::function<void(Level, std::string_view)> sink) {

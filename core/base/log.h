@@ -19,6 +19,9 @@ void info(std::string_view message);  ///< a notice: what was assumed, what was 
 void warning(std::string_view message);  ///< the result may not be what the user expects
 void error(std::string_view message);
 
+/// Is called before every message that goes to standard error, such as to clear a line there.
+void set_before(std::function<void()> before);
+
 /// Sends every message to `sink` instead of standard error; an empty function undoes it.
 /// Tests use it to compare whole messages.
 void set_sink(std::function<void(Level, std::string_view)> sink);

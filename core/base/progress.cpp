@@ -1,6 +1,7 @@
 #include "base/progress.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <string_view>
 #include <utility>
 
@@ -10,7 +11,6 @@
 #include "base/log.h"
 
 namespace relevo {
-namespace {
 
 constexpr int kBarWidth = 24;
 constexpr double kRedraw_s = 0.25;
@@ -45,6 +45,34 @@ void ProgressBar::show(double share) {
     put(descriptor_, fmt::format("{}{} [{}{}] {:.0f} %, {} left", kClearLine, what_,
                                  std::string(full, '='), std::string(kBarWidth - full, ' '),
                                  100 * share, duration_text(passed_s * (1 - share) / share)));
+}
+
+CountBar::CountBar(std::size_t total)
+    : total_(total), shown_(isatty(STDERR_FILENO) == 1 && log::level() <= log::Level::Info) {
+    if (shown_) log::set_before([] { fmt::print(stderr, "\r\x1b[K"); });
+}
+
+CountBar::~CountBar() {
+    if (!shown_) return;
+    log::set_before({});
+    fmt::print(stderr, "\r\x1b[K");
+}
+
+void CountBar::add() {
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    if (shown_) show();
+}
+
+void CountBar::show() const {
+    constexpr std::size_t kWidth = 32;
+    const std::size_t full = total_ > 0 ? kWidth * done_ / total_ : kWidth;
+    const double passed_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+    const double left_s =
+        passed_s / static_cast<double>(done_) * static_cast<double>(total_ - done_);
+    fmt::print(stderr, "\r[{}{}] {} of {}, {} left\x1b[K", std::string(full, '#'),
+               std::string(kWidth - full, '.'), done_, total_, duration_text(left_s));
 }
 
 Progress::Progress(std::string what, double total, double patience_s)

@@ -1,10 +1,35 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <mutex>
 #include <string>
 
 namespace relevo {
+
+/// "12 s", "5 min", "3 h".
+std::string duration_text(double seconds);
+
+/// A line on a terminal's standard error that grows with the work and tells how long the rest
+/// takes; nothing anywhere else, and with -q.
+class CountBar {
+  public:
+    explicit CountBar(std::size_t total);
+    ~CountBar();
+    CountBar(const CountBar&) = delete;
+    CountBar& operator=(const CountBar&) = delete;
+
+    /// One more is done. Safe on several threads at once.
+    void add();
+
+  private:
+    void show() const;
+
+    std::size_t total_, done_ = 0;
+    bool shown_;
+    mutable std::mutex mutex_;
+    std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
 
 /// Tells of long work with log::info: after ten seconds how much is done and about how long the
 /// rest takes, then whenever as much time again has passed. Short work has no word.

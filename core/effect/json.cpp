@@ -213,6 +213,11 @@ const Json* ObjectReader::take(const std::string& key) {
     return nullptr;
 }
 
+bool ObjectReader::has(std::string_view key) const {
+    return std::any_of(object_.members.begin(), object_.members.end(),
+                       [&](const auto& member) { return member.first == key; });
+}
+
 const Json& ObjectReader::need(const std::string& key) {
     const Json* const value = take(key);
     if (!value) fail(object_.line, "", fmt::format("expected a member \"{}\"", key));

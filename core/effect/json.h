@@ -45,6 +45,8 @@ class ObjectReader {
 
     /// The member, or null. A key taken is a key known.
     const Json* take(const std::string& key);
+    /// Whether the member is there, which does not take it.
+    bool has(std::string_view key) const;
     /// @throws Error (BadInput) if the member is missing
     const Json& need(const std::string& key);
 

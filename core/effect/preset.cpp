@@ -34,7 +34,8 @@ std::filesystem::path find_preset(const std::string& name) {
     return presets_dir() / (name + ".json");
 }
 
-/// A value as it would stand on the command line.
+}  // namespace
+
 std::optional<std::string> value_text(const Json& value) {
     switch (value.kind) {
         case Json::Kind::Bool:
@@ -54,8 +55,6 @@ std::optional<std::string> value_text(const Json& value) {
             return std::nullopt;
     }
 }
-
-}  // namespace
 
 Setting parse_setting(std::string_view text) {
     const std::size_t equals = text.find('=');

@@ -8,6 +8,7 @@
 
 namespace relevo::effect {
 
+struct Json;
 class ObjectReader;
 
 /// Which effects are to be on, by their ids.
@@ -44,6 +45,9 @@ Setting parse_setting(std::string_view text);
 /// @throws Error (BadInput) for a value that no parameter can have
 std::vector<Setting> read_settings(ObjectReader& object, const std::string& key,
                                    const std::string& folder);
+
+/// A value of a file as it would stand on the command line; nothing where no parameter can have it.
+std::optional<std::string> value_text(const Json& value);
 
 /// Whether load_preset() takes it for a path.
 bool is_preset_file(const std::string& name_or_path);

@@ -37,6 +37,7 @@ struct FormatsModule {
                                 const ImageF&, const Metadata&);
     std::string (*read8)(const std::filesystem::path&, Image8&);
     std::string (*read_float)(const std::filesystem::path&, ImageF&);
+    std::string (*read_exr_texts)(const std::filesystem::path&, Metadata&);
 };
 
 /// The one function that the module exports.

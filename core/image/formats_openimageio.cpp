@@ -8,9 +8,11 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <tiffio.h>
 #include <unistd.h>
 
 #include "image/formats.h"
+#include "image/xmp.h"
 
 namespace relevo::image {
 namespace {
@@ -65,8 +67,11 @@ OIIO::ImageSpec spec_of(const Pixels<T>& image, const std::string& format, const
     spec.attribute("oiio:ColorSpace", sizeof(T) == 1 ? "sRGB" : "Linear");
     if (format == "jpeg" || format == "webp") spec.attribute("CompressionQuality", 95);
     if (format == "tiff") spec.attribute("compression", "zip");
+    // Of itself the library writes when it wrote, by which equal pictures would differ.
+    spec.attribute("DateTime", "");
     for (const auto& [keyword, text] : metadata)
-        spec.attribute(keyword == "Description" ? "ImageDescription" : keyword, text);
+        if (format == "openexr" || !is_xmp_keyword(keyword))
+            spec.attribute(keyword == "Description" ? "ImageDescription" : keyword, text);
     return spec;
 }
 
@@ -81,19 +86,36 @@ std::string put(OIIO::ImageOutput& output, const std::string& name, const OIIO::
     return reason.empty() ? "the encoder failed without a reason" : reason;
 }
 
+/// Takes the time of writing out of a TIFF, and puts XMP in.
+std::string finish_tiff(const std::string& name, const std::string& xmp) {
+    TIFFSetErrorHandler(nullptr);
+    TIFFSetWarningHandler(nullptr);
+    TIFF* const file = TIFFOpen(name.c_str(), "r+");
+    if (!file) return "what was written cannot be opened again";
+    bool done = TIFFUnsetField(file, TIFFTAG_DATETIME) == 1;
+    if (done && !xmp.empty())
+        done = TIFFSetField(file, TIFFTAG_XMLPACKET, static_cast<std::uint32_t>(xmp.size()),
+                            xmp.data()) == 1;
+    done = done && TIFFRewriteDirectory(file) == 1;
+    TIFFClose(file);
+    return done ? "" : "the metadata cannot be written, most likely for want of memory";
+}
+
 /// As TIFF, by way of a file that exists in memory only: OpenImageIO 2.4 cannot read back what it
 /// wrote to an IOProxy, which the directory of Exif data asks for. It says nothing where a write
 /// fails, so that what is there is read again.
 template <typename T>
 std::string encode_tiff(std::vector<std::byte>& bytes, OIIO::ImageOutput& output,
-                        const OIIO::ImageSpec& spec, const Pixels<T>& image) {
+                        const OIIO::ImageSpec& spec, const Pixels<T>& image,
+                        const std::string& xmp) {
     struct File {
         int descriptor = memfd_create("picture.tif", MFD_CLOEXEC);
         ~File() { close(descriptor); }
     } const file;
     if (file.descriptor < 0) return std::strerror(errno);
     const std::string name = "/proc/self/fd/" + std::to_string(file.descriptor);
-    const std::string reason = put(output, name, spec, image);
+    std::string reason = put(output, name, spec, image);
+    if (reason.empty()) reason = finish_tiff(name, xmp);
     struct stat status {};
     rlimit limit{};
     if (fstat(file.descriptor, &status) != 0) return std::strerror(errno);
@@ -126,12 +148,17 @@ std::string encode(std::vector<std::byte>& bytes, const std::string& format, con
     const auto output = OIIO::ImageOutput::create(format);
     if (!output) return OIIO::geterror();
     const OIIO::ImageSpec spec = spec_of(image, format, metadata, stored);
-    if (format == "tiff") return encode_tiff(bytes, *output, spec, image);
+    const std::string xmp = xmp_packet(metadata);
+    if (format == "tiff") return encode_tiff(bytes, *output, spec, image, xmp);
     MemoryFile file(bytes);
     if (!output->supports("ioproxy") || !output->set_ioproxy(&file))
         return "this build of OpenImageIO cannot write the format to memory";
     const std::string reason = put(*output, "picture." + format, spec, image);
-    return file.out_of_memory() ? "not enough memory for the encoded picture" : reason;
+    if (file.out_of_memory()) return "not enough memory for the encoded picture";
+    if (!reason.empty() || xmp.empty()) return reason;
+    if (format == "jpeg") return add_xmp_to_jpeg(bytes, xmp);
+    if (format == "webp") return add_xmp_to_webp(bytes, xmp, image.width, image.height);
+    return {};
 }
 
 template <typename T>
@@ -153,6 +180,17 @@ std::string read(const std::filesystem::path& path, Pixels<T>& image) {
     return {};
 }
 
+std::string read_exr_texts(const std::filesystem::path& path, Metadata& metadata) {
+    const auto input = OIIO::ImageInput::open(path.string());
+    if (!input) return OIIO::geterror();
+    for (const OIIO::ParamValue& attribute : input->spec().extra_attribs)
+        if (attribute.type() == OIIO::TypeDesc::STRING)
+            metadata[attribute.name() == "ImageDescription" ? "Description"
+                                                            : attribute.name().string()] =
+                attribute.get_string();
+    return {};
+}
+
 }  // namespace
 
 extern "C" const FormatsModule* relevo_image_formats() {
@@ -166,7 +204,8 @@ extern "C" const FormatsModule* relevo_image_formats() {
             return encode(bytes, format, image, metadata, OIIO::TypeDesc::HALF);
         },
         [](const std::filesystem::path& path, Image8& image) { return read(path, image); },
-        [](const std::filesystem::path& path, ImageF& image) { return read(path, image); }};
+        [](const std::filesystem::path& path, ImageF& image) { return read(path, image); },
+        read_exr_texts};
     return &module;
 }
 

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cassert>
+#include <cerrno>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -22,6 +23,7 @@
 #include "base/text.h"
 #include "image/formats.h"
 #include "image/png.h"
+#include "image/xmp.h"
 
 namespace relevo::image {
 namespace {
@@ -108,11 +110,12 @@ class EncoderAtWork {
         _exit(static_cast<int>(ErrorCode::Failed));
     }
 
-    static std::atomic<const std::string*> at_work;
+    // An encoder that gives up ends the process on its own thread.
+    static thread_local const std::string* at_work;
     std::string subject_;
 };
 
-std::atomic<const std::string*> EncoderAtWork::at_work = nullptr;
+thread_local const std::string* EncoderAtWork::at_work = nullptr;
 
 template <typename T, typename Write>
 void write_checked(OutputFile& file, const Pixels<T>& image, Write write_pixels) {
@@ -137,6 +140,23 @@ void write_other(OutputFile& file, const Format& format, const Pixels<T>& image,
     if (!reason.empty())
         failed(fmt::format("image: {}: {}", printable(file.path().string()), reason));
     file.write(bytes);
+}
+
+/// A file's bytes, as many of them as a picture may have.
+std::string bytes_of(const std::filesystem::path& path) {
+    const InputFile file(path, "image");
+    std::string bytes;
+    std::array<char, 1 << 16> buffer{};
+    while (bytes.size() <= kMaxPictureBytes) {
+        const ssize_t got = ::read(file.descriptor(), buffer.data(), buffer.size());
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0)
+            bad_input(fmt::format("image: {}: cannot be read, {}", printable(path.string()),
+                                  std::strerror(errno)));
+        if (got == 0) break;
+        bytes.append(buffer.data(), static_cast<std::size_t>(got));
+    }
+    return bytes;
 }
 
 }  // namespace
@@ -214,7 +234,17 @@ ImageF read_float(const std::filesystem::path& path) {
 
 Metadata read_metadata(const std::filesystem::path& path) {
     Metadata metadata;
-    read_png(path, &metadata);
+    const Format* const format = format_of(path);
+    if (!format || is_png(*format)) {
+        read_png(path, &metadata);
+    } else if (format->linear) {
+        const InputFile only_regular(path, "image");
+        const std::string reason = formats_module(path).read_exr_texts(path, metadata);
+        if (!reason.empty())
+            bad_input(fmt::format("image: {}: {}", printable(path.string()), reason));
+    } else {
+        metadata = texts_in_xmp(bytes_of(path));
+    }
     return metadata;
 }
 

@@ -89,7 +89,9 @@ Image8 read(const std::filesystem::path& path);
 /// Reads a picture as the values in the file, an 8-bit one scaled to 0..1.
 ImageF read_float(const std::filesystem::path& path);
 
-/// The text inside a PNG.
+/// The texts inside a picture: all of a PNG and of an EXR, of the others those that write() puts
+/// into XMP, whose keywords begin with `relevo:`.
+/// @throws Error (BadInput) as read()
 Metadata read_metadata(const std::filesystem::path& path);
 
 /// How far two pictures are apart.

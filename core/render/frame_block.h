@@ -57,6 +57,8 @@ struct FrameInputs {
     Loading loading = Loading::Wait;
     /// Native effects leave what they have made as it is, such as shadows of the sun as it was.
     bool keep_native = false;
+    /// Native effects keep nothing by which the picture would hang on frames before.
+    bool afresh = false;
     double unix_s = 0;  ///< the sun's moment, since 1970-01-01T00:00Z, for native modules
 };
 

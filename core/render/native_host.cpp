@@ -187,6 +187,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         full.lowest_m = drawn.ground.lowest_m;
         full.highest_m = drawn.ground.highest_m;
         full.post_spacing_m = drawn.terrain.normal_spacing_m();
+        full.afresh = drawn.inputs.afresh ? 1 : 0;
         return full;
     }
 

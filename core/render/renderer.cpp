@@ -411,7 +411,7 @@ struct Renderer::Impl {
         if (reads_surface) ground.keep_surface();
         if (reads_water) ground.keep_water();
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
-                                          inputs.exaggeration, inputs.loading);
+                                          inputs.exaggeration, inputs.loading, inputs.afresh);
         passed("select");
 
         light(ground, inputs, block);

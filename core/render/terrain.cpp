@@ -327,12 +327,13 @@ TileSelection Terrain::ready(const LodView& view, const std::vector<TileDraw>& d
 }
 
 TileSelection Terrain::select_for_picture(const scene::Camera& camera, int width_px, int height_px,
-                                          double exaggeration, Loading loading) {
+                                          double exaggeration, Loading loading, bool afresh) {
     const LodView view =
         LodView::of_camera(camera, width_px, height_px, options_.pixel_error, exaggeration);
     complete_ = true;
     TileSelection selection = loading == Loading::Beside ? select_beside(view) : select(view);
-    prepare_surface(LodView::of_camera(camera, width_px, height_px, 1, exaggeration), loading);
+    prepare_surface(LodView::of_camera(camera, width_px, height_px, 1, exaggeration), loading,
+                    afresh);
     return selection;
 }
 
@@ -365,7 +366,7 @@ std::optional<Terrain::Extent> Terrain::extent(const glm::dmat3& axes, double ex
     return extent;
 }
 
-void Terrain::prepare_surface(const LodView& view, Loading loading) {
+void Terrain::prepare_surface(const LodView& view, Loading loading, bool afresh) {
     // A page is wanted where a pixel is no larger than its texels. Pixels are measured by view
     // depth, which in the corners of the picture is less than the distance.
     constexpr double kCorner = 0.7;
@@ -393,10 +394,15 @@ void Terrain::prepare_surface(const LodView& view, Loading loading) {
     } else {
         came = surface_.require(pages);
     }
-    if (came) write_page_table();
+    if (came || afresh || table_is_narrowed_) write_page_table(afresh ? &pages : nullptr);
+    table_is_narrowed_ = afresh;
 }
 
-void Terrain::write_page_table() {
+void Terrain::write_page_table(const std::vector<TileKey>* only) {
+    std::unordered_set<std::uint64_t> read;
+    if (only)
+        for (const TileKey& key : *only)
+            read.insert(key.packed());
     std::vector<std::uint16_t> coarser;
     int coarser_side = 0;
     for (int level = page_table_.levels() - 1; level >= 0; --level) {
@@ -406,7 +412,8 @@ void Terrain::write_page_table() {
         for (int y = 0; y < side; ++y) {
             for (int x = 0; x < side; ++x) {
                 std::uint16_t* const entry = &entries[static_cast<std::size_t>(2 * (y * side + x))];
-                const int layer = surface_.slot({level, {x, y}});
+                const TileKey key{level, {x, y}};
+                const int layer = only && !read.contains(key.packed()) ? -1 : surface_.slot(key);
                 if (layer >= 0) {
                     entry[0] = static_cast<std::uint16_t>(layer);
                     entry[1] = static_cast<std::uint16_t>(level);

@@ -83,8 +83,10 @@ class Terrain {
     /// @param keep  a selection that has to stay drawable beside the new one
     TileSelection select(const LodView& view, const TileSelection* keep = nullptr);
     /// A camera's view with the option's pixel error, and the pages that its picture needs.
+    /// @param afresh  finer pages that are left from other pictures are not read
     TileSelection select_for_picture(const scene::Camera& camera, int width_px, int height_px,
-                                     double exaggeration, Loading loading = Loading::Wait);
+                                     double exaggeration, Loading loading = Loading::Wait,
+                                     bool afresh = false);
     /// Whether the last picture had all its pages; so it is always where it waits for them.
     bool is_complete() const { return complete_; }
 
@@ -146,9 +148,10 @@ class Terrain {
     /// Of tiles whose pages are there.
     TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
     bool in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const;
-    void prepare_surface(const LodView& view, Loading loading);
+    void prepare_surface(const LodView& view, Loading loading, bool afresh);
     void clear_surface();
-    void write_page_table();
+    /// @param only  pages that are read; null: all that are there
+    void write_page_table(const std::vector<TileKey>* only);
     std::vector<std::byte> make_normals(const TileKey& key) const;
     static constexpr int kInstanceVectors = 12;  // inputs net_0 ... up_v of the vertex programs
     using Instance = std::array<glm::vec4, kInstanceVectors>;
@@ -175,6 +178,7 @@ class Terrain {
     int reduction_;
     std::optional<dem::Water> own_water_;  // where none was given
     std::optional<WaterField> water_;
+    bool table_is_narrowed_ = false;  ///< to the pages of a picture that was drawn afresh
     bool complete_ = true;
     gl::Texture page_table_;
     gl::Buffer grid_vertices_, grid_indices_, instances_;

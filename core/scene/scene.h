@@ -62,7 +62,24 @@ inline constexpr int kMaxSide_px = 16384;
 /// @throws Error (BadInput) `scene: FILE:LINE: camera.fov: what, expected E but got G`
 Scene read_scene(const std::filesystem::path& path);
 
+/// The same from a text, such as that inside a picture.
+/// @param file    as messages name it
+/// @param folder  from which relative paths count
+Scene read_scene_text(const std::string& text, const std::string& file,
+                      const std::filesystem::path& folder);
+
+/// Effects with a change: `only` and presets replace those before, the rest is added; what is
+/// switched on is no longer off, and the other way round; of a parameter the last value counts.
+Effects merge(Effects effects, const Effects& change);
+
 /// The file of a scene. Paths below `folder` are written relative to it, others absolute.
 std::string scene_text(const Scene& scene, const std::filesystem::path& folder);
+
+/// The same on one line, with absolute paths: what pictures carry, and what tells whether two
+/// scenes are one.
+std::string scene_line(const Scene& scene);
+
+/// The same with absolute names of the files there are, which then hold in any folder.
+Scene with_absolute_paths(Scene scene);
 
 }  // namespace relevo::scene

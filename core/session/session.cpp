@@ -62,12 +62,16 @@ LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
 }
 
 std::shared_ptr<const LoadedDem> load(const scene::Scene& scene) {
-    const auto began = Clock::now();
-    dem::Source source = dem::Source::open(scene.dems, scene.dem);
-    dem::Heightfield field = dem::load(source, scene.dem.max_posts);
-    LoadedDem::Drawn drawn = drawn_of(field, scene.holes);
-    return std::make_shared<const LoadedDem>(LoadedDem{
-        std::move(source), std::move(field), milliseconds_since(began), std::move(drawn)});
+    return load_dem(dem::Source::open(scene.dems, scene.dem), scene);
+}
+
+/// Into the upper right corner, as large as the picture has room for.
+void add_legend(const chart::Legend& about, image::Image8& picture) {
+    constexpr double kUsual_px = 1024, kMargin = 12;
+    const chart::Drawing drawing = chart::legend(about);
+    const double scale = std::clamp(std::min(picture.width, picture.height) / kUsual_px, 0.5, 8.0);
+    const int x = static_cast<int>(picture.width - scale * (drawing.width() + kMargin));
+    chart::paint(drawing, x, static_cast<int>(scale * kMargin), scale, picture);
 }
 
 constexpr int kDivider_px = 2;
@@ -86,6 +90,14 @@ Picture side_by_side(const Picture& left, const Picture& right, Value line) {
 }
 
 }  // namespace
+
+std::shared_ptr<const LoadedDem> load_dem(dem::Source source, const scene::Scene& scene) {
+    const auto began = Clock::now();
+    dem::Heightfield field = dem::load(source, scene.dem.max_posts);
+    LoadedDem::Drawn drawn = drawn_of(field, scene.holes);
+    return std::make_shared<const LoadedDem>(LoadedDem{
+        std::move(source), std::move(field), milliseconds_since(began), std::move(drawn)});
+}
 
 double LoadedDem::height_m(const geo::Geodetic& at) const {
     if (field.reduction > 1) return source.height_at(at);
@@ -121,6 +133,7 @@ struct Session::Impl {
     std::shared_ptr<const render::Drape> drape;
     std::optional<chart::Legend> legend;
 
+    scene::Effects as_given;  ///< the scene's, as they were given
     sun::Instant utc;
     sun::Position position;
     sun::Refraction air = sun::Refraction::none();
@@ -196,8 +209,9 @@ struct Session::Impl {
     }
 
     /// Says in the scene which effects there are.
-    void take_effects(const scene::Effects& asked) {
-        scene.effects = asked;
+    void take_effects(const scene::Effects& given) {
+        as_given = given;
+        scene.effects = given;
         scene.effects.settings =
             effect::with_absolute_files(std::move(scene.effects.settings), drawn.effects->values);
     }
@@ -238,6 +252,80 @@ struct Session::Impl {
         look(scene.view);  // what effects displace may be in sight
     }
 
+    /// The values in which two scenes with the same effects differ, where they may be set as they
+    /// are; nothing where the difference is more than that.
+    std::optional<std::vector<effect::Setting>> changed_values(const scene::Effects& next) const {
+        const auto same_switches = [](const effect::Switches& a, const effect::Switches& b) {
+            return a.only == b.only && a.enable == b.enable && a.disable == b.disable;
+        };
+        if (!same_switches(as_given.switches, next.switches) || as_given.presets != next.presets ||
+            as_given.plugin_path != next.plugin_path ||
+            as_given.settings.size() != next.settings.size())
+            return std::nullopt;
+        std::vector<effect::Setting> changed;
+        for (std::size_t i = 0; i < next.settings.size(); ++i) {
+            const effect::Setting &before = as_given.settings[i], &after = next.settings[i];
+            if (before.address != after.address) return std::nullopt;
+            if (before.text == after.text && before.folder == after.folder) continue;
+            const shader::Param* const param = drawn.effects->values.find(after.address);
+            if (!param || param->is_static || param->is_host) return std::nullopt;
+            changed.push_back(after);
+        }
+        return changed;
+    }
+
+    void set_value(const std::string& address, const std::string& value) {
+        for (const auto& [active, renderer] :
+             {std::pair(drawn.effects.get(), drawn.renderer.get()),
+              std::pair(drawn.others.get(), drawn.without.get())}) {
+            if (!active) continue;
+            const shader::Param* const param = active->values.find(address);
+            if (param && param->is_static)
+                bad_input(fmt::format("session: {}: it is static: another value is another program",
+                                      address));
+            active->values.set(address, value);
+            renderer->set_values(active->values);
+        }
+        for (scene::Effects* effects : {&as_given, &scene.effects}) {
+            scene::Effects change;
+            change.settings = {{address, value}};
+            *effects = scene::merge(std::move(*effects), change);
+        }
+    }
+
+    void resize(int width_px, int height_px) {
+        scene.width_px = width_px;
+        scene.height_px = height_px;
+        drawn.renderer->resize(width_px, height_px);
+        if (drawn.without) drawn.without->resize(width_px, height_px);
+    }
+
+    void show(const scene::Scene& next, sun::Instant instant) {
+        context->make_current();
+        inputs.afresh = true;
+        if (const auto values = changed_values(next.effects)) {
+            for (const effect::Setting& value : *values)
+                set_value(value.address, value.text);
+            take_effects(next.effects);  // in the order that they were given in
+        } else {
+            set_effects(next.effects);
+        }
+        resize(next.width_px, next.height_px);
+        scene.exposure_ev = next.exposure_ev;
+        scene.refraction = next.refraction;
+        const bool other_shape = next.exaggeration != scene.exaggeration;
+        scene.exaggeration = next.exaggeration;
+        if (next.pixel_error != scene.pixel_error) {
+            scene.pixel_error = next.pixel_error;
+            upload();
+        } else {
+            take_shape(other_shape);
+        }
+        scene.moment = next.moment;
+        set_moment(instant);
+        look(next.view);
+    }
+
     void upload() {
         const auto began = Clock::now();
         ground = render::make_ground(loaded->field);
@@ -256,9 +344,14 @@ struct Session::Impl {
             terrain->drape(drape);
         }
         stages.emplace_back("upload", milliseconds_since(began));
+        take_shape(/*other=*/true);
+    }
+
+    /// @param other  the ground is exaggerated otherwise than before
+    void take_shape(bool other) {
         inputs.exaggeration = scene.exaggeration;
         inputs.exposure_ev = scene.exposure_ev;
-        to_show = render::ground_to_show(loaded->field, *ground, scene.exaggeration);
+        if (other) to_show = render::ground_to_show(loaded->field, *ground, scene.exaggeration);
         day.emplace(ground->frame.origin(), ground->block_m <= 0);
     }
 
@@ -367,7 +460,7 @@ void Session::look(const scene::View& view) {
 
 void Session::set_moment(sun::Instant utc) {
     impl_->set_moment(utc);
-    impl_->scene.moment.time = sun::to_iso(utc);
+    impl_->scene.moment.time = sun::exact_iso(utc);
     impl_->scene.moment.date.clear();
 }
 
@@ -385,29 +478,16 @@ const ActiveEffects& Session::effects() const {
 
 void Session::set(const std::string& address, const std::string& value) {
     impl_->context->make_current();
-    for (const auto& [active, renderer] :
-         {std::pair(impl_->drawn.effects.get(), impl_->drawn.renderer.get()),
-          std::pair(impl_->drawn.others.get(), impl_->drawn.without.get())}) {
-        if (!active) continue;
-        const shader::Param* const param = active->values.find(address);
-        if (param && param->is_static)
-            bad_input(fmt::format("session: {}: it is static: another value is another program",
-                                  address));
-        active->values.set(address, value);
-        renderer->set_values(active->values);
-    }
-    std::vector<effect::Setting>& settings = impl_->scene.effects.settings;
-    std::erase_if(settings,
-                  [&](const effect::Setting& setting) { return setting.address == address; });
-    settings.push_back({address, value});
+    impl_->set_value(address, value);
+}
+
+void Session::show(const scene::Scene& scene, sun::Instant utc) {
+    impl_->show(scene, utc);
 }
 
 void Session::resize(int width_px, int height_px) {
     impl_->context->make_current();
-    impl_->scene.width_px = width_px;
-    impl_->scene.height_px = height_px;
-    impl_->drawn.renderer->resize(width_px, height_px);
-    if (impl_->drawn.without) impl_->drawn.without->resize(width_px, height_px);
+    impl_->resize(width_px, height_px);
     impl_->look(impl_->scene.view);
 }
 
@@ -440,9 +520,11 @@ void Session::draw_alone() {
 
 image::Image8 Session::picture() const {
     impl_->context->make_current();
-    return impl_->read(
+    image::Image8 picture = impl_->read(
         [](const render::Renderer& renderer, int* count) { return renderer.read_picture(count); },
         std::uint8_t{255});
+    if (impl_->legend && impl_->options.legend) add_legend(*impl_->legend, picture);
+    return picture;
 }
 
 image::ImageF Session::radiance() const {
@@ -454,6 +536,13 @@ image::ImageF Session::radiance() const {
 
 const gl::Texture& Session::texture() const {
     return impl_->drawn.renderer->picture();
+}
+
+bool Session::shows_ground() const {
+    std::vector<float> depths_m;
+    read_depths(depths_m);
+    return std::any_of(depths_m.begin(), depths_m.end(),
+                       [](float depth_m) { return std::isfinite(depth_m); });
 }
 
 void Session::read_depths(std::vector<float>& depths_m) const {

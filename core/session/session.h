@@ -44,6 +44,10 @@ struct LoadedDem {
     double height_m(const geo::Geodetic& at) const;
 };
 
+/// Reads the heights of a scene's DEM, and finds what is drawn of them.
+/// @throws Error as dem::load()
+std::shared_ptr<const LoadedDem> load_dem(dem::Source source, const scene::Scene& scene);
+
 struct Options {
     std::string device = "auto";  ///< as gl::Context takes it
     /// Gives the context of a window instead of one on `device`.
@@ -52,6 +56,8 @@ struct Options {
     /// read.
     std::shared_ptr<const LoadedDem> dem{};
     bool radiance = false;  ///< keep linear light, for Session::radiance()
+    /// Whether pictures have the legend of the scene's overlay in their upper right corner.
+    bool legend = true;
     /// Effects of a comparison: pictures have them on the left and not on the right.
     std::vector<std::string> compared{};
     /// Called with the programs' texts before a driver sees them.
@@ -83,6 +89,11 @@ class Session {
     void look(const scene::View& view);
     /// Moves the sun.
     void set_moment(sun::Instant utc);
+    /// Shows another scene of the same DEM, with no more work than what differs takes. Its frames
+    /// are the same bytes whatever was drawn before them.
+    /// @param utc  the scene's moment
+    /// @throws Error as look(), set(), set_effects() and resize(); another scene may be shown then
+    void show(const scene::Scene& scene, sun::Instant utc);
     /// Draws with other effects, or with what their files have become, from the next frame on.
     /// @throws Error as those who load, compile and draw; the session then goes on as it was
     void set_effects(const scene::Effects& effects);
@@ -119,6 +130,8 @@ class Session {
     image::ImageF radiance() const;
     /// The picture on the device, RGBA with rows from below, until the next frame.
     const gl::Texture& texture() const;
+    /// Whether ground of the DEM is in the last frame; of a comparison, in its left half's.
+    bool shows_ground() const;
     /// As render::Renderer::read_depths().
     void read_depths(std::vector<float>& depths_m) const;
 

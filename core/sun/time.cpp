@@ -138,6 +138,10 @@ std::string to_iso(Instant instant, int decimals) {
     return civil_text(civil_of(rounded_us(instant.unix_us(), decimals)), decimals) + "Z";
 }
 
+std::string exact_iso(Instant instant) {
+    return to_iso(instant, instant.unix_us() % 1'000'000 == 0 ? 0 : 6);
+}
+
 std::string offset_text(int utc_offset_s) {
     const int size = std::abs(utc_offset_s);
     std::string text =

@@ -86,6 +86,9 @@ std::string to_string(Date date);
 /// "2026-06-21T16:30:00Z", rounded to `decimals` (0 to 6) of the second.
 std::string to_iso(Instant instant, int decimals = 0);
 
+/// The same with as many decimals as it takes to be read as the same moment: none, or 6.
+std::string exact_iso(Instant instant);
+
 /// "+02:00", "-03:30"; with seconds where there are any ("+00:34:08").
 std::string offset_text(int utc_offset_s);
 

@@ -131,6 +131,8 @@ typedef struct relevo_frame {
     double exaggeration;        /* factor on heights */
     double lowest_m, highest_m; /* heights of the DEM, not exaggerated */
     double post_spacing_m;      /* of the DEM at its centre */
+    uint32_t afresh;            /* 1: the picture must be the same whatever was drawn before */
+    uint32_t reserved;
 } relevo_frame;
 typedef struct relevo_frame_1 {
     uint32_t size;

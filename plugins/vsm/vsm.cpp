@@ -122,7 +122,7 @@ class Vsm : public Instance {
             if (size != size_) columns_ = 0;
             size_ = size;
         }
-        if (params_.get("vsm.keep") == 0) layers_.clear();
+        if (params_.get("vsm.keep") == 0 || frame.afresh) layers_.clear();
         relevo_box seen = box();
         if (!terrain_.visible_bounds(1e300, seen)) seen = whole_;
         seen = within(seen, whole_);
@@ -180,7 +180,8 @@ class Vsm : public Instance {
             std::exp2(1 / kSizesADoubling) * across_m / std::max(enough_m, 1e-3) + 1;
         const int wanted = static_cast<int>(
             std::min(std::ceil(columns / kColumnsStep) * kColumnsStep, double(size_)));
-        if (wanted <= columns_ && wanted >= kNarrower * columns_) return;
+        const double narrowest = frame.afresh ? 1 : kNarrower;
+        if (wanted <= columns_ && wanted >= narrowest * columns_) return;
         columns_ = wanted;
         make_textures(1);
         layers_.clear();

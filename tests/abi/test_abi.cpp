@@ -81,6 +81,8 @@ AT(relevo_frame, exaggeration, 456);
 AT(relevo_frame, lowest_m, 464);
 AT(relevo_frame, highest_m, 472);
 AT(relevo_frame, post_spacing_m, 480);
+AT(relevo_frame, afresh, 488);
+AT(relevo_frame, reserved, 492);
 
 AT(relevo_texture_info, format, 4);
 AT(relevo_texture_info, filter, 8);

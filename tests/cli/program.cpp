@@ -51,7 +51,9 @@ Result relevo(const std::vector<std::string>& arguments,
               const std::vector<std::string>& environment) {
     static const char* const given = std::getenv("RELEVO_PROGRAM");
     std::vector<std::string> words = arguments;
-    const auto capture = std::find(words.begin(), words.end(), "capture");
+    const auto capture = std::find_if(words.begin(), words.end(), [](const std::string& word) {
+        return word == "capture" || word == "run";
+    });
     const bool says_device = std::any_of(words.begin(), words.end(), [](const std::string& word) {
         return word.starts_with("--device");
     });

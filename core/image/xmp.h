@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "image/image.h"
+
+/// Texts in pictures as XMP (ISO 16684-1): those whose keyword begins with `relevo:`, each a
+/// property of the namespace https://relevo.invalid/ns/1.0/, which names nothing but itself.
+namespace relevo::image {
+
+bool is_xmp_keyword(std::string_view keyword);
+
+/// The packet of the keywords that go into XMP; empty where there are none.
+std::string xmp_packet(const Metadata& metadata);
+
+/// The texts of the packet in a file of any format, which XMP has be found by its first words; none
+/// where there is no packet.
+Metadata texts_in_xmp(std::string_view file);
+
+/// Puts a packet into an encoded picture. @returns why it cannot be, or nothing
+/// Sources: XMP Specification Part 3 (Adobe, 2020), 1.1.3; WebP Container Specification (Google).
+std::string add_xmp_to_jpeg(std::vector<std::byte>& file, std::string_view packet);
+std::string add_xmp_to_webp(std::vector<std::byte>& file, std::string_view packet, int width_px,
+                            int height_px);
+
+}  // namespace relevo::image

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "sun/zone.h"
+
+/// Many pictures from one file: docs/jobs.md.
+namespace relevo::scene {
+
+/// One picture of a job on its way: a scene, and what tells it from the others.
+struct Draft {
+    Scene scene;
+    std::string time;                   ///< instead of the scene's; a time of day or an event
+                                        ///< without a date too
+    std::optional<sun::Date> date;      ///< instead of the scene's
+    std::optional<geo::Geodetic> site;  ///< where events without a place happen
+    std::map<std::string, std::string> names;  ///< "camera", "site", "haze.density", ...
+};
+
+/// A value of an axis.
+struct Change {
+    std::string name;
+    std::function<void(Draft&)> apply;
+};
+
+/// Moments between two, as many steps apart as there is room for. The ends may be events.
+struct TimeRange {
+    std::string from, to;
+    double step_s = 0;
+};
+
+/// Something that changes from picture to picture.
+struct Axis {
+    std::string kind;  ///< "shot", "time", "date", "camera", "site", "effects", or a parameter
+    std::string path;  ///< in the file, for messages: "sweep[1].cameras"
+    int line = 0;
+    std::vector<Change> values;
+    std::optional<TimeRange> range;  ///< instead of values, of times
+};
+
+/// A scene, and how its pictures differ.
+struct Job {
+    std::string file;                                            ///< as messages name it
+    Scene scene;                                                 ///< that all begin with
+    std::string output = "{dem}_{time:%Y%m%dT%H%M}_{n:04}.png";  ///< template of names
+    bool output_given = false;
+    int output_line = 0;
+    std::filesystem::path folder;  ///< from which the output counts
+    bool zip = false;              ///< the sweep's axes go hand in hand, else each with each
+    std::vector<Axis> shots;       ///< none or one, each with each of the sweep
+    std::vector<Axis> sweep;
+};
+
+/// Reads a job from a file. Paths that are relative count from the file's folder.
+/// @param change  is made to the job's scene before shots and sweep are
+/// @throws Error (BadInput) `job: FILE:LINE: shots[3].camera.fov: what, expected E but got G`
+Job read_job(
+    const std::filesystem::path& path, const std::function<void(Scene&)>& change = [](Scene&) {});
+
+/// A picture of a job.
+struct Shot {
+    Scene scene;  ///< whose moment is whole
+    sun::Instant utc;
+    sun::Zone zone;  ///< by whose clocks its name tells the time
+    std::map<std::string, std::string> names;
+    std::size_t number = 0;  ///< from 1, in the order of the job
+    std::filesystem::path output;
+};
+
+/// Finds the moment of a scene's words. @throws Error (BadInput) where there is none
+using Resolve = std::function<sun::ParsedTime(const Scene& scene)>;
+
+/// The pictures of a job.
+struct Shots {
+    std::vector<Shot> shots;
+    /// Of pictures that are left out because their event does not happen on their day: why.
+    std::vector<std::string> left_out;
+};
+
+/// Draws up a job's pictures, with their names.
+/// @param most  more pictures are an error, which says how many there are
+/// @throws Error (BadInput) for an axis without values, too many pictures, dates without a time,
+///     names that name one file twice, and as `resolve` where it finds no moment for any picture
+Shots shots_of(const Job& job, const Resolve& resolve, std::size_t most);
+
+}  // namespace relevo::scene

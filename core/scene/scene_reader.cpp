@@ -1,0 +1,294 @@
+#include "scene/scene_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "scene/scene_words.h"
+#include "sun/event_time.h"
+#include "sun/zone_of_place.h"
+
+namespace relevo::scene {
+namespace {
+
+namespace fs = std::filesystem;
+using effect::Json;
+using effect::ObjectReader;
+
+/// Numbers in a list of so many.
+std::vector<double> numbers(const ObjectReader& object, const Json& value, const char* key,
+                            std::size_t least, std::size_t most, const char* what) {
+    std::vector<double> result;
+    if (value.kind == Json::Kind::Array)
+        for (const Json& item : value.items)
+            if (item.kind == Json::Kind::Number && std::isfinite(item.number))
+                result.push_back(item.number);
+    if (value.kind != Json::Kind::Array || result.size() != value.items.size() ||
+        result.size() < least || result.size() > most)
+        object.fail(value.line, key,
+                    fmt::format("expected {} but got {}", what, effect::describe(value)));
+    return result;
+}
+
+/// What `parse` refuses is the fault of a member.
+template <typename Parse>
+void check(const ObjectReader& object, const char* key, const Parse& parse) {
+    try {
+        parse();
+    } catch (const Error& error) {
+        const std::string_view what = error.what();
+        object.fail(object.line_of(key), key, what.substr(what.find(": ") + 2));
+    }
+}
+
+std::string joined(std::string_view path, const char* key) {
+    return path.empty() ? key : fmt::format("{}.{}", path, key);
+}
+
+}  // namespace
+
+bool is_clock(std::string_view text) {
+    const std::vector<std::string> parts = split(text, ':');
+    if (parts.size() < 2 || parts.size() > 3) return false;
+    return std::all_of(parts.begin(), parts.end(), [&](const std::string& part) {
+        const bool hour = &part == &parts.front();
+        return (part.size() == 2 || (hour && part.size() == 1)) &&
+               part.find_first_not_of("0123456789") == std::string::npos;
+    });
+}
+
+SceneReader::SceneReader(std::string_view who, std::string file, fs::path folder, Dates dates)
+    : who_(who), file_(std::move(file)), folder_(std::move(folder)), dates_(dates) {}
+
+void SceneReader::take(ObjectReader& object, std::string_view path, Scene& scene) const {
+    if (const Json* const value = object.take("dem")) dem(*value, joined(path, "dem"), scene);
+    if (const Json* const value = object.take("time"))
+        moment(*value, joined(path, "time"), scene.moment);
+    const auto known = std::find(refractions().begin(), refractions().end(), scene.refraction);
+    scene.refraction = refractions()[object.choice(
+        "refraction", refractions(), static_cast<std::size_t>(known - refractions().begin()))];
+    if (const Json* const value = object.take("camera"))
+        take_camera(*value, joined(path, "camera"), scene);
+    scene.exaggeration = object.number("exaggeration", scene.exaggeration, 0.01, 1000, false);
+    if (const Json* const value = object.take("effects"))
+        take_effects(*value, joined(path, "effects"), scene.effects);
+    if (const Json* const value = object.take("overlay"))
+        overlay(*value, joined(path, "overlay"), scene);
+    if (const Json* const value = object.take("picture"))
+        picture(*value, joined(path, "picture"), scene);
+}
+
+ObjectReader SceneReader::inside(const Json& value, const std::string& path) const {
+    return {who_, file_, path, value};
+}
+
+std::string SceneReader::beside(const std::string& name) const {
+    if (fs::path(name).is_absolute()) return name;
+    std::error_code unknown;
+    const fs::path path = folder_ / name;
+    const bool may_be_gdals = name.find(':') != std::string::npos;
+    return may_be_gdals && !fs::exists(path, unknown) ? name : path.string();
+}
+
+void SceneReader::overlay(const Json& value, const std::string& path, Scene& scene) const {
+    ObjectReader object = inside(value, path);
+    Overlay& overlay = scene.overlay.emplace();
+    overlay.file = beside(object.string("file"));
+    overlay.band =
+        static_cast<int>(object.number("band", 1, 1, std::numeric_limits<int>::max(), true));
+    overlay.colours = object.string("colours", "");
+    if (overlay.colours.find_first_of("/.") != std::string::npos)
+        overlay.colours = beside(overlay.colours);
+    if (const Json* const range = object.take("range")) {
+        const std::vector<double> v =
+            numbers(object, *range, "range", 2, 2, "the values of the first and the last colour");
+        if (!(v[1] > v[0]))
+            object.fail(range->line, "range", "expected a second value over the first one");
+        overlay.range = {v[0], v[1]};
+    }
+    overlay.opacity = object.number("opacity", 1, 0, 1, false);
+    overlay.title = object.string("title", "");
+    object.finish();
+}
+
+void SceneReader::dem(const Json& value, const std::string& path, Scene& scene) const {
+    ObjectReader object = inside(value, path);
+    scene.dems.clear();
+    scene.dem = {};
+    for (const std::string& name : object.strings("files"))
+        scene.dems.push_back(beside(name));
+    if (scene.dems.empty())
+        object.fail(object.line_of("files"), "files", "expected a list of DEMs");
+    dem::LoadOptions& options = scene.dem;
+    options.crs = object.string("crs", "");
+    options.band =
+        static_cast<int>(object.number("band", 0, 1, std::numeric_limits<int>::max(), true));
+    options.unit = object.string("unit", "");
+    if (const Json* const nodata = object.take("nodata")) {
+        options.no_nodata = nodata->kind == Json::Kind::String && nodata->text == "none";
+        if (nodata->kind == Json::Kind::Number)
+            options.nodata = nodata->number;
+        else if (!options.no_nodata)
+            object.fail(
+                nodata->line, "nodata",
+                fmt::format("expected a number or \"none\" but got {}", effect::describe(*nodata)));
+    }
+    options.encoding =
+        static_cast<dem::Encoding>(object.choice("encoding", encodings(), std::size_t{0}));
+    if (const Json* const bounds = object.take("bounds")) {
+        const std::vector<double> v =
+            numbers(object, *bounds, "bounds", 4, 4, "west, south, east, north in degrees");
+        check(object, "bounds", [&] {
+            options.bounds =
+                dem::parse_bounds(fmt::format("{},{},{},{}", v[0], v[1], v[2], v[3]), "bounds");
+        });
+    }
+    if (const auto mib =
+            static_cast<std::int64_t>(object.number("memory_mib", 0, 1, 1 << 20, true)))
+        options.max_posts = dem::posts_in_mib(mib);
+    scene.holes = static_cast<dem::Holes>(object.choice("holes", {"fill", "cut", "mark"}, 0));
+    object.finish();
+}
+
+void SceneReader::moment(const Json& value, const std::string& path, Moment& moment) const {
+    ObjectReader object = inside(value, path);
+    // Another time says its own date.
+    const bool timed = object.take("at") != nullptr;
+    if (timed || moment.time.empty()) {
+        moment.time = object.string("at");
+        moment.date.clear();
+    }
+    moment.date = object.string("date", moment.date);
+    moment.zone = object.string("zone", moment.zone);
+    object.finish();
+    check_moment(object, moment);
+}
+
+void SceneReader::check_moment(const ObjectReader& object, const Moment& moment) const {
+    const bool event = sun::is_event_time(moment.time);
+    const bool clock = dates_ == Dates::Later && is_clock(moment.time);
+    if (!moment.date.empty() && !event && !clock)
+        object.fail(object.line_of("date"), "date",
+                    "goes with an event in time.at, such as sunset-30min");
+    std::optional<sun::Zone> zone;
+    std::optional<sun::Date> date;
+    check(object, "zone", [&] {
+        // That of a place is known with the DEM; until then any shows what is wrong otherwise.
+        zone = sun::is_zone_by_place(moment.zone) ? sun::Zone() : sun::Zone::named(moment.zone);
+    });
+    check(object, "date", [&] {
+        if (!moment.date.empty()) date = sun::parse_date(moment.date);
+    });
+    check(object, "at", [&] {
+        if (clock) {
+            sun::parse_time("2026-01-01T" + padded_clock(moment.time) + "Z");
+        } else if (event) {
+            const sun::EventTime parsed = sun::parse_event_time(moment.time);
+            if (dates_ == Dates::Needed || date || parsed.date) sun::day_of(parsed, date, zone);
+        } else if (!sun::is_zone_by_place(moment.zone) || sun::is_wall_time(moment.time)) {
+            sun::parse_time(moment.time, zone);
+        }
+    });
+}
+
+Standpoint SceneReader::standpoint(const ObjectReader& object, const Json& value, const char* key,
+                                   double height_agl_m) const {
+    const std::vector<double> v =
+        numbers(object, value, key, 2, 3, "latitude, longitude and perhaps a height");
+    if (std::abs(v[0]) > 90 || std::abs(v[1]) > 360)
+        object.fail(value.line, key,
+                    fmt::format("expected a latitude of -90 to 90 and a longitude of -360 to "
+                                "360 but got {} and {}",
+                                v[0], v[1]));
+    const bool has_height = v.size() == 3;
+    return {geo::geodetic_deg(v[0], v[1], has_height ? v[2] : height_agl_m), !has_height};
+}
+
+void SceneReader::take_camera(const Json& value, const std::string& path, Scene& scene) const {
+    ObjectReader object = inside(value, path);
+    View& view = scene.view;
+    const Json* const orbit = object.take("orbit");
+    const Json* const eye = object.take("eye");
+    if (orbit && eye) object.fail(eye->line, "eye", "expected an orbit or an eye but got both");
+    if (orbit || eye) {
+        const View before = std::exchange(view, {});
+        if (orbit && !before.eye) view.orbit = before.orbit;
+        view.fov_y_rad = before.fov_y_rad;
+        view.focal_length_mm = before.focal_length_mm;
+    }
+    if (orbit) {
+        ObjectReader of = inside(*orbit, path + ".orbit");
+        const auto take_angle = [&](const char* key, double most, std::optional<double>& angle) {
+            if (of.has(key)) angle = of.number(key, 0, -most, most, false);
+        };
+        take_angle("azimuth", 360, view.orbit.azimuth_deg);
+        take_angle("elevation", 90, view.orbit.elevation_deg);
+        view.orbit.zoom = of.number("zoom", view.orbit.zoom, kMinZoom, kMaxZoom, false);
+        of.finish();
+    }
+    if (eye) view.eye = standpoint(object, *eye, "eye", kEyeHeight_m);
+    if (view.eye) {
+        view.eye->above_ground = object.boolean("eye_above_ground", view.eye->above_ground);
+        if (const Json* const target = object.take("look_at"))
+            view.look_at = standpoint(object, *target, "look_at", 0);
+        if (view.look_at && !object.has("heading") && !object.has("pitch")) {
+            view.look_at->above_ground =
+                object.boolean("look_at_above_ground", view.look_at->above_ground);
+        } else if (!object.has("look_at")) {
+            view.look_at.reset();
+            view.heading_deg = object.number("heading", view.heading_deg, -360, 360, false);
+            view.pitch_deg = object.number("pitch", view.pitch_deg, -90, 90, false);
+        }
+    }
+    const double fov_deg = object.number("fov", 0, 0.1, 170, false);
+    const double focal_length_mm = object.number("focal_length", 0, 1, 10000, false);
+    if (fov_deg > 0 && focal_length_mm > 0)
+        object.fail(object.line_of("focal_length"), "focal_length",
+                    "expected it or fov but got both");
+    if (fov_deg > 0 || focal_length_mm > 0) {
+        view.fov_y_rad = radians(fov_deg);
+        view.focal_length_mm = focal_length_mm;
+    }
+    object.finish();
+}
+
+void SceneReader::take_effects(const Json& value, const std::string& path, Effects& effects) const {
+    ObjectReader object = inside(value, path);
+    Effects change;
+    if (object.take("only")) change.switches.only = object.strings("only");
+    change.switches.enable = object.strings("enable");
+    change.switches.disable = object.strings("disable");
+    for (const std::string& preset : object.strings("presets"))
+        change.presets.push_back(effect::is_preset_file(preset) ? beside(preset) : preset);
+    change.settings = effect::read_settings(object, "set", folder_.string());
+    for (const std::string& folder : object.strings("plugin_path"))
+        change.plugin_path.push_back(beside(folder));
+    object.finish();
+    effects = merge(std::move(effects), change);
+}
+
+void SceneReader::picture(const Json& value, const std::string& path, Scene& scene) const {
+    ObjectReader object = inside(value, path);
+    if (const Json* const size = object.take("size")) {
+        const std::vector<double> v =
+            numbers(object, *size, "size", 2, 2, "a width and a height in pixels");
+        for (const double side : v)
+            if (side != std::floor(side) || side < 1 || side > kMaxSide_px)
+                object.fail(size->line, "size",
+                            fmt::format("expected 1 to {} but got {}", kMaxSide_px, side));
+        scene.width_px = static_cast<int>(v[0]);
+        scene.height_px = static_cast<int>(v[1]);
+    }
+    scene.exposure_ev = object.number("exposure", scene.exposure_ev, -20, 20, false);
+    scene.pixel_error = object.number("pixel_error", scene.pixel_error, 0, 100, false);
+    object.finish();
+}
+
+}  // namespace relevo::scene

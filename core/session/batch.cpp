@@ -1,0 +1,335 @@
+#include "session/batch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/parallel_for.h"
+#include "base/text.h"
+#include "dem/files_of.h"
+#include "effect/selection.h"
+#include "image/image.h"
+#include "session/active_effects.h"
+#include "session/record.h"
+
+namespace relevo::session {
+namespace {
+
+/// Does tasks on threads of its own, in their order; who adds one waits while many are left.
+class Crew {
+  public:
+    explicit Crew(int threads) : most_(static_cast<std::size_t>(threads) + 1) {
+        for (int i = 0; i < threads; ++i)
+            threads_.emplace_back([this] { work(); });
+    }
+    ~Crew() { finish(); }
+    Crew(const Crew&) = delete;
+    Crew& operator=(const Crew&) = delete;
+
+    /// @param task  throws nothing
+    void add(std::function<void()> task) {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [this] { return tasks_.size() < most_; });
+        tasks_.push_back(std::move(task));
+        changed_.notify_all();
+    }
+
+    /// Waits for all that was added.
+    void finish() {
+        {
+            const std::lock_guard lock(mutex_);
+            ended_ = true;
+            changed_.notify_all();
+        }
+        for (std::thread& thread : threads_)
+            if (thread.joinable()) thread.join();
+    }
+
+  private:
+    void work() {
+        std::unique_lock lock(mutex_);
+        for (;;) {
+            changed_.wait(lock, [this] { return ended_ || !tasks_.empty(); });
+            if (tasks_.empty()) return;
+            const std::function<void()> task = std::move(tasks_.front());
+            tasks_.pop_front();
+            changed_.notify_all();
+            lock.unlock();
+            task();
+            lock.lock();
+        }
+    }
+
+    std::size_t most_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<std::function<void()>> tasks_;
+    bool ended_ = false;
+    std::vector<std::thread> threads_;
+};
+
+/// What went wrong, as a picture's own fault.
+std::string reason_of(const std::exception_ptr& thrown) {
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const std::bad_alloc&) {
+        return "out of memory; use a smaller --size or --memory";
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+}
+
+/// A scene whose camera stands where one can stand: what opens a session is not yet a picture.
+scene::Scene of_any_view(scene::Scene scene) {
+    scene.view = {};
+    return scene;
+}
+
+/// The files of a picture, open and without names.
+struct Outputs {
+    OutputFile picture;
+    std::optional<OutputFile> sidecar;
+};
+
+class Batch {
+  public:
+    Batch(const BatchOptions& options, Moments& moments, FilesInUse& files)
+        : options_(options), moments_(moments), files_(files) {}
+
+    std::size_t run(const std::vector<scene::Shot>& shots) {
+        const bool linear = image::holds_linear_light(shots.front().output);
+        image::load_format(shots.front().output);
+        Crew crew(std::clamp(thread_count() - 1, 1, 8));
+        for (const scene::Shot& shot : shots) {
+            try {
+                draw(shot, linear, crew);
+            } catch (const Error& error) {
+                if (!opened_) throw;  // nothing can be drawn at all
+                failed(shot, error.what());
+            } catch (...) {
+                failed(shot, reason_of(std::current_exception()));
+            }
+        }
+        crew.finish();
+        return failed_;
+    }
+
+  private:
+    void draw(const scene::Shot& shot, bool linear, Crew& crew) {
+        open_session(shot, linear);
+        auto outputs = std::make_shared<Outputs>(
+            Outputs{files_.open_alone(shot.output, options_.overwrite, "run"), std::nullopt});
+        if (options_.sidecar)
+            outputs->sidecar.emplace(
+                files_.open_alone(sidecar_of(shot.output), options_.overwrite, "--sidecar"));
+        session_->show(shot.scene, shot.utc);
+        session_->draw();
+        if (outputs->sidecar)
+            outputs->sidecar->write(sidecar_text(*session_, options_.version,
+                                                 shot.output.filename().string(), hashes_));
+        const image::Metadata metadata = metadata_of(*session_, options_.version);
+        const auto write = [&](auto picture) {
+            if (!options_.allow_blank && !session_->shows_ground()) refuse_blank("run");
+            auto kept = std::make_shared<decltype(picture)>(std::move(picture));
+            crew.add([this, &shot, outputs, metadata, kept] {
+                write_files(shot, *outputs, metadata, *kept);
+            });
+        };
+        if (linear)
+            write(session_->radiance());
+        else
+            write(session_->picture());
+    }
+
+    template <typename Picture>
+    void write_files(const scene::Shot& shot, Outputs& outputs, const image::Metadata& metadata,
+                     const Picture& picture) {
+        try {
+            image::write(outputs.picture, picture, metadata);
+            std::vector<OutputFile*> both{&outputs.picture};
+            if (outputs.sidecar) both.push_back(&*outputs.sidecar);
+            OutputFile::finish_all(both);
+            const std::lock_guard lock(mutex_);
+            options_.made(shot);
+        } catch (...) {
+            failed(shot, reason_of(std::current_exception()));
+        }
+    }
+
+    void failed(const scene::Shot& shot, const std::string& why) {
+        const std::lock_guard lock(mutex_);
+        ++failed_;
+        options_.failed(shot, why);
+    }
+
+    /// Opens what draws the shot's DEM, where another one is open.
+    void open_session(const scene::Shot& shot, bool linear) {
+        std::string key = dem_key(shot.scene);
+        if (session_ && key == dem_) return;
+        Options options;
+        options.device = options_.device;
+        options.radiance = linear;
+        session_.reset();
+        moments_.keep_only(shot.scene);
+        options.dem = moments_.loaded(shot.scene);
+        if (options_.sidecar) hashes_ = hashed_files(shot.scene.dems);
+        session_ = std::make_unique<Session>(of_any_view(shot.scene), options, files_);
+        dem_ = std::move(key);
+        opened_ = true;
+    }
+
+    const BatchOptions& options_;
+    Moments& moments_;
+    FilesInUse& files_;
+    std::unique_ptr<Session> session_;
+    std::string dem_;
+    bool opened_ = false;  ///< once
+    std::vector<HashedFile> hashes_;
+    std::mutex mutex_;  // of what the crew's threads tell
+    std::size_t failed_ = 0;
+};
+
+/// Effects as a text; equal ones are drawn by the same programs and values.
+std::string effects_key(const scene::Scene& scene) {
+    scene::Scene only;
+    only.effects = scene.effects;
+    return scene::scene_line(only);
+}
+
+/// Effects without values: what one reading of the plugins serves.
+std::string installed_key(const scene::Effects& effects) {
+    return fmt::format("{}", fmt::join(effects.presets, "\n")) + "\n\n" +
+           fmt::format("{}", fmt::join(effects.plugin_path, "\n"));
+}
+
+}  // namespace
+
+void refuse_blank(std::string_view who) {
+    failed(
+        fmt::format("{}: no ground of the DEM is in the picture; turn the camera, or take it "
+                    "nonetheless with --allow-blank",
+                    who));
+}
+
+std::filesystem::path sidecar_of(std::filesystem::path picture) {
+    return picture += ".json";
+}
+
+void settle(std::vector<scene::Shot>& shots) {
+    std::map<std::string, std::unique_ptr<InstalledEffects>> installed;
+    std::map<std::string, scene::Effects> settled;
+    for (scene::Shot& shot : shots) {
+        scene::Effects& effects = shot.scene.effects;
+        const auto [known, fresh] = settled.try_emplace(effects_key(shot.scene));
+        if (fresh) {
+            auto& plugins = installed[installed_key(effects)];
+            if (!plugins) plugins = std::make_unique<InstalledEffects>(effects);
+            const effect::Selection selection =
+                effect::select(plugins->registry, plugins->presets, effects.switches);
+            shader::ParamStore values = plugins->values;
+            effect::apply_settings(values, plugins->registry, selection, plugins->presets,
+                                   effects.settings);
+            known->second = effects;
+            known->second.settings =
+                effect::with_absolute_files(std::move(known->second.settings), plugins->values);
+        }
+        effects = known->second;
+        shot.scene.moment.time = sun::exact_iso(shot.utc);
+        shot.scene.moment.date.clear();
+        shot.scene = scene::with_absolute_paths(std::move(shot.scene));
+    }
+}
+
+bool is_made(const scene::Shot& shot, const std::vector<std::filesystem::path>& inputs) {
+    std::error_code missing;
+    const auto made = std::filesystem::last_write_time(shot.output, missing);
+    if (missing) return false;
+    for (const std::filesystem::path& input : inputs)
+        if (const auto changed = std::filesystem::last_write_time(input, missing);
+            !missing && changed > made)
+            return false;
+    try {
+        const image::Metadata metadata = image::read_metadata(shot.output);
+        const auto scene = metadata.find(kSceneKeyword);
+        if (scene == metadata.end() || metadata.contains(kComparedKeyword) ||
+            scene->second != scene::scene_line(shot.scene))
+            return false;
+        const image::Image8 picture = image::read(shot.output);
+        return picture.width == shot.scene.width_px && picture.height == shot.scene.height_px;
+    } catch (const Error&) {
+        return false;  // it is no picture, or not a whole one
+    }
+}
+
+void order_for_drawing(std::vector<scene::Shot>& shots) {
+    std::map<std::string, std::size_t> dems, effects;
+    std::vector<std::pair<std::size_t, std::size_t>> places;
+    std::vector<std::size_t> order;
+    for (const scene::Shot& shot : shots) {
+        const std::size_t dem = dems.try_emplace(dem_key(shot.scene), dems.size()).first->second;
+        const std::size_t effect =
+            effects.try_emplace(effects_key(shot.scene), effects.size()).first->second;
+        order.push_back(places.size());
+        places.emplace_back(dem, effect);
+    }
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return places[a] < places[b]; });
+    std::vector<scene::Shot> ordered;
+    ordered.reserve(shots.size());
+    for (const std::size_t at : order)
+        ordered.push_back(std::move(shots[at]));
+    shots = std::move(ordered);
+}
+
+std::size_t draw_batch(const std::vector<scene::Shot>& shots, const BatchOptions& options,
+                       Moments& moments, FilesInUse& files) {
+    return shots.empty() ? 0 : Batch(options, moments, files).run(shots);
+}
+
+double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& options,
+                  Moments& moments) {
+    using Clock = std::chrono::steady_clock;
+    const auto seconds_since = [](Clock::time_point began) {
+        return std::chrono::duration<double>(Clock::now() - began).count();
+    };
+    const auto opening = Clock::now();
+    FilesInUse files;
+    Options session_options;
+    session_options.device = options.device;
+    session_options.dem = moments.loaded(shots.front().scene);
+    Session session(of_any_view(shots.front().scene), session_options, files);
+    const auto draw = [&](const scene::Shot& shot) {
+        const auto began = Clock::now();
+        session.show(shot.scene, shot.utc);
+        session.draw();
+        session.picture();
+        return seconds_since(began);
+    };
+    draw(shots.front());
+    const double opening_s = seconds_since(opening);
+    double sum_s = 0;
+    int count = 0;
+    for (const std::size_t quarter : {1, 2, 3}) {
+        const scene::Shot& shot = shots[shots.size() * quarter / 4];
+        if (dem_key(shot.scene) != dem_key(shots.front().scene)) continue;
+        sum_s += draw(shot);
+        ++count;
+    }
+    const double frame_s = count > 0 ? sum_s / count : opening_s;
+    return opening_s + frame_s * static_cast<double>(shots.size() - 1);
+}
+
+}  // namespace relevo::session

@@ -1,0 +1,128 @@
+#include "session/moments.h"
+
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log.h"
+#include "dem/load.h"
+#include "dem/posts.h"
+#include "render/ground.h"
+#include "scene/framing.h"
+#include "scene/moment.h"
+#include "session/words.h"
+#include "sun/event_time.h"
+
+namespace relevo::session {
+
+std::string dem_key(const scene::Scene& scene) {
+    scene::Scene only;
+    only.dems = scene.dems;
+    only.dem = scene.dem;
+    only.holes = scene.holes;
+    only.overlay = scene.overlay;
+    return scene::scene_line(only);
+}
+
+struct Moments::Dem {
+    std::optional<dem::Source> source;  ///< until the heights are read
+    std::shared_ptr<const LoadedDem> loaded;
+    std::optional<dem::Posts> posts;           ///< of `loaded`
+    std::map<std::string, std::string> zones;  ///< of the middle, by the words for them
+
+    const dem::Source& open() const { return loaded ? loaded->source : *source; }
+};
+
+namespace {
+
+/// The hour that a session shows a scene at which has none.
+sun::Instant usual_moment(const scene::Scene& scene, const LoadedDem& loaded) {
+    const render::Ground ground = render::make_ground(loaded.field);
+    const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);
+    const render::GroundToShow to_show =
+        render::ground_to_show(loaded.field, ground, scene.exaggeration);
+    scene::View view = scene.view;
+    if (!view.eye && (!view.orbit.azimuth_deg || !view.orbit.elevation_deg))
+        view.orbit = scene::frame_ground(view.orbit, to_show.net, day).orbit;
+    const scene::Camera camera = scene::make_camera(
+        view, [&](const geo::Geodetic& at) { return loaded.height_m(at); }, ground.frame,
+        to_show.points, static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration);
+    return day.moment(scene::side_of_deg(camera)).utc;
+}
+
+}  // namespace
+
+Moments::Moments() = default;
+Moments::~Moments() = default;
+
+Moments::Dem& Moments::dem_of(const scene::Scene& scene) {
+    std::unique_ptr<Dem>& dem = dems_[dem_key(scene)];
+    if (!dem) {
+        auto opened = std::make_unique<Dem>();
+        opened->source = dem::Source::open(scene.dems, scene.dem);
+        dem = std::move(opened);
+    }
+    return *dem;
+}
+
+std::shared_ptr<const LoadedDem> Moments::loaded(const scene::Scene& scene) {
+    Dem& dem = dem_of(scene);
+    if (!dem.loaded) {
+        dem.loaded = load_dem(std::move(*dem.source), scene);
+        dem.source.reset();
+    }
+    return dem.loaded;
+}
+
+void Moments::keep_only(const scene::Scene& scene) {
+    std::erase_if(dems_, [key = dem_key(scene)](const auto& dem) { return dem.first != key; });
+}
+
+/// The zone in the DEM's middle by a name that needs no map.
+std::string Moments::zone_of_middle(const std::string& words, Dem& dem) {
+    const auto [known, fresh] = dem.zones.try_emplace(words);
+    if (!fresh) return known->second;
+    const sun::ChosenZone chosen = sun::choose_zone(words, dem.open().grid().center());
+    const std::string notice = chosen.assumption + "; --tz overrides it";
+    if (notice != std::exchange(told_, notice) && !chosen.assumption.empty())
+        chosen.missing ? log::warning(notice) : log::info(notice);
+    // Mean solar time has a name that no database has.
+    if (sun::is_solar_zone(words))
+        known->second = words;
+    else
+        known->second = chosen.missing ? "" : chosen.zone.name();
+    return known->second;
+}
+
+sun::ParsedTime Moments::of(const scene::Scene& scene) {
+    Dem& dem = dem_of(scene);
+    scene::Moment moment = scene.moment;
+    const bool event = sun::is_event_time(moment.time);
+    const bool of_middle = !event || moment.time.find('@') == std::string::npos;
+    if (sun::is_zone_by_place(moment.zone) && of_middle)
+        moment.zone = zone_of_middle(moment.zone, dem);
+    if (moment.time.empty()) {
+        sun::ParsedTime morning;
+        const geo::Geodetic middle = dem.open().grid().center();
+        morning.utc = usual_moment(scene, *loaded(scene));
+        morning.zone = sun::choose_zone(moment.zone, middle).zone;
+        return morning;
+    }
+    sun::ParsedTime time = parse_quietly(
+        moment, {.middle = [&] { return dem.open().grid().center(); },
+                 .posts = [&]() -> const dem::Posts& {
+                     const auto heights = loaded(scene);
+                     if (dem.posts) return *dem.posts;
+                     if (heights->field.reduction == 1)
+                         dem.posts.emplace(heights->field);
+                     else
+                         dem.posts.emplace(heights->source, static_cast<std::int64_t>(
+                                                                heights->field.height_m.size()));
+                     return *dem.posts;
+                 }});
+    if (!time.note.empty()) log::info(time.note);
+    return time;
+}
+
+}  // namespace relevo::session

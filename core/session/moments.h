@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "scene/job.h"
+#include "session/session.h"
+
+namespace relevo::session {
+
+/// Which DEM a scene shows and how it is read; equal texts are one DEM.
+std::string dem_key(const scene::Scene& scene);
+
+/// Finds the moments of many scenes, by the DEMs that they show: each is opened once. What is
+/// assumed is said once.
+class Moments {
+  public:
+    Moments();
+    ~Moments();
+    Moments(const Moments&) = delete;
+    Moments& operator=(const Moments&) = delete;
+
+    /// A scene's moment; without words the hour that shows relief. @throws Error as words.h's
+    /// parse()
+    sun::ParsedTime of(const scene::Scene& scene);
+
+    /// The scene's DEM with its heights, which are read where they have not been.
+    std::shared_ptr<const LoadedDem> loaded(const scene::Scene& scene);
+
+    /// Lets go of all DEMs but the scene's.
+    void keep_only(const scene::Scene& scene);
+
+  private:
+    struct Dem;
+    Dem& dem_of(const scene::Scene& scene);
+    std::string zone_of_middle(const std::string& words, Dem& dem);
+
+    std::map<std::string, std::unique_ptr<Dem>> dems_;
+    std::string told_;
+};
+
+}  // namespace relevo::session
