@@ -129,6 +129,20 @@ void write_picture(OutputFile& file, const image::Metadata& metadata, Timings& t
     timings.add("write", milliseconds_since(write_began));
 }
 
+/// Where and when it is, and what was assumed of the ground.
+void tell_of(const session::Session& session) {
+    std::string chosen = session.moment_reason();
+    if (!chosen.empty()) chosen = "; no --time given" + chosen;
+    if (const std::string view = session.view_reason(); !view.empty())
+        chosen += "; by its relief " + view;
+    log::info(fmt::format("{}, {}: sun at {}{}", session.place_text(),
+                          sun::to_iso(session.moment()), session.sun_text(), chosen));
+    if (const std::string climate = session.climate_text(); !climate.empty())
+        log::info(fmt::format("natural ground of a normal year, in the DEM's middle: {}", climate));
+    for (const std::string& note : session.ground_notes())
+        log::info(note);
+}
+
 void capture(const Arguments& arguments) {
     const std::filesystem::path output = arguments.output;
     const auto [scene, compared] = wanted(arguments);
@@ -159,17 +173,7 @@ void capture(const Arguments& arguments) {
     for (const auto& [stage, took_ms] : session.stages())
         timings.add(stage, took_ms);
 
-    const std::string where = session.place_text(), when = sun::to_iso(session.moment());
-    const std::string sun = session.sun_text();
-    std::string chosen = session.moment_reason();
-    if (!chosen.empty()) chosen = "; no --time given" + chosen;
-    if (const std::string view = session.view_reason(); !view.empty())
-        chosen += "; by its relief " + view;
-    log::info(fmt::format("{}, {}: sun at {}{}", where, when, sun, chosen));
-    if (const std::string climate = session.climate_text(); !climate.empty())
-        log::info(fmt::format("natural ground of a normal year, in the DEM's middle: {}", climate));
-    for (const std::string& note : session.ground_notes())
-        log::info(note);
+    tell_of(session);
     const auto passes_began = Clock::now();
     session.draw(timings.passes());
     timings.add("passes", milliseconds_since(passes_began));
