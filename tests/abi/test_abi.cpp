@@ -132,7 +132,7 @@ AT(relevo_nodes, rows, 20);
 
 ENDS(relevo_host, fail);
 ENDS(relevo_module, prepare);
-ENDS(relevo_frame, post_spacing_m);
+ENDS(relevo_frame, reserved);
 ENDS(relevo_texture_info, name);
 ENDS(relevo_texels, bytes);
 ENDS(relevo_draw, values);
