@@ -11,6 +11,7 @@
 #include "base/log.h"
 
 namespace relevo {
+namespace {
 
 constexpr int kBarWidth = 24;
 constexpr double kRedraw_s = 0.25;
