@@ -65,6 +65,7 @@ SideCorner corner(in vec2 grid) {
     v.ground_m = ground_at(v.position_m, v.up, c.height_m);
     v.distance_m = length(v.position_m);
     v.drawn_height_m = c.height_m * frame.height_range.z;
+    v.post = vec2(net_v.w, net_uv.w) + clamp(grid, vec2(0.0), limit - 0.01) * net_uuv.w;
     c.position_m = v.position_m;
     hook_displace(v, v.position_m);
     c.position_m = finite(vec4(v.position_m, 0.0)) == 0.0 ? c.position_m : v.position_m;

@@ -11,7 +11,7 @@
 namespace relevo::render {
 
 /// What shaders read of the light that comes to the ground past the ground around it, for every
-/// post, as textures over the whole DEM. shaders/lib/sun_share.glsl and shaders/lib/open_sky.glsl
+/// post, as textures over the whole DEM. shaders/lib/sun_share.glsl and shaders/lib/openness.glsl
 /// read them.
 ///
 /// - "light_margins": how high the ground is above the edge of the shadow of the sun's upper limb

@@ -4,7 +4,7 @@
 //! writes    irradiance
 //! source    Dozier and Frew, IEEE Trans. Geosci. Remote Sensing 28 (1990) 963: sky-view factor
 
-//@ include lib/open_sky.glsl
+//@ include lib/openness.glsl
 
 uniform float skylight_albedo = 0.2;  //@ range(0, 1) label("Albedo") description("Of the ground that stands before the sky: so much of the sky's light comes from there")
 uniform float skylight_strength = 1.0;  //@ range(0, 4) label("Strength") description("1 is the light there is; above it hollows are darker than they are")
