@@ -54,7 +54,7 @@ class DialectPicture : public testing::Test {
     image::Image8 picture(const std::vector<std::string>& dems,
                           const std::vector<std::string>& more = {}) {
         const std::string out = (dir_ / fmt::format("{}.png", ++count_)).string();
-        std::vector<std::string> arguments{"-q", "capture"};
+        std::vector<std::string> arguments{"-q", "capture", "--holes", "cut"};
         arguments.insert(arguments.end(), dems.begin(), dems.end());
         arguments.insert(arguments.end(),
                          {"-o", out, "--size", "400x300", "--time", "2026-06-21T07:00Z", "--device",

@@ -281,7 +281,7 @@ TEST(DemOptions, MemoryHoldsOfDemsOfAnySize) {
               500},
           Case{{"capture", file, "-o", png, "--overwrite", "--device", "software", "--size",
                 "320x240"},
-               2200},
+               2600},
           Case{{"capture", file, "-o", png, "--overwrite", "--device", "software", "--size",
                 "320x240", "--memory", "64"},
                1300},
