@@ -57,7 +57,7 @@ class Run {
         shots_ = shots();
         for (const scene::Shot& shot : shots_)
             image::check_format(shot.output, shot.scene.width_px, shot.scene.height_px);
-        session::settle(shots_);
+        session::settle(shots_, moments_);
         session::order_for_drawing(shots_);
         take_shard();
         add_inputs();

@@ -228,7 +228,7 @@ std::filesystem::path sidecar_of(std::filesystem::path picture) {
     return picture += ".json";
 }
 
-void settle(std::vector<scene::Shot>& shots) {
+void settle(std::vector<scene::Shot>& shots, Moments& moments) {
     std::map<std::string, std::unique_ptr<InstalledEffects>> installed;
     std::map<std::string, scene::Effects> settled;
     for (scene::Shot& shot : shots) {
@@ -249,6 +249,7 @@ void settle(std::vector<scene::Shot>& shots) {
         effects = known->second;
         shot.scene.moment.time = sun::exact_iso(shot.utc);
         shot.scene.moment.date.clear();
+        shot.scene.view = moments.settled_view(shot.scene);
         shot.scene = scene::with_absolute_paths(std::move(shot.scene));
     }
 }

@@ -17,7 +17,7 @@ namespace relevo::session {
 /// Makes of each shot's scene what pictures carry: its moment in UTC, absolute paths, effects that
 /// there are.
 /// @throws Error (BadInput) for effects and parameters that there are not
-void settle(std::vector<scene::Shot>& shots);
+void settle(std::vector<scene::Shot>& shots, Moments& moments);
 
 /// Whether a file is a whole picture of exactly that scene, and no older than any of `inputs`.
 bool is_made(const scene::Shot& shot, const std::vector<std::filesystem::path>& inputs);

@@ -30,28 +30,10 @@ struct Moments::Dem {
     std::shared_ptr<const LoadedDem> loaded;
     std::optional<dem::Posts> posts;           ///< of `loaded`
     std::map<std::string, std::string> zones;  ///< of the middle, by the words for them
+    std::map<double, render::GroundToShow> to_show;  ///< by the exaggeration
 
     const dem::Source& open() const { return loaded ? loaded->source : *source; }
 };
-
-namespace {
-
-/// The hour that a session shows a scene at which has none.
-sun::Instant usual_moment(const scene::Scene& scene, const LoadedDem& loaded) {
-    const render::Ground ground = render::make_ground(loaded.field);
-    const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);
-    const render::GroundToShow to_show =
-        render::ground_to_show(loaded.field, ground, scene.exaggeration);
-    scene::View view = scene.view;
-    if (!view.eye && (!view.orbit.azimuth_deg || !view.orbit.elevation_deg))
-        view.orbit = scene::frame_ground(view.orbit, to_show.net, day).orbit;
-    const scene::Camera camera = scene::make_camera(
-        view, [&](const geo::Geodetic& at) { return loaded.height_m(at); }, ground.frame,
-        to_show.points, static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration);
-    return day.moment(scene::side_of_deg(camera)).utc;
-}
-
-}  // namespace
 
 Moments::Moments() = default;
 Moments::~Moments() = default;
@@ -73,6 +55,37 @@ std::shared_ptr<const LoadedDem> Moments::loaded(const scene::Scene& scene) {
         dem.source.reset();
     }
     return dem.loaded;
+}
+
+scene::View Moments::settled_view(const scene::Scene& scene) {
+    scene::View view = scene.view;
+    if (view.eye || (view.orbit.azimuth_deg && view.orbit.elevation_deg)) return view;
+    const auto heights = loaded(scene);
+    const render::Ground ground = render::make_ground(heights->field);
+    auto& known = dem_of(scene).to_show;
+    auto found = known.find(scene.exaggeration);
+    if (found == known.end())
+        found = known
+                    .emplace(scene.exaggeration, render::ground_to_show(heights->field, ground,
+                                                                        scene.exaggeration))
+                    .first;
+    const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);
+    view.orbit = scene::frame_ground(view.orbit, found->second.net, day).orbit;
+    return view;
+}
+
+/// The hour that a session shows a scene at which has none.
+sun::Instant Moments::usual_moment(const scene::Scene& scene) {
+    const auto heights = loaded(scene);
+    const render::Ground ground = render::make_ground(heights->field);
+    const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);
+    const render::GroundToShow to_show =
+        render::ground_to_show(heights->field, ground, scene.exaggeration);
+    const scene::Camera camera = scene::make_camera(
+        settled_view(scene), [&](const geo::Geodetic& at) { return heights->height_m(at); },
+        ground.frame, to_show.points, static_cast<double>(scene.width_px) / scene.height_px,
+        scene.exaggeration);
+    return day.moment(scene::side_of_deg(camera)).utc;
 }
 
 void Moments::keep_only(const scene::Scene& scene) {
@@ -105,7 +118,7 @@ sun::ParsedTime Moments::of(const scene::Scene& scene) {
     if (moment.time.empty()) {
         sun::ParsedTime morning;
         const geo::Geodetic middle = dem.open().grid().center();
-        morning.utc = usual_moment(scene, *loaded(scene));
+        morning.utc = usual_moment(scene);
         morning.zone = sun::choose_zone(moment.zone, middle).zone;
         return morning;
     }

@@ -28,12 +28,16 @@ class Moments {
     /// The scene's DEM with its heights, which are read where they have not been.
     std::shared_ptr<const LoadedDem> loaded(const scene::Scene& scene);
 
+    /// The scene's view with the angles that a session chooses where it leaves some open.
+    scene::View settled_view(const scene::Scene& scene);
+
     /// Lets go of all DEMs but the scene's.
     void keep_only(const scene::Scene& scene);
 
   private:
     struct Dem;
     Dem& dem_of(const scene::Scene& scene);
+    sun::Instant usual_moment(const scene::Scene& scene);
     std::string zone_of_middle(const std::string& words, Dem& dem);
 
     std::map<std::string, std::unique_ptr<Dem>> dems_;
