@@ -159,6 +159,7 @@ TEST_F(Viewer, ComparesWithWhatWas) {
     const image::Image8 after = display_.screen();
     EXPECT_EQ(half_differs(after, 0, 600), 0);
     EXPECT_GT(half_differs(after, 660, 1200), 10000);
+    ASSERT_TRUE(settles());
     // The line is dragged: more of it stays as it was.
     ASSERT_TRUE(changes([&] { drag(1, 640, 300, 400, 0); }, 0.01));
     EXPECT_LT(half_differs(display_.screen(), 0, 1000), half_differs(after, 0, 1000) / 4);

@@ -81,7 +81,7 @@ class Viewer : public testing::Test {
     }
     void drag(int button, int x, int y, int dx, int dy) {
         act({"mousemove", std::to_string(x), std::to_string(y)});
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
         act({"mousedown", std::to_string(button)});
         for (int step = 1; step <= 5; ++step) {
             std::this_thread::sleep_for(std::chrono::milliseconds(60));
