@@ -226,7 +226,7 @@ void SceneReader::take_camera(const Json& value, const std::string& path, Scene&
     if (orbit) {
         ObjectReader of = inside(*orbit, path + ".orbit");
         const auto take_angle = [&](const char* key, double most, std::optional<double>& angle) {
-            if (of.has(key)) angle = of.number(key, 0, -most, most, false);
+            if (of.take(key)) angle = of.number(key, 0, -most, most, false);
         };
         take_angle("azimuth", 360, view.orbit.azimuth_deg);
         take_angle("elevation", 90, view.orbit.elevation_deg);

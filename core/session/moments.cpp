@@ -28,8 +28,8 @@ std::string dem_key(const scene::Scene& scene) {
 struct Moments::Dem {
     std::optional<dem::Source> source;  ///< until the heights are read
     std::shared_ptr<const LoadedDem> loaded;
-    std::optional<dem::Posts> posts;           ///< of `loaded`
-    std::map<std::string, std::string> zones;  ///< of the middle, by the words for them
+    std::optional<dem::Posts> posts;                 ///< of `loaded`
+    std::map<std::string, std::string> zones;        ///< of the middle, by the words for them
     std::map<double, render::GroundToShow> to_show;  ///< by the exaggeration
 
     const dem::Source& open() const { return loaded ? loaded->source : *source; }
@@ -66,8 +66,8 @@ scene::View Moments::settled_view(const scene::Scene& scene) {
     auto found = known.find(scene.exaggeration);
     if (found == known.end())
         found = known
-                    .emplace(scene.exaggeration, render::ground_to_show(heights->field, ground,
-                                                                        scene.exaggeration))
+                    .emplace(scene.exaggeration,
+                             render::ground_to_show(heights->field, ground, scene.exaggeration))
                     .first;
     const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);
     view.orbit = scene::frame_ground(view.orbit, found->second.net, day).orbit;
