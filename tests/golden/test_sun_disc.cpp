@@ -38,11 +38,11 @@ TEST(SunDisc, IsWhereTheSunIsAndOfItsSize) {
         const Sun sun = sun_at("36.44,-84.41,3000", c.time);
         const double heading = sun.azimuth_deg + c.right_deg,
                      pitch = sun.apparent_elevation_deg + c.up_deg;
-        const Result run =
-            relevo({"-q", "capture", bundled_dem(), "-o", file.string(), "--overwrite", "--only",
-                    "sky", "--size", fmt::format("{}x{}", kWidth, kHeight), "--time", c.time,
-                    "--eye", "36.44,-84.41,3000", fmt::format("--heading={:.6f}", heading),
-                    fmt::format("--pitch={:.6f}", pitch), "--fov", fmt::format("{}", kFov_deg)});
+        const Result run = relevo(
+            {"-q", "capture", bundled_dem(), "-o", file.string(), "--overwrite", "--allow-blank",
+             "--only", "sky", "--size", fmt::format("{}x{}", kWidth, kHeight), "--time", c.time,
+             "--eye", "36.44,-84.41,3000", fmt::format("--heading={:.6f}", heading),
+             fmt::format("--pitch={:.6f}", pitch), "--fov", fmt::format("{}", kFov_deg)});
         ASSERT_EQ(run.status, 0) << run.err;
         const image::ImageF picture = image::read_float(file);
         float brightest = 0;
