@@ -20,12 +20,14 @@ constexpr auto kLeave = std::chrono::milliseconds(600);
 MainWindow::MainWindow(const scene::Scene& scene, std::string device)
     : device_(std::move(device)), zone_(scene.moment.zone) {
     state_.document.scene = scene;
+    if (scene.overlay) state_.document.overlay = {OverlayKind::File, scene.overlay->opacity};
     Window::check_display();
     // The scene opens beside the window.
     scene_ = std::make_unique<SceneThread>(scene, device_, &Window::wake);
     window_ = std::make_unique<Window>("Relevo");
     hand_ = std::make_unique<Hand>(*window_, state_);
     point_work_ = std::make_unique<PointWork>(&Window::wake);
+    overlay_work_ = std::make_unique<OverlayWork>(&Window::wake);
     state_.effects = EffectsModel::of(scene.effects);
     state_.settings = written_ = memory_.settings();
     state_.recent = memory_.recent();
@@ -72,6 +74,8 @@ void MainWindow::leave() {
     discard_.take(std::move(before_));
     discard_.take(std::move(scene_));
     discard_.take(std::move(point_work_));
+    discard_.take(std::move(overlay_work_));
+    discard_.take(std::move(overlay_save_));
     // Nothing is being written by then, and the rest is the system's to take back.
     if (!discard_.ends_within(kLeave)) std::_Exit(EXIT_SUCCESS);
 }
@@ -140,6 +144,7 @@ void MainWindow::panels() {
         draw_measured(state_.measured, state_.profile, *picture_, size());
         const float top = state_.settings.panels ? ImGui::GetFrameHeight() : 0;
         draw_scale_and_north(*picture_, state_.land, hand_->ground_at(0.5f * size()), size(), top);
+        legend_.draw(state_, size(), top, unit());
         if (before_) draw_sides(window_->line() * size().x, top);
     }
     if (state_.settings.panels) {
@@ -182,6 +187,7 @@ void MainWindow::hand_over_scene() {
         busy_frames_ = 2;
     }
     follow_the_day();
+    follow_overlay();
     if (state_.compare_is_wanted && !before_) compare();
     if (!state_.compare_is_wanted && before_) stop_comparing();
     if (takes_when_sharp_ && is_answered()) take_picture();

@@ -13,7 +13,9 @@
 #include "viewer/discard.h"
 #include "viewer/file_watch.h"
 #include "viewer/hand.h"
+#include "viewer/overlay_panel.h"
 #include "viewer/state.h"
+#include "viewer/sun_overlay.h"
 #include "viewer/window.h"
 
 namespace relevo::viewer {
@@ -136,6 +138,32 @@ class MainWindow {
         }
     }
 
+    // ---- figures of the sun on the ground: main_window_overlay.cpp
+
+    /// A raster that was written, and what is in it.
+    struct SavedOverlay {
+        OverlayWanted of;
+        std::string file;        ///< absolute
+        std::string shown_name;  ///< as it is told of
+    };
+    /// None: nothing is to lie there.
+    std::optional<OverlayWanted> overlay_wanted() const;
+    /// What lies on the ground is of the day, the moment or the file that is shown.
+    void follow_overlay();
+    void lay_overlay();
+    /// Whether what lies there is what was asked for, to the last post.
+    bool overlay_rests() const;
+    /// The file of the figures that are shown; null: there is none yet.
+    const SavedOverlay* saved_overlay() const;
+    /// Writes them, when they are there.
+    void save_overlay();
+    void watch_saving();
+    void give_up_saving();
+    /// Into a scene what lies on the ground, as far as a file has it.
+    void put_overlay(scene::Scene& scene) const;
+    /// What is to be said of a scene that lacks it; else empty.
+    std::string overlay_note() const;
+
     std::unique_ptr<Window> window_;  // ends after the threads that wake it
     Discard discard_;
     std::string device_;
@@ -149,6 +177,12 @@ class MainWindow {
     ChartsPanel charts_;
     std::unique_ptr<PointWork> point_work_;
     std::optional<PointWanted> asked_point_;  // of state_.chosen
+    std::unique_ptr<OverlayWork> overlay_work_;
+    std::optional<OverlayWanted> asked_overlay_;
+    std::unique_ptr<OverlaySave> overlay_save_;
+    std::vector<SavedOverlay> saved_overlays_;
+    LegendPicture legend_;
+    bool saves_when_whole_ = false;
     History history_;
     Pose home_;
     std::shared_ptr<const Picture> picture_;

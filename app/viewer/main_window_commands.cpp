@@ -90,7 +90,7 @@ void MainWindow::of_scene(Command command) {
         case Command::CopyCommand:
             return copy_command();
         case Command::SaveScene:
-            return say_or_fail([&] { done(save_scene(whole())); });
+            return say_or_fail([&] { done(save_scene(whole()) + overlay_note()); });
         case Command::SaveView:
             return keep_view();
         case Command::Measure:
@@ -98,6 +98,16 @@ void MainWindow::of_scene(Command command) {
         case Command::Compare:
             state_.compare_is_wanted = !state_.compare_is_wanted;
             return;
+        case Command::Overlay: {
+            OverlayKind& kind = state_.document.overlay.kind;
+            kind = kind == OverlayKind::Day ? OverlayKind::None : OverlayKind::Day;
+            state_.step = true;
+            return;
+        }
+        case Command::SaveOverlay:
+            return save_overlay();
+        case Command::GiveUpSaving:
+            return give_up_saving();
         case Command::Play:
             state_.playing = !state_.playing;
             return;

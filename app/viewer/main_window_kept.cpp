@@ -32,22 +32,31 @@ void MainWindow::remember_settings() {
 }
 
 scene::Scene MainWindow::whole() const {
-    return whole_scene(state_.document, state_.land, window_->size_px());
+    scene::Scene scene = whole_scene(state_.document, state_.land, window_->size_px());
+    put_overlay(scene);
+    return scene;
 }
 
 void MainWindow::copy_command() {
     window_->copy(capture_command(whole(), "picture.png"));
-    tell("the command that takes this picture is on the clipboard");
+    tell("the command that takes this picture" + overlay_note() + " is on the clipboard");
 }
 
 bool MainWindow::is_answered() const {
     return picture_ && picture_->sharp && picture_->answers == scene_->wants() && wanted_ &&
-           same(*wanted_, wanted_now());
+           same(*wanted_, wanted_now()) && overlay_rests();
 }
 
 void MainWindow::take_picture() {
     takes_when_sharp_ = !is_answered();
-    if (!takes_when_sharp_) say_or_fail([&] { done(save_picture(*picture_, whole())); });
+    if (takes_when_sharp_) return;
+    const chart::Legend* const legend =
+        state_.overlay && state_.overlay->error.empty() ? &state_.overlay->overlay.legend : nullptr;
+    say_or_fail([&] {
+        std::string note = overlay_note();
+        if (!note.empty()) note = "; its scene is" + note.substr(1);
+        done(save_picture(*picture_, whole(), legend) + note);
+    });
 }
 
 void MainWindow::tell(std::string what) {

@@ -14,6 +14,10 @@ namespace relevo::viewer {
 
 void MainWindow::open() {
     point_work_->forget();
+    overlay_work_->forget();
+    asked_overlay_.reset();
+    state_.overlay.reset();
+    saves_when_whole_ = false;
     state_.chosen.reset();
     state_.point.reset();
     state_.measured.clear();
@@ -35,6 +39,7 @@ void MainWindow::open() {
 void MainWindow::compare() {
     before_ = std::make_unique<SceneThread>(whole(), device_, &Window::wake, opened_->dem);
     before_->want(wanted_now());
+    before_->want_drape(state_.overlay ? state_.overlay->overlay.drape : nullptr);
 }
 
 void MainWindow::stop_comparing() {
@@ -81,6 +86,7 @@ void MainWindow::read_thread() {
         busy_frames_ = 2;
     }
     read_point_work();
+    if (is_open()) watch_saving();
 }
 
 void MainWindow::watch_comparison() {
@@ -115,6 +121,11 @@ void MainWindow::start(std::shared_ptr<const Opened> opened) {
     state_.spacing_m = std::sqrt(spacing_m.x * spacing_m.y);
     state_.stand_on(opened_->ground);
     Document& document = state_.document;
+    if (opened_->legend) {  // till its file has been read here, too
+        auto shown = std::make_shared<OverlayShown>();
+        shown->overlay.legend = *opened_->legend;
+        state_.overlay = std::move(shown);
+    }
     document.zone = sun::choose_zone(zone_, state_.centre).zone;
     document.pose = home_ = pose_of(opened_->camera, state_.land);
     state_.set_utc(last_good_ ? document.utc : opened_->utc);
@@ -162,6 +173,8 @@ void MainWindow::open_files() {
     scene::Scene& scene = state_.document.scene;
     scene.dems = std::move(files);
     scene.view = {};
+    scene.overlay.reset();  // it is of the other ground
+    state_.document.overlay = {};
     scene.dem = {.max_posts = scene.dem.max_posts};  // the rest is said of the other file
     has_gone_back_ = has_failed_ = false;
     state_.message.clear();
