@@ -14,6 +14,9 @@ namespace {
 
 /// At the end work in progress is waited for so long; reading a large DEM may take longer.
 constexpr auto kLeave = std::chrono::milliseconds(600);
+/// While the hand moves the camera and no new picture has come, the window is drawn so often; each
+/// time takes from the scene what it could be drawn with.
+constexpr double kSame_s = 0.08;
 
 }  // namespace
 
@@ -56,7 +59,8 @@ void MainWindow::run() {
         watch_files();
         step_at_rest();
         if (most_s >= kWatch_s && busy_frames_ == 0) continue;
-        window_->draw([&] { panels(); });
+        if (shows_the_same()) continue;
+        draw_window();
         state_.take_effects(/*is_step=*/true);
         hand_over();
         restyle();
@@ -78,6 +82,20 @@ void MainWindow::leave() {
     discard_.take(std::move(overlay_save_));
     // Nothing is being written by then, and the rest is the system's to take back.
     if (!discard_.ends_within(kLeave)) std::_Exit(EXIT_SUCCESS);
+}
+
+bool MainWindow::shows_the_same() const {
+    const bool is_of_the_scene =
+        is_open() && (hand_->is_busy() || state_.playing) && !ImGui::GetIO().WantCaptureMouse;
+    return is_of_the_scene && busy_frames_ == 0 && window_->buttons() == drawn_buttons_ &&
+           seconds_since(drawn_at_) < kSame_s;
+}
+
+void MainWindow::draw_window() {
+    drawn_at_ = Clock::now();
+    drawn_buttons_ = window_->buttons();
+    window_->draw([&] { panels(); });
+    input_is_new_ = true;
 }
 
 double MainWindow::waiting_s() const {

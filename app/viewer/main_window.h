@@ -45,6 +45,9 @@ class MainWindow {
     bool is_drawing() const;
     /// Ends what works beside. Nobody waits for a DEM to be read that nobody will see.
     void leave();
+    /// Whether drawing the window would show what is in it already, as far as anyone minds.
+    bool shows_the_same() const;
+    void draw_window();
     /// How long nothing but input can change what is seen.
     double waiting_s() const;
     void read_point_work();
@@ -198,7 +201,9 @@ class MainWindow {
     bool sun_moved_ = false;  // in the frame before
     std::string told_;
     Clock::time_point told_at_;
-    Clock::time_point frame_at_ = Clock::now(), moved_at_ = Clock::now();
+    Clock::time_point frame_at_ = Clock::now(), moved_at_ = Clock::now(), drawn_at_;
+    int drawn_buttons_ = 0;      // of the mouse
+    bool input_is_new_ = false;  // clicks and turns of the wheel, since they were taken
     bool rested_ = true, sheet_ = false, takes_when_sharp_ = false;
     bool closes_menus_ = false;
     int busy_frames_ = 3;  // that panels still need to settle

@@ -18,7 +18,7 @@ constexpr double kStep_s = 0.5;
 }  // namespace
 
 void MainWindow::take_hand(double passed_s) {
-    hand_->act(passed_s, before_ != nullptr);
+    hand_->act(passed_s, before_ != nullptr, std::exchange(input_is_new_, false));
     if (hand_->has_moved()) moved();
     if (const auto point = hand_->take_click()) choose_point(*point);
 }
