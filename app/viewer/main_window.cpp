@@ -87,13 +87,14 @@ void MainWindow::leave() {
 bool MainWindow::shows_the_same() const {
     const bool is_of_the_scene =
         is_open() && (hand_->is_busy() || state_.playing) && !ImGui::GetIO().WantCaptureMouse;
-    return is_of_the_scene && busy_frames_ == 0 && window_->buttons() == drawn_buttons_ &&
+    return is_of_the_scene && !has_new_picture_ && window_->buttons() == drawn_buttons_ &&
            seconds_since(drawn_at_) < kSame_s;
 }
 
 void MainWindow::draw_window() {
     drawn_at_ = Clock::now();
     drawn_buttons_ = window_->buttons();
+    has_new_picture_ = false;
     window_->draw([&] { panels(); });
     input_is_new_ = true;
 }
@@ -114,6 +115,8 @@ void MainWindow::read_point_work() {
 }
 
 void MainWindow::moved() {
+    // The scene has the processors for its first picture of the new view.
+    if (rested_) drawn_at_ = Clock::now();
     moved_at_ = Clock::now();
     rested_ = false;
 }

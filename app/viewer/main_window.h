@@ -202,6 +202,7 @@ class MainWindow {
     std::string told_;
     Clock::time_point told_at_;
     Clock::time_point frame_at_ = Clock::now(), moved_at_ = Clock::now(), drawn_at_;
+    bool has_new_picture_ = false;
     int drawn_buttons_ = 0;      // of the mouse
     bool input_is_new_ = false;  // clicks and turns of the wheel, since they were taken
     bool rested_ = true, sheet_ = false, takes_when_sharp_ = false;

@@ -72,6 +72,7 @@ void MainWindow::read_thread() {
         picture_ = newer;
         hand_->see(picture_);
         window_->take(*newer);
+        has_new_picture_ = true;
         busy_frames_ = std::max(busy_frames_, 1);
     }
     if (before_) watch_comparison();
@@ -79,6 +80,7 @@ void MainWindow::read_thread() {
         if (const auto newer = before_->newer_than(picture_before_ ? picture_before_->number : 0)) {
             picture_before_ = newer;
             window_->take_before(newer.get());
+            has_new_picture_ = true;
             busy_frames_ = std::max(busy_frames_, 1);
         }
     if (auto message = scene_->take_message()) {

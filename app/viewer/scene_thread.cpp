@@ -23,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// What a frame may take while the hand moves [ms].
-constexpr double kSoon_ms = 40;
+constexpr double kSoon_ms = 30;
 /// Shares of the window's sides that frames are drawn at then, the largest that is soon enough.
 constexpr std::array<double, 5> kScales = {1, 0.8, 0.65, 0.5, 0.34};
 constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
