@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
+#include "session/sun_raster.h"
 
 namespace relevo::cli {
 namespace {
@@ -42,7 +43,7 @@ Array2d<float> in_minutes(Array2d<float> hours) {
 std::vector<light::RasterBand> bands_of(const std::vector<std::string>& wanted) {
     std::vector<light::RasterBand> bands;
     for (const std::string& band : wanted) {
-        if (band == "hours") bands.push_back({"sun hours", "h"});
+        if (band == "hours") bands.push_back(session::sun_hours_band());
         if (band == "first") bands.push_back({"minutes to the first light", "min"});
         if (band == "last") bands.push_back({"minutes to the last light", "min"});
         if (band == "spells") bands.push_back({"spells of light", "1"});
@@ -164,7 +165,7 @@ void run(const Arguments& arguments) {
             raster.put(k, part, values_of(arguments.bands[k], hours));
     });
     const std::string from = sun::to_iso(begin, days.zone), to = sun::to_iso(end, days.zone);
-    const std::string air = air_of_posts(arguments.refraction, posts);
+    const std::string air = session::air_of_posts(arguments.refraction.name(), posts);
     if (options.irradiation) sum.definition += "; " + words_of(*options.irradiation);
     if (!raster.finish(sum.definition, sum.holes,
                        {{"TIME_FROM", from},

@@ -12,31 +12,13 @@
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
+#include "session/sun_raster.h"
 
 namespace relevo::cli {
 namespace {
 
 constexpr double kProgram_mib = 60;  // of itself, its libraries and what they read and write by
 constexpr double kBlocks_mib = 256;  // of files, and what tiles and threads take besides (measured)
-
-/// Of a DEM beyond --memory the heights that are read take all of that; what is made of them has
-/// parts of this share of it, as each of their posts takes some ten times as much as a height.
-constexpr std::int64_t kPostsAPart = 32;
-
-/// Squares, of whole blocks of the result where they are so large.
-std::vector<dem::Window> parts_of(const dem::Window& window, std::int64_t most_posts) {
-    constexpr int kBlock = 512, kLeast = 64;
-    const int fitting = static_cast<int>(std::sqrt(static_cast<double>(most_posts)));
-    const int step = fitting >= kBlock ? kBlock : kLeast;
-    const int side = std::max(kLeast, fitting / step * step);
-    std::vector<dem::Window> parts;
-    for (int row = 0; row < window.rows; row += side)
-        for (int column = 0; column < window.columns; column += side)
-            parts.push_back({window.column + column, window.row + row,
-                             std::min(side, window.columns - column),
-                             std::min(side, window.rows - row)});
-    return parts;
-}
 
 }  // namespace
 
@@ -85,25 +67,18 @@ RasterGround RasterArguments::load() const {
     const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
                                          : dem::Window{0, 0, grid.columns(), grid.rows()};
     std::vector<dem::Window> parts{window};
-    if (!posts.in_memory()) parts = parts_of(window, dem.options.max_posts / kPostsAPart);
+    if (!posts.in_memory())
+        parts = session::raster_parts(window, dem.options.max_posts / session::kPostsAPart);
     return {std::move(posts), window, std::move(parts)};
 }
 
 light::RasterMetadata RasterArguments::about(const RasterGround& ground,
                                              const std::string& definition, std::int64_t holes,
                                              light::RasterMetadata more) const {
-    light::RasterMetadata about{
-        {"TIFFTAG_SOFTWARE", "Relevo " RELEVO_VERSION},
-        {"DEFINITION", definition},
-        {"DEM", ground.posts.about().path},
-        {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", terrestrial_refraction)},
-        {"HOLES", fmt::format("{}", holes)}};
-    if (!ground.whole()) {
-        const dem::Window& w = ground.window;
-        about.emplace_back(
-            "CLIP", fmt::format("columns {} to {} and rows {} to {} of the DEM, from 0", w.column,
-                                w.column + w.columns - 1, w.row, w.row + w.rows - 1));
-    }
+    std::optional<dem::Window> part;
+    if (!ground.whole()) part = ground.window;
+    light::RasterMetadata about = session::raster_metadata(ground.posts, RELEVO_VERSION, definition,
+                                                           terrestrial_refraction, holes, part);
     for (auto& item : more)
         about.push_back(std::move(item));
     return about;
@@ -198,16 +173,6 @@ void RasterRun::tell() const {
         "result              {} band{} of {:.0f} MiB before compression, for which the "
         "folder of the result has to have room besides\n",
         bands_, bands_ == 1 ? "" : "s", posts * bytes_a_value_ / kMiB);
-}
-
-std::string air_of_posts(const RefractionArguments& refraction, const dem::Posts& posts) {
-    if (refraction.name() == "standard")
-        return "integrated ICAO standard atmosphere over each post";
-    geo::Geodetic ground = posts.grid().center();
-    const double height_m =
-        posts.height_at((posts.grid().columns() - 1) / 2.0, (posts.grid().rows() - 1) / 2.0);
-    ground.height_m = std::isnan(height_m) ? posts.lowest_m() : height_m;
-    return refraction.at(ground).description();
 }
 
 }  // namespace relevo::cli

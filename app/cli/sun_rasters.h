@@ -81,7 +81,4 @@ class RasterRun {
     Progress::Clock::time_point began_ = Progress::Clock::now();
 };
 
-/// --refraction's model in words, over each post.
-std::string air_of_posts(const RefractionArguments& refraction, const dem::Posts& posts);
-
 }  // namespace relevo::cli

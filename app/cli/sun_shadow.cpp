@@ -13,6 +13,7 @@
 #include "cli/sun_rasters.h"
 #include "dem/places.h"
 #include "light/shadows.h"
+#include "session/sun_raster.h"
 
 namespace relevo::cli {
 namespace {
@@ -67,17 +68,9 @@ light::SunOverDem parse_sun(const std::string& text, const dem::Grid& grid) {
 
 /// The sun of a moment.
 Asked at_moment(const Arguments& arguments, const dem::Posts& posts, sun::ParsedTime when) {
-    const geo::Geodetic middle = posts.grid().center();
-    const sun::Position position = sun::position(when.utc, middle);
-    geo::Geodetic ground = middle;
-    const double height_m =
-        posts.height_at((posts.grid().columns() - 1) / 2.0, (posts.grid().rows() - 1) / 2.0);
-    ground.height_m = std::isnan(height_m) ? posts.lowest_m() : height_m;
-    const sun::Refraction air = arguments.refraction.at(ground);
-    return {light::SunOverDem::of(position),
-            air.apparent_rad(position.elevation_rad),
-            std::move(when),
-            {}};
+    const session::SunOverMiddle over =
+        session::sun_over_middle(posts, when.utc, arguments.refraction.name());
+    return {over.sun, over.apparent_rad, std::move(when), {}};
 }
 
 /// The suns of a table of times. What is assumed and what is odd is said once.
@@ -124,23 +117,16 @@ std::vector<Asked> all_suns(const Arguments& arguments, const std::vector<dem::N
 
 /// Where the sun stands, and when.
 light::RasterMetadata about_sun(const Asked& asked) {
-    light::RasterMetadata about{
-        {"SUN_AZIMUTH_DEG", fmt::format("{:.5f}", degrees(asked.sun.azimuth_rad))},
-        {"SUN_APPARENT_ELEVATION_DEG", fmt::format("{:.5f}", degrees(asked.apparent_rad))},
-        {"SUN_PLACE", "the middle of the DEM; azimuth from true north"}};
-    if (asked.when) {
-        about.emplace_back("TIME_UTC", sun::to_iso(asked.when->utc, 3));
-        about.emplace_back("SUN_ELEVATION_DEG",
-                           fmt::format("{:.5f}", degrees(asked.sun.elevation_rad)));
-    }
-    return about;
+    session::SunOverMiddle over{asked.sun, asked.apparent_rad, {}};
+    if (asked.when) over.utc = asked.when->utc;
+    return session::metadata_of(over);
 }
 
 /// One sun's band needs no other name than what it is; of many it is their time.
 std::vector<light::RasterBand> bands_of(const std::vector<Asked>& suns, bool timed, bool soft) {
     std::vector<light::RasterBand> bands;
     for (const Asked& asked : suns) {
-        light::RasterBand band{soft ? "share of the sun's disc" : "direct sun", "1"};
+        light::RasterBand band = session::shadow_band(soft);
         if (timed) {
             band.name = sun::to_iso(asked.when->utc, asked.when->zone);
             if (!asked.name.empty()) band.name += " " + asked.name;
@@ -149,13 +135,6 @@ std::vector<light::RasterBand> bands_of(const std::vector<Asked>& suns, bool tim
         bands.push_back(std::move(band));
     }
     return bands;
-}
-
-Array2d<std::uint8_t> mask_of(const Array2d<float>& lit) {
-    Array2d<std::uint8_t> mask(lit.width(), lit.height());
-    for (std::size_t i = 0; i < mask.size(); ++i)
-        mask.data()[i] = std::isnan(lit.data()[i]) ? 255 : lit.data()[i] > 0;
-    return mask;
 }
 
 void print_one(const Asked& asked, const Counts& counts, bool soft) {
@@ -215,7 +194,7 @@ std::string light_all(const dem::Posts& posts, const std::vector<Asked>& suns,
             if (options.soft)
                 raster.put(k, part, shadows.lit);
             else
-                raster.put(k, part, mask_of(shadows.lit));
+                raster.put(k, part, session::mask_of(shadows.lit));
             definition = shadows.definition;
         }
     });
@@ -239,7 +218,7 @@ void run(const Arguments& arguments) {
     std::string air = "none, the sun was given as seen";
     if (arguments.sun.empty()) {
         options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
-        air = air_of_posts(arguments.refraction, posts);
+        air = session::air_of_posts(arguments.refraction.name(), posts);
     }
     RasterRun raster(arguments.raster, file, ground,
                      options.soft ? light::RasterType::Float : light::RasterType::Byte,

@@ -8,13 +8,14 @@
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
 #include "light/horizons.h"
+#include "session/sun_raster.h"
 
 namespace relevo::cli {
 namespace {
 
 struct Arguments {
     RasterArguments raster;
-    int directions = 36;
+    int directions = session::kSkyDirections;
     bool level = false;
 };
 
@@ -23,7 +24,7 @@ void run_sky_view(const Arguments& arguments) {
     OutputFile& file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
     RasterRun raster(arguments.raster, file, ground, light::RasterType::Float,
-                     {{"sky-view factor", "1"}}, 1, 20);
+                     {session::sky_view_band()}, 1, 20);
     light::SkyViewOptions options{.directions = arguments.directions,
                                   .refraction = arguments.raster.terrestrial_refraction,
                                   .level = arguments.level,

@@ -3,35 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <span>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include "base/units.h"
 #include "sun/position.h"
+#include "viewer/image_texture.h"
 
 namespace relevo::viewer {
 namespace {
 
 constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
 constexpr float kHeight_units = 300;
-
-/// Rows from above, as ImGui has them.
-gl::Texture texture_of(const image::Image8& picture) {
-    std::vector<std::uint8_t> rgba;
-    rgba.reserve(picture.values.size() / static_cast<std::size_t>(picture.channels) * 4);
-    for (std::size_t i = 0; i < picture.values.size();
-         i += static_cast<std::size_t>(picture.channels)) {
-        for (std::size_t c = 0; c < 3; ++c)
-            rgba.push_back(picture.values[i + c]);
-        rgba.push_back(255);
-    }
-    const gl::Extent extent{picture.width, picture.height, 1};
-    gl::Texture texture(gl::TextureKind::D2, gl::Format::RGBA8, extent, 1, "chart");
-    texture.write(0, {0, 0, 0}, extent, std::as_bytes(std::span(rgba)));
-    return texture;
-}
 
 /// Draws a chart in its own size. @returns its upper left corner in the window
 ImVec2 show(const gl::Texture& texture) {

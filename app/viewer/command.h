@@ -34,6 +34,9 @@ enum class Command {
     Charts,
     Keys,
     CloseKeys,
+    Overlay,
+    SaveOverlay,
+    GiveUpSaving,
 };
 
 std::optional<Command> command_of(const KeyPress& press);

@@ -102,6 +102,18 @@ void add_view(Command& command, const scene::Scene& scene) {
         command.option("--exaggerate", fmt::format("{}", scene.exaggeration));
 }
 
+void add_overlay(Command& command, const scene::Overlay& overlay) {
+    command.option("--overlay", overlay.file);
+    if (overlay.band != 1) command.option("--overlay-band", std::to_string(overlay.band));
+    if (!overlay.colours.empty()) command.option("--overlay-colours", overlay.colours);
+    if (overlay.range)
+        command.option("--overlay-range",
+                       fmt::format("{},{}", overlay.range->first, overlay.range->second));
+    if (overlay.opacity != 1)
+        command.option("--overlay-opacity", fmt::format("{}", overlay.opacity));
+    if (!overlay.title.empty()) command.option("--overlay-title", overlay.title);
+}
+
 }  // namespace
 
 scene::Scene Document::whole(const Land& land) const {
@@ -199,6 +211,7 @@ std::string capture_command(const scene::Scene& scene, const std::string& output
     }
     if (scene.refraction != "standard") command.option("--refraction", scene.refraction);
     add_view(command, scene);
+    if (scene.overlay) add_overlay(command, *scene.overlay);
     const scene::Effects& effects = scene.effects;
     if (effects.switches.only)
         command.option("--only", fmt::format("{}", fmt::join(*effects.switches.only, ",")));

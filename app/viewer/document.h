@@ -13,12 +13,31 @@
 
 namespace relevo::viewer {
 
+/// What lies on the ground in true colours.
+enum class OverlayKind {
+    None,
+    File,     ///< the scene's
+    Day,      ///< sun hours of the shown day
+    Week,     ///< likewise from Monday to Sunday
+    Year,     ///< likewise
+    Mask,     ///< what the sun reaches at the shown moment
+    SkyView,  ///< how much of the sky is seen
+};
+
+struct OverlayChoice {
+    OverlayKind kind = OverlayKind::None;
+    double opacity = 1;
+
+    bool operator==(const OverlayChoice&) const = default;
+};
+
 /// Everything that a person sets in the viewer, and that undo brings back.
 struct Document {
     scene::Scene scene;  ///< DEMs, effects, exposure; place and time are the two below
     Pose pose;
     sun::Instant utc;
     sun::Zone zone;  ///< that dates and times are shown in
+    OverlayChoice overlay;
 
     /// The scene with the camera and the moment, as files and the command line have it.
     /// @param land  of the pose

@@ -25,11 +25,11 @@ double Hand::aspect() const {
     return static_cast<double>(window_.size().x) / window_.size().y;
 }
 
-void Hand::act(double passed_s, bool comparing) {
+void Hand::act(double passed_s, bool comparing, bool new_input) {
     const glm::vec2 mouse = window_.mouse();
     const Pose& pose = state_.document.pose;
     const Pose before = pose;
-    if (!ImGui::GetIO().WantCaptureMouse) {
+    if (new_input && !ImGui::GetIO().WantCaptureMouse) {
         press(mouse, comparing);
         scroll(mouse);
     }

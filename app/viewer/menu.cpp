@@ -21,7 +21,7 @@ struct Key {
     Command command;
 };
 
-constexpr std::array<Key, 25> kKeys = {{
+constexpr std::array<Key, 27> kKeys = {{
     {GLFW_KEY_O, true, Command::Open},
     {GLFW_KEY_PAGE_DOWN, true, Command::NextFile},
     {GLFW_KEY_PAGE_UP, true, Command::PreviousFile},
@@ -44,6 +44,8 @@ constexpr std::array<Key, 25> kKeys = {{
     {GLFW_KEY_RIGHT_BRACKET, false, Command::Later},
     {GLFW_KEY_TAB, false, Command::Panels},
     {GLFW_KEY_P, false, Command::Charts},
+    {GLFW_KEY_O, false, Command::Overlay},
+    {GLFW_KEY_E, true, Command::SaveOverlay},
     {GLFW_KEY_H, false, Command::Keys},
     {GLFW_KEY_F1, false, Command::Keys},
     {GLFW_KEY_ESCAPE, false, Command::CloseKeys},
@@ -84,6 +86,8 @@ void file_menu(State& state) {
     item(state, "Take the picture", "F12", Command::TakePicture);
     item(state, "Copy the command that takes it", "Ctrl+C", Command::CopyCommand);
     item(state, "Save the scene", "Ctrl+S", Command::SaveScene);
+    item(state, "Save the sun overlay as GeoTIFF", "Ctrl+E", Command::SaveOverlay, false,
+         state.document.overlay.kind > OverlayKind::File);
     ImGui::Separator();
     item(state, "End", "Ctrl+Q", Command::Quit);
     ImGui::EndMenu();
@@ -137,6 +141,8 @@ void show_menu(State& state) {
     Settings& settings = state.settings;
     item(state, "Panels", "Tab", Command::Panels, settings.panels);
     item(state, "Horizon and year of the point", "P", Command::Charts, settings.charts);
+    item(state, "Sun hours of the day", "O", Command::Overlay,
+         state.document.overlay.kind == OverlayKind::Day);
     item(state, "Comparison", "C", Command::Compare, state.compare_is_wanted);
     ImGui::Separator();
     if (ImGui::MenuItem("Light style", nullptr, settings.light_style))

@@ -34,6 +34,7 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
                  ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
     constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
     if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state);
+    if (ImGui::CollapsingHeader("Overlay", kOpen)) overlay_panel(state);
     if (ImGui::CollapsingHeader("Point", kOpen)) point_panel(state);
     if (state.profile && ImGui::CollapsingHeader("Profile", kOpen)) profile_panel(*state.profile);
     if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state);
@@ -50,6 +51,9 @@ void status_line(const State& state, bool is_drawing) {
         if (!std::isnan(at.slope_deg)) text += fmt::format("   slope {:.1f}°", at.slope_deg);
         if (!std::isnan(at.slope_deg) && !std::isnan(at.aspect_deg))
             text += fmt::format(" to {:.0f}°", at.aspect_deg);
+        if (state.overlay)
+            if (const std::string words = overlay_words(*state.overlay, at.place); !words.empty())
+                text += "   " + words;
     } else {
         text = "H: keys";
     }

@@ -23,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// What a frame may take while the hand moves [ms].
-constexpr double kSoon_ms = 40;
+constexpr double kSoon_ms = 30;
 /// Shares of the window's sides that frames are drawn at then, the largest that is soon enough.
 constexpr std::array<double, 5> kScales = {1, 0.8, 0.65, 0.5, 0.34};
 constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
@@ -55,6 +55,7 @@ struct SceneThread::Impl {
     bool has_new_wants = false, ends = false, rests = false;
     std::optional<scene::Effects> effects;
     std::map<std::string, std::string> values;
+    std::optional<std::shared_ptr<const render::Drape>> drape;  // none: as it is
     std::shared_ptr<const Picture> picture;
     std::optional<std::string> message;
     std::exception_ptr failure;
@@ -81,9 +82,9 @@ struct SceneThread::Impl {
             std::unique_lock lock(mutex);
             changed.wait(lock, [&] { return ends || has_new_wants; });
             session->resize(wanted.width_px, wanted.height_px);
-            opened =
-                std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
-                                                session->camera(), session->moment()});
+            opened = std::make_shared<Opened>(Opened{session->dem(), session->ground(),
+                                                     session->scene(), session->camera(),
+                                                     session->moment(), session->legend()});
         } catch (...) {
             const std::lock_guard lock(mutex);
             failure = std::current_exception();
@@ -98,7 +99,7 @@ struct SceneThread::Impl {
         std::unique_lock lock(mutex);
         while (!ends) {
             const auto is_asked = [&] {
-                return ends || has_new_wants || effects || !values.empty() || !sharp;
+                return ends || has_new_wants || effects || !values.empty() || drape || !sharp;
             };
             rests = !is_asked();
             changed.wait(lock, is_asked);
@@ -107,11 +108,13 @@ struct SceneThread::Impl {
             const Wanted now = wanted;
             const auto new_effects = std::exchange(effects, std::nullopt);
             const auto new_values = std::exchange(values, {});
+            const auto new_drape = std::exchange(drape, std::nullopt);
             const std::uint64_t answers = wants;
             has_new_wants = false;
             lock.unlock();
             // Where something fails the last good picture stays until something changes.
             attempt([&] { change(new_effects, new_values); });
+            if (new_drape) attempt([&] { session->drape(*new_drape); });
             if (!attempt([&] { sharp = draw(now, answers); })) sharp = true;
             on_change();
             lock.lock();
@@ -253,6 +256,15 @@ void SceneThread::want_value(const std::string& address, const std::string& valu
     {
         const std::lock_guard lock(impl_->mutex);
         impl_->values[address] = value;
+        ++impl_->wants;
+    }
+    impl_->changed.notify_one();
+}
+
+void SceneThread::want_drape(std::shared_ptr<const render::Drape> drape) {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        impl_->drape = std::move(drape);
         ++impl_->wants;
     }
     impl_->changed.notify_one();

@@ -32,6 +32,7 @@ struct Opened {
     scene::Scene scene;
     scene::Camera camera;
     sun::Instant utc;
+    std::optional<chart::Legend> legend;  ///< of the scene's overlay
 };
 
 /// A frame as it was drawn, whatever has been asked for since.
@@ -70,6 +71,9 @@ class SceneThread {
     void want_effects(const scene::Effects& effects);
     /// A value of a parameter that is not static.
     void want_value(const std::string& address, const std::string& value);
+
+    /// Colours on the ground; null: none.
+    void want_drape(std::shared_ptr<const render::Drape> drape);
 
     /// Whether there is nothing left to draw.
     bool rests() const;

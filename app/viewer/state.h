@@ -14,6 +14,7 @@
 #include "viewer/scene_thread.h"
 #include "viewer/settings.h"
 #include "viewer/sun_model.h"
+#include "viewer/sun_overlay.h"
 
 /// What panels show and change.
 namespace relevo::viewer {
@@ -51,6 +52,11 @@ struct State {
     bool point_in_work = false;               ///< there is more to come
     std::vector<glm::dvec3> measured;         ///< ends of a measured line, up to two
     std::optional<Profile> profile;           ///< of that line
+
+    std::shared_ptr<const OverlayShown> overlay;  ///< that lies on the ground; null: none
+    std::optional<double> overlay_progress;       ///< of what is worked out for it
+    std::optional<double> saving_progress;        ///< of a raster that is being written
+    std::string saved_overlay;                    ///< the file that has it; empty: none yet
 
     std::string message;  ///< the last thing that went wrong, or was done
 
@@ -94,6 +100,9 @@ void waiting_text(const State& state, bool has_failed);
 /// State::message, at the upper edge, also where there are no panels.
 void message_box(State& state, glm::vec2 size_px, double px_a_unit);
 void point_panel(State& state);
+void overlay_panel(State& state);
+/// "sun hours 5.43 h": what lies on the ground there; empty: nothing that is known.
+std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& place);
 
 /// The sun's way of the day over the picture, with its hours; what the ground hides is faint.
 /// @param picture  that is shown, in whose pixels the ground is looked up

@@ -7,15 +7,13 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "image/image.h"
+#include "session/overlay.h"
 #include "session/record.h"
 #include "viewer/settings.h"
 
 namespace relevo::viewer {
-namespace {
-
-/// Writes to a name in the working folder that no file has, such as relevo-1.png. @returns it
-template <typename Write>
-std::string write_under_free_name(const std::string& ending, const Write& write) {
+std::string write_under_free_name(const std::string& ending,
+                                  const std::function<void(OutputFile&)>& write) {
     for (int n = 1;; ++n) {
         const std::string name = fmt::format("relevo-{}.{}", n, ending);
         const auto is_taken = [&] {
@@ -26,7 +24,6 @@ std::string write_under_free_name(const std::string& ending, const Write& write)
         try {
             OutputFile file(name, /*overwrite=*/false, "view");
             write(file);
-            file.finish();
             return name;
         } catch (const Error&) {
             // Another window may have taken the name meanwhile.
@@ -34,8 +31,6 @@ std::string write_under_free_name(const std::string& ending, const Write& write)
         }
     }
 }
-
-}  // namespace
 
 scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 size_px) {
     scene::Scene scene = document.whole(land);
@@ -47,19 +42,24 @@ scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 
 
 std::string save_scene(const scene::Scene& scene) {
     const std::string text = scene::scene_text(scene, "");
-    const std::string name =
-        write_under_free_name("json", [&](OutputFile& file) { file.write(text); });
+    const std::string name = write_under_free_name("json", [&](OutputFile& file) {
+        file.write(text);
+        file.finish();
+    });
     return name + " has the scene; relevo view --scene opens it";
 }
 
-std::string save_picture(const Picture& picture, const scene::Scene& scene) {
-    const image::Image8 image =
-        image::from_device(picture.width_px, picture.height_px, picture.rgba);
+std::string save_picture(const Picture& picture, const scene::Scene& scene,
+                         const chart::Legend* legend) {
+    image::Image8 image = image::from_device(picture.width_px, picture.height_px, picture.rgba);
+    if (legend) session::add_legend(*legend, image);
     const image::Metadata metadata{{"Software", "Relevo"},
                                    {"Description", capture_command(scene, "picture.png")},
                                    {session::kSceneKeyword, scene::scene_line(scene)}};
-    const std::string name = write_under_free_name(
-        "png", [&](OutputFile& file) { image::write(file, image, metadata); });
+    const std::string name = write_under_free_name("png", [&](OutputFile& file) {
+        image::write(file, image, metadata);
+        file.finish();
+    });
     return name + " has the picture";
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
+#include "base/output_file.h"
+#include "chart/legend.h"
 #include "scene/scene.h"
 #include "viewer/document.h"
 #include "viewer/scene_thread.h"
@@ -12,10 +15,17 @@ namespace relevo::viewer {
 /// The document as `relevo capture` takes it from any folder.
 scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 size_px);
 
+/// Writes to a name in the working folder that no file has, such as relevo-1.png. @returns it
+/// @param write  which finishes the file
+std::string write_under_free_name(const std::string& ending,
+                                  const std::function<void(OutputFile&)>& write);
+
 /// Writes the scene into the working folder under a name that is free. @returns what to tell of it
 /// @throws Error as OutputFile; likewise below
 std::string save_scene(const scene::Scene& scene);
 /// Likewise a picture, with the command that takes it.
-std::string save_picture(const Picture& picture, const scene::Scene& scene);
+/// @param legend  of its overlay; null: it has none
+std::string save_picture(const Picture& picture, const scene::Scene& scene,
+                         const chart::Legend* legend);
 
 }  // namespace relevo::viewer

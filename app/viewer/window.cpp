@@ -345,6 +345,13 @@ glm::vec2 Window::mouse() const {
     return glm::vec2(at);
 }
 
+int Window::buttons() const {
+    int pressed = 0;
+    for (const int button : {0, 1, 2})
+        if (glfwGetMouseButton(impl_->handle, button) == GLFW_PRESS) pressed |= 1 << button;
+    return pressed;
+}
+
 glm::vec2 Window::size() const {
     glm::ivec2 size(1);
     glfwGetWindowSize(impl_->handle, &size.x, &size.y);

@@ -64,6 +64,7 @@ class Window {
     std::vector<std::string> take_dropped_files();
     /// From the window's upper left corner, in the units of size().
     glm::vec2 mouse() const;
+    int buttons() const;                 ///< of the mouse that are pressed now, a bit each
     bool is_down(int key) const;         ///< GLFW_KEY_..., pressed without Ctrl
     void copy(const std::string& text);  ///< to the clipboard
 

@@ -6,6 +6,7 @@
 #include "base/files_in_use.h"
 #include "chart/legend.h"
 #include "dem/grid.h"
+#include "image/image.h"
 #include "render/drape.h"
 #include "scene/scene.h"
 
@@ -30,6 +31,9 @@ chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
 /// @param grid  of the DEM's posts
 /// @throws Error (BadInput) as dem::read_band_over(), chart::named_ramp() and read_ramp()
 Overlay read_overlay(const scene::Overlay& overlay, const dem::Grid& grid);
+
+/// Puts a legend into the upper right corner of a picture, as large as that has room for.
+void add_legend(const chart::Legend& about, image::Image8& picture);
 
 /// Adds what an overlay is read from to what a run reads.
 void add_files(const scene::Overlay& overlay, FilesInUse& files);

@@ -65,15 +65,6 @@ std::shared_ptr<const LoadedDem> load(const scene::Scene& scene) {
     return load_dem(dem::Source::open(scene.dems, scene.dem), scene);
 }
 
-/// Into the upper right corner, as large as the picture has room for.
-void add_legend(const chart::Legend& about, image::Image8& picture) {
-    constexpr double kUsual_px = 1024, kMargin = 12;
-    const chart::Drawing drawing = chart::legend(about);
-    const double scale = std::clamp(std::min(picture.width, picture.height) / kUsual_px, 0.5, 8.0);
-    const int x = static_cast<int>(picture.width - scale * (drawing.width() + kMargin));
-    chart::paint(drawing, x, static_cast<int>(scale * kMargin), scale, picture);
-}
-
 constexpr int kDivider_px = 2;
 
 /// Puts the left half of one picture beside the right half of the other, with a line between.

@@ -6,6 +6,7 @@ Usage: bench_viewer.py BUILD [DEM...]   (BUILD is build/release or build/dev; ne
 Everything is read off the screen of a display of its own (Xvfb's screen is a file), as a person would see it.
 """
 
+import ctypes
 import mmap
 import os
 import pathlib
@@ -35,6 +36,10 @@ class Screen:
             self.map = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
         head = struct.unpack(">25I", self.map[:100])
         self.stride, self.begin = head[12], head[0] + 12 * head[19]
+        # A program for every move would take half of the processors that are to be measured.
+        self.x11, self.xtest = ctypes.CDLL("libX11.so.6"), ctypes.CDLL("libXtst.so.6")
+        self.x11.XOpenDisplay.restype = ctypes.c_void_p
+        self.display = ctypes.c_void_p(self.x11.XOpenDisplay(self.name.encode()))
 
     def sample(self):
         pieces = []
@@ -48,7 +53,12 @@ class Screen:
         subprocess.run(["xdotool", *map(str, words)], env={**os.environ, "DISPLAY": self.name}, check=True,
                        stdout=subprocess.DEVNULL)
 
+    def move(self, x, y):
+        self.xtest.XTestFakeMotionEvent(self.display, -1, x, y, ctypes.c_ulong(0))
+        self.x11.XFlush(self.display)
+
     def close(self):
+        self.x11.XCloseDisplay(self.display)
         self.server.terminate()
         self.server.wait()
 
@@ -82,7 +92,7 @@ def pictures_a_second(screen, move, seconds=4):
             now = screen.sample()
             if now != before:
                 count, before = count + 1, now
-            time.sleep(0.001)
+            time.sleep(0.003)
     return count / seconds
 
 
@@ -98,6 +108,25 @@ def latencies_ms(screen, move, times=40):
     return sorted(result)
 
 
+def processor_s(process):
+    """Of all threads so far."""
+    text = pathlib.Path(f"/proc/{process.pid}/stat").read_text()
+    words = text[text.rindex(")") + 2:].split()
+    return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def sharp_after_s(screen):
+    """From now until nothing has changed for two seconds."""
+    began = changed = time.perf_counter()
+    before = screen.sample()
+    while time.perf_counter() - changed < 2:
+        now = screen.sample()
+        if now != before:
+            before, changed = now, time.perf_counter()
+        time.sleep(0.005)
+    return changed - began
+
+
 def bench(program, dem):
     screen = Screen()
     env = {**os.environ, "DISPLAY": screen.name, "WAYLAND_DISPLAY": "",
@@ -109,19 +138,28 @@ def bench(program, dem):
         settle(screen)
         screen.act("mousemove", 850, 400)
         screen.act("mousedown", 3)
-        orbit = pictures_a_second(screen, lambda i: screen.act("mousemove", 850 + 3 * (i % 60), 400))
+        used_s = processor_s(viewer)
+        orbit = pictures_a_second(screen, lambda i: screen.move(850 + 3 * (i % 60), 400))
+        used_ms = 1e3 * (processor_s(viewer) - used_s) / max(1, 4 * orbit)
+        sharp_s = sharp_after_s(screen)
         screen.act("mouseup", 3)
         settle(screen)
         screen.act("mousedown", 3)
-        delays = latencies_ms(screen, lambda i: screen.act("mousemove", 850 + 5 * (i % 30), 400))
+        delays = latencies_ms(screen, lambda i: screen.move(850 + 5 * (i % 30), 400))
         screen.act("mouseup", 3)
         settle(screen)
         screen.act("key", "space")
         sun = pictures_a_second(screen, lambda i: time.sleep(0.001))
         screen.act("key", "space")
+        settle(screen)
+        time.sleep(2)
+        used_s = processor_s(viewer)
+        time.sleep(5)
+        idle = (processor_s(viewer) - used_s) / 5
         print(f"{dem or 'bundled DEM'}: first picture {first_s:.2f} s; orbiting {orbit:.1f} pictures/s; "
               f"sun moving {sun:.1f} pictures/s; input to picture median {statistics.median(delays):.0f} ms, "
-              f"95 % {delays[int(0.95 * len(delays))]:.0f} ms")
+              f"95 % {delays[int(0.95 * len(delays))]:.0f} ms; sharp {sharp_s:.2f} s after the last move; "
+              f"{used_ms:.0f} ms of processor time a picture; idle {100 * idle:.1f} % of a processor")
     finally:
         viewer.terminate()
         viewer.wait()

@@ -1,0 +1,205 @@
+#include <cmath>
+#include <utility>
+
+#include "viewer/main_window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include "viewer/take_away.h"
+
+namespace relevo::viewer {
+namespace {
+
+/// What comes after so long is another step of undo.
+constexpr double kStep_s = 0.5;
+
+}  // namespace
+
+void MainWindow::take_hand(double passed_s) {
+    hand_->act(passed_s, before_ != nullptr, std::exchange(input_is_new_, false));
+    if (hand_->has_moved()) moved();
+    if (const auto point = hand_->take_click()) choose_point(*point);
+}
+
+void MainWindow::choose_point(const glm::dvec3& point_m) {
+    geo::Geodetic place = state_.land.frame->to_geodetic(point_m);
+    place.height_m = state_.land.height_m(place);
+    if (std::isnan(place.height_m)) return;
+    state_.measured = {point_m};
+    state_.profile.reset();
+    state_.chosen = place;
+    asked_point_.reset();
+}
+
+void MainWindow::keys() {
+    for (const KeyPress& press : window_->take_keys()) {
+        busy_frames_ = 3;
+        if (const auto command = command_of(press))
+            state_.commands.push_back(*command);
+        else if (!press.control && press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9)
+            state_.view_to_go_to = static_cast<std::size_t>(press.key - GLFW_KEY_1);
+    }
+    for (const Command command : std::exchange(state_.commands, {}))
+        if (!of_program(command) && is_open()) of_scene(command);
+    if (state_.view_to_go_to && is_open()) go_to_view(*state_.view_to_go_to);
+    state_.view_to_go_to.reset();
+    if (std::exchange(state_.views_changed, false)) remember_views();
+}
+
+bool MainWindow::of_program(Command command) {
+    switch (command) {
+        case Command::Open:
+            ask_for_dem();
+            return true;
+        case Command::NextFile:
+            open_neighbour(1);
+            return true;
+        case Command::PreviousFile:
+            open_neighbour(-1);
+            return true;
+        case Command::Quit:
+            window_->close();
+            return true;
+        case Command::Panels:
+            state_.settings.panels = !state_.settings.panels;
+            return true;
+        case Command::Charts:
+            state_.settings.charts = !state_.settings.charts;
+            return true;
+        case Command::Keys:
+            sheet_ = !sheet_;
+            return true;
+        case Command::CloseKeys:
+            sheet_ = false;
+            closes_menus_ = true;
+            state_.message.clear();
+            return true;
+        default:
+            return false;
+    }
+}
+
+void MainWindow::of_scene(Command command) {
+    switch (command) {
+        case Command::ReadAgain:
+            return read_again();
+        case Command::TakePicture:
+            return take_picture();
+        case Command::CopyCommand:
+            return copy_command();
+        case Command::SaveScene:
+            return say_or_fail([&] { done(save_scene(whole()) + overlay_note()); });
+        case Command::SaveView:
+            return keep_view();
+        case Command::Measure:
+            return measure();
+        case Command::Compare:
+            state_.compare_is_wanted = !state_.compare_is_wanted;
+            return;
+        case Command::Overlay: {
+            OverlayKind& kind = state_.document.overlay.kind;
+            kind = kind == OverlayKind::Day ? OverlayKind::None : OverlayKind::Day;
+            state_.step = true;
+            return;
+        }
+        case Command::SaveOverlay:
+            return save_overlay();
+        case Command::GiveUpSaving:
+            return give_up_saving();
+        case Command::Play:
+            state_.playing = !state_.playing;
+            return;
+        case Command::Undo:
+            end_step();
+            if (history_.can_undo()) go_to(history_.undo());
+            return;
+        case Command::Redo:
+            if (history_.can_redo()) go_to(history_.redo());
+            return;
+        default:
+            move(command);
+    }
+}
+
+void MainWindow::end_step() {
+    if (history_.differs(state_.document)) history_.add(state_.document);
+}
+
+void MainWindow::move(Command command) {
+    constexpr double kHour_s = 3600, kDay_s = 86400;
+    end_step();
+    const auto by = [&](double seconds) { state_.set_utc(state_.document.utc + seconds); };
+    if (command == Command::Earlier)
+        by(-kHour_s / 2);
+    else if (command == Command::Later)
+        by(kHour_s / 2);
+    else if (command == Command::DayEarlier)
+        by(-kDay_s);
+    else if (command == Command::DayLater)
+        by(kDay_s);
+    else if (!hand_->move(command, home_))
+        return;
+    moved();
+    state_.step = true;
+}
+
+void MainWindow::measure() {
+    if (!state_.cursor) return;
+    if (state_.measured.size() != 1) {
+        state_.measured = {state_.cursor->point_m};
+        state_.profile.reset();
+        return;
+    }
+    const geo::Geodetic from = state_.land.frame->to_geodetic(state_.measured[0]);
+    state_.measured.push_back(state_.cursor->point_m);
+    state_.profile = Profile::between(from, state_.cursor->place, state_.land);
+}
+
+void MainWindow::go_to(const Document& document) {
+    hand_->rest();
+    const bool other_effects = scene::scene_text(with_effects(document), "") !=
+                               scene::scene_text(with_effects(state_.document), "");
+    state_.document = document;
+    state_.set_utc(document.utc);
+    if (other_effects) {
+        state_.set_effects(document.scene.effects);
+        state_.take_effects(/*is_step=*/false);
+    }
+    moved();
+}
+
+scene::Scene MainWindow::with_effects(const Document& document) {
+    scene::Scene scene;
+    scene.effects = document.scene.effects;
+    return scene;
+}
+
+void MainWindow::keep_view() {
+    const SavedView view =
+        saved_view(state_.document, state_.land, fmt::format("View {}", state_.views.size() + 1));
+    state_.views.push_back(view);
+    tell(state_.views.size() < 10
+             ? fmt::format("{} is kept; key {} goes back to it", view.name, state_.views.size())
+             : fmt::format("{} is kept, in the menu View", view.name));
+    remember_views();
+}
+
+void MainWindow::go_to_view(std::size_t i) {
+    if (i >= state_.views.size()) return;
+    const SavedView& view = state_.views[i];
+    end_step();
+    hand_->rest();
+    state_.document.pose = pose_of(view, state_.land);
+    state_.set_utc(view.utc);
+    moved();
+    state_.step = true;
+}
+
+void MainWindow::step_at_rest() {
+    if (is_open() && seconds_since(moved_at_) > kStep_s && !hand_->is_busy() && !state_.playing)
+        end_step();
+}
+
+}  // namespace relevo::viewer

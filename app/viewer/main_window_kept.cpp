@@ -1,0 +1,81 @@
+#include <utility>
+
+#include "viewer/main_window.h"
+#include "viewer/take_away.h"
+
+namespace relevo::viewer {
+namespace {
+
+/// What was done is told of for so long.
+constexpr double kTold_s = 8;
+
+}  // namespace
+
+void MainWindow::remember_views() {
+    if (opened_)
+        say_or_fail(
+            [&] { memory_.write_views(absolute_names(opened_->scene.dems), state_.views); });
+}
+
+void MainWindow::restyle() {
+    const Settings& now = state_.settings;
+    if (now.light_style == styled_.light_style && now.text_px == styled_.text_px) return;
+    styled_ = now;
+    window_->set_style(now.light_style, now.text_px);
+    busy_frames_ = 3;
+}
+
+void MainWindow::remember_settings() {
+    if (state_.settings == written_) return;
+    written_ = state_.settings;
+    remember([&] { memory_.write(written_); });
+}
+
+scene::Scene MainWindow::whole() const {
+    scene::Scene scene = whole_scene(state_.document, state_.land, window_->size_px());
+    put_overlay(scene);
+    return scene;
+}
+
+void MainWindow::copy_command() {
+    window_->copy(capture_command(whole(), "picture.png"));
+    tell("the command that takes this picture" + overlay_note() + " is on the clipboard");
+}
+
+bool MainWindow::is_answered() const {
+    return picture_ && picture_->sharp && picture_->answers == scene_->wants() && wanted_ &&
+           same(*wanted_, wanted_now()) && overlay_rests();
+}
+
+void MainWindow::take_picture() {
+    takes_when_sharp_ = !is_answered();
+    if (takes_when_sharp_) return;
+    const chart::Legend* const legend =
+        state_.overlay && state_.overlay->error.empty() ? &state_.overlay->overlay.legend : nullptr;
+    say_or_fail([&] {
+        std::string note = overlay_note();
+        if (!note.empty()) note = "; its scene is" + note.substr(1);
+        done(save_picture(*picture_, whole(), legend) + note);
+    });
+}
+
+void MainWindow::tell(std::string what) {
+    state_.message = told_ = std::move(what);
+    told_at_ = Clock::now();
+}
+
+void MainWindow::done(std::string what) {
+    log::info(what);
+    tell(std::move(what));
+}
+
+void MainWindow::end_message() {
+    if (told_.empty() || seconds_since(told_at_) < kTold_s) return;
+    if (state_.message == told_) {
+        state_.message.clear();
+        busy_frames_ = 2;
+    }
+    told_.clear();
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,217 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/paths.h"
+#include "sun/zone_of_place.h"
+#include "viewer/file_dialog.h"
+#include "viewer/main_window.h"
+
+namespace relevo::viewer {
+
+void MainWindow::open() {
+    point_work_->forget();
+    overlay_work_->forget();
+    asked_overlay_.reset();
+    state_.overlay.reset();
+    saves_when_whole_ = false;
+    state_.chosen.reset();
+    state_.point.reset();
+    state_.measured.clear();
+    state_.profile.reset();
+    state_.cursor.reset();
+    hand_->rest();
+    hand_->see(nullptr);
+    opened_ = nullptr;
+    picture_ = nullptr;
+    wanted_.reset();
+    history_ = {};  // poses are of the other ground
+    stop_comparing();
+    discard_.take(std::move(scene_));
+    scene_ = std::make_unique<SceneThread>(state_.document.scene, device_, &Window::wake);
+    want_size();
+    busy_frames_ = 3;
+}
+
+void MainWindow::compare() {
+    before_ = std::make_unique<SceneThread>(whole(), device_, &Window::wake, opened_->dem);
+    before_->want(wanted_now());
+    before_->want_drape(state_.overlay ? state_.overlay->overlay.drape : nullptr);
+}
+
+void MainWindow::stop_comparing() {
+    discard_.take(std::move(before_));
+    picture_before_ = nullptr;
+    window_->take_before(nullptr);
+    state_.compare_is_wanted = false;
+}
+
+void MainWindow::want_size() {
+    const glm::ivec2 size = window_->size_px();
+    Wanted wanted;
+    wanted.width_px = size.x;
+    wanted.height_px = size.y;
+    scene_->want(wanted);
+}
+
+void MainWindow::read_thread() {
+    if (has_failed_) return;
+    try {
+        scene_->check();
+    } catch (const std::exception& error) {
+        if (!last_good_) throw;  // what the program was started for
+        go_back(error.what());
+        return;
+    }
+    if (!is_open())
+        if (auto opened = scene_->opened()) start(std::move(opened));
+    if (const auto newer = scene_->newer_than(picture_ ? picture_->number : 0)) {
+        picture_ = newer;
+        hand_->see(picture_);
+        window_->take(*newer);
+        has_new_picture_ = true;
+        busy_frames_ = std::max(busy_frames_, 1);
+    }
+    if (before_) watch_comparison();
+    if (before_)
+        if (const auto newer = before_->newer_than(picture_before_ ? picture_before_->number : 0)) {
+            picture_before_ = newer;
+            window_->take_before(newer.get());
+            has_new_picture_ = true;
+            busy_frames_ = std::max(busy_frames_, 1);
+        }
+    if (auto message = scene_->take_message()) {
+        state_.message = std::move(*message);
+        busy_frames_ = 2;
+    }
+    read_point_work();
+    if (is_open()) watch_saving();
+}
+
+void MainWindow::watch_comparison() {
+    try {
+        before_->check();
+        if (auto message = before_->take_message()) state_.message = std::move(*message);
+    } catch (const std::exception& error) {
+        state_.message = fmt::format("no comparison: {}", error.what());
+        stop_comparing();
+    }
+}
+
+void MainWindow::go_back(std::string why) {
+    state_.message = std::move(why);
+    busy_frames_ = 3;
+    has_failed_ = has_gone_back_;
+    if (has_failed_) return;
+    has_gone_back_ = true;
+    state_.document.scene = *last_good_;
+    open();
+}
+
+void MainWindow::start(std::shared_ptr<const Opened> opened) {
+    opened_ = std::move(opened);
+    const scene::Scene& scene = opened_->scene;
+    state_.land.frame = &opened_->ground.frame;
+    state_.land.exaggeration = scene.exaggeration;
+    state_.land.height_m = [dem = opened_->dem](const geo::Geodetic& at) {
+        return dem->height_m(at);
+    };
+    const glm::dvec2 spacing_m = opened_->dem->field.grid.post_spacing_m();
+    state_.spacing_m = std::sqrt(spacing_m.x * spacing_m.y);
+    state_.stand_on(opened_->ground);
+    Document& document = state_.document;
+    if (opened_->legend) {  // till its file has been read here, too
+        auto shown = std::make_shared<OverlayShown>();
+        shown->overlay.legend = *opened_->legend;
+        state_.overlay = std::move(shown);
+    }
+    document.zone = sun::choose_zone(zone_, state_.centre).zone;
+    document.pose = home_ = pose_of(opened_->camera, state_.land);
+    state_.set_utc(last_good_ ? document.utc : opened_->utc);
+    history_.add(document);
+    window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
+    last_good_ = document.scene;
+    if (!has_gone_back_) tried_ = scene.dems.front();
+    has_gone_back_ = false;
+    const std::vector<std::string> names = absolute_names(scene.dems);
+    state_.views = memory_.views(names);
+    remember([&] { memory_.add_recent(names); });
+    state_.recent = memory_.recent();
+    watch(scene);
+    busy_frames_ = 3;
+}
+
+void MainWindow::watch(const scene::Scene& scene) {
+    std::vector<std::filesystem::path> dems;
+    std::error_code ignored;
+    for (const std::string& dem : scene.dems)
+        if (std::filesystem::is_regular_file(dem, ignored)) dems.emplace_back(dem);
+    dem_files_.watch(std::move(dems));
+    std::vector<std::filesystem::path> plugins{share_dir() / "plugins"};
+    plugins.insert(plugins.end(), scene.effects.plugin_path.begin(),
+                   scene.effects.plugin_path.end());
+    effect_files_.watch(std::move(plugins));
+}
+
+void MainWindow::read_again() {
+    state_.set_effects(state_.document.scene.effects);
+    state_.take_effects(/*is_step=*/false);
+    busy_frames_ = 3;
+}
+
+void MainWindow::open_files() {
+    std::vector<std::string> files = window_->take_dropped_files();
+    if (asked_files_ &&
+        asked_files_->wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        files = asked_files_->get();
+        asked_files_.reset();
+    }
+    if (!state_.files_to_open.empty()) files = std::exchange(state_.files_to_open, {});
+    if (files.empty() || !last_good_) return;
+    tried_ = files.front();
+    scene::Scene& scene = state_.document.scene;
+    scene.dems = std::move(files);
+    scene.view = {};
+    scene.overlay.reset();  // it is of the other ground
+    state_.document.overlay = {};
+    scene.dem = {.max_posts = scene.dem.max_posts};  // the rest is said of the other file
+    has_gone_back_ = has_failed_ = false;
+    state_.message.clear();
+    open();
+}
+
+void MainWindow::open_neighbour(int by) {
+    if (tried_.empty()) return;
+    if (const std::string next = neighbour_in_folder(tried_, by); !next.empty())
+        state_.files_to_open = {next};
+    else
+        state_.message = "there is no other DEM in its folder";
+}
+
+void MainWindow::ask_for_dem() {
+    if (!asked_files_) asked_files_ = ask_for_files();
+    if (!asked_files_)
+        state_.message =
+            "this desktop has no file dialog (zenity, kdialog); drop a DEM on the window, or "
+            "start relevo with its name";
+}
+
+void MainWindow::watch_files() {
+    if (seconds_since(watched_at_) < kWatch_s) return;
+    watched_at_ = Clock::now();
+    remember_settings();
+    end_message();
+    if (!is_open() && !has_failed_) return;
+    if (is_open() && effect_files_.changed()) read_again();
+    if (dem_files_.changed() && dem_files_.all_there()) {
+        if (is_open()) state_.document.scene.view = view_of(state_.document.pose, state_.land);
+        has_gone_back_ = has_failed_ = false;
+        tell("the DEM was written again, and read again");
+        open();
+    }
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,131 @@
+#include "viewer/overlay_panel.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "base/text.h"
+#include "chart/legend.h"
+#include "viewer/image_texture.h"
+
+namespace relevo::viewer {
+namespace {
+
+constexpr std::array<const char*, 7> kNames = {"none",
+                                               "of the scene",
+                                               "sun hours of the day",
+                                               "sun hours of the week",
+                                               "sun hours of the year",
+                                               "direct sun at the moment",
+                                               "sky view"};
+
+/// What a choice is called; the scene's has its file's name.
+std::string name_of(const State& state, OverlayKind kind) {
+    const std::optional<scene::Overlay>& of_scene = state.document.scene.overlay;
+    if (kind == OverlayKind::File && of_scene)
+        return printable(std::filesystem::path(of_scene->file).filename().string());
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+void choice(State& state) {
+    OverlayChoice& chosen = state.document.overlay;
+    ImGui::SetNextItemWidth(-1);
+    if (!ImGui::BeginCombo("##overlay", name_of(state, chosen.kind).c_str())) return;
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
+        const auto kind = static_cast<OverlayKind>(i);
+        if (kind == OverlayKind::File && !state.document.scene.overlay) continue;
+        if (!ImGui::Selectable(name_of(state, kind).c_str(), kind == chosen.kind)) continue;
+        chosen.kind = kind;
+        state.step = true;
+    }
+    ImGui::EndCombo();
+}
+
+void opacity(State& state) {
+    auto percent = static_cast<int>(std::lround(100 * state.document.overlay.opacity));
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::SliderInt("##opacity", &percent, 10, 100, "hides %d %% of the ground"))
+        state.document.overlay.opacity = percent / 100.0;
+    state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
+}
+
+/// Of how many posts the figures are, and how far they have come.
+void work(const State& state) {
+    const ImVec2 size{-1, ImGui::GetTextLineHeight()};
+    if (state.overlay_progress)
+        ImGui::ProgressBar(static_cast<float>(*state.overlay_progress), size, "finer ...");
+    else if (state.overlay && state.overlay->raster && !state.overlay->is_whole())
+        ImGui::TextWrapped(
+            "Of one in %.1f posts each way: memory has no more. A saved GeoTIFF has all.",
+            state.overlay->every);
+}
+
+void save(State& state) {
+    if (state.saving_progress) {
+        ImGui::ProgressBar(static_cast<float>(*state.saving_progress),
+                           {-90, ImGui::GetTextLineHeight()}, "writing ...");
+        ImGui::SameLine();
+        if (ImGui::SmallButton("Give up")) state.commands.push_back(Command::GiveUpSaving);
+        return;
+    }
+    if (ImGui::Button("Save as GeoTIFF (Ctrl+E)")) state.commands.push_back(Command::SaveOverlay);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip(
+            "The very file that relevo sun writes. Scenes and commands have it then.");
+    if (!state.saved_overlay.empty()) ImGui::TextDisabled("in %s", state.saved_overlay.c_str());
+}
+
+}  // namespace
+
+void overlay_panel(State& state) {
+    choice(state);
+    const OverlayKind kind = state.document.overlay.kind;
+    if (kind == OverlayKind::None) return;
+    if (state.overlay && !state.overlay->error.empty()) {
+        ImGui::TextWrapped("%s", state.overlay->error.c_str());
+        return;
+    }
+    opacity(state);
+    if (kind == OverlayKind::File) return;
+    work(state);
+    save(state);
+}
+
+std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& place) {
+    const double value = overlay.value_at(place);
+    if (std::isnan(value)) return {};
+    switch (overlay.of.raster.figure) {
+        case session::SunFigure::Shadow:
+            return value > 0 ? "in the sun" : "in shade";
+        case session::SunFigure::SkyView:
+            return fmt::format("sky view {:.3f}", value);
+        default:
+            return fmt::format("sun hours {:.2f}", value);
+    }
+}
+
+void LegendPicture::draw(const State& state, glm::vec2 size_px, float top_px, double px_a_unit) {
+    if (!state.overlay || !state.overlay->error.empty()) {
+        of_ = nullptr;
+        texture_ = {};
+        return;
+    }
+    if (of_ != state.overlay || px_a_unit_ != px_a_unit) {
+        of_ = state.overlay;
+        px_a_unit_ = px_a_unit;
+        texture_ = texture_of(chart::to_image(chart::legend(of_->overlay.legend), px_a_unit));
+    }
+    constexpr float kMargin_px = 12, kNorth_px = 92;
+    const gl::Extent extent = texture_.extent();
+    const ImVec2 from{size_px.x - kMargin_px - static_cast<float>(extent.width),
+                      top_px + kNorth_px};
+    ImGui::GetBackgroundDrawList()->AddImage(
+        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.name())), from,
+        {from.x + static_cast<float>(extent.width), from.y + static_cast<float>(extent.height)});
+}
+
+}  // namespace relevo::viewer

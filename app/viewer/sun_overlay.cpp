@@ -1,0 +1,377 @@
+#include "viewer/sun_overlay.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "viewer/sun_model.h"
+#include "viewer/take_away.h"
+
+namespace relevo::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Posts that have their figures first, and that have them at most where memory has means alone.
+constexpr double kCoarsePosts = 160e3, kMostPosts = 4e6;
+/// The window is woken for a bar so often at most.
+constexpr auto kTell = std::chrono::milliseconds(80);
+
+/// Nobody wants it any more.
+struct GivenUp {};
+
+/// Heights at fewer posts of a DEM, the first and the last lines where they were.
+dem::Heightfield thinned(const dem::Heightfield& field, double most) {
+    const double posts = double{1} * field.grid.columns() * field.grid.rows();
+    const double step = std::max(1.0, std::sqrt(posts / most));
+    const auto fewer = [&](int count) {
+        return std::clamp(static_cast<int>(std::lround((count - 1) / step)) + 1, 2, count);
+    };
+    const int columns = fewer(field.grid.columns()), rows = fewer(field.grid.rows());
+    const double across = (field.grid.columns() - 1.0) / (columns - 1);
+    const double down = (field.grid.rows() - 1.0) / (rows - 1);
+    dem::Affine affine = field.grid.affine();
+    affine.x_column *= across;
+    affine.y_column *= across;
+    affine.x_row *= down;
+    affine.y_row *= down;
+    Array2d<float> height_m(columns, rows);
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column)
+            height_m.at(column, row) = static_cast<float>(
+                field.height_at(std::min(column * across, field.grid.columns() - 1.0),
+                                std::min(row * down, field.grid.rows() - 1.0)));
+    dem::Heightfield few{
+        std::move(height_m), {columns, rows, affine, field.grid.crs()}, field.about, 1};
+    few.about.statistics = dem::statistics(few.height_m);
+    return few;
+}
+
+/// A DEM at the posts that have their figures in turn.
+class Levels {
+  public:
+    explicit Levels(std::shared_ptr<const session::LoadedDem> dem) : dem_(std::move(dem)) {
+        const dem::Heightfield& field = dem_->field;
+        const double posts = double{1} * field.grid.columns() * field.grid.rows();
+        if (posts > 2 * kCoarsePosts) add(thinned(field, kCoarsePosts));
+        if (field.reduction == 1)
+            levels_.push_back({nullptr, dem::Posts(field), 1});
+        else
+            add(thinned(field, kMostPosts));
+    }
+
+    struct Level {
+        std::unique_ptr<const dem::Heightfield> field;  // null: the DEM's own
+        dem::Posts posts;
+        double every;
+    };
+    const std::vector<Level>& all() const { return levels_; }
+    const session::LoadedDem* dem() const { return dem_.get(); }
+
+  private:
+    void add(dem::Heightfield few) {
+        const double every = static_cast<double>(dem_->field.reduction) *
+                             (dem_->field.grid.columns() - 1.0) / (few.grid.columns() - 1.0);
+        auto field = std::make_unique<const dem::Heightfield>(std::move(few));
+        dem::Posts posts(*field);
+        levels_.push_back({std::move(field), std::move(posts), every});
+    }
+
+    std::shared_ptr<const session::LoadedDem> dem_;
+    std::vector<Level> levels_;
+};
+
+}  // namespace
+
+session::SunRasterWanted raster_of(OverlayKind kind, sun::Instant utc, const sun::Zone& zone,
+                                   const std::string& refraction) {
+    session::SunRasterWanted raster;
+    raster.zone = zone;
+    raster.refraction = refraction;
+    const sun::Date date = zone.local(utc).wall.date;
+    const auto days = [&](const sun::Date& first, const sun::Date& last) {
+        raster.begin = zone.day(first).begin;
+        raster.end = zone.day(last).end;
+    };
+    switch (kind) {
+        case OverlayKind::Week: {
+            // Weeks begin on Monday; 1 January 1900 was one.
+            const sun::Date monday =
+                sun::add_days(date, -((sun::days_between({1900, 1, 1}, date) % 7 + 7) % 7));
+            days(monday, sun::add_days(monday, 6));
+            break;
+        }
+        case OverlayKind::Year:
+            days({date.year, 1, 1}, {date.year, 12, 31});
+            break;
+        case OverlayKind::Mask:
+            raster.figure = session::SunFigure::Shadow;
+            raster.begin = utc;
+            break;
+        case OverlayKind::SkyView:
+            raster.figure = session::SunFigure::SkyView;
+            break;
+        default:
+            days(date, date);
+    }
+    return raster;
+}
+
+std::string title_of(OverlayKind kind, const session::SunRasterWanted& raster) {
+    const sun::CivilTime from = raster.zone.local(raster.begin).wall;
+    const std::string first = fmt::format("{} {}", day_label(from.date), from.date.year);
+    switch (kind) {
+        case OverlayKind::Week: {
+            const sun::Date last = sun::add_days(from.date, 6);
+            return fmt::format("Sun hours, {} to {} {}", day_label(from.date), day_label(last),
+                               last.year);
+        }
+        case OverlayKind::Year:
+            return fmt::format("Sun hours, {}", from.date.year);
+        case OverlayKind::Mask:
+            return fmt::format("Direct sun, {}, {:02}:{:02}", first, from.hour, from.minute);
+        case OverlayKind::SkyView:
+            return "Sky-view factor";
+        default:
+            return fmt::format("Sun hours, {}", first);
+    }
+}
+
+bool same_figures(const OverlayWanted& a, const OverlayWanted& b) {
+    if (a.dem != b.dem || a.file.has_value() != b.file.has_value()) return false;
+    if (a.file)
+        return a.file->file == b.file->file && a.file->band == b.file->band &&
+               a.file->colours == b.file->colours && a.file->range == b.file->range;
+    return session::same_figures(a.raster, b.raster);
+}
+
+double OverlayShown::value_at(const geo::Geodetic& place) const {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    if (!raster || !grid) return kNone;
+    const glm::dvec2 post = grid->post(place);
+    const double column = std::round(post.x), row = std::round(post.y);
+    if (!(column >= 0 && row >= 0 && column < grid->columns() && row < grid->rows())) return kNone;
+    return raster->values.at(static_cast<int>(column), static_cast<int>(row));
+}
+
+struct OverlayWork::Impl {
+    std::function<void()> on_change;
+
+    mutable std::mutex mutex;
+    std::condition_variable changed;
+    std::optional<OverlayWanted> wanted;
+    bool is_new = false, ends = false, is_done = true;
+    std::shared_ptr<const OverlayShown> answer;
+    std::atomic<double> progress = 0;
+
+    // The thread's own.
+    std::unique_ptr<Levels> levels;
+    std::shared_ptr<const OverlayShown> last;
+    Clock::time_point told_at;
+    std::thread thread;
+
+    void run() {
+        std::unique_lock lock(mutex);
+        while (true) {
+            changed.wait(lock, [&] { return ends || is_new; });
+            if (ends) return;
+            is_new = false;
+            progress = 0;
+            const std::optional<OverlayWanted> now = wanted;
+            lock.unlock();
+            if (now) {
+                work_out(*now);
+            } else {  // and with it what is known of a DEM that may be gone
+                levels.reset();
+                last.reset();
+            }
+            lock.lock();
+        }
+    }
+
+    /// @param also_for_others  of the same DEM: what comes first is soon there, and worth showing
+    ///     while one wish follows the other
+    bool is_given_up(const OverlayWanted& now, bool also_for_others) const {
+        const std::lock_guard lock(mutex);
+        return ends || (is_new && (also_for_others || !wanted || wanted->dem != now.dem));
+    }
+
+    void publish(OverlayShown shown, bool done) {
+        last = std::make_shared<const OverlayShown>(std::move(shown));
+        {
+            const std::lock_guard lock(mutex);
+            if (ends || (is_new && (!wanted || wanted->dem != last->of.dem))) return;
+            answer = last;
+            if (!is_new) is_done = done;
+        }
+        on_change();
+    }
+
+    void work_out(const OverlayWanted& now) {
+        OverlayShown shown;
+        shown.of = now;
+        try {
+            if (now.file) {
+                shown.overlay = session::read_overlay(*now.file, now.dem->to_draw().grid);
+                publish(std::move(shown), true);
+            } else if (last && last->error.empty() && same_figures(last->of, now) && is_final()) {
+                shown.raster = last->raster;
+                shown.grid = last->grid;
+                shown.every = last->every;
+                colour(shown);
+                publish(std::move(shown), true);
+            } else {
+                measure(now);
+            }
+        } catch (const GivenUp&) {
+            return;
+        } catch (const std::exception& error) {
+            shown.error = error.what();
+            publish(std::move(shown), true);
+        }
+    }
+
+    bool is_final() const {
+        return levels && levels->dem() == last->of.dem.get() &&
+               last->every == levels->all().back().every;
+    }
+
+    void measure(const OverlayWanted& now) {
+        if (!levels || levels->dem() != now.dem.get()) levels = std::make_unique<Levels>(now.dem);
+        for (const Levels::Level& level : levels->all()) {
+            const bool is_last = &level == &levels->all().back();
+            double share = 0;
+            OverlayShown shown;
+            shown.of = now;
+            shown.raster = std::make_shared<const session::SunRaster>(
+                session::sun_raster(level.posts, now.raster, {}, [&](double more) {
+                    share += more;
+                    if (is_given_up(now, is_last)) throw GivenUp();
+                    if (is_last) tell(share);
+                }));
+            if (is_given_up(now, is_last)) return;
+            shown.grid = level.posts.grid();
+            shown.every = level.every;
+            colour(shown);
+            publish(std::move(shown), is_last);
+            if (!is_last && is_given_up(now, true)) return;
+        }
+    }
+
+    static void colour(OverlayShown& shown) {
+        const light::RasterBand band = session::band_of(shown.of.raster.figure);
+        const Array2d<float>& values = shown.raster->values;
+        shown.overlay = session::overlay_of(
+            values, {shown.of.title, band.unit, session::usual_ramp(values, band.name, band.unit)},
+            shown.of.opacity);
+    }
+
+    void tell(double share) {
+        progress = share;
+        if (Clock::now() - told_at < kTell) return;
+        told_at = Clock::now();
+        on_change();
+    }
+};
+
+OverlayWork::OverlayWork(std::function<void()> on_change) : impl_(std::make_unique<Impl>()) {
+    impl_->on_change = std::move(on_change);
+    impl_->thread = std::thread([this] { impl_->run(); });
+}
+
+OverlayWork::~OverlayWork() {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        impl_->ends = true;
+    }
+    impl_->changed.notify_one();
+    impl_->thread.join();
+}
+
+void OverlayWork::want(OverlayWanted wanted) {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        if (impl_->answer && impl_->answer->of.dem != wanted.dem) impl_->answer = nullptr;
+        impl_->wanted = std::move(wanted);
+        impl_->is_new = true;
+        impl_->is_done = false;
+    }
+    impl_->changed.notify_one();
+}
+
+void OverlayWork::forget() {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        impl_->wanted.reset();
+        impl_->answer = nullptr;
+        impl_->is_new = true;
+        impl_->is_done = true;
+    }
+    impl_->changed.notify_one();
+}
+
+std::shared_ptr<const OverlayShown> OverlayWork::answer() const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->answer;
+}
+
+bool OverlayWork::is_done() const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->is_done;
+}
+
+double OverlayWork::progress() const {
+    return impl_->progress;
+}
+
+OverlaySave::OverlaySave(OverlayWanted wanted, std::shared_ptr<const session::SunRaster> whole,
+                         std::function<void()> on_change)
+    : wanted_(std::move(wanted)), on_change_(std::move(on_change)) {
+    thread_ = std::thread([this, whole = std::move(whole)] { run(whole.get()); });
+}
+
+OverlaySave::~OverlaySave() {
+    gives_up_ = true;
+    thread_.join();
+}
+
+std::string OverlaySave::result() const {
+    if (failure_) std::rethrow_exception(failure_);
+    return name_;
+}
+
+void OverlaySave::run(const session::SunRaster* whole) {
+    try {
+        const dem::Posts posts = wanted_.dem->field.reduction == 1
+                                     ? dem::Posts(wanted_.dem->field)
+                                     : dem::Posts::load(wanted_.dems, wanted_.options);
+        name_ = write_under_free_name("tif", [&](OutputFile& file) {
+            double share = 0;
+            session::write_sun_raster(file, posts, wanted_.raster, whole,
+                                      wanted_.options.max_posts / session::kPostsAPart,
+                                      RELEVO_VERSION, [&](double more) { tell(share += more); });
+        });
+    } catch (const GivenUp&) {
+        return;
+    } catch (...) {
+        failure_ = std::current_exception();
+    }
+    is_done_ = true;
+    on_change_();
+}
+
+void OverlaySave::tell(double share) {
+    if (gives_up_) throw GivenUp();
+    const bool is_worth_it = share - progress_ > 0.01;
+    if (!is_worth_it) return;
+    progress_ = share;
+    on_change_();
+}
+
+}  // namespace relevo::viewer

@@ -1,0 +1,218 @@
+#include "session/sun_raster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/units.h"
+#include "light/horizons.h"
+#include "light/sun_hours.h"
+#include "session/words.h"
+#include "sun/position.h"
+
+namespace relevo::session {
+namespace {
+
+/// The ground in the middle.
+geo::Geodetic middle_of(const dem::Posts& posts) {
+    geo::Geodetic ground = posts.grid().center();
+    const double height_m =
+        posts.height_at((posts.grid().columns() - 1) / 2.0, (posts.grid().rows() - 1) / 2.0);
+    ground.height_m = std::isnan(height_m) ? posts.lowest_m() : height_m;
+    return ground;
+}
+
+std::function<sun::Refraction(const geo::Geodetic&)> air_of(const std::string& refraction) {
+    return [refraction](const geo::Geodetic& place) { return refraction_at(refraction, place); };
+}
+
+SunRaster hours_of(const dem::Posts& posts, const SunRasterWanted& wanted, const dem::Window& part,
+                   const std::function<void(double)>& done) {
+    light::SunHoursOptions options;
+    options.refraction = kTerrestrialRefraction;
+    options.air = air_of(wanted.refraction);
+    options.step_s = kSunStep_s;
+    options.part = part;
+    options.done = done;
+    light::SunHours hours = light::sun_hours(posts, wanted.begin, wanted.end, options);
+    return {std::move(hours.hours), hours.holes, std::move(hours.definition)};
+}
+
+SunRaster shadow_of(const dem::Posts& posts, const SunRasterWanted& wanted, const dem::Window& part,
+                    const std::function<void(double)>& done) {
+    light::ShadowOptions options;
+    options.refraction = kTerrestrialRefraction;
+    options.air = air_of(wanted.refraction);
+    options.part = part;
+    options.done = done;
+    const SunOverMiddle sun = sun_over_middle(posts, wanted.begin, wanted.refraction);
+    light::Shadows shadows = light::shadows(posts, sun.sun, options);
+    for (float& value : shadows.lit)
+        if (!std::isnan(value)) value = value > 0 ? 1.0F : 0.0F;
+    return {std::move(shadows.lit), shadows.holes, std::move(shadows.definition)};
+}
+
+SunRaster sky_of(const dem::Posts& posts, const dem::Window& part,
+                 const std::function<void(double)>& done) {
+    light::SkyViewOptions options;
+    options.directions = kSkyDirections;
+    options.refraction = kTerrestrialRefraction;
+    options.part = part;
+    options.done = done;
+    light::SkyView view = light::sky_view(posts, options);
+    return {std::move(view.share), view.holes, std::move(view.definition)};
+}
+
+/// What only one kind of raster says of itself.
+light::RasterMetadata metadata_of(const dem::Posts& posts, const SunRasterWanted& wanted) {
+    const auto air = [&] { return air_of_posts(wanted.refraction, posts); };
+    if (wanted.figure == SunFigure::SkyView)
+        return {{"DIRECTIONS", fmt::format("{}", kSkyDirections)}};
+    if (wanted.figure == SunFigure::Hours)
+        return {{"TIME_FROM", sun::to_iso(wanted.begin, wanted.zone)},
+                {"TIME_TO", sun::to_iso(wanted.end, wanted.zone)},
+                {"TIME_ZONE", wanted.zone.name()},
+                {"REFRACTION", air()}};
+    light::RasterMetadata about{{"REFRACTION", air()}};
+    for (auto& item : metadata_of(sun_over_middle(posts, wanted.begin, wanted.refraction)))
+        about.push_back(std::move(item));
+    return about;
+}
+
+}  // namespace
+
+light::RasterBand sun_hours_band() {
+    return {"sun hours", "h"};
+}
+
+light::RasterBand shadow_band(bool soft) {
+    return {soft ? "share of the sun's disc" : "direct sun", "1"};
+}
+
+light::RasterBand sky_view_band() {
+    return {"sky-view factor", "1"};
+}
+
+light::RasterBand band_of(SunFigure figure) {
+    if (figure == SunFigure::Hours) return sun_hours_band();
+    return figure == SunFigure::Shadow ? shadow_band(false) : sky_view_band();
+}
+
+SunOverMiddle sun_over_middle(const dem::Posts& posts, sun::Instant utc,
+                              const std::string& refraction) {
+    const sun::Position position = sun::position(utc, posts.grid().center());
+    const sun::Refraction air = refraction_at(refraction, middle_of(posts));
+    return {light::SunOverDem::of(position), air.apparent_rad(position.elevation_rad), utc};
+}
+
+light::RasterMetadata metadata_of(const SunOverMiddle& sun) {
+    light::RasterMetadata about{
+        {"SUN_AZIMUTH_DEG", fmt::format("{:.5f}", degrees(sun.sun.azimuth_rad))},
+        {"SUN_APPARENT_ELEVATION_DEG", fmt::format("{:.5f}", degrees(sun.apparent_rad))},
+        {"SUN_PLACE", "the middle of the DEM; azimuth from true north"}};
+    if (sun.utc) {
+        about.emplace_back("TIME_UTC", sun::to_iso(*sun.utc, 3));
+        about.emplace_back("SUN_ELEVATION_DEG",
+                           fmt::format("{:.5f}", degrees(sun.sun.elevation_rad)));
+    }
+    return about;
+}
+
+std::string air_of_posts(const std::string& refraction, const dem::Posts& posts) {
+    if (refraction == "standard") return "integrated ICAO standard atmosphere over each post";
+    return refraction_at(refraction, middle_of(posts)).description();
+}
+
+light::RasterMetadata raster_metadata(const dem::Posts& posts, const std::string& version,
+                                      const std::string& definition, double terrestrial_refraction,
+                                      std::int64_t holes, const std::optional<dem::Window>& clip) {
+    light::RasterMetadata about{
+        {"TIFFTAG_SOFTWARE", "Relevo " + version},
+        {"DEFINITION", definition},
+        {"DEM", posts.about().path},
+        {"TERRESTRIAL_REFRACTION", fmt::format("{:.4g}", terrestrial_refraction)},
+        {"HOLES", fmt::format("{}", holes)}};
+    if (clip)
+        about.emplace_back(
+            "CLIP",
+            fmt::format("columns {} to {} and rows {} to {} of the DEM, from 0", clip->column,
+                        clip->column + clip->columns - 1, clip->row, clip->row + clip->rows - 1));
+    return about;
+}
+
+Array2d<std::uint8_t> mask_of(const Array2d<float>& lit) {
+    Array2d<std::uint8_t> mask(lit.width(), lit.height());
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        mask.data()[i] = std::isnan(lit.data()[i]) ? 255 : lit.data()[i] > 0;
+    return mask;
+}
+
+std::vector<dem::Window> raster_parts(const dem::Window& window, std::int64_t most_posts) {
+    // Of whole blocks of the result where they are so large.
+    constexpr int kBlock = 512, kLeast = 64;
+    const int fitting = static_cast<int>(std::sqrt(static_cast<double>(most_posts)));
+    const int step = fitting >= kBlock ? kBlock : kLeast;
+    const int side = std::max(kLeast, fitting / step * step);
+    std::vector<dem::Window> parts;
+    for (int row = 0; row < window.rows; row += side)
+        for (int column = 0; column < window.columns; column += side)
+            parts.push_back({window.column + column, window.row + row,
+                             std::min(side, window.columns - column),
+                             std::min(side, window.rows - row)});
+    return parts;
+}
+
+bool same_figures(const SunRasterWanted& a, const SunRasterWanted& b) {
+    if (a.figure != b.figure) return false;
+    if (a.figure == SunFigure::SkyView) return true;
+    return a.begin == b.begin && a.refraction == b.refraction &&
+           (a.figure == SunFigure::Shadow || (a.end == b.end && a.zone.name() == b.zone.name()));
+}
+
+SunRaster sun_raster(const dem::Posts& posts, const SunRasterWanted& wanted,
+                     const dem::Window& part, const std::function<void(double)>& done) {
+    if (wanted.figure == SunFigure::Hours) return hours_of(posts, wanted, part, done);
+    if (wanted.figure == SunFigure::Shadow) return shadow_of(posts, wanted, part, done);
+    return sky_of(posts, part, done);
+}
+
+void write_sun_raster(OutputFile& file, const dem::Posts& posts, const SunRasterWanted& wanted,
+                      const SunRaster* whole, std::int64_t most, const std::string& version,
+                      const std::function<void(double)>& done) {
+    const dem::Grid& grid = posts.grid();
+    const bool is_mask = wanted.figure == SunFigure::Shadow;
+    light::RasterWriter writer(file, grid,
+                               is_mask ? light::RasterType::Byte : light::RasterType::Float,
+                               {band_of(wanted.figure)});
+    const auto put = [&](const dem::Window& part, const SunRaster& raster) {
+        if (is_mask)
+            writer.put(0, part.column, part.row, mask_of(raster.values));
+        else
+            writer.put(0, part.column, part.row, raster.values);
+    };
+    const dem::Window all{0, 0, grid.columns(), grid.rows()};
+    std::string definition = whole ? whole->definition : "";
+    std::int64_t holes = whole ? whole->holes : 0;
+    if (whole)
+        put(all, *whole);
+    else
+        for (const dem::Window& part :
+             posts.in_memory() ? std::vector{all} : raster_parts(all, most)) {
+            const double share = double{1} * part.columns * part.rows / all.columns / all.rows;
+            const SunRaster raster = sun_raster(posts, wanted, part, [&](double of_part) {
+                if (done) done(share * of_part);
+            });
+            put(part, raster);
+            definition = raster.definition;
+            holes += raster.holes;
+        }
+    light::RasterMetadata about =
+        raster_metadata(posts, version, definition, kTerrestrialRefraction, holes);
+    for (auto& item : metadata_of(posts, wanted))
+        about.push_back(std::move(item));
+    writer.finish(about);
+}
+
+}  // namespace relevo::session
