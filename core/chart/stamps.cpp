@@ -189,7 +189,8 @@ std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture) {
         add(lines_panel(stamps.lines, kLetters, false), Corner::BottomRight, "date and sun");
     if (stamps.north) add(north_panel(*stamps.north), Corner::BottomLeft, "north");
     const int labels = add_labels(stamps.graticule, layout, picture);
-    if (labels > 0) left_out.push_back(fmt::format("{} labels of the graticule", labels));
+    if (labels > 0) left_out.push_back(
+            fmt::format("{} label{} of the graticule", labels, labels > 1 ? "s" : ""));
     return left_out;
 }
 

@@ -21,7 +21,7 @@ constexpr double kMostOff = 0.02;
 /// North that is shorter than this share of an unforeshortened length is no direction.
 constexpr double kLeastNorth = 0.02;
 /// Ground as it is drawn is off the posts by no more [px].
-constexpr double kGround_px = 8;
+constexpr double kGround_px = 4;
 
 std::string name_of(const scene::Scene& scene) {
     return scene.dems.empty()
