@@ -109,8 +109,8 @@ TEST_F(OverlayOption, PresetsThatColourTheGroundHaveALegendToo) {
 TEST_F(OverlayOption, StampsAreInTheSceneThatAPictureCarries) {
     const image::Image8 first =
         taken("first.png", {"--stamp", "title,scale,north,graticule,date,sun", "--attribution",
-                            "Data of an agency", "--size", "640x512", "--tz", "solar"});
-    EXPECT_GT(image::compare(first, taken("bare.png", {"--size", "640x512"})).share_over_1, 0.05);
+                            "Data of an agency"});
+    EXPECT_GT(image::compare(first, taken("bare.png", {})).share_over_1, 0.05);
     const Result again = relevo({"-q", "capture", "--from", (dir_ / "first.png").string(), "-o",
                                  (dir_ / "again.png").string()});
     EXPECT_EQ(again.status, 0) << again.err;
