@@ -26,7 +26,7 @@ struct Arguments {
     std::string output, device = "auto", timings, dump_shaders, save_scene, from;
     std::vector<std::string> ab;
     int repeat = 0;
-    bool overwrite = false, sidecar = false, allow_blank = false, no_legend = false;
+    bool overwrite = false, sidecar = false, allow_blank = false;
 };
 
 /// What is to be drawn.
@@ -162,7 +162,6 @@ void capture(const Arguments& arguments) {
 
     session::Options options{.device = arguments.device,
                              .radiance = image::holds_linear_light(output),
-                             .legend = !arguments.no_legend,
                              .compared = compared};
     if (!arguments.dump_shaders.empty())
         options.stitched = [&](const std::vector<render::ProgramText>& texts) {
@@ -187,6 +186,10 @@ void capture(const Arguments& arguments) {
         write_picture(picture_file, metadata, timings, [&] { return shown(session.radiance()); });
     else
         write_picture(picture_file, metadata, timings, [&] { return shown(session.picture()); });
+    for (const std::string& note : session.stamp_notes())
+        log::info(note);
+    if (options.radiance && scene.stamps != scene::Stamps())
+        log::info("stamp: linear light is written without stamps");
     if (scene_file)
         scene_file->write(scene::scene_text(
             session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));
@@ -208,8 +211,6 @@ void add_capture(CLI::App& app) {
                     "Picture to write: png, jpg, webp, tif, or exr in linear light")
         ->required();
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
-    verb.add_flag("--no-legend", arguments->no_legend, "Leave the overlay's legend out")
-        ->group("Overlay");
     verb.add_option("--save-scene", arguments->save_scene, "Write what is drawn as a scene, JSON");
     verb.add_option_function<std::string>(
         "--from",

@@ -50,6 +50,38 @@ void OverlayArguments::apply_to(scene::Scene& scene) const {
     scene.overlay->range = {*low, *high};
 }
 
+void StampArguments::add_to(CLI::App& verb) {
+    verb.add_option("--stamp", stamps,
+                    "What stands on the picture, a list of title, scale, north, graticule, date, "
+                    "sun, attribution; all, none")
+        ->group("Stamps");
+    verb.add_option("--title", title, "Words of the title, and stamps it; by default the DEM's name")
+        ->group("Stamps");
+    verb.add_option("--attribution", attribution,
+                    "Words that name the data's source, and stamps them")
+        ->group("Stamps");
+    verb.add_flag("--no-legend", no_legend, "Leave out what colours mean")->group("Stamps");
+}
+
+void StampArguments::apply_to(scene::Stamps& result) const {
+    if (!title.empty()) result.title_text = printable(title);
+    if (!attribution.empty()) result.attribution_text = printable(attribution);
+    if (!stamps.empty()) {
+        try {
+            scene::show_stamps(split(stamps, ','), "--stamp", result);
+        } catch (const Error& error) {
+            bad_usage(error.what());
+        }
+    }
+    if (!title.empty()) result.title = true;
+    if (!attribution.empty()) result.attribution = true;
+    if (no_legend) result.legend = false;
+    if (result.attribution && result.attribution_text.empty())
+        bad_usage(
+            "--stamp: attribution: the words that name the data's source are missing; expected "
+            "--attribution TEXT");
+}
+
 void SceneArguments::add_to(CLI::App& verb, bool with_file) {
     dem.add_to(verb);
     verb.add_option("--holes", holes,
@@ -70,6 +102,7 @@ void SceneArguments::add_to(CLI::App& verb, bool with_file) {
     view.add_to(verb);
     effects.add_to(verb);
     overlay.add_to(verb);
+    stamps.add_to(verb);
     verb.add_option("--exposure", exposure_ev, "Stops brighter than natural, EV")
         ->check(in_range(-20.0, 20.0));
     verb.add_option("--pixel-error", pixel_error,
@@ -92,6 +125,7 @@ void SceneArguments::apply_to(scene::Scene& result) const {
     view.apply_to(result);
     effects.apply_to(result.effects);
     overlay.apply_to(result);
+    stamps.apply_to(result.stamps);
     if (!holes.empty()) result.holes = dem::parse_holes(holes, "--holes");
     if (!size.empty()) {
         const glm::ivec2 sides = parse_size(size);

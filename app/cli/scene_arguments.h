@@ -20,6 +20,16 @@ struct OverlayArguments {
     void apply_to(scene::Scene& scene) const;
 };
 
+/// What stands on a picture: --stamp and its texts.
+struct StampArguments {
+    std::string stamps, title, attribution;
+    bool no_legend = false;
+
+    void add_to(CLI::App& verb);
+    /// Puts what was given in the place of what a scene says. @throws Error (Usage)
+    void apply_to(scene::Stamps& stamps) const;
+};
+
 /// Everything that a scene is made of: DEM..., --scene, and what else decides about a picture.
 struct SceneArguments {
     DemArguments dem;
@@ -28,6 +38,7 @@ struct SceneArguments {
     ViewArguments view;
     EffectArguments effects;
     OverlayArguments overlay;
+    StampArguments stamps;
     std::string file, size, holes;
     std::optional<double> exposure_ev, pixel_error;
 

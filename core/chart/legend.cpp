@@ -5,11 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "base/units.h"
+
 namespace relevo::chart {
 namespace {
 
 constexpr double kPadding = 10, kBarWidth = 16, kBarHeight = 150, kGap = 6, kLetters = 11,
-                 kTitle = 12, kLeastWidth = 92, kMostTitle = 220;
+                 kTitle = 12, kLeastWidth = 92, kMostTitle = 220, kRing = 104;
 constexpr int kSteps = 75;  // of a continuous ramp
 constexpr int kLabels = 6;  // at most
 
@@ -35,7 +37,7 @@ std::vector<Label> labels_of(const Ramp& ramp, const std::string& unit) {
     const double step = values.size() > 1 ? values[1] - values[0] : std::max(high - low, 1.0);
     for (const double value : values)
         labels.push_back({kBarHeight * (high - value) / (high - low), text_of(value, step)});
-    if (!labels.empty() && !unit.empty() && unit != "1") labels.back().text += " " + unit;
+    if (!labels.empty() && !unit.empty() && unit != "1") labels.back().text += (unit == "°" ? "" : " ") + unit;
     return labels;
 }
 
@@ -49,6 +51,28 @@ void draw_bar(const Ramp& ramp, double left, double top, Drawing& drawing) {
     }
     drawing.rect({left, top, kBarWidth, kBarHeight},
                  {.stroke = Color{0x303030, 0.6}, .width = 0.8});
+}
+
+/// North at the top, in a square.
+void draw_ring(const Ramp& ramp, double left, double top, Drawing& drawing) {
+    const glm::dvec2 middle(left + kRing / 2, top + kRing / 2);
+    const auto at = [&](double azimuth_deg, double radius) {
+        const double turn = radians(azimuth_deg);
+        return middle + radius * glm::dvec2(std::sin(turn), -std::cos(turn));
+    };
+    constexpr double kStep_deg = 5, kOuter = kRing / 2 - kLetters - 3, kInner = 0.45 * kOuter;
+    for (double azimuth = 0; azimuth < 360; azimuth += kStep_deg) {
+        const double end = azimuth + kStep_deg + 0.5;
+        drawing.path({at(azimuth, kInner), at(azimuth, kOuter), at(end, kOuter), at(end, kInner)},
+                     {.fill = ramp.at(azimuth + kStep_deg / 2)}, /*closed=*/true);
+    }
+    for (const double radius : {kInner, kOuter})
+        drawing.circle(middle, radius, {.stroke = Color{0x303030, 0.6}, .width = 0.8});
+    for (const auto& [azimuth, letter] : {std::pair(0.0, "N"), std::pair(90.0, "E"),
+                                          std::pair(180.0, "S"), std::pair(270.0, "W")})
+        drawing.text(at(azimuth, kOuter + 4 + kLetters * 0.36) + glm::dvec2(0, kLetters * 0.36),
+                     letter,
+                     {.size = kLetters, .color = {0x202020}, .anchor = Anchor::Middle});
 }
 
 }  // namespace
@@ -73,21 +97,22 @@ Drawing legend(const Legend& about) {
     const bool is_range = about.ramp.stops.size() > 1 &&
                           about.ramp.stops.back().value > about.ramp.stops.front().value;
     const std::vector<Label> labels =
-        is_range ? labels_of(about.ramp, about.unit) : std::vector<Label>{};
-    double width = kLeastWidth;
+        is_range && !about.ring ? labels_of(about.ramp, about.unit) : std::vector<Label>{};
+    double width = about.ring ? kRing + 2 * kPadding : kLeastWidth;
+    const double body = about.ring ? kRing : is_range ? kBarHeight : kLetters;
     for (const std::string& line : lines)
         width = std::max(width, text_width(line, kTitle, true) + 2 * kPadding);
     for (const Label& label : labels)
         width =
             std::max(width, kBarWidth + kGap + text_width(label.text, kLetters) + 2 * kPadding + 4);
     const double top = kPadding + static_cast<double>(lines.size()) * (kTitle + 4) + 4;
-    Drawing drawing(std::ceil(width),
-                    std::ceil(top + (is_range ? kBarHeight : kLetters) + kPadding + 2));
+    Drawing drawing(std::ceil(width), std::ceil(top + body + kPadding + 2));
     drawing.rect({0, 0, drawing.width(), drawing.height()}, {.fill = Color{0xffffff, 0.82}});
     for (std::size_t k = 0; k < lines.size(); ++k)
         drawing.text({kPadding, kPadding + kTitle * 0.85 + static_cast<double>(k) * (kTitle + 4)},
                      lines[k], {.size = kTitle, .color = {0x202020}, .bold = true});
-    if (!is_range) return drawing;
+    if (about.ring) draw_ring(about.ramp, (drawing.width() - kRing) / 2, top, drawing);
+    if (!is_range || about.ring) return drawing;
     draw_bar(about.ramp, kPadding, top, drawing);
     for (const Label& label : labels) {
         const double y = top + label.y, right = kPadding + kBarWidth;

@@ -12,6 +12,7 @@ struct Legend {
     std::string title;  ///< "Sun hours, 21 December 2026"
     std::string unit;   ///< "h"; empty or "1": none
     Ramp ramp;
+    bool ring = false;  ///< of directions, 0 to 360 degrees clockwise from north
 };
 
 /// A panel that stands alone on any picture: the title, the ramp and its values, of which round

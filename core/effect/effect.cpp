@@ -105,6 +105,34 @@ void check_texts(const Effect& effect) {
                                 kWho, effect.manifest.file.string(), text.address));
 }
 
+/// What a ramp names has to be a parameter of the plugin's own.
+void check_ramps(const Effect& effect) {
+    const std::vector<shader::Param> params = effect.params();
+    const auto find = [&](const std::string& address) {
+        const auto found = std::find_if(params.begin(), params.end(),
+                                        [&](const auto& p) { return p.address == address; });
+        return found == params.end() ? nullptr : &*found;
+    };
+    for (const shader::ColourRamp& ramp : effect.ramps()) {
+        for (const shader::ColourRamp::End& end : {ramp.from, ramp.to}) {
+            if (end.of != shader::ColourRamp::End::Of::Param) continue;
+            const shader::Param* const param = find(end.address);
+            if (!param || param->type != shader::ParamType::Float)
+                fail(ramp.file, ramp.line,
+                     fmt::format("{}: ramp: expected a number, lowest, highest or a float "
+                                 "parameter of the plugin's but got {}",
+                                 ramp.name, end.address));
+        }
+        if (ramp.where.empty()) continue;
+        const shader::Param* const param = find(ramp.where);
+        if (!param || !contains(param->words, ramp.where_word))
+            fail(ramp.file, ramp.line,
+                 fmt::format("{}: where: expected an enum parameter of the plugin's and one of its "
+                             "words but got {}, {}",
+                             ramp.name, ramp.where, ramp.where_word));
+    }
+}
+
 void check_bound(const Effect& effect, const DisplaceSpec& spec) {
     const std::vector<shader::Param> params = effect.params();
     for (const DisplaceSpec::Length* length : spec.lengths()) {
@@ -185,6 +213,13 @@ std::vector<shader::Param> Effect::params() const {
     return result;
 }
 
+std::vector<shader::ColourRamp> Effect::ramps() const {
+    std::vector<shader::ColourRamp> result;
+    for (const shader::Snippet& snippet : snippets)
+        result.insert(result.end(), snippet.source.ramps.begin(), snippet.source.ramps.end());
+    return result;
+}
+
 Effect load_effect(const std::filesystem::path& folder, const std::filesystem::path& data_dir) {
     Effect effect;
     effect.manifest = load_manifest(folder, data_dir);
@@ -192,6 +227,7 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
         effect.snippets.push_back(
             shader::parse_snippet(effect.id(), file.string(), glsl_text(file)));
     check_hooks(effect);
+    check_ramps(effect);
     check_displace(effect);
     check_wants(effect);
     check_textures(effect);

@@ -19,6 +19,7 @@ struct Effect {
     bool provides(std::string_view capability) const;
     bool answers(std::string_view hook) const;
     std::vector<shader::Param> params() const;  ///< in the order of the files
+    std::vector<shader::ColourRamp> ramps() const;  ///< likewise
 };
 
 /// Reads a plugin's folder, and checks that manifest and GLSL fit together.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -124,6 +125,17 @@ ordered_json overlay_json(const Overlay& overlay, const fs::path& folder) {
     return json;
 }
 
+ordered_json stamps_json(const Stamps& stamps) {
+    ordered_json json;
+    json["show"] = ordered_json::array();
+    for (const auto& [word, member] : stamp_words())
+        if (stamps.*member) json["show"].push_back(word);
+    json["legend"] = stamps.legend;
+    if (!stamps.title_text.empty()) json["title"] = stamps.title_text;
+    if (!stamps.attribution_text.empty()) json["attribution"] = stamps.attribution_text;
+    return json;
+}
+
 ordered_json json_of(const Scene& scene, const fs::path& folder) {
     ordered_json json;
     json["format"] = kFormat;
@@ -138,6 +150,7 @@ ordered_json json_of(const Scene& scene, const fs::path& folder) {
     json["exaggeration"] = scene.exaggeration;
     json["effects"] = effects_json(scene.effects, folder);
     if (scene.overlay) json["overlay"] = overlay_json(*scene.overlay, folder);
+    if (scene.stamps != Stamps()) json["stamps"] = stamps_json(scene.stamps);
     json["picture"] = {{"size", {scene.width_px, scene.height_px}},
                        {"exposure", scene.exposure_ev},
                        {"pixel_error", scene.pixel_error}};
@@ -168,6 +181,34 @@ const std::vector<std::string>& refractions() {
 const std::vector<std::string>& encodings() {
     static const std::vector<std::string> names = {"none", "terrain-rgb", "terrarium"};
     return names;
+}
+
+const std::vector<std::pair<std::string_view, bool Stamps::*>>& stamp_words() {
+    static const std::vector<std::pair<std::string_view, bool Stamps::*>> words = {
+        {"title", &Stamps::title}, {"scale", &Stamps::scale},
+        {"north", &Stamps::north}, {"graticule", &Stamps::graticule},
+        {"date", &Stamps::date},   {"sun", &Stamps::sun},
+        {"attribution", &Stamps::attribution}};
+    return words;
+}
+
+void show_stamps(const std::vector<std::string>& words, std::string_view who, Stamps& stamps) {
+    for (const auto& [word, member] : stamp_words())
+        stamps.*member = false;
+    for (const std::string& asked : words) {
+        bool known = asked == "none" && words.size() == 1;
+        if (asked == "legend") known = stamps.legend = true;
+        for (const auto& [word, member] : stamp_words())
+            if (asked == word || asked == "all") known = stamps.*member = true;
+        if (known) continue;
+        std::vector<std::string_view> all;
+        for (const auto& [word, member] : stamp_words())
+            all.push_back(word);
+        bad_input(fmt::format("{}: {}: expected all, none, or words of legend, {}", who,
+                              printable(asked), fmt::join(all, ", ")));
+    }
+    const bool all = std::find(words.begin(), words.end(), "all") != words.end();
+    if (all && stamps.attribution_text.empty()) stamps.attribution = false;
 }
 
 std::string padded_clock(const std::string& clock) {

@@ -39,6 +39,17 @@ struct Overlay {
     std::string title;                               ///< of the legend; empty: the band's name
 };
 
+/// What stands on a picture beside the ground, in its corners and, of the graticule, on the ground.
+struct Stamps {
+    bool legend = true;  ///< of what colours mean, where there is something to tell
+    bool title = false, scale = false, north = false, graticule = false, date = false, sun = false,
+         attribution = false;
+    std::string title_text;        ///< empty: the DEM's name
+    std::string attribution_text;  ///< needed with `attribution`
+
+    bool operator==(const Stamps&) const = default;
+};
+
 /// Everything that decides about a picture but the device it is drawn on: a value, which the
 /// command line, files and windows make, and a session draws.
 struct Scene {
@@ -49,6 +60,7 @@ struct Scene {
     std::string refraction = "standard";  ///< standard, saemundsson or none
     View view;
     std::optional<Overlay> overlay;
+    Stamps stamps;
     double exaggeration = 1;  ///< 0.01 to 1000
     Effects effects;
     int width_px = 1280, height_px = 1024;  ///< 1 to kMaxSide_px
@@ -57,6 +69,12 @@ struct Scene {
 };
 
 inline constexpr int kMaxSide_px = 16384;
+
+/// Takes out all stamps but the legend, and puts in those of a list: "title,scale", "all", "none".
+/// Without words for it "all" leaves out the attribution.
+/// @param who  what an error begins with
+/// @throws Error (BadInput) for other words
+void show_stamps(const std::vector<std::string>& words, std::string_view who, Stamps& stamps);
 
 /// Reads a scene from a file, docs/scene.md. Paths that are relative count from the file's folder.
 /// @throws Error (BadInput) `scene: FILE:LINE: camera.fov: what, expected E but got G`

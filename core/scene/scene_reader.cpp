@@ -81,6 +81,8 @@ void SceneReader::take(ObjectReader& object, std::string_view path, Scene& scene
         take_effects(*value, joined(path, "effects"), scene.effects);
     if (const Json* const value = object.take("overlay"))
         overlay(*value, joined(path, "overlay"), scene);
+    if (const Json* const value = object.take("stamps"))
+        stamps(*value, joined(path, "stamps"), scene.stamps);
     if (const Json* const value = object.take("picture"))
         picture(*value, joined(path, "picture"), scene);
 }
@@ -272,6 +274,19 @@ void SceneReader::take_effects(const Json& value, const std::string& path, Effec
         change.plugin_path.push_back(beside(folder));
     object.finish();
     effects = merge(std::move(effects), change);
+}
+
+void SceneReader::stamps(const Json& value, const std::string& path, Stamps& stamps) const {
+    ObjectReader object = inside(value, path);
+    stamps.legend = object.boolean("legend", stamps.legend);
+    stamps.title_text = printable(object.string("title", stamps.title_text));
+    stamps.attribution_text = printable(object.string("attribution", stamps.attribution_text));
+    if (object.take("show"))
+        check(object, "show", [&] { show_stamps(object.strings("show"), "show", stamps); });
+    if (stamps.attribution && stamps.attribution_text.empty())
+        object.fail(object.line_of("show"), "attribution",
+                    "expected the words that name the data's source, which show asks for");
+    object.finish();
 }
 
 void SceneReader::picture(const Json& value, const std::string& path, Scene& scene) const {

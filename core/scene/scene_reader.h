@@ -50,6 +50,7 @@ class SceneReader {
     void moment(const effect::Json& value, const std::string& path, Moment& moment) const;
     void check_moment(const effect::ObjectReader& object, const Moment& moment) const;
     void overlay(const effect::Json& value, const std::string& path, Scene& scene) const;
+    void stamps(const effect::Json& value, const std::string& path, Stamps& stamps) const;
     void picture(const effect::Json& value, const std::string& path, Scene& scene) const;
 
     std::string who_, file_;

@@ -17,6 +17,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "dem/files_of.h"
@@ -152,6 +153,9 @@ class Batch {
             write(session_->radiance());
         else
             write(session_->picture());
+        if (!linear)
+            for (const std::string& note : session_->stamp_notes())
+                log::info(fmt::format("{}: {}", printable(shot.output.string()), note));
     }
 
     template <typename Picture>

@@ -18,11 +18,14 @@
 #include "scene/moment.h"
 #include "session/active_effects.h"
 #include "session/climate_words.h"
+#include "session/colour_legends.h"
 #include "session/not_numbers.h"
 #include "session/overlay.h"
+#include "session/stamps.h"
 #include "session/words.h"
 #include "sun/celestial.h"
 #include "sun/position.h"
+#include "sun/zone_of_place.h"
 
 namespace relevo::session {
 namespace {
@@ -122,7 +125,8 @@ struct Session::Impl {
     std::optional<render::Terrain> terrain;
 
     std::shared_ptr<const render::Drape> drape;
-    std::optional<chart::Legend> legend;
+    std::optional<chart::Legend> legend;  // of the overlay
+    std::vector<std::string> stamp_notes;
 
     scene::Effects as_given;  ///< the scene's, as they were given
     sun::Instant utc;
@@ -312,6 +316,7 @@ struct Session::Impl {
         } else {
             take_shape(other_shape);
         }
+        scene.stamps = next.stamps;
         scene.moment = next.moment;
         set_moment(instant);
         look(next.view);
@@ -490,8 +495,15 @@ void Session::drape(std::shared_ptr<const render::Drape> drape) {
     impl_->lay(std::move(drape));
 }
 
-const std::optional<chart::Legend>& Session::legend() const {
-    return impl_->legend;
+std::vector<chart::Legend> Session::legends() const {
+    std::vector<chart::Legend> all =
+        colour_legends(effects(), impl_->ground->lowest_m, impl_->ground->highest_m);
+    if (impl_->legend) all.insert(all.begin(), *impl_->legend);
+    return all;
+}
+
+const std::vector<std::string>& Session::stamp_notes() const {
+    return impl_->stamp_notes;
 }
 
 void Session::keep_native(bool keep) {
@@ -514,7 +526,7 @@ image::Image8 Session::picture() const {
     image::Image8 picture = impl_->read(
         [](const render::Renderer& renderer, int* count) { return renderer.read_picture(count); },
         std::uint8_t{255});
-    if (impl_->legend && impl_->options.legend) add_legend(*impl_->legend, picture);
+    impl_->stamp_notes = add_stamps(*this, legends(), picture);
     return picture;
 }
 
@@ -565,6 +577,15 @@ std::vector<std::string> Session::ground_notes() const {
 std::string Session::place_text() const {
     return impl_->scene.view.eye ? geo::degrees_text(impl_->eye()) + " (the eye)"
                                  : geo::degrees_text(impl_->ground->frame.origin());
+}
+
+std::string Session::clock_text() const {
+    const sun::ChosenZone chosen =
+        sun::choose_zone(impl_->scene.moment.zone, impl_->ground->frame.origin());
+    const std::string iso = sun::to_iso(impl_->utc, chosen.zone);  // 2026-06-21T10:12:00+02:00
+    const std::string seconds = iso.substr(16, 3), offset = iso.substr(19);
+    return fmt::format("{} {}{} UTC{}", iso.substr(0, 10), iso.substr(11, 5),
+                       seconds == ":00" ? "" : seconds, offset == "Z" ? "" : offset);
 }
 
 std::string Session::sun_text() const {

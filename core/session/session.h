@@ -56,8 +56,6 @@ struct Options {
     /// read.
     std::shared_ptr<const LoadedDem> dem{};
     bool radiance = false;  ///< keep linear light, for Session::radiance()
-    /// Whether pictures have the legend of the scene's overlay in their upper right corner.
-    bool legend = true;
     /// Effects of a comparison: pictures have them on the left and not on the right.
     std::vector<std::string> compared{};
     /// Called with the programs' texts before a driver sees them.
@@ -106,8 +104,8 @@ class Session {
     /// Lays colours on the ground from the next frame on; null: none. The first ones are another
     /// program.
     void drape(std::shared_ptr<const render::Drape> drape);
-    /// What the colours of the scene's overlay mean.
-    const std::optional<chart::Legend>& legend() const;
+    /// What colours on the ground mean: of the scene's overlay, and of effects that say it.
+    std::vector<chart::Legend> legends() const;
     /// Whether native effects leave what they have made as it is, such as shadow maps while the sun
     /// is dragged, which cost more than the frame. The light that core finds by place never lags.
     void keep_native(bool keep);
@@ -123,10 +121,12 @@ class Session {
     /// Draws none of a comparison's other half, and waits for the device.
     void draw_alone();
 
-    /// The last frame; of a comparison, both halves.
+    /// The last frame with the scene's stamps; of a comparison, both halves.
     /// @throws Error (Failed) where light or colour is no number, naming the effect
     image::Image8 picture() const;
-    /// The same as linear radiance; Options::radiance.
+    /// What the last picture() has no stamp of though the scene wants it: whole sentences.
+    const std::vector<std::string>& stamp_notes() const;
+    /// The same as linear radiance, without stamps; Options::radiance.
     image::ImageF radiance() const;
     /// The picture on the device, RGBA with rows from below, until the next frame.
     const gl::Texture& texture() const;
@@ -146,6 +146,8 @@ class Session {
 
     /// "46.50 N 8.00 E", with " (the eye)" where it is that and not the DEM's middle.
     std::string place_text() const;
+    /// "2026-06-21 10:12 UTC+02:00", by the clocks of the scene's zone.
+    std::string clock_text() const;
     /// "azimuth 114.27, elevation 65.12 (65.13 with refraction)", as seen from there.
     std::string sun_text() const;
 

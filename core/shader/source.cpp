@@ -349,7 +349,27 @@ class Parser {
         std::vector<std::string> names;
         declarators(name, names);
         expect_semicolon(token(name).line);
+        if (is_snippet()) ramp(first, name, names.size());
         add(Item::Kind::Declaration, first, std::move(names), token(name).line);
+    }
+
+    /// An annotated constant; others are let through.
+    void ramp(std::size_t first, std::size_t name, std::size_t names) {
+        const std::optional<std::string_view> annotation = annotation_behind(at_ - 1);
+        if (!annotation) return;
+        const int line = token(name).line;
+        std::size_t equals = name + 1;
+        while (equals < at_ && !is(equals, "="))
+            ++equals;
+        if (str(first) != "const" || str(first + 1) != "vec3" || names != 1 || equals == at_)
+            fail(line, fmt::format("{}: an annotation behind a variable is for a ramp of colours, "
+                                   "const vec3 {}[N] = vec3[](...);",
+                                   str(name), str(name)));
+        const std::size_t begin = token(equals).offset + 1;
+        source_.ramps.push_back(parse_ramp(
+            source_.owner, str(name),
+            std::string_view(source_.text).substr(begin, token(at_ - 1).offset - begin),
+            *annotation, source_.file, line));
     }
 
     void function(std::size_t first, std::size_t name) {

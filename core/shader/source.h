@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "shader/colour_ramp.h"
 #include "shader/hooks.h"
 #include "shader/params.h"
 #include "shader/tokenizer.h"
@@ -67,6 +68,7 @@ struct Source {
     std::vector<Token> tokens;
     std::vector<Item> items;  ///< in the order of the file
     std::vector<Param> params;
+    std::vector<ColourRamp> ramps;  ///< of a snippet
     std::vector<Sampler> samplers;
     std::vector<Varying> varyings;
     std::vector<Include> includes;

@@ -161,7 +161,9 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
     cover_Shares shares;
     float ragged = shape.ragged;
     vec2 rocky = vec2(cover_tan(cover_rock_deg.x), cover_tan(cover_rock_deg.y));
-    shares.rock = smoothstep(rocky.x, rocky.y, shape.steep * (1.0 + 0.2 * ragged));
+    // Where plants grow all year roots hold soil on slopes half as steep again.
+    float rooted = 1.0 + 0.5 * smoothstep(2.5, 6.0, growth) * smoothstep(1.0, 2.0, rain);
+    shares.rock = smoothstep(rocky.x * rooted, rocky.y * rooted, shape.steep * (1.0 + 0.2 * ragged));
     // Above the growing limit soil thins out, first where it is steep.
     float soil = growth + 0.3 * ragged - 0.35 * shape.steep;
     shares.rock = max(shares.rock, 1.0 - smoothstep(-0.35, 0.55, soil));
@@ -171,7 +173,7 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
     float temperate = smoothstep(3.0, 6.0, ground.temperature) * (1.0 - smoothstep(15.0, 19.0, ground.temperature));
     float flats = 1.0 - smoothstep(0.01, 0.15, shape.steep * (1.0 + 0.3 * ragged));
     wooded *= 1.0 - cover_open_flats * temperate * flats;
-    shares.forest = cover_trees == 2 ? 0.0 : wooded * (1.0 - smoothstep(0.85, 1.3, shape.steep));
+    shares.forest = cover_trees == 2 ? 0.0 : wooded * (1.0 - smoothstep(0.85 * rooted, 1.3 * rooted, shape.steep));
 
     vec2 bare = vec2(cover_tan(cover_bare_deg.x), cover_tan(cover_bare_deg.y));
     float holds = 1.0 - 0.85 * smoothstep(bare.x, bare.y, shape.steep * (1.0 + 0.25 * ragged));
@@ -224,7 +226,8 @@ void cover_on_albedo(inout Surface s) {
     open = mix(open, cover_floor, floor_share);
     open *= 1.0 + 0.8 * tone + near * 0.25 * shape.small.g * vec3(1.0, 0.0, -0.6);
     vec3 rock = mix(cover_rock, 0.62 * cover_desert + 0.2 * cover_rock, 1.0 - smoothstep(0.3, 1.0, rain));
-    rock *= 1.0 + tone;
+    // Wet rock is dark, with lichen and moss on it.
+    rock *= (1.0 + tone) * mix(1.0, 0.6, smoothstep(2.5, 4.5, rain));
     vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone) * cover_crowns(s, pixel_m);
     vec3 albedo = mix(open, rock, shares.rock);
     float trees = shares.forest * (1.0 - shares.rock);

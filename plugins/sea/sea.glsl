@@ -21,7 +21,10 @@ const vec3 sea_yellow_by_colour = vec3(0.0925, 0.214, 0.705);  // exp(-0.014 (wa
 const vec3 sea_scattered = vec3(0.004, 0.026, 0.036);     // albedo of deep water, chosen by eye: blue-green
 
 const vec3 sea_sand = vec3(0.30, 0.28, 0.21);  // of a floor whose colour nobody knows, chosen by eye
-const float sea_tide_m = 2.0;  // added to its depth: charts count from low water, posts are means
+const float sea_tide_m = 2.0;  // added to its depth: charts count from low water
+// And so much for each metre between posts: shelves slope by a hundredth or less, so that a shallow post says nothing
+// of the water half-way to the next one, and bright plates with the grid's corners would tell of the grid.
+const float sea_shelf = 0.01;
 
 /// How much of a flood a point is: all of it up to the level, none from 0.3 m above on.
 float sea_share(in float height_m) {
@@ -68,7 +71,7 @@ vec2 sea_water(in Surface s, in float height_m) {
         return vec2(sea_share(height_m), max(sea_level_m - height_m, 0.0) + sea_least_depth_m);
     const float unseen_m = 1000.0;
     vec4 water = water_of(s);
-    return vec2(water.x, mix(unseen_m, max(-height_m, 0.0) + sea_tide_m, water.y * water.z));
+    return vec2(water.x, mix(unseen_m, max(-height_m, 0.0) + sea_tide_m + sea_shelf / frame.normal_texels_per_m, water.y * water.z));
 }
 
 /// From a floor up to the level.

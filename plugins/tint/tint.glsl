@@ -15,19 +15,19 @@ uniform vec3 tint_plain = vec3(0.72, 0.71, 0.69); //@ colour label("Plain") desc
 uniform float tint_sun = 1.0; //@ range(0, 1) label("Sun") description("Share of the sun's direct light")
 uniform float tint_sky = 1.0; //@ range(0, 20) label("Sky") description("Factor on the light of the sky")
 
-// sRGB: what lies between two is mixed as it is seen.
+// sRGB: what lies between two is mixed as it is seen. Seas from the shore down, slopes every 10 degrees, aspects every 45.
 const int tint_lands = 8, tint_seas = 4, tint_slopes = 7, tint_aspects = 8;
 const vec3 tint_land[tint_lands] = vec3[](
     vec3(0.475, 0.643, 0.518), vec3(0.651, 0.757, 0.561), vec3(0.831, 0.847, 0.647), vec3(0.910, 0.835, 0.620),
-    vec3(0.843, 0.702, 0.502), vec3(0.745, 0.588, 0.451), vec3(0.749, 0.690, 0.647), vec3(0.957, 0.949, 0.937));
-const vec3 tint_sea[tint_seas] = vec3[](  // from the shore down
-    vec3(0.741, 0.859, 0.902), vec3(0.541, 0.733, 0.831), vec3(0.333, 0.565, 0.733), vec3(0.173, 0.365, 0.569));
-const vec3 tint_slope[tint_slopes] = vec3[](  // every 10 degrees
+    vec3(0.843, 0.702, 0.502), vec3(0.745, 0.588, 0.451), vec3(0.749, 0.690, 0.647), vec3(0.957, 0.949, 0.937)); //@ ramp(low_m, high_m) unit(m) label("Height") where(by, height)
+const vec3 tint_sea[tint_seas] = vec3[](
+    vec3(0.741, 0.859, 0.902), vec3(0.541, 0.733, 0.831), vec3(0.333, 0.565, 0.733), vec3(0.173, 0.365, 0.569)); //@ ramp(0, lowest) unit(m) label("Height") where(by, height)
+const vec3 tint_slope[tint_slopes] = vec3[](
     vec3(0.965, 0.961, 0.937), vec3(0.953, 0.914, 0.702), vec3(0.961, 0.812, 0.427), vec3(0.933, 0.604, 0.271),
-    vec3(0.851, 0.318, 0.184), vec3(0.659, 0.118, 0.235), vec3(0.353, 0.067, 0.314));
-const vec3 tint_aspect[tint_aspects] = vec3[](  // every 45 degrees from north by east
+    vec3(0.851, 0.318, 0.184), vec3(0.659, 0.118, 0.235), vec3(0.353, 0.067, 0.314)); //@ ramp(0, 60) unit(°) label("Slope") where(by, slope)
+const vec3 tint_aspect[tint_aspects] = vec3[](
     vec3(0.290, 0.435, 0.690), vec3(0.310, 0.624, 0.682), vec3(0.361, 0.722, 0.478), vec3(0.714, 0.812, 0.361),
-    vec3(0.949, 0.812, 0.290), vec3(0.918, 0.569, 0.251), vec3(0.812, 0.353, 0.373), vec3(0.561, 0.353, 0.627));
+    vec3(0.949, 0.812, 0.290), vec3(0.918, 0.569, 0.251), vec3(0.812, 0.353, 0.373), vec3(0.561, 0.353, 0.627)); //@ ramp(ring) label("Slopes face") where(by, aspect)
 const vec3 tint_level = vec3(0.851, 0.851, 0.831);  // ground without aspect
 
 /// Heights of the first and the last colour of land [m].
@@ -39,7 +39,7 @@ vec2 tint_range() {
 /// Colour of a height [m]; sRGB, as of all here.
 vec3 tint_of_height(in float height_m) {
     vec2 range = tint_range();
-    if (height_m < range.x && range.x >= 0.0 && frame.height_range.x < 0.0) {
+    if (height_m < 0.0 && range.x >= 0.0) {
         float at = clamp(height_m / frame.height_range.x, 0.0, 1.0) * float(tint_seas - 1);
         int first = min(int(at), tint_seas - 2);
         return mix(tint_sea[first], tint_sea[first + 1], at - float(first));

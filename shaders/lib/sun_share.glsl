@@ -23,8 +23,9 @@ float surface_moved_up_m(in Surface s) {
     float from_eye_m = dot(s.position_m, frame.eye_up.xyz);
     vec3 level_m = s.position_m - from_eye_m * frame.eye_up.xyz;
     const float earth_m = 6371000.0;
+    float to_level_m = earth_m + frame.eye_m.w + from_eye_m;  // from the Earth's centre, along the eye's vertical
     float above_m = frame.eye_m.w + from_eye_m +
-                    dot(level_m, level_m) / (2.0 * (earth_m + frame.eye_m.w + 0.5 * from_eye_m));
+                    dot(level_m, level_m) / (to_level_m + length(vec2(to_level_m, length(level_m))));
     float moved_m = above_m - s.height_m * frame.height_range.z;
     return abs(moved_m) > 0.02 + 3e-4 * s.distance_m ? moved_m : 0.0;
 #else

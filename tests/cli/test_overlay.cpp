@@ -96,6 +96,36 @@ TEST_F(OverlayOption, HasALegendUnlessNoneIsWanted) {
               std::vector<std::uint8_t>(without.row(200), without.row(201)));
 }
 
+TEST_F(OverlayOption, PresetsThatColourTheGroundHaveALegendToo) {
+    for (const char* preset : {"relief", "slope", "aspect"}) {
+        const image::Image8 with = taken("with.png", {"--preset", preset}),
+                            without = taken("without.png", {"--preset", preset, "--no-legend"});
+        EXPECT_GT(image::compare(with, without).share_over_1, 0.05) << preset;
+    }
+    const image::Image8 clay = taken("clay.png", {"--preset", "clay"});
+    EXPECT_EQ(taken("plain.png", {"--preset", "clay", "--no-legend"}).values, clay.values);
+}
+
+TEST_F(OverlayOption, StampsAreInTheSceneThatAPictureCarries) {
+    const image::Image8 first =
+        taken("first.png", {"--stamp", "title,scale,north,graticule,date,sun", "--attribution",
+                            "Data of an agency"});
+    EXPECT_GT(image::compare(first, taken("bare.png", {})).share_over_1, 0.05);
+    const Result again = relevo({"-q", "capture", "--from", (dir_ / "first.png").string(), "-o",
+                                 (dir_ / "again.png").string()});
+    EXPECT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(image::read(dir_ / "again.png").values, first.values);
+}
+
+TEST_F(OverlayOption, StampsThatAreNoneAreRefused) {
+    EXPECT_EQ(capture("refused.png", {"--stamp", "title,scael"}).err,
+              "relevo: error: --stamp: scael: expected all, none, or words of legend, title, scale, "
+              "north, graticule, date, sun, attribution\n");
+    EXPECT_EQ(capture("refused.png", {"--stamp", "attribution"}).err,
+              "relevo: error: --stamp: attribution: the words that name the data's source are "
+              "missing; expected --attribution TEXT\n");
+}
+
 TEST_F(OverlayOption, OfASceneIsThatOfItsFile) {
     const std::string sky = raster("sky.tif", {"sky-view", "--directions", "8"});
     const std::string scene = (dir_ / "scene.json").string();

@@ -93,6 +93,37 @@ TEST_F(SceneFile, ComesBackAsItWasWritten) {
     EXPECT_EQ(back.effects.settings[1].folder, dir_.string());
 }
 
+TEST_F(SceneFile, StampsComeBackAsTheyWereWritten) {
+    Scene scene;
+    scene.dems = {"/vsizip/b.zip/b.tif"};
+    EXPECT_EQ(scene_text(scene, dir_).find("stamps"), std::string::npos);
+    scene.stamps.legend = false;
+    scene.stamps.scale = scene.stamps.graticule = scene.stamps.attribution = true;
+    scene.stamps.title_text = "The valley";
+    scene.stamps.attribution_text = "Land Tirol - data.tirol.gv.at";
+    const Scene back = read_scene(write(scene_text(scene, dir_)));
+    EXPECT_EQ(back.stamps, scene.stamps);
+    const auto shown = [&](const std::string& list) {
+        return read_scene(write(with("\"stamps\": {\"show\": " + list + "}"))).stamps;
+    };
+    const Stamps all = shown("[\"all\"]");
+    EXPECT_TRUE(all.title && all.scale && all.north && all.graticule && all.date && all.sun);
+    EXPECT_FALSE(all.attribution);  // nobody said the words for it
+    EXPECT_EQ(shown("[\"none\"]"), Stamps());
+    EXPECT_TRUE(shown("[\"north\"]").north);
+}
+
+TEST_F(SceneFile, StampsThatAreNoneAreRefused) {
+    EXPECT_EQ(error(with("\"stamps\": {\"show\": [\"scael\"]}")),
+              "2: stamps.show: scael: expected all, none, or words of legend, title, scale, north, "
+              "graticule, date, sun, attribution");
+    EXPECT_EQ(error(with("\"stamps\": {\"show\": [\"attribution\"]}")),
+              "2: stamps.attribution: expected the words that name the data's source, which show "
+              "asks for");
+    EXPECT_EQ(error(with("\"stamps\": {\"titel\": \"x\"}")),
+              "2: stamps.titel: no such key; there are legend, title, attribution, show");
+}
+
 TEST_F(SceneFile, MistakesNameTheirPlace) {
     EXPECT_EQ(error("{\n"),
               "2: syntax error while parsing object key - unexpected end of input; "

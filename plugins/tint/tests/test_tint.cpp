@@ -1,7 +1,10 @@
 #include <array>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "base/units.h"
+#include "effect/effect.h"
 #include "support/gpu_snippet.h"
 #include "support/support.h"
 
@@ -64,6 +67,49 @@ TEST(Tint, HeightsGoFromTheFirstColourToTheLast) {
         gpu.run("result = vec4(tint_of_height(x == 0 ? 100.0 : 8000.0), 1.0);", 2, 1);
     expect_colour(beyond[0], 0.475, 0.643, 0.518);
     expect_colour(beyond[1], 0.957, 0.949, 0.937);
+}
+
+/// A ramp as plugin.json's legend shows it.
+shader::ColourRamp ramp(const std::string& name) {
+    const effect::Effect tint =
+        effect::load_effect(test::source_dir() / "plugins" / "tint", test::source_dir());
+    for (const shader::ColourRamp& one : tint.ramps())
+        if (one.name == name) return one;
+    ADD_FAILURE() << name;
+    return {};
+}
+
+TEST(Tint, LegendsShowTheColoursOfTheShader) {
+    test::GpuSnippet gpu("tint");
+    const auto expect_ramp = [&](const std::string& name, const std::string& colour, double from,
+                                 double step) {
+        const shader::ColourRamp shown = ramp(name);
+        ASSERT_GE(shown.colours.size(), 4u);
+        const auto count = static_cast<int>(shown.colours.size());
+        const auto results = gpu.run(
+            fmt::format("result = vec4({}, 1.0);",
+                        fmt::format(fmt::runtime(colour),
+                                    fmt::format("({:.6f} + {:.6f} * float(x))", from, step))),
+            count, 1);
+        for (std::size_t k = 0; k < shown.colours.size(); ++k)
+            expect_colour(results[k], shown.colours[k][0], shown.colours[k][1],
+                          shown.colours[k][2]);
+    };
+    const shader::ColourRamp slope = ramp("tint_slope");
+    EXPECT_EQ(slope.from.number, 0);
+    EXPECT_EQ(slope.to.number, 60);
+    EXPECT_EQ(slope.where, "tint.by");
+    EXPECT_EQ(slope.where_word, "slope");
+    expect_ramp("tint_slope", "tint_of_slope({})", 0, 10);
+    EXPECT_TRUE(ramp("tint_aspect").is_ring);
+    expect_ramp("tint_aspect", "tint_of_aspect({}, 30.0)", 0, 45);
+    gpu.values().set("tint.low_m", "500");
+    gpu.values().set("tint.high_m", "4000");
+    EXPECT_EQ(ramp("tint_land").from.address, "tint.low_m");
+    expect_ramp("tint_land", "tint_of_height({})", 500, 500);
+    gpu.frame().height_range = {-3000, 1.0f / 7000, 1, 0};
+    EXPECT_EQ(ramp("tint_sea").to.of, shader::ColourRamp::End::Of::Lowest);
+    expect_ramp("tint_sea", "tint_of_height({})", -1e-3, -1000);
 }
 
 TEST(Tint, LitColoursAreThoseOfTheLegendAsLight) {

@@ -1,0 +1,197 @@
+#include "chart/stamps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+namespace relevo::chart {
+namespace {
+
+constexpr Color kInk{0x202020}, kPanel{0xffffff, 0.82}, kEdge{0x303030};
+constexpr double kLetters = 11, kTitle = 17, kPadding = 8, kMargin = 12, kGap = 6;
+constexpr double kMostBar = 200, kMostOfWidth = 0.4;
+
+/// Words on a panel, a line below the other.
+Drawing lines_panel(const std::vector<std::string>& lines, double size, bool bold) {
+    double width = 0;
+    for (const std::string& line : lines)
+        width = std::max(width, text_width(line, size, bold));
+    const double step = size * 1.4;
+    Drawing drawing(std::ceil(width + 2 * kPadding),
+                    std::ceil(static_cast<double>(lines.size()) * step + 1.3 * kPadding));
+    drawing.rect({0, 0, drawing.width(), drawing.height()}, {.fill = kPanel});
+    for (std::size_t k = 0; k < lines.size(); ++k)
+        drawing.text({kPadding, kPadding + size * 0.8 + static_cast<double>(k) * step}, lines[k],
+                     {.size = size, .color = kInk, .bold = bold});
+    return drawing;
+}
+
+/// Black and white parts, 0 at the left end.
+Drawing scale_panel(const Stamps::Scale& scale, double width_px, double unit_px) {
+    const double most_px = std::min(kMostBar * unit_px, kMostOfWidth * width_px);
+    const ScaleBar bar = scale_bar(scale.px_per_m, most_px);
+    const double length = bar.length_px / unit_px, height = 5;
+    const std::string end = bar.text();
+    const double words = scale.where.empty() ? 0 : text_width(scale.where, kLetters);
+    const double left = kPadding + 3, over = text_width(end, kLetters) / 2;
+    const double top = kPadding + kLetters + 4;
+    Drawing drawing(
+        std::ceil(std::max(left + length + std::max(over, kPadding) + 2, left + words + kPadding)),
+        std::ceil(top + height + kPadding + (words > 0 ? kLetters + 6 : 0)));
+    drawing.rect({0, 0, drawing.width(), drawing.height()}, {.fill = kPanel});
+    for (int part = 0; part < 4; ++part)
+        drawing.rect({left + length * part / 4, top, length / 4, height},
+                     {.fill = part % 2 == 0 ? Color{0x202020} : Color{0xffffff}, .crisp = true});
+    drawing.rect({left, top, length, height}, {.stroke = kEdge, .width = 0.8});
+    drawing.text({left, top - 4}, "0", {.size = kLetters, .color = kInk, .anchor = Anchor::Middle});
+    drawing.text({left + length, top - 4}, end,
+                 {.size = kLetters, .color = kInk, .anchor = Anchor::Middle});
+    if (words > 0)
+        drawing.text({left, top + height + kLetters + 4}, scale.where,
+                     {.size = kLetters, .color = kInk});
+    return drawing;
+}
+
+/// An arrow as long whichever way it points.
+Drawing north_panel(const glm::dvec2& north) {
+    constexpr double kSide = 52, kArrow = 17, kHalf = 6;
+    Drawing drawing(kSide, kSide);
+    const glm::dvec2 middle(kSide / 2), aside(-north.y, north.x);
+    drawing.circle(middle, kSide / 2, {.fill = kPanel});
+    const glm::dvec2 tip = middle + (kArrow - 5) * north, tail = middle - kArrow * north;
+    const glm::dvec2 notch = middle - (kArrow - 6) * north;
+    drawing.path({tip, tail + kHalf * aside, notch}, {.fill = kInk, .stroke = kInk, .width = 0.8},
+                 true);
+    drawing.path({tip, tail - kHalf * aside, notch},
+                 {.fill = Color{0xffffff}, .stroke = kInk, .width = 0.8}, true);
+    drawing.text(middle + (kArrow + 1) * north + glm::dvec2(0, kLetters * 0.36), "N",
+                 {.size = kLetters, .color = kInk, .anchor = Anchor::Middle, .bold = true});
+    return drawing;
+}
+
+enum class Corner { TopLeft, TopRight, BottomLeft, BottomRight };
+
+/// Gives out the room of a picture, from its corners on.
+class Layout {
+  public:
+    explicit Layout(image::Image8& picture)
+        : picture_(picture), unit_px_(stamp_scale(picture.width, picture.height)) {}
+
+    double unit_px() const { return unit_px_; }
+
+    /// @returns whether there was room
+    bool add(const Drawing& drawing, Corner corner) {
+        const double margin = kMargin * unit_px_;
+        const double width = drawing.width() * unit_px_, height = drawing.height() * unit_px_;
+        double& used = used_[static_cast<std::size_t>(corner)];
+        const bool right = corner == Corner::TopRight || corner == Corner::BottomRight;
+        const bool below = corner == Corner::BottomLeft || corner == Corner::BottomRight;
+        const double from = margin + used;
+        const Rect at{std::round(right ? picture_.width - margin - width : margin),
+                      std::round(below ? picture_.height - from - height : from), width, height};
+        if (!is_free(at, 0)) return false;
+        taken_.push_back(at);
+        used += height + kGap * unit_px_;
+        paint(drawing, static_cast<int>(at.x), static_cast<int>(at.y), unit_px_, picture_);
+        return true;
+    }
+
+    /// Whether a place is in the picture and nothing stands there.
+    bool is_free(const Rect& at, double margin_px) const {
+        if (at.x < margin_px || at.y < margin_px ||
+            at.x + at.width > picture_.width - margin_px ||
+            at.y + at.height > picture_.height - margin_px)
+            return false;
+        return std::none_of(taken_.begin(), taken_.end(), [&](const Rect& other) {
+            return at.x < other.x + other.width && other.x < at.x + at.width &&
+                   at.y < other.y + other.height && other.y < at.y + at.height;
+        });
+    }
+
+    void take(const Rect& at) { taken_.push_back(at); }
+
+  private:
+    image::Image8& picture_;
+    double unit_px_;
+    std::array<double, 4> used_{};  // of each corner, upwards or downwards
+    std::vector<Rect> taken_;
+};
+
+/// @returns how many labels had no room
+int add_labels(const std::vector<Stamps::Label>& labels, Layout& layout, image::Image8& picture) {
+    if (labels.empty()) return 0;
+    const double unit = layout.unit_px(), size = kLetters * unit;
+    Drawing drawing(picture.width, picture.height);
+    int left_out = 0;
+    for (const Stamps::Label& label : labels) {
+        const double width = text_width(label.words, size), half = size * 0.5;
+        const double reach = std::abs(label.away.x) * width / 2 + std::abs(label.away.y) * half;
+        const glm::dvec2 middle = label.at_px + (reach + 5 * unit) * label.away;
+        const Rect at{middle.x - width / 2, middle.y - half, width, size};
+        if (!layout.is_free(at, 2 * unit)) {
+            ++left_out;
+            continue;
+        }
+        layout.take(at);
+        drawing.text({middle.x, middle.y + size * 0.36}, label.words,
+                     {.size = size,
+                      .color = kInk,
+                      .anchor = Anchor::Middle,
+                      .halo = Color{0xffffff, 0.85}});
+    }
+    paint(drawing, 0, 0, 1, picture);
+    return left_out;
+}
+
+}  // namespace
+
+ScaleBar scale_bar(double px_per_m, double most_px) {
+    const double most_m = most_px / px_per_m;
+    const double ten = std::pow(10, std::floor(std::log10(most_m) + 1e-9));
+    for (const double factor : {5.0, 2.0})
+        if (factor * ten <= most_m) return {factor * ten, factor * ten * px_per_m};
+    return {ten, ten * px_per_m};
+}
+
+std::string ScaleBar::text() const {
+    if (length_m >= 999.5) return fmt::format("{:.0f} km", length_m / 1000);
+    if (length_m >= 0.995) return fmt::format("{:.0f} m", length_m);
+    return length_m >= 0.00995 ? fmt::format("{:.0f} cm", length_m * 100)
+                               : fmt::format("{:g} mm", length_m * 1000);
+}
+
+double stamp_scale(int width_px, int height_px) {
+    return std::clamp(std::min(width_px, height_px) / 900.0, 0.8, 16.0);
+}
+
+std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture) {
+    Layout layout(picture);
+    std::vector<std::string> left_out;
+    const auto add = [&](const Drawing& drawing, Corner corner, const char* name) {
+        if (!layout.add(drawing, corner)) left_out.emplace_back(name);
+    };
+    for (const Legend& one : stamps.legends)
+        add(legend(one), Corner::TopRight, "legend");
+    if (!stamps.title.empty())
+        add(lines_panel({stamps.title}, kTitle, true), Corner::TopLeft, "title");
+    if (stamps.scale)
+        add(scale_panel(*stamps.scale, picture.width, layout.unit_px()), Corner::BottomLeft,
+            "scale");
+    if (!stamps.attribution.empty())
+        add(lines_panel(wrapped(stamps.attribution, 0.85 * kLetters,
+                                0.45 * picture.width / layout.unit_px()),
+                        0.85 * kLetters, false),
+            Corner::BottomRight, "attribution");
+    if (!stamps.lines.empty())
+        add(lines_panel(stamps.lines, kLetters, false), Corner::BottomRight, "date and sun");
+    if (stamps.north) add(north_panel(*stamps.north), Corner::BottomLeft, "north");
+    const int labels = add_labels(stamps.graticule, layout, picture);
+    if (labels > 0) left_out.push_back(
+            fmt::format("{} label{} of the graticule", labels, labels > 1 ? "s" : ""));
+    return left_out;
+}
+
+}  // namespace relevo::chart

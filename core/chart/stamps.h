@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "chart/legend.h"
+#include "image/image.h"
+
+namespace relevo::chart {
+
+/// What is put on a finished picture. Places are pixels, from the upper left corner.
+struct Stamps {
+    struct Scale {
+        double px_per_m = 0;
+        std::string where;  ///< where it holds: "at the picture's middle"; empty: everywhere
+    };
+    /// A line of the graticule, where it ends in the picture.
+    struct Label {
+        glm::dvec2 at_px{0};
+        glm::dvec2 away{0, 1};  ///< unit: from the line into the open
+        std::string words;      ///< "47°30'N"
+    };
+    std::string title;
+    std::vector<Legend> legends;
+    std::optional<Scale> scale;
+    std::optional<glm::dvec2> north;  ///< unit, right and down: where it points in the picture
+    std::vector<std::string> lines;   ///< date and sun
+    std::string attribution;
+    std::vector<Label> graticule;
+};
+
+/// A length that a bar of at most so many pixels shows, 1, 2 or 5 times a power of ten metres.
+struct ScaleBar {
+    double length_m, length_px;
+    std::string text() const;  ///< "2 km", "50 m", "20 cm"
+};
+ScaleBar scale_bar(double px_per_m, double most_px);
+
+/// Pixels of a unit of what is stamped: letters are 11 units tall.
+double stamp_scale(int width_px, int height_px);
+
+/// Puts them on a picture, RGB, each whole and over none of the others.
+/// @returns what had no room: "title", "legend", "scale", "north", "date and sun", "attribution",
+///          "2 labels of the graticule"
+/// @throws Error (Failed) as paint()
+std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture);
+
+}  // namespace relevo::chart

@@ -1,0 +1,107 @@
+#include "session/colour_legends.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace relevo::session {
+namespace {
+
+using shader::ColourRamp;
+
+struct Range {
+    double lowest, highest;
+};
+
+bool is_shown(const ColourRamp& ramp, const shader::ParamStore& values) {
+    if (ramp.where.empty()) return true;
+    const std::vector<std::string>& words = values.param(ramp.where).words;
+    return words.at(static_cast<std::size_t>(values.value(ramp.where)[0])) == ramp.where_word;
+}
+
+double value_of(const ColourRamp::End& end, const shader::ParamStore& values, const Range& ground) {
+    switch (end.of) {
+        case ColourRamp::End::Of::Number: return end.number;
+        case ColourRamp::End::Of::Param: return values.value(end.address)[0];
+        case ColourRamp::End::Of::Lowest: return ground.lowest;
+        case ColourRamp::End::Of::Highest: return ground.highest;
+    }
+    return 0;
+}
+
+/// Values of the first and the last colour, where the ground has any of them.
+std::optional<std::pair<double, double>> ends_of(const ColourRamp& ramp,
+                                                 const shader::ParamStore& values,
+                                                 const Range& ground) {
+    if (ramp.is_ring) return std::pair(0.0, 360.0);
+    double from = value_of(ramp.from, values, ground), to = value_of(ramp.to, values, ground);
+    using Of = ColourRamp::End::Of;
+    // Land, where parameters leave it open.
+    if (ramp.from.of == Of::Param && ramp.to.of == Of::Param && !(from < to)) {
+        from = std::max(ground.lowest, std::min(ground.highest, 0.0));
+        to = std::max(ground.highest, from + 1e-3);
+    }
+    if (ramp.to.of == Of::Lowest && !(to < from)) return std::nullopt;
+    if (ramp.to.of == Of::Highest && !(to > from)) return std::nullopt;
+    return std::pair(from, to);
+}
+
+chart::Color colour_of(const std::array<double, 3>& srgb) {
+    chart::Color color;
+    for (const double part : srgb)
+        color.rgb = color.rgb << 8 | static_cast<std::uint32_t>(std::lround(255 * part));
+    return color;
+}
+
+/// Rising, whichever way the ramp goes.
+std::vector<chart::Ramp::Stop> stops_of(const ColourRamp& ramp, double from, double to) {
+    std::vector<chart::Ramp::Stop> stops;
+    const auto count = static_cast<double>(ramp.colours.size() - (ramp.is_ring ? 0 : 1));
+    for (std::size_t k = 0; k < ramp.colours.size(); ++k)
+        stops.push_back(
+            {from + (to - from) * static_cast<double>(k) / count, colour_of(ramp.colours[k])});
+    if (ramp.is_ring) stops.push_back({to, stops.front().color});
+    if (to < from) std::reverse(stops.begin(), stops.end());
+    return stops;
+}
+
+/// Puts further values under or over those of a legend; where they meet, colours change at once.
+void join(std::vector<chart::Ramp::Stop> more, chart::Ramp& ramp) {
+    const bool below = more.front().value < ramp.stops.front().value;
+    std::vector<chart::Ramp::Stop>&low = below ? more : ramp.stops, &high = below ? ramp.stops
+                                                                                   : more;
+    if (low.back().value >= high.front().value)
+        low.back().value =
+            std::nextafter(high.front().value, -std::numeric_limits<double>::infinity());
+    low.insert(low.end(), high.begin(), high.end());
+    if (below) ramp.stops = std::move(more);
+}
+
+}  // namespace
+
+std::vector<chart::Legend> colour_legends(const ActiveEffects& effects, double lowest_m,
+                                          double highest_m) {
+    std::vector<chart::Legend> legends;
+    for (const effect::Effect* effect : effects.loaded.selection.effects)
+        for (const ColourRamp& ramp : effect->ramps()) {
+            if (!is_shown(ramp, effects.values)) continue;
+            const auto ends = ends_of(ramp, effects.values, {lowest_m, highest_m});
+            if (!ends) continue;
+            auto stops = stops_of(ramp, ends->first, ends->second);
+            const auto same =
+                std::find_if(legends.begin(), legends.end(), [&](const chart::Legend& l) {
+                    return l.title == ramp.label && l.unit == ramp.unit;
+                });
+            if (same == legends.end())
+                legends.push_back({.title = ramp.label,
+                                   .unit = ramp.unit,
+                                   .ramp = {.stops = std::move(stops)},
+                                   .ring = ramp.is_ring});
+            else
+                join(std::move(stops), same->ramp);
+        }
+    return legends;
+}
+
+}  // namespace relevo::session

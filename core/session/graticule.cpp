@@ -1,0 +1,206 @@
+#include "session/graticule.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "base/parallel_for.h"
+#include "base/units.h"
+
+namespace relevo::session {
+namespace {
+
+constexpr int kMostLines = 7;
+constexpr double kNarrow = 6, kWide = 14;  // units between lines where they are gone, and whole
+constexpr double kHalf = 0.55, kHalfEdge = 1.3;  // units
+constexpr float kLineOpacity = 0.85f, kEdgeOpacity = 0.35f;
+
+constexpr std::array<int, 18> kSteps_s = {1,   2,   5,    10,   15,   30,    60,    120,   300,
+                                          600, 900, 1800, 3600, 7200, 18000, 36000, 54000, 108000};
+
+/// One of the two coordinates at each pixel [degrees]; NaN where no ground is.
+using Field = std::vector<double>;
+
+struct Places {
+    Field latitude, longitude;
+};
+
+/// Longitudes without a leap in them, as far as one turn allows.
+Places places_of(const SeenGround& seen, const geo::LocalFrame& frame) {
+    const int width = seen.width_px();
+    const auto size = static_cast<std::size_t>(width) * static_cast<std::size_t>(seen.height_px());
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Places places{Field(size, nan), Field(size, nan)};
+    const double middle_deg = degrees(frame.origin().lon_rad);
+    parallel_for(0, seen.height_px(), 8, [&](int first, int end) {
+        for (int y = first; y < end; ++y)
+            for (int x = 0; x < width; ++x) {
+                const auto point = seen.point(x, y);
+                if (!point) continue;
+                const geo::Geodetic place = frame.to_geodetic(*point);
+                const std::size_t at = static_cast<std::size_t>(y) *
+                                           static_cast<std::size_t>(width) +
+                                       static_cast<std::size_t>(x);
+                places.latitude[at] = degrees(place.lat_rad);
+                places.longitude[at] =
+                    middle_deg + std::remainder(degrees(place.lon_rad) - middle_deg, 360);
+            }
+    });
+    return places;
+}
+
+double range_of(const Field& field) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double value : field) {
+        low = value < low ? value : low;
+        high = value > high ? value : high;
+    }
+    return std::max(high - low, 0.0);
+}
+
+/// What a coordinate changes by from a pixel to the next. Over a silhouette the neighbour beyond is
+/// other ground: the nearer of two counts.
+double change_at(const Field& field, int x, int y, int width, int height) {
+    const auto at = [&](int column, int row) {
+        return column < 0 || row < 0 || column >= width || row >= height
+                   ? std::numeric_limits<double>::quiet_NaN()
+                   : field[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                           static_cast<std::size_t>(column)];
+    };
+    const double here = at(x, y);
+    const auto least = [](double a, double b) { return std::isnan(a) || b < a ? b : a; };
+    const double across = least(std::abs(at(x - 1, y) - here), std::abs(at(x + 1, y) - here));
+    const double down = least(std::abs(at(x, y - 1) - here), std::abs(at(x, y + 1) - here));
+    return std::hypot(std::isnan(across) ? 0 : across, std::isnan(down) ? 0 : down);
+}
+
+/// Where a line of one coordinate is in the picture.
+struct Course {
+    glm::ivec2 left{0}, right{0}, top{0}, bottom{0};  // its outermost pixels
+};
+
+using Courses = std::map<long, Course>;  // by the number of steps
+
+void note(Courses& courses, long number, const glm::ivec2& at) {
+    const auto [found, fresh] = courses.try_emplace(number, Course{at, at, at, at});
+    if (fresh) return;
+    Course& course = found->second;
+    if (at.x < course.left.x) course.left = at;
+    if (at.x > course.right.x) course.right = at;
+    if (at.y < course.top.y) course.top = at;
+    if (at.y > course.bottom.y) course.bottom = at;
+}
+
+/// Draws the lines of one coordinate.
+template <typename IsGround>
+Courses draw(const Field& field, double step_deg, const SeenGround& seen, const IsGround& is_ground,
+             Graticule& result) {
+    const int width = seen.width_px(), height = seen.height_px();
+    const double unit = chart::stamp_scale(width, height);
+    Courses courses;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                   static_cast<std::size_t>(x);
+            if (std::isnan(field[at])) continue;
+            const double value = field[at] / step_deg;
+            const double away = std::abs(value - std::round(value));
+            const double change = change_at(field, x, y, width, height) / step_deg;
+            if (away > change * (kHalfEdge * unit + 0.5)) continue;
+            const double wide =
+                std::clamp((1 / change / unit - kNarrow) / (kWide - kNarrow), 0.0, 1.0);
+            if (wide <= 0 || !is_ground(*seen.point(x, y))) continue;
+            const double away_px = away / change;
+            const auto share = [&](double half) {
+                return static_cast<float>(wide * std::clamp(half * unit + 0.5 - away_px, 0.0, 1.0));
+            };
+            result.line[at] = std::max(result.line[at], kLineOpacity * share(kHalf));
+            result.edge[at] = std::max(result.edge[at], kEdgeOpacity * share(kHalfEdge));
+            if (away_px <= 0.5 && wide >= 1) note(courses, std::lround(value), {x, y});
+        }
+    return courses;
+}
+
+/// "47°30'" of a positive angle.
+std::string angle_text(double angle_deg, double step_deg) {
+    const auto whole_s = static_cast<long>(std::lround(angle_deg * 3600));
+    const auto step_s = static_cast<long>(std::lround(step_deg * 3600));
+    std::string text = fmt::format("{}°", whole_s / 3600);
+    if (step_s % 3600 != 0) text += fmt::format("{:02}'", whole_s / 60 % 60);
+    if (step_s % 60 != 0) text += fmt::format("{:02}\"", whole_s % 60);
+    return text;
+}
+
+/// Lines that cross the picture are named at their left end, lines that lead into it below.
+void name(const Courses& courses, double step_deg, std::string (*text)(double, double),
+          std::vector<chart::Stamps::Label>& labels) {
+    for (const auto& [number, course] : courses) {
+        const int wide = course.right.x - course.left.x, tall = course.bottom.y - course.top.y;
+        const bool across = wide > tall;
+        const glm::ivec2 end = across ? course.left : course.bottom;
+        const glm::ivec2 other = across ? course.right : course.top;
+        glm::dvec2 away = across ? glm::dvec2(-1, 0) : glm::dvec2(0, 1);
+        if (end != other) away = glm::normalize(glm::dvec2(end - other));
+        labels.push_back({glm::dvec2(end) + 0.5, away,
+                          text(static_cast<double>(number) * step_deg, step_deg)});
+    }
+}
+
+}  // namespace
+
+double graticule_step_deg(double range_deg, int most) {
+    for (const int step_s : kSteps_s)
+        if (range_deg * 3600 / step_s <= most) return step_s / 3600.0;
+    return kSteps_s.back() / 3600.0;
+}
+
+std::string latitude_text(double latitude_deg, double step_deg) {
+    const bool equator = std::abs(latitude_deg) < step_deg / 2;
+    return angle_text(std::abs(latitude_deg), step_deg) +
+           (equator ? "" : latitude_deg > 0 ? "N" : "S");
+}
+
+std::string longitude_text(double longitude_deg, double step_deg) {
+    const double within = std::remainder(longitude_deg, 360);
+    const bool plain =
+        std::abs(within) < step_deg / 2 || std::abs(within) > 180 - step_deg / 2;
+    return angle_text(std::abs(within), step_deg) + (plain ? "" : within > 0 ? "E" : "W");
+}
+
+Graticule make_graticule(const SeenGround& seen, const geo::LocalFrame& frame,
+                         const std::function<bool(const glm::dvec3& point_m)>& is_ground) {
+    const Places places = places_of(seen, frame);
+    Graticule result;
+    result.line.assign(places.latitude.size(), 0);
+    result.edge.assign(places.latitude.size(), 0);
+    const double range_lat = range_of(places.latitude), range_lon = range_of(places.longitude);
+    if (!(range_lat > 0 && range_lon > 0)) return result;
+    result.latitude_step_deg = graticule_step_deg(range_lat, kMostLines);
+    result.longitude_step_deg = graticule_step_deg(range_lon, kMostLines);
+    name(draw(places.latitude, result.latitude_step_deg, seen, is_ground, result),
+         result.latitude_step_deg, latitude_text, result.labels);
+    name(draw(places.longitude, result.longitude_step_deg, seen, is_ground, result),
+         result.longitude_step_deg, longitude_text, result.labels);
+    return result;
+}
+
+void draw_lines(const Graticule& graticule, image::Image8& picture) {
+    for (std::size_t at = 0; at < graticule.line.size(); ++at) {
+        const float line = graticule.line[at], edge = graticule.edge[at];
+        if (line <= 0 && edge <= 0) continue;
+        for (int channel = 0; channel < 3; ++channel) {
+            std::uint8_t& value =
+                picture.values[at * 3 + static_cast<std::size_t>(channel)];
+            const float darkened = static_cast<float>(value) * (1 - edge);
+            value = static_cast<std::uint8_t>(
+                std::lround(darkened + line * (255.0f - darkened)));
+        }
+    }
+}
+
+}  // namespace relevo::session

@@ -1,0 +1,123 @@
+#include "shader/colour_ramp.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/text.h"
+#include "shader/annotation.h"
+#include "shader/tokenizer.h"
+
+namespace relevo::shader {
+namespace {
+
+class RampReader {
+  public:
+    RampReader(ColourRamp& ramp, std::string_view owner) : ramp_(ramp), owner_(owner) {}
+
+    void annotation(const std::vector<AnnotationWord>& words) {
+        bool has_ramp = false;
+        for (const AnnotationWord& word : words) {
+            if (word.name == "ramp") {
+                ends(word);
+                has_ramp = true;
+            } else if (word.name == "unit" && word.arguments.size() == 1) {
+                ramp_.unit = word.arguments[0];
+            } else if (word.name == "label" && word.arguments.size() == 1) {
+                ramp_.label = word.arguments[0];
+            } else if (word.name == "where" && word.arguments.size() == 2) {
+                ramp_.where = fmt::format("{}.{}", owner_, word.arguments[0]);
+                ramp_.where_word = word.arguments[1];
+            } else {
+                fail(fmt::format("expected ramp(from, to), unit(m), label(\"Text\") or "
+                                 "where(parameter, word) but got {}({})",
+                                 word.name, fmt::join(word.arguments, ", ")));
+            }
+        }
+        if (!has_ramp) fail("a constant's annotation is a ramp(from, to), which is missing");
+        if (ramp_.label.empty()) fail("a ramp has a label(\"Text\"), which is missing");
+    }
+
+    void colours(std::string_view text) {
+        text = trimmed(text);
+        constexpr std::string_view kHead = "vec3[]";
+        if (text.substr(0, kHead.size()) != kHead) fail_colours();
+        text = trimmed(text.substr(kHead.size()));
+        if (text.size() < 2 || text.front() != '(' || text.back() != ')') fail_colours();
+        text = text.substr(1, text.size() - 2);
+        while (!(text = trimmed(text)).empty()) {
+            const std::size_t end = text.find(')');
+            if (text.substr(0, 5) != "vec3(" || end == std::string_view::npos) fail_colours();
+            ramp_.colours.push_back(colour(text.substr(5, end - 5)));
+            text = trimmed(text.substr(end + 1));
+            if (!text.empty() && text.front() != ',') fail_colours();
+            if (!text.empty()) text.remove_prefix(1);
+        }
+        if (ramp_.colours.size() < 2) fail_colours();
+    }
+
+  private:
+    [[noreturn]] void fail(std::string_view message) const {
+        source_error(ramp_.file, ramp_.line, fmt::format("{}: {}", ramp_.name, message));
+    }
+    [[noreturn]] void fail_colours() const {
+        fail("a ramp is at least two colours, vec3[](vec3(0.1, 0.2, 0.3), ...), numbers of 0 to 1");
+    }
+
+    std::array<double, 3> colour(std::string_view text) const {
+        const std::vector<std::string> parts = split(text, ',');
+        std::array<double, 3> result{};
+        if (parts.size() != 3) fail_colours();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::optional<double> part = parse_number(trimmed(parts[k]));
+            if (!part || !(*part >= 0 && *part <= 1)) fail_colours();
+            result[k] = *part;
+        }
+        return result;
+    }
+
+    void ends(const AnnotationWord& word) {
+        ramp_.is_ring = word.arguments.size() == 1 && word.arguments[0] == "ring";
+        if (ramp_.is_ring) return;
+        if (word.arguments.size() != 2)
+            fail(fmt::format("expected ramp(from, to) or ramp(ring) but got ramp({})",
+                             fmt::join(word.arguments, ", ")));
+        ramp_.from = end(word.arguments[0]);
+        ramp_.to = end(word.arguments[1]);
+        const bool numbers = ramp_.from.of == ColourRamp::End::Of::Number &&
+                             ramp_.to.of == ColourRamp::End::Of::Number;
+        if (numbers && !(ramp_.from.number < ramp_.to.number))
+            fail(fmt::format("expected ramp(from, to), the first below the second, but got "
+                             "ramp({})",
+                             fmt::join(word.arguments, ", ")));
+    }
+
+    ColourRamp::End end(const std::string& text) const {
+        if (text == "lowest") return {ColourRamp::End::Of::Lowest, 0, {}};
+        if (text == "highest") return {ColourRamp::End::Of::Highest, 0, {}};
+        if (const std::optional<double> number = parse_number(text))
+            return {ColourRamp::End::Of::Number, *number, {}};
+        return {ColourRamp::End::Of::Param, 0, fmt::format("{}.{}", owner_, text)};
+    }
+
+    ColourRamp& ramp_;
+    std::string_view owner_;
+};
+
+}  // namespace
+
+ColourRamp parse_ramp(std::string_view owner, std::string_view name, std::string_view value,
+                      std::string_view annotation, std::string_view file, int line) {
+    ColourRamp ramp;
+    ramp.name = name;
+    ramp.file = file;
+    ramp.line = line;
+    RampReader reader(ramp, owner);
+    reader.annotation(parse_annotation(annotation, file, line));
+    reader.colours(value);
+    return ramp;
+}
+
+}  // namespace relevo::shader

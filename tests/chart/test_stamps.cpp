@@ -1,0 +1,97 @@
+#include <algorithm>
+
+#include <gmock/gmock.h>
+
+#include "chart/stamps.h"
+
+namespace relevo::chart {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+image::Image8 grey(int width, int height) {
+    image::Image8 picture(width, height, 3);
+    std::fill(picture.values.begin(), picture.values.end(), std::uint8_t{128});
+    return picture;
+}
+
+TEST(ScaleBar, IsTheLongestRoundLengthThereIsRoomFor) {
+    const auto text = [](double px_per_m) { return scale_bar(px_per_m, 200).text(); };
+    EXPECT_EQ(text(0.013), "10 km");
+    EXPECT_EQ(text(0.00399), "50 km");
+    EXPECT_EQ(text(0.1), "2 km");
+    EXPECT_EQ(text(0.5), "200 m");
+    EXPECT_EQ(text(399), "50 cm");
+    const ScaleBar bar = scale_bar(0.013, 200);
+    EXPECT_DOUBLE_EQ(bar.length_m, 10000);
+    EXPECT_DOUBLE_EQ(bar.length_px, 130);
+    EXPECT_LE(scale_bar(0.1, 200).length_px, 200);
+}
+
+TEST(Stamps, TheBarIsAsLongAsItsLengthIsInThePicture) {
+    for (const int side : {450, 900, 1800}) {
+        image::Image8 picture = grey(side, side);
+        Stamps stamps;
+        stamps.scale = Stamps::Scale{0.011, ""};
+        EXPECT_THAT(stamp(stamps, picture), IsEmpty());
+        const double unit = stamp_scale(side, side);
+        const ScaleBar bar = scale_bar(0.011, std::min(200 * unit, 0.4 * side));
+        // The first and the third of its four parts are black.
+        int first = side, last = 0;
+        for (int y = 0; y < side; ++y) {
+            int from = -1, run = 0;
+            for (int x = 0; x < side; ++x) {
+                const bool black = picture.at(x, y, 0) < 60;
+                run = black ? run + 1 : 0;
+                if (run > 0.2 * bar.length_px) from = x - run + 1, first = std::min(first, from);
+                if (run > 0.2 * bar.length_px) last = std::max(last, x);
+            }
+        }
+        EXPECT_NEAR(last + 1 - first, 0.75 * bar.length_px, 2.5) << side;
+    }
+}
+
+TEST(Stamps, WhatHasNoRoomIsNamedAndNotThere) {
+    Stamps stamps;
+    stamps.title = "The valley of the Inn";
+    stamps.lines = {"2026-06-21 08:19 UTC+02:00", "Sun: azimuth 84.54, elevation 27.52"};
+    stamps.attribution = "AW3D30 (JAXA)";
+    stamps.north = glm::dvec2(0, -1);
+    stamps.scale = Stamps::Scale{0.02, "across the view, at the picture's middle, 80 km away"};
+    stamps.legends = {{"Height", "m", named_ramp("viridis", 0, 3000)}};
+    stamps.graticule = {{{20, 20}, {-1, 0}, "47°30'N"}};
+    image::Image8 large = grey(1280, 800);
+    EXPECT_THAT(stamp(stamps, large), ElementsAre("1 label of the graticule"));  // off the edge
+    image::Image8 tiny = grey(40, 30);
+    const std::vector<std::uint8_t> before = tiny.values;
+    EXPECT_THAT(stamp(stamps, tiny),
+                ElementsAre("legend", "title", "scale", "attribution", "date and sun", "north",
+                            "1 label of the graticule"));
+    EXPECT_EQ(tiny.values, before);
+}
+
+TEST(Stamps, NothingIsClipped) {
+    // A frame of untouched pixels stays around all that is stamped, at any size.
+    for (const auto& [width, height] :
+         {std::pair(1280, 800), std::pair(640, 480), std::pair(320, 240), std::pair(160, 900)}) {
+        image::Image8 picture = grey(width, height);
+        Stamps stamps;
+        stamps.title = "Title";
+        stamps.lines = {"Sun: azimuth 84.54, elevation 27.52 (27.55 with refraction)"};
+        stamps.attribution = "Data of some agency";
+        stamps.north = glm::dvec2(0.6, -0.8);
+        stamps.scale = Stamps::Scale{0.02, "across the view, at the picture's middle"};
+        stamps.legends = {{"Slopes face", "", named_ramp("viridis", 0, 360), true}};
+        for (int k = 0; k < 12; ++k)
+            stamps.graticule.push_back({{k * width / 11.0, k * height / 11.0}, {0, 1}, "11°30'E"});
+        stamp(stamps, picture);
+        for (int x = 0; x < width; ++x)
+            for (const int y : {0, height - 1}) EXPECT_EQ(picture.at(x, y, 1), 128);
+        for (int y = 0; y < height; ++y)
+            for (const int x : {0, width - 1}) EXPECT_EQ(picture.at(x, y, 1), 128);
+    }
+}
+
+}  // namespace
+}  // namespace relevo::chart

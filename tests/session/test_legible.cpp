@@ -1,0 +1,237 @@
+// Whether what is seen in a picture from above is the ground's shape.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "base/units.h"
+#include "dem/posts.h"
+#include "light/horizons.h"
+#include "light/shadows.h"
+#include "session/seen_ground.h"
+#include "session/session.h"
+#include "sun/position.h"
+#include "support/support.h"
+
+namespace relevo::session {
+namespace {
+
+constexpr int kSide_px = 320, kWide_px = 16;
+constexpr std::size_t kPredictors = 4;
+using Values = Array2d<double>;
+
+const double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Of one DEM, what its picture may be explained by: incidence of the sun, whether it is in sight,
+/// both at once, and the sky that is in sight.
+class Predictors {
+  public:
+    Predictors(const LoadedDem& dem, const geo::LocalFrame& frame, const sun::Position& sun)
+        : field_(dem.field) {
+        const dem::Posts posts(field_);
+        const double ce = std::cos(sun.elevation_rad);
+        const glm::dvec3 to_sun(ce * std::sin(sun.azimuth_rad), ce * std::cos(sun.azimuth_rad),
+                                std::sin(sun.elevation_rad));
+        const Array2d<float> lit =
+            light::shadows(posts, light::SunOverDem::of(sun), {.soft = true}).lit;
+        const Array2d<float> sky = light::sky_view(posts, {.directions = 16}).share;
+        const int width = field_.height_m.width(), height = field_.height_m.height();
+        for (Array2d<float>& one : of_posts_)
+            one = Array2d<float>(width, height, std::numeric_limits<float>::quiet_NaN());
+        Array2d<glm::dvec3> at(width, height, glm::dvec3(kNone));
+        for (int row = 0; row < height; ++row)
+            for (int column = 0; column < width; ++column)
+                at.at(column, row) = frame.to_local(field_.place(column, row));
+        for (int row = 1; row + 1 < height; ++row)
+            for (int column = 1; column + 1 < width; ++column) {
+                if (dem.drawn.water.any() &&
+                    dem.drawn.water.kind.at(column, row) != dem::WaterKind::None)
+                    continue;
+                glm::dvec3 normal =
+                    normalize(cross(at.at(column + 1, row) - at.at(column - 1, row),
+                                    at.at(column, row + 1) - at.at(column, row - 1)));
+                if (normal.z < 0) normal = -normal;
+                const double incidence = std::max(dot(normal, to_sun), 0.0);
+                const double share = lit.at(column, row);
+                const std::array<double, kPredictors> values{incidence, share, incidence * share,
+                                                             sky.at(column, row)};
+                for (std::size_t k = 0; k < kPredictors; ++k)
+                    of_posts_[k].at(column, row) = static_cast<float>(values[k]);
+            }
+    }
+
+    /// The mean over a pixel. @param post, wide  its middle and its width, posts
+    std::array<double, kPredictors> at(const glm::dvec2& post, double wide) const {
+        std::array<double, kPredictors> mean{};
+        const int samples = std::clamp(static_cast<int>(std::ceil(wide)) + 1, 1, 6);
+        for (int i = 0; i < samples; ++i)
+            for (int j = 0; j < samples; ++j) {
+                const glm::dvec2 p =
+                    post + wide * ((glm::dvec2(i, j) + 0.5) / static_cast<double>(samples) - 0.5);
+                for (std::size_t k = 0; k < kPredictors; ++k)
+                    mean[k] += between(of_posts_[k], p) / (samples * samples);
+            }
+        return mean;
+    }
+
+  private:
+    static double between(const Array2d<float>& values, const glm::dvec2& p) {
+        const int column = static_cast<int>(std::floor(p.x)), row = static_cast<int>(std::floor(p.y));
+        if (column < 0 || row < 0 || column + 1 >= values.width() || row + 1 >= values.height())
+            return kNone;
+        const double tx = p.x - column, ty = p.y - row;
+        return (1 - ty) * ((1 - tx) * values.at(column, row) + tx * values.at(column + 1, row)) +
+               ty * ((1 - tx) * values.at(column, row + 1) + tx * values.at(column + 1, row + 1));
+    }
+
+    const dem::Heightfield& field_;
+    std::array<Array2d<float>, kPredictors> of_posts_;
+};
+
+/// Takes away the mean of what is around, kWide_px on each side and NaN left out.
+Values narrow(const Values& values) {
+    Values result(values.width(), values.height(), kNone);
+    constexpr int kHalf = kWide_px / 2;
+    for (int y = 0; y < values.height(); ++y)
+        for (int x = 0; x < values.width(); ++x) {
+            double sum = 0;
+            int count = 0;
+            for (int v = std::max(y - kHalf, 0); v <= std::min(y + kHalf, values.height() - 1); ++v)
+                for (int u = std::max(x - kHalf, 0); u <= std::min(x + kHalf, values.width() - 1);
+                     ++u)
+                    if (const double value = values.at(u, v); !std::isnan(value))
+                        sum += value, ++count;
+            if (count > kWide_px * kWide_px / 2) result.at(x, y) = values.at(x, y) - sum / count;
+        }
+    return result;
+}
+
+double linear(double srgb) {
+    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+Values luminance_of(const image::Image8& picture) {
+    Values result(picture.width, picture.height, 0);
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x)
+            result.at(x, y) = 0.2126 * linear(picture.at(x, y, 0) / 255.0) +
+                              0.7152 * linear(picture.at(x, y, 1) / 255.0) +
+                              0.0722 * linear(picture.at(x, y, 2) / 255.0);
+    return result;
+}
+
+/// Share of the variance of `values` that a sum of the predictors explains: least squares.
+double explained(const Values& values, const std::array<Values, kPredictors>& by) {
+    std::array<std::array<double, kPredictors + 1>, kPredictors> system{};
+    double variance = 0;
+    for (int y = 0; y < values.height(); ++y)
+        for (int x = 0; x < values.width(); ++x) {
+            std::array<double, kPredictors> row{};
+            double whole = values.at(x, y);
+            for (std::size_t k = 0; k < kPredictors; ++k)
+                whole += row[k] = by[k].at(x, y);
+            if (std::isnan(whole)) continue;
+            const double value = values.at(x, y);
+            variance += value * value;
+            for (std::size_t i = 0; i < kPredictors; ++i) {
+                for (std::size_t j = 0; j < kPredictors; ++j)
+                    system[i][j] += row[i] * row[j];
+                system[i][kPredictors] += row[i] * value;
+            }
+        }
+    std::array<double, kPredictors> right{};
+    for (std::size_t i = 0; i < kPredictors; ++i) {
+        right[i] = system[i][kPredictors];
+        system[i][i] *= 1 + 1e-9;
+    }
+    for (std::size_t i = 0; i < kPredictors; ++i)
+        for (std::size_t other = 0; other < kPredictors; ++other) {
+            if (other == i) continue;
+            const double factor = system[other][i] / system[i][i];
+            for (std::size_t j = i; j <= kPredictors; ++j)
+                system[other][j] -= factor * system[i][j];
+        }
+    double sum = 0;
+    for (std::size_t i = 0; i < kPredictors; ++i)
+        sum += system[i][kPredictors] / system[i][i] * right[i];
+    return sum / variance;
+}
+
+struct Explained {
+    double plain = 0, paper = 0;
+};
+
+image::Image8 picture_of(Session& session) {
+    session.draw();
+    return session.picture();
+}
+
+Explained explained_of(const std::string& dem) {
+    scene::Scene scene;
+    scene.dems = {dem};
+    scene.width_px = scene.height_px = kSide_px;
+    scene.view = scene::parse_view("top");
+    scene.stamps.legend = false;
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    const Values plain = luminance_of(picture_of(session));
+    std::vector<float> depths_m;
+    session.read_depths(depths_m);
+    const SeenGround seen(session.camera(), kSide_px, kSide_px, std::move(depths_m));
+    const geo::LocalFrame& frame = session.ground().frame;
+    const Predictors predictors(*session.dem(), frame,
+                                sun::position(session.moment(), frame.origin()));
+    std::array<Values, kPredictors> by;
+    by.fill(Values(kSide_px, kSide_px, kNone));
+    const glm::dvec2 spacing_m = session.dem()->field.grid.post_spacing_m();
+    for (int y = 0; y < kSide_px; ++y)
+        for (int x = 0; x < kSide_px; ++x) {
+            const auto point = seen.point(x, y);
+            if (!point) continue;
+            const double pixel_m = 1 / seen.px_per_m(seen.depth_m(x, y));
+            const auto values =
+                predictors.at(session.dem()->field.grid.post(frame.to_geodetic(*point)),
+                              pixel_m / std::sqrt(spacing_m.x * spacing_m.y));
+            for (std::size_t k = 0; k < kPredictors; ++k)
+                by[k].at(x, y) = values[k];
+        }
+    for (Values& one : by)
+        one = narrow(one);
+    scene::Scene paper = session.scene();
+    paper.effects.presets = {"paper"};
+    FilesInUse more_files;
+    Session of_paper(paper, {.device = "software", .dem = session.dem()}, more_files);
+    of_paper.set_moment(session.moment());
+    const Values before = luminance_of(picture_of(of_paper));
+    return {explained(narrow(plain), by), explained(narrow(before), by)};
+}
+
+TEST(Legible, WhatIsSeenFromAboveIsRelief) {
+    SKIP_WITHOUT_TEST_DATA(data);
+    Explained mean;
+    const std::vector<std::string> names{
+        "N42E001.hgt",           "mt_rainier_90m.tif", "srtm_bigtujunga30m_utm11.tif",
+        "SainteHelens.dem",      "rmnp/rmnp-dem.tif",  "colorado_tut_relief.nc",
+        "missoula_valley.img",   "holyroodpark.tif",   "swellendam/srtm_41_19_4326.tif",
+        "hawaii_rotated20.tif"};
+    for (const std::string& name : names) {
+        const Explained one = explained_of((data / "dem" / name).string());
+        fmt::print("[ accuracy ] {}: light explains {:.0f} % of the paper's picture, {:.0f} % of "
+                   "the plain one\n",
+                   name, 100 * one.paper, 100 * one.plain);
+        EXPECT_GT(one.plain, 0.3) << name;
+        mean.paper += one.paper / static_cast<double>(names.size());
+        mean.plain += one.plain / static_cast<double>(names.size());
+    }
+    fmt::print("[ accuracy ] in the mean {:.0f} % and {:.0f} %\n", 100 * mean.paper,
+               100 * mean.plain);
+    EXPECT_GE(mean.plain, 0.6);
+    EXPECT_LE(1 - mean.plain, 0.5 * (1 - mean.paper));
+}
+
+}  // namespace
+}  // namespace relevo::session
