@@ -5,6 +5,7 @@
 #include "scene/scene.h"
 #include "viewer/document.h"
 #include "viewer/scene_thread.h"
+#include "viewer/sun_model.h"
 
 /// What is taken out of the window into files and the clipboard.
 namespace relevo::viewer {
@@ -15,6 +16,9 @@ scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 
 /// Writes the scene into the working folder under a name that is free. @returns what to tell of it
 /// @throws Error as OutputFile; likewise below
 std::string save_scene(const scene::Scene& scene);
+/// Likewise a job of the scene at every hour of a day, from sunrise to sunset where the sun rises
+/// and sets on it.
+std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone);
 /// Likewise a picture, with the command that takes it.
 std::string save_picture(const Picture& picture, const scene::Scene& scene);
 

@@ -372,6 +372,9 @@ class Viewer {
                 return copy_command();
             case Command::SaveScene:
                 return say_or_fail([&] { done(save_scene(whole())); });
+            case Command::SaveJob:
+                return say_or_fail(
+                    [&] { done(save_job(whole(), state_.day, state_.document.zone)); });
             case Command::SaveView:
                 return keep_view();
             case Command::Measure:
