@@ -1,6 +1,7 @@
 //! provides  the light that a visible point of the terrain sends to the eye
 //! reads     gbuffer (geometry.frag.glsl), normal pages
-//! writes    with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB; in
+//! writes    with AUDITED what the point is and how much of the sun is drawn there (render::SunSeen);
+//!           with SHOWN colour: sRGB; else radiance, linear, exposed, and overlay, premultiplied sRGB; in
 //!           alpha of either 0 where effects made what is no number, or infinite
 
 //@ include lib/drape.glsl
@@ -8,6 +9,7 @@
 //@ include lib/finite.glsl
 //@ include lib/ground.glsl
 //@ include lib/octahedral.glsl
+//@ include lib/moved.glsl
 //@ include lib/pages.glsl
 //@ include lib/shown.glsl
 //@ include lib/tangent.glsl
@@ -18,6 +20,9 @@ uniform sampler2DArray normal_pages;  // rg: east and north part of the unit nor
 layout(location = 0) out vec4 light_out;
 #ifdef DISPLAY_OVERLAY
 layout(location = 1) out vec4 overlay_out;
+#endif
+#ifdef AUDITED
+layout(location = AUDITED) out vec4 audit_out;
 #endif
 
 /// Where the ray of the neighbouring pixel meets the plane of this point, from this point.
@@ -119,6 +124,12 @@ void main() {
     vec3 view = s.position_m / s.distance_m;
     float lit = 1.0;
     hook_facing(s, to_sun, lit);
+#ifdef AUDITED
+    float seen = 1.0;
+    hook_visibility(s, to_sun, seen);
+    bool faces = dot(s.geometric_normal, to_sun) > 0.0;
+    audit_out = vec4(s.post, surface_moved_up_m(s) == 0.0 ? seen : -1.0, faces ? s.pixel_posts : -s.pixel_posts);
+#endif
     hook_visibility(s, to_sun, lit);
     // The part of the sky that a slope sees, of the light on level ground.
     vec3 sky = frame.sky_irradiance.rgb * (0.5 + 0.5 * dot(s.normal, s.up));

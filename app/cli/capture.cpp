@@ -26,7 +26,7 @@ struct Arguments {
     std::string output, device = "auto", timings, dump_shaders, save_scene, from;
     std::vector<std::string> ab;
     int repeat = 0;
-    bool overwrite = false, sidecar = false, allow_blank = false;
+    bool overwrite = false, sidecar = false, audit = false, allow_blank = false;
 };
 
 /// What is to be drawn.
@@ -143,9 +143,12 @@ void tell_of(const session::Session& session) {
         log::info(note);
 }
 
+// In one piece: the stages of a picture in their order.
 void capture(const Arguments& arguments) {
     const std::filesystem::path output = arguments.output;
     const auto [scene, compared] = wanted(arguments);
+    if (arguments.audit && !compared.empty())
+        bad_usage("--audit: expected one picture but got a comparison; leave --ab out");
     image::check_format(output, scene.width_px, scene.height_px);
     FilesInUse files;
     if (!arguments.scene.file.empty()) files.add_input(arguments.scene.file, "the scene");
@@ -158,10 +161,12 @@ void capture(const Arguments& arguments) {
     Timings timings(open(arguments.timings, "--timings"));
     OutputFile* const scene_file = open(arguments.save_scene, "--save-scene");
     OutputFile* const sidecar_file =
-        open(arguments.sidecar ? session::sidecar_of(output).string() : "", "--sidecar");
+        open(arguments.sidecar || arguments.audit ? session::sidecar_of(output).string() : "",
+             "--sidecar");
 
     session::Options options{.device = arguments.device,
                              .radiance = image::holds_linear_light(output),
+                             .audited = arguments.audit,
                              .compared = compared};
     if (!arguments.dump_shaders.empty())
         options.stitched = [&](const std::vector<render::ProgramText>& texts) {
@@ -193,10 +198,13 @@ void capture(const Arguments& arguments) {
     if (scene_file)
         scene_file->write(scene::scene_text(
             session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));
+    std::optional<session::ShadowAudit> audit;
+    if (arguments.audit) audit = session::audit_shadows(session);
+    if (audit) log::info(audit->text());
     if (sidecar_file)
         sidecar_file->write(session::sidecar_text(session, RELEVO_VERSION,
                                                   output.filename().string(),
-                                                  session::hashed_files(scene.dems)));
+                                                  session::hashed_files(scene.dems), audit));
     timings.write(session, arguments.repeat);
     files.finish_outputs();
 }
@@ -221,6 +229,8 @@ void add_capture(CLI::App& app) {
         "Picture to make again, by the scene that it carries; other options replace what it says");
     verb.add_flag("--sidecar", arguments->sidecar,
                   "Write a JSON beside the picture: sun, camera, device, versions, DEM");
+    verb.add_flag("--audit", arguments->audit,
+                  "Compare the drawn shadows with those of the figures, for the sidecar");
     verb.add_flag("--allow-blank", arguments->allow_blank,
                   "Take a picture without ground in it too");
     verb.add_option("--ab", arguments->ab,

@@ -1,10 +1,13 @@
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -31,7 +34,7 @@ struct Arguments {
     SceneArguments scene;
     std::string job, output, device = "auto", shard;
     bool overwrite = false, resume = false, dry_run = false, yes = false, sidecar = false;
-    bool allow_blank = false;
+    bool audit = false, allow_blank = false;
 };
 
 std::optional<std::string> environment(const char* name) {
@@ -48,6 +51,31 @@ void warn_of(const std::vector<std::string>& reasons, const char* what) {
         log::warning(fmt::format("{}: {} more", what, reasons.size() - kFew));
 }
 
+/// What the audits of a job's pictures come to.
+class Audits {
+  public:
+    void add(const std::string& picture, const session::ShadowAudit& audit) {
+        if (audit.pixels() == 0) return;
+        ++pictures_;
+        if (pictures_ > 1 && audit.agreement() >= worst_.agreement()) return;
+        worst_ = audit;
+        picture_ = picture;
+    }
+
+    void tell() const {
+        if (pictures_ == 0)
+            log::warning("audit: no picture has ground whose shadows could be compared");
+        else
+            log::info(fmt::format("{}; the worst of {}, {}", worst_.text(), pictures_,
+                                  printable(picture_)));
+    }
+
+  private:
+    std::size_t pictures_ = 0;
+    session::ShadowAudit worst_;
+    std::string picture_;
+};
+
 /// A job on its way.
 class Run {
   public:
@@ -61,8 +89,12 @@ class Run {
         session::order_for_drawing(shots_);
         take_shard();
         add_inputs();
-        leave_out_what_is_there();
-        if (arguments_.dry_run) return tell();
+        const std::size_t all = shots_.size();
+        if (arguments_.resume) leave_out_made();
+        made_ = all - shots_.size();
+        const std::string refusal = what_is_in_the_way();
+        if (arguments_.dry_run) return tell(refusal);
+        if (!refusal.empty()) bad_input(refusal);
         check_folders();
         draw();
     }
@@ -106,39 +138,35 @@ class Run {
                 }
     }
 
-    /// Pictures that are made already are left out with --resume; other files stay as they are
-    /// unless --overwrite is there.
-    void leave_out_what_is_there() {
-        const std::size_t before = shots_.size();
-        if (arguments_.resume) leave_out_made();
-        made_ = before - shots_.size();
-        if (arguments_.overwrite) return;
-        std::size_t there = 0;
+    /// Why the pictures cannot be made where other files have their names; empty: they can.
+    std::string what_is_in_the_way() {
         std::string first;
         for (const scene::Shot& shot : shots_) {
             std::error_code missing;
             if (!fs::exists(fs::symlink_status(shot.output, missing))) continue;
-            if (there++ == 0) first = shot.output.string();
+            if (there_++ == 0) first = shot.output.string();
         }
-        if (there > 0)
-            bad_input(fmt::format(
-                "run: {}: exists, the first of {}{}; pass --overwrite to replace {}{}",
-                printable(first), there,
-                arguments_.resume ? " that are not whole, of another scene, or older than the DEM"
-                                  : "",
-                there == 1 ? "it" : "them",
-                arguments_.resume ? "" : ", or --resume to make what is missing"));
+        if (there_ == 0 || arguments_.overwrite) return {};
+        std::string which;
+        if (arguments_.resume)
+            which = wants_sidecar()
+                        ? " that are not whole, of another scene, older than the DEM, "
+                          "or without what their sidecars shall say"
+                        : " that are not whole, of another scene, or older than the DEM";
+        return fmt::format("run: {}: exists, the first of {}{}; pass --overwrite to replace {}{}",
+                           printable(first), there_, which, there_ == 1 ? "it" : "them",
+                           arguments_.resume ? "" : ", or --resume to make what is missing");
     }
 
+    /// Leaves out pictures that are made already.
     void leave_out_made() {
         std::vector<char> made(shots_.size());
         parallel_for(0, static_cast<int>(shots_.size()), 1, [&](int first, int last) {
             for (int i = first; i < last; ++i) {
                 const auto at = static_cast<std::size_t>(i);
-                std::error_code missing;
-                made[at] = session::is_made(shots_[at], inputs_) &&
-                           (!arguments_.sidecar ||
-                            fs::exists(session::sidecar_of(shots_[at].output), missing));
+                made[at] =
+                    session::is_made(shots_[at], inputs_) &&
+                    (!wants_sidecar() || session::has_sidecar(shots_[at].output, arguments_.audit));
             }
         });
         std::size_t at = 0;
@@ -165,7 +193,8 @@ class Run {
         result.device = arguments_.device;
         result.version = RELEVO_VERSION;
         result.overwrite = arguments_.overwrite;
-        result.sidecar = arguments_.sidecar;
+        result.sidecar = wants_sidecar();
+        result.audit = arguments_.audit;
         result.allow_blank = arguments_.allow_blank;
         return result;
     }
@@ -176,14 +205,20 @@ class Run {
             made_ > 0 ? fmt::format("; {} were there already", made_) : std::string();
         std::string first;
         std::size_t failures = 0;
+        Audits audits;
         {
-            CountBar bar(shots_.size());
+            ProgressBar bar;
+            std::size_t done = 0;  // both below are called on one thread at a time
+            const auto count = [&] { bar.show(++done, shots_.size()); };
             session::BatchOptions batch = options();
-            batch.made = [&](const scene::Shot&) { bar.add(); };
+            batch.made = [&](const scene::Shot&) { count(); };
+            batch.audited = [&](const scene::Shot& shot, const session::ShadowAudit& audit) {
+                audits.add(shot.output.string(), audit);
+            };
             batch.failed = [&](const scene::Shot& shot, const std::string& why) {
                 log::error(fmt::format("{}: {}", printable(shot.output.string()), why));
                 if (first.empty()) first = printable(shot.output.string());
-                bar.add();
+                count();
             };
             failures = session::draw_batch(shots_, batch, moments_, files_);
         }
@@ -191,6 +226,7 @@ class Run {
             std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
         log::info(fmt::format("{} pictures in {}{}", shots_.size() - failures,
                               duration_text(took_s), there));
+        if (arguments_.audit && !shots_.empty()) audits.tell();
         if (failures > 0)
             throw Error(ErrorCode::Incomplete,
                         fmt::format("run: {} of {} pictures could not be made, the first is {}; "
@@ -199,7 +235,8 @@ class Run {
     }
 
     /// Lists the files, and says how long they take: as some of them do that are drawn for it.
-    void tell() {
+    /// @param refusal  why none of them would be made, or empty
+    void tell(const std::string& refusal) {
         for (const scene::Shot& shot : shots_)
             fmt::print("{}\n", shot.output.string());
         std::string time = "no time";
@@ -210,16 +247,45 @@ class Run {
                 time = fmt::format("an unknown time ({})", error.what());
             }
         }
-        log::info(fmt::format("{} pictures would take {}{}", shots_.size(), time,
-                              made_ > 0 ? fmt::format("; {} are there already", made_) : ""));
+        std::string already;
+        if (made_ > 0) already = fmt::format("; {} are there already and stay", made_);
+        if (there_ > 0 && refusal.empty()) already += fmt::format("; {} are replaced", there_);
+        log::info(fmt::format("{} pictures would take {}{}", shots_.size(), time, already));
+        if (!refusal.empty()) log::warning("would be refused: " + refusal);
+        for (const std::string& problem : folder_problems())
+            log::warning("would be refused: " + problem);
     }
+
+    /// Folders in which no file can be made, told without making any.
+    std::vector<std::string> folder_problems() const {
+        std::vector<std::string> problems;
+        std::set<fs::path> folders;
+        for (const scene::Shot& shot : shots_) {
+            if (!folders.insert(shot.output.parent_path()).second) continue;
+            fs::path there = fs::absolute(shot.output.parent_path());
+            std::error_code missing;
+            while (there.has_relative_path() && !fs::exists(there, missing))
+                there = there.parent_path();
+            const int error = !fs::is_directory(there, missing)         ? ENOTDIR
+                              : access(there.c_str(), W_OK | X_OK) != 0 ? errno
+                                                                        : 0;
+            if (error != 0)
+                problems.push_back(fmt::format("run: {}: no file can be made in it, {}",
+                                               printable(there.string()),
+                                               std::generic_category().message(error)));
+        }
+        return problems;
+    }
+
+    bool wants_sidecar() const { return arguments_.sidecar || arguments_.audit; }
 
     const Arguments& arguments_;
     FilesInUse files_;
     session::Moments moments_;
     std::vector<scene::Shot> shots_;
     std::vector<fs::path> inputs_;
-    std::size_t made_ = 0;
+    std::size_t made_ = 0;   ///< pictures that --resume leaves out
+    std::size_t there_ = 0;  ///< names of the others that files have already
 };
 
 }  // namespace
@@ -241,6 +307,8 @@ void add_run(CLI::App& app) {
     verb.add_flag("--yes", arguments->yes, "More than 100000 pictures are meant");
     verb.add_flag("--sidecar", arguments->sidecar,
                   "Write a JSON beside each picture: sun, camera, device, versions, DEM");
+    verb.add_flag("--audit", arguments->audit,
+                  "Compare the drawn shadows with those of the figures, for the sidecars");
     verb.add_flag("--allow-blank", arguments->allow_blank,
                   "Take pictures without ground in them too");
     verb.add_option("--device", arguments->device,

@@ -15,6 +15,7 @@ enum class Command {
     TakePicture,
     CopyCommand,
     SaveScene,
+    SaveJob,
     Quit,
     Undo,
     Redo,

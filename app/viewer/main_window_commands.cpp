@@ -91,6 +91,10 @@ void MainWindow::of_scene(Command command) {
             return copy_command();
         case Command::SaveScene:
             return say_or_fail([&] { done(save_scene(whole()) + overlay_note()); });
+        case Command::SaveJob:
+            return say_or_fail([&] {
+                done(save_job(whole(), state_.day, state_.document.zone) + overlay_note());
+            });
         case Command::SaveView:
             return keep_view();
         case Command::Measure:

@@ -21,7 +21,7 @@ struct Key {
     Command command;
 };
 
-constexpr std::array<Key, 27> kKeys = {{
+constexpr std::array<Key, 28> kKeys = {{
     {GLFW_KEY_O, true, Command::Open},
     {GLFW_KEY_PAGE_DOWN, true, Command::NextFile},
     {GLFW_KEY_PAGE_UP, true, Command::PreviousFile},
@@ -29,6 +29,7 @@ constexpr std::array<Key, 27> kKeys = {{
     {GLFW_KEY_F12, false, Command::TakePicture},
     {GLFW_KEY_C, true, Command::CopyCommand},
     {GLFW_KEY_S, true, Command::SaveScene},
+    {GLFW_KEY_J, true, Command::SaveJob},
     {GLFW_KEY_Q, true, Command::Quit},
     {GLFW_KEY_Z, true, Command::Undo},
     {GLFW_KEY_Y, true, Command::Redo},
@@ -88,6 +89,7 @@ void file_menu(State& state) {
     item(state, "Save the scene", "Ctrl+S", Command::SaveScene);
     item(state, "Save the sun overlay as GeoTIFF", "Ctrl+E", Command::SaveOverlay, false,
          state.document.overlay.kind > OverlayKind::File);
+    item(state, "Save the day as a job", "Ctrl+J", Command::SaveJob);
     ImGui::Separator();
     item(state, "End", "Ctrl+Q", Command::Quit);
     ImGui::EndMenu();

@@ -145,7 +145,7 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
 }
 
 void key_sheet() {
-    static constexpr std::array<std::array<const char*, 2>, 30> kKeys = {{
+    static constexpr std::array<std::array<const char*, 2>, 31> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
@@ -168,6 +168,7 @@ void key_sheet() {
         {"Ctrl + C", "copy the command that takes it"},
         {"Ctrl + S", "save the scene"},
         {"Ctrl + E", "save the overlay of the sun as GeoTIFF"},
+        {"Ctrl + J", "save the day's hours as a job"},
         {"Ctrl + O", "open a DEM; files can be dropped too"},
         {"Ctrl + Page down, Page up", "the next DEM of the folder, the one before"},
         {"B, then 1 to 9", "keep this view; go to one that was kept"},

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "image/image.h"
+#include "scene/job.h"
 #include "session/overlay.h"
 #include "session/record.h"
 #include "viewer/settings.h"
@@ -32,6 +33,18 @@ std::string write_under_free_name(const std::string& ending,
     }
 }
 
+namespace {
+
+/// @returns its name
+std::string save_json(const std::string& text) {
+    return write_under_free_name("json", [&](OutputFile& file) {
+        file.write(text);
+        file.finish();
+    });
+}
+
+}  // namespace
+
 scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 size_px) {
     scene::Scene scene = document.whole(land);
     scene.width_px = size_px.x;
@@ -41,12 +54,23 @@ scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 
 }
 
 std::string save_scene(const scene::Scene& scene) {
-    const std::string text = scene::scene_text(scene, "");
-    const std::string name = write_under_free_name("json", [&](OutputFile& file) {
-        file.write(text);
-        file.finish();
-    });
+    const std::string name = save_json(scene::scene_text(scene, ""));
     return name + " has the scene; relevo view --scene opens it";
+}
+
+std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone) {
+    const auto rise = day.events.first(sun::EventKind::Sunrise),
+               set = day.events.first(sun::EventKind::Sunset);
+    const bool by_sun = rise && set && *rise < *set;
+    const scene::JobDay of_day{.date = sun::to_string(day.date),
+                               .zone = zone.name().starts_with("LMT") ? "solar" : zone.name(),
+                               .from = by_sun ? "sunrise" : "00:00",
+                               .to = by_sun ? "sunset" : "23:00",
+                               .step = "1h",
+                               .output = "{dem}_{time:%Y%m%dT%H%M}.png"};
+    const std::string name = save_json(scene::day_job_text(scene, of_day, ""));
+    return fmt::format("{} draws every hour of this day{}: relevo run {}", name,
+                       by_sun ? " from sunrise to sunset" : "", name);
 }
 
 std::string save_picture(const Picture& picture, const scene::Scene& scene,

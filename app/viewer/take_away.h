@@ -8,6 +8,7 @@
 #include "scene/scene.h"
 #include "viewer/document.h"
 #include "viewer/scene_thread.h"
+#include "viewer/sun_model.h"
 
 /// What is taken out of the window into files and the clipboard.
 namespace relevo::viewer {
@@ -23,6 +24,9 @@ std::string write_under_free_name(const std::string& ending,
 /// Writes the scene into the working folder under a name that is free. @returns what to tell of it
 /// @throws Error as OutputFile; likewise below
 std::string save_scene(const scene::Scene& scene);
+/// Likewise a job of the scene at every hour of a day, from sunrise to sunset where the sun rises
+/// and sets on it.
+std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone);
 /// Likewise a picture, with the command that takes it.
 /// @param legend  of its overlay; null: it has none
 std::string save_picture(const Picture& picture, const scene::Scene& scene,

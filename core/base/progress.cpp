@@ -1,7 +1,6 @@
 #include "base/progress.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string_view>
 #include <utility>
 
@@ -31,49 +30,38 @@ std::string duration_text(double seconds) {
 }
 
 ProgressBar::ProgressBar(std::string what, int descriptor)
-    : what_(std::move(what)), descriptor_(descriptor), terminal_(isatty(descriptor) != 0) {}
+    : what_(std::move(what)),
+      descriptor_(descriptor),
+      shown_(isatty(descriptor) == 1 && log::level() <= log::Level::Info) {
+    if (!what_.empty()) what_ += ' ';
+    if (shown_ && descriptor_ == STDERR_FILENO)
+        log::set_before([] { put(STDERR_FILENO, kClearLine); });
+}
 
 ProgressBar::~ProgressBar() {
+    if (shown_ && descriptor_ == STDERR_FILENO) log::set_before({});
     if (drawn_) put(descriptor_, kClearLine);
 }
 
 void ProgressBar::show(double share) {
+    draw(share, fmt::format("{:.0f} %", 100 * share));
+}
+
+void ProgressBar::show(std::size_t done, std::size_t total) {
+    draw(static_cast<double>(done) / static_cast<double>(std::max<std::size_t>(total, 1)),
+         fmt::format("{} of {}", done, total));
+}
+
+void ProgressBar::draw(double share, const std::string& words) {
+    const std::lock_guard lock(mutex_);
     const double passed_s = std::chrono::duration<double>(Progress::Clock::now() - began_).count();
-    if (!terminal_ || passed_s < next_s_ || !(share > 0 && share < 1)) return;
+    if (!shown_ || passed_s < next_s_ || !(share > 0 && share < 1)) return;
     next_s_ = passed_s + kRedraw_s;
     drawn_ = true;
     const auto full = static_cast<std::size_t>(share * kBarWidth);
-    put(descriptor_, fmt::format("{}{} [{}{}] {:.0f} %, {} left", kClearLine, what_,
-                                 std::string(full, '='), std::string(kBarWidth - full, ' '),
-                                 100 * share, duration_text(passed_s * (1 - share) / share)));
-}
-
-CountBar::CountBar(std::size_t total)
-    : total_(total), shown_(isatty(STDERR_FILENO) == 1 && log::level() <= log::Level::Info) {
-    if (shown_) log::set_before([] { fmt::print(stderr, "\r\x1b[K"); });
-}
-
-CountBar::~CountBar() {
-    if (!shown_) return;
-    log::set_before({});
-    fmt::print(stderr, "\r\x1b[K");
-}
-
-void CountBar::add() {
-    const std::lock_guard lock(mutex_);
-    ++done_;
-    if (shown_) show();
-}
-
-void CountBar::show() const {
-    constexpr std::size_t kWidth = 32;
-    const std::size_t full = total_ > 0 ? kWidth * done_ / total_ : kWidth;
-    const double passed_s =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-    const double left_s =
-        passed_s / static_cast<double>(done_) * static_cast<double>(total_ - done_);
-    fmt::print(stderr, "\r[{}{}] {} of {}, {} left\x1b[K", std::string(full, '#'),
-               std::string(kWidth - full, '.'), done_, total_, duration_text(left_s));
+    put(descriptor_, fmt::format("{}{}[{}{}] {}, {} left", kClearLine, what_,
+                                 std::string(full, '='), std::string(kBarWidth - full, ' '), words,
+                                 duration_text(passed_s * (1 - share) / share)));
 }
 
 Progress::Progress(std::string what, double total, double patience_s)

@@ -7,30 +7,6 @@
 
 namespace relevo {
 
-/// "12 s", "5 min", "3 h".
-std::string duration_text(double seconds);
-
-/// A line on a terminal's standard error that grows with the work and tells how long the rest
-/// takes; nothing anywhere else, and with -q.
-class CountBar {
-  public:
-    explicit CountBar(std::size_t total);
-    ~CountBar();
-    CountBar(const CountBar&) = delete;
-    CountBar& operator=(const CountBar&) = delete;
-
-    /// One more is done. Safe on several threads at once.
-    void add();
-
-  private:
-    void show() const;
-
-    std::size_t total_, done_ = 0;
-    bool shown_;
-    mutable std::mutex mutex_;
-    std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-};
-
 /// Tells of long work with log::info: after ten seconds how much is done and about how long the
 /// rest takes, then whenever as much time again has passed. Short work has no word.
 /// Safe on several threads at once.
@@ -56,24 +32,31 @@ class Progress {
 };
 
 /// A line on a terminal that says how much of long work is done and how long the rest takes, drawn
-/// anew four times a second, and gone with this. Anything but a terminal gets no byte. Short work,
-/// of less than a second, has no word.
+/// anew four times a second, and gone with this. Anything but a terminal gets no byte, nor does
+/// anything with -q. Short work, of less than a second, has no word. What is logged meanwhile takes
+/// the line's place. Safe on several threads at once.
 class ProgressBar {
   public:
+    /// @param what        is done, before the bar; may be empty
     /// @param descriptor  of the stream, standard error
-    explicit ProgressBar(std::string what, int descriptor = 2);
+    explicit ProgressBar(std::string what = {}, int descriptor = 2);
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
     /// @param share  that is done, 0 to 1
     void show(double share);
+    /// The same for things that can be counted: "3 of 96" instead of "3 %".
+    void show(std::size_t done, std::size_t total);
 
   private:
+    void draw(double share, const std::string& words);
+
     std::string what_;
     int descriptor_;
-    bool terminal_, drawn_ = false;
+    bool shown_, drawn_ = false;
     double next_s_ = 1;
+    std::mutex mutex_;
     Progress::Clock::time_point began_ = Progress::Clock::now();
 };
 

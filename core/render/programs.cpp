@@ -82,7 +82,7 @@ class Stitcher {
         : core_(core), input_(input), options_(options), displaced_(answers(input, "displace")) {
         if (options.shown)
             ends_.push_back({"SHOWN", ""});
-        else if (has_overlay(input, options.draped))
+        else if (overlays())
             ends_.push_back({"DISPLAY_OVERLAY", ""});
     }
 
@@ -112,6 +112,9 @@ class Stitcher {
     }
 
   private:
+    /// Whether the ground's programs write an overlay beside the light.
+    bool overlays() const { return !options_.shown && has_overlay(input_, options_.draped); }
+
     void add(const std::string& name, const shader::ProgramRecipe& recipe) {
         programs_.push_back({name, shader::stitch(core_, recipe, input_)});
     }
@@ -133,6 +136,7 @@ class Stitcher {
                 recipe->defines.push_back({"DISPLACED", ""});
         if (options_.draped) terrain.defines.push_back({"DRAPED", ""});
         terrain.defines.insert(terrain.defines.end(), ends_.begin(), ends_.end());
+        if (options_.audited) terrain.defines.push_back({kAuditedDefine, overlays() ? "2" : "1"});
         if (reads_height_steps(input)) {
             const shader::Define define =
                 height_steps_define(shader::stitch(core_, geometry, input));

@@ -25,6 +25,8 @@ struct ProgramOptions {
     /// Shading ends in the colours of the picture, without a stored radiance and the program
     /// "post".
     bool shown = false;
+    /// The ground's programs also write what audits read: SunSeen of renderer.h.
+    bool audited = false;
 };
 
 /// A capability word that core provides, to the background alone and while it is night: what is
@@ -43,6 +45,9 @@ inline constexpr const char* kOutsideEnding = "_outside";
 /// define that has the number of their output. There where a hook reads them.
 inline constexpr const char* kHeightStepsTexture = "height_steps";
 inline constexpr const char* kHeightStepsDefine = "HEIGHT_STEPS";
+
+/// The define that has the number of the output that audits read.
+inline constexpr const char* kAuditedDefine = "AUDITED";
 
 /// Whether anything is drawn over the finished picture: by effects, or what is draped.
 bool has_overlay(const shader::StitchInput& input, bool draped);

@@ -1,6 +1,7 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <chrono>
 #include <cmath>
@@ -130,11 +131,12 @@ struct Renderer::Impl {
          reads_water = false;
 
     gl::Texture gbuffer, depth, radiance, overlay, tone_mapped, edge_marks, picture;
-    gl::Texture varyings, height_steps;
+    gl::Texture varyings, height_steps, sun_seen;
     gl::Texture footprint;           // of the ground that was last seen from outside ...
     std::uint64_t footprint_of = 0;  // ... which is Terrain::serial()
     // Light is the radiance, or at once the picture's colours.
-    gl::Framebuffer geometry_target, light_target, overlaid_target, post_target, picture_target;
+    gl::Framebuffer geometry_target, light_target, side_target, ground_target, post_target,
+        picture_target;
     std::vector<NativeHost> natives;
     bool native_is_made = false;  // by a frame before
 
@@ -229,11 +231,16 @@ struct Renderer::Impl {
         light_target = gl::Framebuffer({options.radiance ? &radiance : &end}, &depth, "light");
         if (options.radiance) {
             post_target = gl::Framebuffer({&end}, nullptr, "post");
-            if (has_overlay) {
-                overlay = target(gl::Format::RGBA8, "overlay");
-                overlaid_target = gl::Framebuffer({&radiance, &overlay}, &depth, "overlaid");
-            }
+            if (has_overlay) overlay = target(gl::Format::RGBA8, "overlay");
         }
+        std::vector<const gl::Texture*> of_ground{options.radiance ? &radiance : &end};
+        if (overlay.name() != 0) of_ground.push_back(&overlay);
+        side_target = gl::Framebuffer(of_ground, &depth, "light of sides");
+        if (options.audited) {
+            sun_seen = target(gl::Format::RGBA32F, "sun seen");
+            of_ground.push_back(&sun_seen);
+        }
+        ground_target = gl::Framebuffer(of_ground, &depth, "light of the ground");
         picture_target = gl::Framebuffer({&picture}, &edge_marks, "picture");
     }
 
@@ -263,7 +270,8 @@ struct Renderer::Impl {
                                                          {.vertex_normals = vertex_normals,
                                                           .depth = !effects.modules.empty(),
                                                           .draped = options.draped,
-                                                          .shown = !options.radiance});
+                                                          .shown = !options.radiance,
+                                                          .audited = options.audited});
         if (options.stitched) options.stitched(texts);
         for (const ProgramText& text : texts)
             log::debug(units_text(text, max_texture_units));
@@ -450,8 +458,9 @@ struct Renderer::Impl {
         // The full-screen triangle lies at depth 0, the far end: "less" lets it through where
         // something nearer was drawn, "equal" where nothing was.
         const bool overlaid = overlay.name() != 0;
-        (overlaid ? overlaid_target : light_target).bind();
-        if (overlaid) overlaid_target.clear_colour(1, glm::vec4(0));
+        ground_target.bind();
+        if (overlaid) ground_target.clear_colour(1, glm::vec4(0));
+        if (options.audited) ground_target.clear_colour(overlaid ? 2 : 1, glm::vec4(0));
         glDepthMask(GL_FALSE);
         glDepthFunc(GL_LESS);
         bind(program(here("terrain")), ground);
@@ -460,6 +469,7 @@ struct Renderer::Impl {
         if (outside) {
             glDepthMask(GL_TRUE);
             glDepthFunc(GL_GREATER);
+            side_target.bind();
             bind(program("side"), ground);
             watched("side", pixels(), [&] { ground.draw_sides(tiles, inputs.camera.eye_m); });
             glDepthMask(GL_FALSE);
@@ -572,6 +582,30 @@ void Renderer::read_depths(std::vector<float>& depths_m) const {
     const auto near_m = static_cast<float>(kNear_m);
     for (float& depth : depths_m)
         depth = near_m / depth;
+}
+
+std::vector<SunSeen> Renderer::read_sun_seen() const {
+    assert(impl_->options.audited);
+    const auto pixels = static_cast<std::size_t>(impl_->pixels());
+    std::vector<glm::vec4> seen(pixels);
+    impl_->sun_seen.read(0, std::as_writable_bytes(std::span(seen)));
+    std::vector<glm::uvec4> what(pixels);
+    impl_->gbuffer.read(0, std::as_writable_bytes(std::span(what)));
+    std::vector<float> depths_m;
+    read_depths(depths_m);
+    std::vector<SunSeen> result;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const glm::vec4& v = seen[i];
+        // Walls of a block are drawn over ground behind them.
+        const float ground_m = std::bit_cast<float>(what[i].w);
+        if (v.w == 0 || depths_m[i] < 0.999F * ground_m) continue;
+        result.push_back({.post = {v.x, v.y},
+                          .share = v.z,
+                          .pixel_posts = std::abs(double{v.w}),
+                          .faces = v.w > 0,
+                          .moved = v.z < 0});
+    }
+    return result;
 }
 
 bool Renderer::reads_climate() const {

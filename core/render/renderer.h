@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec2.hpp>
+
 #include "effect/native_module.h"
 #include "gl/context.h"
 #include "image/image.h"
@@ -29,6 +31,8 @@ struct RendererOptions {
     /// Whether the first frame is expected to be seen from outside the DEM: programs of the other
     /// case are made when it comes.
     bool outside = false;
+    /// Keep what the ground's program makes of the sun's light, for read_sun_seen().
+    bool audited = false;
     /// Called with the programs' texts before a driver sees them, if there is one.
     std::function<void(const std::vector<ProgramText>&)> stitched{};
 };
@@ -49,6 +53,15 @@ std::vector<shader::Param> core_params();
 /// Milliseconds of the stages of one frame, by their names: "select", the id of each native effect,
 /// "geometry", "terrain", "side", "background", "post", "antialias".
 using PassTimes = std::vector<std::pair<std::string, double>>;
+
+/// How much of the sun a pixel of the ground was drawn with, by the pass that drew the picture.
+struct SunSeen {
+    glm::dvec2 post{0};      ///< column and row of the DEM, the first post at 0
+    double share = 0;        ///< of the sun, by all effects that answer the hook `visibility`
+    double pixel_posts = 0;  ///< posts along the pixel's side on the ground
+    bool faces = false;      ///< the ground is turned to the sun
+    bool moved = false;      ///< an effect has moved the ground from where the DEM has it
+};
 
 /// Draws frames with one selection of effects.
 ///
@@ -84,6 +97,9 @@ class Renderer {
     /// How far the last frame's ground is from the eye, along the direction it looks in [m]: row
     /// after row from below, infinity where there is sky.
     void read_depths(std::vector<float>& depths_m) const;
+
+    /// Of the last frame's pixels that show ground; RendererOptions::audited.
+    std::vector<SunSeen> read_sun_seen() const;
 
     /// Whether what it draws hangs on the climate (lib/climate.glsl).
     bool reads_climate() const;

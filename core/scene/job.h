@@ -65,6 +65,18 @@ struct Job {
 Job read_job(
     const std::filesystem::path& path, const std::function<void(Scene&)>& change = [](Scene&) {});
 
+/// A day in the words of a job's file.
+struct JobDay {
+    std::string date;            ///< "2026-06-21"
+    std::string zone;            ///< as Moment::zone
+    std::string from, to, step;  ///< "sunrise", "sunset", "1h": TimeRange
+    std::string output;          ///< template of names
+};
+
+/// The file of a job that draws a scene through a day, paths as scene_text() has them.
+std::string day_job_text(const Scene& scene, const JobDay& day,
+                         const std::filesystem::path& folder);
+
 /// A picture of a job.
 struct Shot {
     Scene scene;  ///< whose moment is whole

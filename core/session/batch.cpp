@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -15,6 +16,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/log.h"
@@ -138,9 +140,12 @@ class Batch {
                 files_.open_alone(sidecar_of(shot.output), options_.overwrite, "--sidecar"));
         session_->show(shot.scene, shot.utc);
         session_->draw();
+        std::optional<ShadowAudit> audit;
+        if (options_.audit) audit = audit_shadows(*session_);
+        if (audit) options_.audited(shot, *audit);
         if (outputs->sidecar)
             outputs->sidecar->write(sidecar_text(*session_, options_.version,
-                                                 shot.output.filename().string(), hashes_));
+                                                 shot.output.filename().string(), hashes_, audit));
         const image::Metadata metadata = metadata_of(*session_, options_.version);
         const auto write = [&](auto picture) {
             if (!options_.allow_blank && !session_->shows_ground()) refuse_blank("run");
@@ -186,6 +191,7 @@ class Batch {
         Options options;
         options.device = options_.device;
         options.radiance = linear;
+        options.audited = options_.audit;
         session_.reset();
         moments_.keep_only(shot.scene);
         options.dem = moments_.loaded(shot.scene);
@@ -230,6 +236,13 @@ void refuse_blank(std::string_view who) {
 
 std::filesystem::path sidecar_of(std::filesystem::path picture) {
     return picture += ".json";
+}
+
+bool has_sidecar(const std::filesystem::path& picture, bool audited) {
+    std::ifstream file(sidecar_of(picture), std::ios::binary);
+    if (!file) return false;
+    const auto json = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+    return json.is_object() && (!audited || json.contains("audit"));
 }
 
 void settle(std::vector<scene::Shot>& shots, Moments& moments) {
@@ -314,6 +327,7 @@ double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& opt
     FilesInUse files;
     Options session_options;
     session_options.device = options.device;
+    session_options.audited = options.audit;
     session_options.dem = moments.loaded(shots.front().scene);
     Session session(of_any_view(shots.front().scene), session_options, files);
     const auto draw = [&](const scene::Shot& shot) {
@@ -321,6 +335,7 @@ double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& opt
         session.show(shot.scene, shot.utc);
         session.draw();
         session.picture();
+        if (options.audit) audit_shadows(session);
         return seconds_since(began);
     };
     draw(shots.front());

@@ -9,6 +9,7 @@
 
 #include "base/files_in_use.h"
 #include "scene/job.h"
+#include "session/audit.h"
 #include "session/moments.h"
 
 /// Many pictures, drawn one after the other.
@@ -25,6 +26,9 @@ bool is_made(const scene::Shot& shot, const std::vector<std::filesystem::path>& 
 /// Where the JSON beside a picture is.
 std::filesystem::path sidecar_of(std::filesystem::path picture);
 
+/// Whether it is there. @param audited  with an audit in it
+bool has_sidecar(const std::filesystem::path& picture, bool audited);
+
 /// Says that there is no ground in a picture. @throws Error (Failed), always
 [[noreturn]] void refuse_blank(std::string_view who);
 
@@ -37,11 +41,15 @@ struct BatchOptions {
     std::string version;          ///< of the program, for the pictures
     bool overwrite = false;
     bool sidecar = false;      ///< a JSON beside each picture, of its name and .json
+    bool audit = false;        ///< puts the audit of the shadows into it; needs `sidecar`
     bool allow_blank = false;  ///< pictures without ground are written too
     /// A picture is there, or is not and why: both are called on one thread at a time.
     std::function<void(const scene::Shot&)> made = [](const scene::Shot&) {};
     std::function<void(const scene::Shot&, const std::string& why)> failed =
         [](const scene::Shot&, const std::string&) {};
+    /// What an audit has found, on the thread that draws.
+    std::function<void(const scene::Shot&, const ShadowAudit&)> audited = [](const scene::Shot&,
+                                                                             const ShadowAudit&) {};
 };
 
 /// Draws pictures and writes them, each whole or not at all. Drawing goes on while pictures are

@@ -93,7 +93,8 @@ std::vector<HashedFile> hashed_files(const std::vector<std::string>& dems) {
 }
 
 std::string sidecar_text(const Session& session, const std::string& version,
-                         const std::string& picture, const std::vector<HashedFile>& dem_files) {
+                         const std::string& picture, const std::vector<HashedFile>& dem_files,
+                         const std::optional<ShadowAudit>& audit) {
     ordered_json json;
     json["picture"] = picture;
     json["utc"] = sun::exact_iso(session.moment());
@@ -112,6 +113,7 @@ std::string sidecar_text(const Session& session, const std::string& version,
                         {"gdal", dem::gdal_version()},
                         {"proj", dem::proj_version()},
                         {"time_zones", sun::zone_database_version()}};
+    if (audit) json["audit"] = ordered_json::parse(audit->json_text());
     json["scene"] = ordered_json::parse(scene::scene_line(settled_scene(session)));
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

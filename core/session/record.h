@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "image/image.h"
+#include "session/audit.h"
 #include "session/session.h"
 
 /// What a picture says of itself.
@@ -33,7 +35,9 @@ struct HashedFile {
 std::vector<HashedFile> hashed_files(const std::vector<std::string>& dems);
 
 /// The JSON beside a picture: its scene, sun, camera, device, versions, DEM; docs/jobs.md.
+/// @param audit  of the picture, where there is one
 std::string sidecar_text(const Session& session, const std::string& version,
-                         const std::string& picture, const std::vector<HashedFile>& dem_files);
+                         const std::string& picture, const std::vector<HashedFile>& dem_files,
+                         const std::optional<ShadowAudit>& audit = {});
 
 }  // namespace relevo::session

@@ -221,7 +221,8 @@ struct Session::Impl {
                 .height_px = scene.height_px,
                 .radiance = options.radiance,
                 .draped = drape || (scene.overlay && !terrain),
-                .outside = !scene.view.eye};
+                .outside = !scene.view.eye,
+                .audited = options.audited};
     }
 
     void compile(DrawnEffects& drawing) {
@@ -551,6 +552,15 @@ bool Session::shows_ground() const {
 void Session::read_depths(std::vector<float>& depths_m) const {
     impl_->context->make_current();
     impl_->drawn.renderer->read_depths(depths_m);
+}
+
+std::vector<render::SunSeen> Session::read_sun_seen() const {
+    impl_->context->make_current();
+    return impl_->drawn.renderer->read_sun_seen();
+}
+
+const render::SunLight& Session::sun_light() const {
+    return impl_->inputs.sun;
 }
 
 const scene::Camera& Session::camera() const {

@@ -56,6 +56,8 @@ struct Options {
     /// read.
     std::shared_ptr<const LoadedDem> dem{};
     bool radiance = false;  ///< keep linear light, for Session::radiance()
+    /// Keep with each frame what audits read, for read_sun_seen().
+    bool audited = false;
     /// Effects of a comparison: pictures have them on the left and not on the right.
     std::vector<std::string> compared{};
     /// Called with the programs' texts before a driver sees them.
@@ -134,6 +136,11 @@ class Session {
     bool shows_ground() const;
     /// As render::Renderer::read_depths().
     void read_depths(std::vector<float>& depths_m) const;
+
+    /// As render::Renderer::read_sun_seen(); of a comparison, with its effects. Options::audited.
+    std::vector<render::SunSeen> read_sun_seen() const;
+    /// The sun as frames have it.
+    const render::SunLight& sun_light() const;
 
     const scene::Camera& camera() const;
     /// Its DEM, which may outlive it.

@@ -2,6 +2,8 @@
 //! reads     light_margins, light_shares (core/render/ground_light.h)
 //! source    core/light/sweep.h finds the shadows' edges
 
+//@ include lib/moved.glsl
+
 uniform sampler2D light_margins;  // rg: height above the edges of the upper and the lower limb's shadow [m]
 uniform sampler2D light_shares;   // r: mean share of the disc, times coverage; g: coverage; of 2 x 2 posts and more
 
@@ -14,23 +16,6 @@ float sun_disc_share(in float height) {
     float x = min(height, 1.0 - height);
     float part = x * sqrt(x) * (1.6977 - 0.567 * x);
     return height < 0.5 ? part : 1.0 - part;
-}
-
-/// By how much effects have moved the point up [m]; 0 on ground that is where the DEM has it.
-float surface_moved_up_m(in Surface s) {
-#ifdef DISPLACED
-    // Above the ellipsoid: |c + p| - |c| without the loss of a difference of two large numbers.
-    float from_eye_m = dot(s.position_m, frame.eye_up.xyz);
-    vec3 level_m = s.position_m - from_eye_m * frame.eye_up.xyz;
-    const float earth_m = 6371000.0;
-    float to_level_m = earth_m + frame.eye_m.w + from_eye_m;  // from the Earth's centre, along the eye's vertical
-    float above_m = frame.eye_m.w + from_eye_m +
-                    dot(level_m, level_m) / (to_level_m + length(vec2(to_level_m, length(level_m))));
-    float moved_m = above_m - s.height_m * frame.height_range.z;
-    return abs(moved_m) > 0.02 + 3e-4 * s.distance_m ? moved_m : 0.0;
-#else
-    return 0.0;
-#endif
 }
 
 /// Between four posts, of which those that are holes do not count.

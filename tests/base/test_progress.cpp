@@ -72,5 +72,23 @@ TEST(ProgressBar, IsOnATerminalAloneAndGoesWithItself) {
     close(pipe_ends[1]);
 }
 
+TEST(ProgressBar, CountsWhatCanBeCounted) {
+    const Terminal terminal;
+    ProgressBar bar("", terminal.descriptor());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    bar.show(24, 96);
+    EXPECT_EQ(terminal.text(), "\r\x1b[K[======                  ] 24 of 96, 3 s left");
+}
+
+TEST(ProgressBar, SaysNothingWhereNothingIsToBeSaid) {
+    const Terminal terminal;
+    log::set_level(log::Level::Warning);
+    ProgressBar bar("", terminal.descriptor());
+    log::set_level(log::Level::Info);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    bar.show(0.5);
+    EXPECT_EQ(terminal.text(), "");
+}
+
 }  // namespace
 }  // namespace relevo

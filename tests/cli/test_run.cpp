@@ -16,6 +16,7 @@
 
 #include "base/text.h"
 #include "cli/program.h"
+#include "dem/fixture.h"
 #include "image/image.h"
 #include "support/support.h"
 
@@ -342,6 +343,123 @@ TEST_F(Run, ASidecarSaysWhatThePictureWasMadeOf) {
     EXPECT_EQ(
         json["scene"].dump(),
         nlohmann::json::parse(image::read_metadata(dir_ / "a.png").at("relevo:scene")).dump());
+}
+
+TEST_F(Run, AnAuditSaysInTheSidecarWhetherShadowsAreThoseOfTheFigures) {
+    const fs::path path =
+        job("\"time\": {\"at\": \"2026-06-21T11:00Z\"}, \"sweep\": [{\"effects\": [{\"name\": "
+            "\"with\"}, {\"name\": \"without\", \"disable\": [\"shadows\"]}]}],"
+            "\"output\": \"{effects}.png\"");
+    ASSERT_EQ(relevo({"run", path.string(), "--size", "400x320", "--sidecar"}).status, 0);
+    const std::map<std::string, std::string> before = files_in(dir_);
+    // Sidecars that say less than is asked for are not whole.
+    const std::vector<std::string> resume{"run",     path.string(), "--size",
+                                          "400x320", "--resume",    "--audit"};
+    const Result refused = relevo(resume);
+    EXPECT_EQ(refused.status, 3);
+    EXPECT_THAT(refused.err,
+                HasSubstr(fmt::format("{}: exists, the first of 2 that are not whole, of another "
+                                      "scene, older than the DEM, or without what their sidecars "
+                                      "shall say; pass --overwrite to replace them\n",
+                                      (dir_ / "with.png").string())));
+    std::vector<std::string> replace = resume;
+    replace.push_back("--overwrite");
+    const Result run = relevo(replace);
+    ASSERT_EQ(run.status, 0) << run.err;
+    const auto audit_of = [&](const char* name) {
+        return nlohmann::json::parse(bytes_of(dir_ / name))["audit"];
+    };
+    const nlohmann::json with = audit_of("with.png.json"), without = audit_of("without.png.json");
+    EXPECT_EQ(with["provider"], "shadows");
+    EXPECT_GE(with["agreement"], 0.99);
+    EXPECT_GE(with["balanced_accuracy"], 0.99);
+    EXPECT_GT(with["pixels"], 10000);
+    EXPECT_TRUE(without["provider"].is_null());
+    EXPECT_LT(without["agreement"], 0.85);
+    EXPECT_EQ(without["balanced_accuracy"], 0.5);
+    EXPECT_THAT(run.err, HasSubstr(fmt::format(
+                             "relevo: audit: no effect that is on draws shadows; all ground lit "
+                             "agrees with the CPU sweep on {:.2f} % of {} pixels that show a post, "
+                             "balanced 50.00 %; the worst of 2, {}\n",
+                             100 * without["agreement"].get<double>(), without["pixels"].get<int>(),
+                             (dir_ / "without.png").string())));
+    // The pictures are as without it, and so is what one capture says.
+    for (const char* name : {"with.png", "without.png"})
+        EXPECT_TRUE(bytes_of(dir_ / name) == before.at(name)) << name;
+    const Result again = relevo({"capture", "--from", (dir_ / "with.png").string(), "-o",
+                                 (dir_ / "again.png").string(), "--audit"});
+    ASSERT_EQ(again.status, 0) << again.err;
+    EXPECT_EQ(audit_of("again.png.json"), with);
+    EXPECT_THAT(again.err, HasSubstr(fmt::format(
+                               "relevo: audit: shadows agrees with the CPU sweep on {:.2f} %",
+                               100 * with["agreement"].get<double>())));
+    expect_failure(
+        {"capture", bundled_dem(), "-o", (dir_ / "ab.png").string(), "--audit", "--ab", "shadows"},
+        2, "--audit: expected one picture but got a comparison; leave --ab out");
+    EXPECT_THAT(relevo(resume).err, HasSubstr("relevo: 0 pictures in 0 s; 2 were there already\n"));
+}
+
+TEST_F(Run, ADryRunSaysWhatWouldHappenAndTouchesNothing) {
+    const fs::path path =
+        job("\"time\": {\"at\": \"2026-06-21T16:00Z\"}, \"sweep\": [{\"cameras\": [{\"name\": "
+            "\"a\"}, {\"name\": \"b\", \"fov\": 20}]}], \"output\": \"out/{camera}.png\"");
+    const std::string a = (dir_ / "out/a.png").string(), b = (dir_ / "out/b.png").string();
+    const auto dry = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"run", path.string(), "--dry-run"});
+        Result result = relevo(more);
+        EXPECT_EQ(result.status, 0) << result.err;
+        return result;
+    };
+    EXPECT_EQ(dry({}).out, a + "\n" + b + "\n");
+    EXPECT_FALSE(fs::exists(dir_ / "out"));
+    ASSERT_EQ(relevo({"run", path.string()}).status, 0);
+    fs::remove(b);
+    std::ofstream(b) << "mine";
+    const auto before = files_in(dir_);
+    const Result refused = dry({});
+    EXPECT_EQ(refused.out, a + "\n" + b + "\n");
+    EXPECT_THAT(refused.err, HasSubstr(fmt::format(
+                                 "relevo: warning: would be refused: run: {}: exists, the first of "
+                                 "2; pass --overwrite to replace them, or --resume to make what is "
+                                 "missing\n",
+                                 a)));
+    EXPECT_THAT(dry({"--overwrite"}).err, HasSubstr("; 2 are replaced\n"));
+    const Result resumed = dry({"--resume"});
+    EXPECT_EQ(resumed.out, b + "\n");
+    EXPECT_THAT(resumed.err, HasSubstr("; 1 are there already and stay\n"));
+    EXPECT_THAT(resumed.err,
+                HasSubstr(fmt::format("would be refused: run: {}: exists, the first of 1 that are "
+                                      "not whole",
+                                      b)));
+    EXPECT_THAT(dry({"-o", (dir_ / "job.json/{camera}.png").string()}).err,
+                HasSubstr(fmt::format("would be refused: run: {}: no file can be made in it, Not a "
+                                      "directory\n",
+                                      path.string())));
+    EXPECT_TRUE(files_in(dir_) == before);
+}
+
+TEST_F(Run, EffectsAreThoseOfACaptureWhateverTheDemHas) {
+    // The sea is on where a DEM has water, and a plain that rises has none.
+    Raster plain;
+    plain.columns = plain.rows = 60;
+    write_raster(dir_ / "plain.tif", plain);
+    const std::string members =
+        "\"format\": 1, \"dem\": {\"files\": [\"plain.tif\"]}, \"picture\": {\"size\": [64, 48]}, "
+        "\"time\": {\"at\": \"2026-06-21T16:00Z\"}, \"effects\": {\"set\": {\"sea.level_m\": 400}},"
+        "\"camera\": {\"orbit\": {\"azimuth\": 180, \"elevation\": 30}}";
+    const fs::path file = write("job.json", "{" + members + ", \"output\": \"run.png\"}"),
+                   scene = write("scene.json", "{" + members + "}");
+    const Result run = relevo({"run", file.string(), "--sidecar"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const Result capture = relevo(
+        {"capture", "--scene", scene.string(), "-o", (dir_ / "capture.png").string(), "--sidecar"});
+    ASSERT_EQ(capture.status, 0) << capture.err;
+    EXPECT_TRUE(bytes_of(dir_ / "run.png") == bytes_of(dir_ / "capture.png"));
+    const auto effects_of = [&](const char* name) {
+        return nlohmann::json::parse(bytes_of(dir_ / name))["effects"].dump();
+    };
+    EXPECT_EQ(effects_of("run.png.json"), effects_of("capture.png.json"));
+    EXPECT_EQ(effects_of("run.png.json").find("sea"), std::string::npos);
 }
 
 TEST_F(Run, PicturesOfEveryFormatAreMadeAgainByteForByte) {

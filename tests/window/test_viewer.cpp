@@ -87,6 +87,42 @@ TEST_F(Viewer, APictureIsWhatACaptureOfItsSceneIs) {
     EXPECT_EQ(test::difference(a, b, 3), 0);
 }
 
+TEST_F(Viewer, TheDayIsSavedAsAJobThatRuns) {
+    // By the clocks of Tokyo the sun of Tennessee sets before it rises.
+    open({dem_, "--time", "2026-06-21T20:00:00Z", "--tz", "Asia/Tokyo", "--disable", "haze"});
+    act({"key", "ctrl+j"});
+    const auto name = folder_ / "relevo-1.json";
+    ASSERT_TRUE(wait([&] { return std::filesystem::exists(name); })) << program_->output();
+    const auto job = nlohmann::json::parse(read_text(name, "test"));
+    EXPECT_EQ(job["time"], nlohmann::json::parse(
+                               R"({"at": "00:00", "date": "2026-06-22", "zone": "Asia/Tokyo"})"));
+    act({"key", "ctrl+q"});
+    EXPECT_EQ(program_->status(), 0);
+
+    open({dem_, "--time", "2026-06-21T20:00:00Z", "--disable", "haze"});
+    act({"key", "ctrl+j"});
+    const auto day = folder_ / "relevo-2.json";
+    ASSERT_TRUE(wait([&] { return std::filesystem::exists(day); })) << program_->output();
+    const auto saved = nlohmann::json::parse(read_text(day, "test"));
+    EXPECT_EQ(saved["sweep"], nlohmann::json::parse(R"([{"times": {"from": "sunrise",
+                              "to": "sunset", "step": "1h"}}])"));
+    ++saved_;
+    nlohmann::json shown = scene(), of_job = saved;
+    for (const char* key : {"time", "sweep", "output"}) {
+        shown.erase(key);
+        of_job.erase(key);
+    }
+    EXPECT_EQ(of_job, shown);
+    test::WindowedProgram run(display_, test::build_dir() / "bin/relevo",
+                              {"run", day.string(), "--dry-run", "--size", "64x48"});
+    ASSERT_EQ(run.status(), 0) << run.output();
+    // The sun is up from 06:19 to 20:53.
+    const std::string stem = (folder_ / std::filesystem::path(dem_).stem()).string();
+    EXPECT_THAT(run.output(), testing::HasSubstr(stem + "_20260621T0619.png\n"));
+    EXPECT_THAT(run.output(), testing::HasSubstr(stem + "_20260621T2019.png\n"));
+    EXPECT_THAT(run.output(), testing::HasSubstr("relevo: 15 pictures would take"));
+}
+
 TEST_F(Viewer, TheCopiedCommandTakesThePicture) {
     open({dem_, "--time", "2026-06-21T20:00:00Z", "--disable", "haze"});
     ASSERT_TRUE(changes([&] { drag(3, 800, 400, 90, 30); }));
