@@ -251,5 +251,29 @@ TEST(Legible, WhatIsSeenFromAboveIsRelief) {
     EXPECT_LE(1 - mean.plain, 0.5 * (1 - mean.paper));
 }
 
+TEST(Legible, NoSeaLiesInTheShadowOfItsFloor) {
+    SKIP_WITHOUT_TEST_DATA(data);
+    // Hawaii, 1500 km wide: how high water stands over its floor is found a continent away.
+    scene::Scene scene;
+    scene.dems = {(data / "dem/HI_topo_04.nc").string()};
+    scene.width_px = 320;
+    scene.height_px = 200;
+    FilesInUse files, more_files;
+    Session lit(scene, {.device = "software"}, files);
+    const Values with = lightness_of(picture_of(lit));
+    scene = lit.scene();
+    scene.effects.switches.disable = {"shadows"};
+    Session bare(scene, {.device = "software", .dem = lit.dem()}, more_files);
+    bare.set_moment(lit.moment());
+    const Values without = lightness_of(picture_of(bare));
+    int darker = 0;
+    for (int y = 0; y < scene.height_px; ++y)
+        for (int x = 0; x < scene.width_px; ++x)
+            darker += with.at(x, y) < without.at(x, y) - 2;
+    fmt::print("[ accuracy ] {:.2f} % of the picture is darker for shadows\n",
+               100.0 * darker / (scene.width_px * scene.height_px));
+    EXPECT_LT(darker, 0.01 * scene.width_px * scene.height_px);
+}
+
 }  // namespace
 }  // namespace relevo::session
