@@ -55,7 +55,8 @@ void StampArguments::add_to(CLI::App& verb) {
                     "What stands on the picture, a list of title, scale, north, graticule, date, "
                     "sun, attribution; all, none")
         ->group("Stamps");
-    verb.add_option("--title", title, "Words of the title, and stamps it; by default the DEM's name")
+    verb.add_option("--title", title,
+                    "Words of the title, and stamps it; by default the DEM's name")
         ->group("Stamps");
     verb.add_option("--attribution", attribution,
                     "Words that name the data's source, and stamps them")

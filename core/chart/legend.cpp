@@ -37,7 +37,8 @@ std::vector<Label> labels_of(const Ramp& ramp, const std::string& unit) {
     const double step = values.size() > 1 ? values[1] - values[0] : std::max(high - low, 1.0);
     for (const double value : values)
         labels.push_back({kBarHeight * (high - value) / (high - low), text_of(value, step)});
-    if (!labels.empty() && !unit.empty() && unit != "1") labels.back().text += (unit == "°" ? "" : " ") + unit;
+    if (!labels.empty() && !unit.empty() && unit != "1")
+        labels.back().text += (unit == "°" ? "" : " ") + unit;
     return labels;
 }
 
@@ -68,11 +69,10 @@ void draw_ring(const Ramp& ramp, double left, double top, Drawing& drawing) {
     }
     for (const double radius : {kInner, kOuter})
         drawing.circle(middle, radius, {.stroke = Color{0x303030, 0.6}, .width = 0.8});
-    for (const auto& [azimuth, letter] : {std::pair(0.0, "N"), std::pair(90.0, "E"),
-                                          std::pair(180.0, "S"), std::pair(270.0, "W")})
+    for (const auto& [azimuth, letter] :
+         {std::pair(0.0, "N"), std::pair(90.0, "E"), std::pair(180.0, "S"), std::pair(270.0, "W")})
         drawing.text(at(azimuth, kOuter + 4 + kLetters * 0.36) + glm::dvec2(0, kLetters * 0.36),
-                     letter,
-                     {.size = kLetters, .color = {0x202020}, .anchor = Anchor::Middle});
+                     letter, {.size = kLetters, .color = {0x202020}, .anchor = Anchor::Middle});
 }
 
 }  // namespace

@@ -101,8 +101,7 @@ class Layout {
 
     /// Whether a place is in the picture and nothing stands there.
     bool is_free(const Rect& at, double margin_px) const {
-        if (at.x < margin_px || at.y < margin_px ||
-            at.x + at.width > picture_.width - margin_px ||
+        if (at.x < margin_px || at.y < margin_px || at.x + at.width > picture_.width - margin_px ||
             at.y + at.height > picture_.height - margin_px)
             return false;
         return std::none_of(taken_.begin(), taken_.end(), [&](const Rect& other) {
@@ -136,11 +135,9 @@ int add_labels(const std::vector<Stamps::Label>& labels, Layout& layout, image::
             continue;
         }
         layout.take(at);
-        drawing.text({middle.x, middle.y + size * 0.36}, label.words,
-                     {.size = size,
-                      .color = kInk,
-                      .anchor = Anchor::Middle,
-                      .halo = Color{0xffffff, 0.85}});
+        drawing.text(
+            {middle.x, middle.y + size * 0.36}, label.words,
+            {.size = size, .color = kInk, .anchor = Anchor::Middle, .halo = Color{0xffffff, 0.85}});
     }
     paint(drawing, 0, 0, 1, picture);
     return left_out;
@@ -189,7 +186,8 @@ std::vector<std::string> stamp(const Stamps& stamps, image::Image8& picture) {
         add(lines_panel(stamps.lines, kLetters, false), Corner::BottomRight, "date and sun");
     if (stamps.north) add(north_panel(*stamps.north), Corner::BottomLeft, "north");
     const int labels = add_labels(stamps.graticule, layout, picture);
-    if (labels > 0) left_out.push_back(
+    if (labels > 0)
+        left_out.push_back(
             fmt::format("{} label{} of the graticule", labels, labels > 1 ? "s" : ""));
     return left_out;
 }

@@ -18,7 +18,7 @@ struct Effect {
     const std::string& id() const { return manifest.id; }
     bool provides(std::string_view capability) const;
     bool answers(std::string_view hook) const;
-    std::vector<shader::Param> params() const;  ///< in the order of the files
+    std::vector<shader::Param> params() const;      ///< in the order of the files
     std::vector<shader::ColourRamp> ramps() const;  ///< likewise
 };
 

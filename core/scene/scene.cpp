@@ -185,9 +185,12 @@ const std::vector<std::string>& encodings() {
 
 const std::vector<std::pair<std::string_view, bool Stamps::*>>& stamp_words() {
     static const std::vector<std::pair<std::string_view, bool Stamps::*>> words = {
-        {"title", &Stamps::title}, {"scale", &Stamps::scale},
-        {"north", &Stamps::north}, {"graticule", &Stamps::graticule},
-        {"date", &Stamps::date},   {"sun", &Stamps::sun},
+        {"title", &Stamps::title},
+        {"scale", &Stamps::scale},
+        {"north", &Stamps::north},
+        {"graticule", &Stamps::graticule},
+        {"date", &Stamps::date},
+        {"sun", &Stamps::sun},
         {"attribution", &Stamps::attribution}};
     return words;
 }

@@ -22,10 +22,14 @@ bool is_shown(const ColourRamp& ramp, const shader::ParamStore& values) {
 
 double value_of(const ColourRamp::End& end, const shader::ParamStore& values, const Range& ground) {
     switch (end.of) {
-        case ColourRamp::End::Of::Number: return end.number;
-        case ColourRamp::End::Of::Param: return values.value(end.address)[0];
-        case ColourRamp::End::Of::Lowest: return ground.lowest;
-        case ColourRamp::End::Of::Highest: return ground.highest;
+        case ColourRamp::End::Of::Number:
+            return end.number;
+        case ColourRamp::End::Of::Param:
+            return values.value(end.address)[0];
+        case ColourRamp::End::Of::Lowest:
+            return ground.lowest;
+        case ColourRamp::End::Of::Highest:
+            return ground.highest;
     }
     return 0;
 }
@@ -69,8 +73,8 @@ std::vector<chart::Ramp::Stop> stops_of(const ColourRamp& ramp, double from, dou
 /// Puts further values under or over those of a legend; where they meet, colours change at once.
 void join(std::vector<chart::Ramp::Stop> more, chart::Ramp& ramp) {
     const bool below = more.front().value < ramp.stops.front().value;
-    std::vector<chart::Ramp::Stop>&low = below ? more : ramp.stops, &high = below ? ramp.stops
-                                                                                   : more;
+    std::vector<chart::Ramp::Stop>&low = below ? more : ramp.stops,
+    &high = below ? ramp.stops : more;
     if (low.back().value >= high.front().value)
         low.back().value =
             std::nextafter(high.front().value, -std::numeric_limits<double>::infinity());

@@ -43,9 +43,9 @@ Places places_of(const SeenGround& seen, const geo::LocalFrame& frame) {
                 const auto point = seen.point(x, y);
                 if (!point) continue;
                 const geo::Geodetic place = frame.to_geodetic(*point);
-                const std::size_t at = static_cast<std::size_t>(y) *
-                                           static_cast<std::size_t>(width) +
-                                       static_cast<std::size_t>(x);
+                const std::size_t at =
+                    static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(x);
                 places.latitude[at] = degrees(place.lat_rad);
                 places.longitude[at] =
                     middle_deg + std::remainder(degrees(place.lon_rad) - middle_deg, 360);
@@ -146,8 +146,8 @@ void name(const Courses& courses, double step_deg, std::string (*text)(double, d
         const glm::ivec2 other = across ? course.right : course.top;
         glm::dvec2 away = across ? glm::dvec2(-1, 0) : glm::dvec2(0, 1);
         if (end != other) away = glm::normalize(glm::dvec2(end - other));
-        labels.push_back({glm::dvec2(end) + 0.5, away,
-                          text(static_cast<double>(number) * step_deg, step_deg)});
+        labels.push_back(
+            {glm::dvec2(end) + 0.5, away, text(static_cast<double>(number) * step_deg, step_deg)});
     }
 }
 
@@ -161,14 +161,14 @@ double graticule_step_deg(double range_deg, int most) {
 
 std::string latitude_text(double latitude_deg, double step_deg) {
     const bool equator = std::abs(latitude_deg) < step_deg / 2;
-    return angle_text(std::abs(latitude_deg), step_deg) +
-           (equator ? "" : latitude_deg > 0 ? "N" : "S");
+    return angle_text(std::abs(latitude_deg), step_deg) + (equator            ? ""
+                                                           : latitude_deg > 0 ? "N"
+                                                                              : "S");
 }
 
 std::string longitude_text(double longitude_deg, double step_deg) {
     const double within = std::remainder(longitude_deg, 360);
-    const bool plain =
-        std::abs(within) < step_deg / 2 || std::abs(within) > 180 - step_deg / 2;
+    const bool plain = std::abs(within) < step_deg / 2 || std::abs(within) > 180 - step_deg / 2;
     return angle_text(std::abs(within), step_deg) + (plain ? "" : within > 0 ? "E" : "W");
 }
 
@@ -194,11 +194,9 @@ void draw_lines(const Graticule& graticule, image::Image8& picture) {
         const float line = graticule.line[at], edge = graticule.edge[at];
         if (line <= 0 && edge <= 0) continue;
         for (int channel = 0; channel < 3; ++channel) {
-            std::uint8_t& value =
-                picture.values[at * 3 + static_cast<std::size_t>(channel)];
+            std::uint8_t& value = picture.values[at * 3 + static_cast<std::size_t>(channel)];
             const float darkened = static_cast<float>(value) * (1 - edge);
-            value = static_cast<std::uint8_t>(
-                std::lround(darkened + line * (255.0f - darkened)));
+            value = static_cast<std::uint8_t>(std::lround(darkened + line * (255.0f - darkened)));
         }
     }
 }

@@ -37,8 +37,7 @@ std::string length_text(double length_m) {
 
 class Stamper {
   public:
-    explicit Stamper(const Session& session)
-        : session_(session), wanted_(session.scene().stamps) {
+    explicit Stamper(const Session& session) : session_(session), wanted_(session.scene().stamps) {
         if (!wanted_.scale && !wanted_.north && !wanted_.graticule) return;
         std::vector<float> depths_m;
         session.read_depths(depths_m);
@@ -87,19 +86,18 @@ class Stamper {
         if (most_m < (1 + kMostOff) * least_m) return {seen_->px_per_m(depth_m), {}};
         const double off_px = std::hypot(middle_->x + 0.5 - 0.5 * seen_->width_px(),
                                          middle_->y + 0.5 - 0.5 * seen_->height_px());
-        return {seen_->px_per_m(depth_m),
-                fmt::format("across the view, {}, {} away",
-                            off_px <= 2 ? "at the picture's middle" : "at the ground nearest to "
-                                                                      "the middle",
-                            length_text(depth_m))};
+        return {seen_->px_per_m(depth_m), fmt::format("across the view, {}, {} away",
+                                                      off_px <= 2 ? "at the picture's middle"
+                                                                  : "at the ground nearest to "
+                                                                    "the middle",
+                                                      length_text(depth_m))};
     }
 
     std::optional<glm::dvec2> north() {
         const glm::dvec3 point = *seen_->point(middle_->x, middle_->y);
         const geo::LocalFrame& frame = session_.ground().frame;
         const geo::Geodetic place = frame.to_geodetic(point);
-        const glm::dvec2 way =
-            seen_->moved(point, frame.axes(place.lat_rad, place.lon_rad).north);
+        const glm::dvec2 way = seen_->moved(point, frame.axes(place.lat_rad, place.lon_rad).north);
         if (length(way) >= kLeastNorth * seen_->px_per_m(seen_->depth_m(middle_->x, middle_->y)))
             return normalize(way);
         notes_.emplace_back("stamp: north is left out: it lies along the line of sight");
@@ -114,8 +112,7 @@ class Stamper {
         const glm::dvec2 post = dem.field.grid.post(place);
         const double height_m =
             dem.to_draw().height_at(post.x, post.y) * session_.scene().exaggeration;
-        const double depth_m =
-            dot(point_m - session_.camera().eye_m, session_.camera().forward);
+        const double depth_m = dot(point_m - session_.camera().eye_m, session_.camera().forward);
         return drawn_m >= height_m - kGround_px / seen_->px_per_m(depth_m);
     }
 
@@ -134,9 +131,10 @@ std::vector<std::string> add_stamps(const Session& session,
     chart::Stamps stamps = stamper.stamps(legends);
     stamper.add_graticule(picture, stamps);
     for (const std::string& name : chart::stamp(stamps, picture))
-        stamper.notes_.push_back(fmt::format("stamp: {}: no room in a picture of {} x {} pixels, "
-                                             "left out",
-                                             name, picture.width, picture.height));
+        stamper.notes_.push_back(
+            fmt::format("stamp: {}: no room in a picture of {} x {} pixels, "
+                        "left out",
+                        name, picture.width, picture.height));
     return std::move(stamper.notes_);
 }
 

@@ -31,9 +31,10 @@ class RampReader {
                 ramp_.where = fmt::format("{}.{}", owner_, word.arguments[0]);
                 ramp_.where_word = word.arguments[1];
             } else {
-                fail(fmt::format("expected ramp(from, to), unit(m), label(\"Text\") or "
-                                 "where(parameter, word) but got {}({})",
-                                 word.name, fmt::join(word.arguments, ", ")));
+                fail(
+                    fmt::format("expected ramp(from, to), unit(m), label(\"Text\") or "
+                                "where(parameter, word) but got {}({})",
+                                word.name, fmt::join(word.arguments, ", ")));
             }
         }
         if (!has_ramp) fail("a constant's annotation is a ramp(from, to), which is missing");
@@ -89,9 +90,10 @@ class RampReader {
         const bool numbers = ramp_.from.of == ColourRamp::End::Of::Number &&
                              ramp_.to.of == ColourRamp::End::Of::Number;
         if (numbers && !(ramp_.from.number < ramp_.to.number))
-            fail(fmt::format("expected ramp(from, to), the first below the second, but got "
-                             "ramp({})",
-                             fmt::join(word.arguments, ", ")));
+            fail(
+                fmt::format("expected ramp(from, to), the first below the second, but got "
+                            "ramp({})",
+                            fmt::join(word.arguments, ", ")));
     }
 
     ColourRamp::End end(const std::string& text) const {

@@ -8,7 +8,8 @@
 /// What colours of a plugin mean: an annotated constant of its GLSL, which its shader reads and
 /// legends show.
 ///
-///     const vec3 tint_slope[2] = vec3[](vec3(1.0, 1.0, 0.9), vec3(0.4, 0.1, 0.3)); //@ ramp(0, 60) unit(°)
+///     const vec3 tint_slope[2] = vec3[](vec3(1.0, 1.0, 0.9), vec3(0.4, 0.1, 0.3)); //@ ramp(0, 60)
+///     unit(°)
 namespace relevo::shader {
 
 struct ColourRamp {

@@ -366,10 +366,10 @@ class Parser {
                                    "const vec3 {}[N] = vec3[](...);",
                                    str(name), str(name)));
         const std::size_t begin = token(equals).offset + 1;
-        source_.ramps.push_back(parse_ramp(
-            source_.owner, str(name),
-            std::string_view(source_.text).substr(begin, token(at_ - 1).offset - begin),
-            *annotation, source_.file, line));
+        source_.ramps.push_back(
+            parse_ramp(source_.owner, str(name),
+                       std::string_view(source_.text).substr(begin, token(at_ - 1).offset - begin),
+                       *annotation, source_.file, line));
     }
 
     void function(std::size_t first, std::size_t name) {

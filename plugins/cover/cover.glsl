@@ -63,6 +63,7 @@ struct cover_Shape {
     float sunny;   // how far the slope leans towards the noon sun, -1..1
     vec4 small, broad;  // of patches, faded with distance: tone, hue, shrubs, fine tone, less 0.5
     float ragged;  // what limits wander by, about -1..1
+    float fine;    // how far the ground's cover follows single slopes: 1 from near, less in overviews
 };
 
 /// Posts far apart cut off slopes: by an eighth for each doubling.
@@ -96,7 +97,9 @@ cover_Shape cover_shape(in Surface s, in float pixel_m) {
     shape.small = cover_patch(at, dx, dy, 410.0);
     shape.broad = cover_patch(cover_turn * at, cover_turn * dx, cover_turn * dy, 4700.0);
     // Near limits: from afar they are ragged by the ground's own shape.
-    float near = mix(0.3, 1.0, 1.0 / (1.0 + pixel_m * pixel_m * 0.01));
+    float near = mix(0.1, 1.0, 1.0 / (1.0 + pixel_m * pixel_m * 0.01));
+    // From afar colour would spoil what light tells of slopes: there it follows height and climate.
+    shape.fine = 1.0 - 0.8 * smoothstep(30.0, 400.0, pixel_m);
     shape.ragged = near * cover_noise * (1.7 * shape.broad.r + 1.5 * shape.small.r + 1.1 * shape.broad.a);
     return shape;
 }
@@ -172,7 +175,7 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
                    smoothstep(0.82, 1.16, growth + 0.16 * ragged - 0.06 * shape.steep);
     float temperate = smoothstep(3.0, 6.0, ground.temperature) * (1.0 - smoothstep(15.0, 19.0, ground.temperature));
     float flats = 1.0 - smoothstep(0.01, 0.15, shape.steep * (1.0 + 0.3 * ragged));
-    wooded *= 1.0 - cover_open_flats * temperate * flats;
+    wooded *= 1.0 - cover_open_flats * temperate * flats * shape.fine;
     shares.forest = cover_trees == 2 ? 0.0 : wooded * (1.0 - smoothstep(0.85 * rooted, 1.3 * rooted, shape.steep));
 
     vec2 bare = vec2(cover_tan(cover_bare_deg.x), cover_tan(cover_bare_deg.y));
@@ -213,7 +216,7 @@ void cover_on_albedo(inout Surface s) {
     ClimateGround ground = climate_ground(place, s.height_m);
     vec2 white = cover_white_at(place, s.height_m - cover_aspect_m * shape.sunny);
     float growth = cover_growth(ground, s.height_m);
-    float rain = cover_dryness_of(ground) * (1.0 - 0.45 * shape.sunny);
+    float rain = cover_dryness_of(ground) * (1.0 - 0.45 * shape.sunny * shape.fine);
     cover_Shares shares = cover_shares(ground, white, rain, growth, shape);
 
     // Patches are for the eye that is near: none of them is seen from afar.
@@ -230,7 +233,8 @@ void cover_on_albedo(inout Surface s) {
     rock *= (1.0 + tone) * mix(1.0, 0.6, smoothstep(2.5, 4.5, rain));
     vec3 forest = cover_forest(ground, growth) * (1.0 + 1.6 * tone) * cover_crowns(s, pixel_m);
     vec3 albedo = mix(open, rock, shares.rock);
-    float trees = shares.forest * (1.0 - shares.rock);
+    // Pixels of hundreds of metres have clearings in them, and dark woods would hide their own relief.
+    float trees = shares.forest * (1.0 - shares.rock) * (0.5 + 0.5 * shape.fine);
     albedo = mix(albedo, forest, trees);
     // From above trees hide most of the snow under them.
     float lying = shares.snow * (1.0 - 0.94 * smoothstep(0.0, 0.9, trees));

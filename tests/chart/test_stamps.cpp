@@ -87,9 +87,11 @@ TEST(Stamps, NothingIsClipped) {
             stamps.graticule.push_back({{k * width / 11.0, k * height / 11.0}, {0, 1}, "11°30'E"});
         stamp(stamps, picture);
         for (int x = 0; x < width; ++x)
-            for (const int y : {0, height - 1}) EXPECT_EQ(picture.at(x, y, 1), 128);
+            for (const int y : {0, height - 1})
+                EXPECT_EQ(picture.at(x, y, 1), 128);
         for (int y = 0; y < height; ++y)
-            for (const int x : {0, width - 1}) EXPECT_EQ(picture.at(x, y, 1), 128);
+            for (const int x : {0, width - 1})
+                EXPECT_EQ(picture.at(x, y, 1), 128);
     }
 }
 

@@ -107,9 +107,9 @@ TEST_F(OverlayOption, PresetsThatColourTheGroundHaveALegendToo) {
 }
 
 TEST_F(OverlayOption, StampsAreInTheSceneThatAPictureCarries) {
-    const image::Image8 first =
-        taken("first.png", {"--stamp", "title,scale,north,graticule,date,sun", "--attribution",
-                            "Data of an agency"});
+    const image::Image8 first = taken(
+        "first.png",
+        {"--stamp", "title,scale,north,graticule,date,sun", "--attribution", "Data of an agency"});
     EXPECT_GT(image::compare(first, taken("bare.png", {})).share_over_1, 0.05);
     const Result again = relevo({"-q", "capture", "--from", (dir_ / "first.png").string(), "-o",
                                  (dir_ / "again.png").string()});
@@ -118,9 +118,10 @@ TEST_F(OverlayOption, StampsAreInTheSceneThatAPictureCarries) {
 }
 
 TEST_F(OverlayOption, StampsThatAreNoneAreRefused) {
-    EXPECT_EQ(capture("refused.png", {"--stamp", "title,scael"}).err,
-              "relevo: error: --stamp: scael: expected all, none, or words of legend, title, scale, "
-              "north, graticule, date, sun, attribution\n");
+    EXPECT_EQ(
+        capture("refused.png", {"--stamp", "title,scael"}).err,
+        "relevo: error: --stamp: scael: expected all, none, or words of legend, title, scale, "
+        "north, graticule, date, sun, attribution\n");
     EXPECT_EQ(capture("refused.png", {"--stamp", "attribution"}).err,
               "relevo: error: --stamp: attribution: the words that name the data's source are "
               "missing; expected --attribution TEXT\n");

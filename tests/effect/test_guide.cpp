@@ -50,6 +50,30 @@ TEST(PluginGuide, ItsContoursAreAPlugin) {
     EXPECT_TRUE(registry.effects()[0].answers("display"));
 }
 
+TEST(PluginGuide, ItsRampIsOne) {
+    const Plugins plugins;
+    const std::string glsl = block(guide(), "glsl rain.glsl");
+    plugins.add("rain", "", glsl);
+    const Registry registry = plugins.load();
+    ASSERT_TRUE(registry.broken().empty()) << registry.broken()[0].error;
+    const std::vector<shader::ColourRamp> ramps = registry.effects()[0].ramps();
+    ASSERT_EQ(ramps.size(), 1u);
+    EXPECT_EQ(ramps[0].to.number, 3000);
+    EXPECT_EQ(ramps[0].where_word, "year");
+    const auto broken = [&](std::string from, const std::string& to) {
+        std::string other = glsl;
+        other.replace(other.find(from), from.size(), to);
+        plugins.add("rain", "", other);
+        return plugins.load().broken().at(0).error;
+    };
+    EXPECT_THAT(broken("where(by, year)", "where(by, month)"),
+                HasSubstr("rain.glsl:3: rain_year: where: expected an enum parameter of the "
+                          "plugin's and one of its words but got rain.by, month"));
+    EXPECT_THAT(broken("ramp(0, 3000)", "ramp(0, most)"),
+                HasSubstr("rain.glsl:3: rain_year: ramp: expected a number, lowest, highest or a "
+                          "float parameter of the plugin's but got rain.most"));
+}
+
 TEST(PluginGuide, ItsFrostReadsTheClimate) {
     const Plugins plugins;
     plugins.add("frost", "", block(guide(), "glsl frost.glsl"));

@@ -38,7 +38,7 @@ class Predictors {
                                 std::sin(sun.elevation_rad));
         const Array2d<float> lit =
             light::shadows(posts, light::SunOverDem::of(sun), {.soft = true}).lit;
-        const Array2d<float> sky = light::sky_view(posts, {.directions = 16}).share;
+        const Array2d<float> sky = light::sky_view(posts, {.directions = 8}).share;
         const int width = field_.height_m.width(), height = field_.height_m.height();
         for (Array2d<float>& one : of_posts_)
             one = Array2d<float>(width, height, std::numeric_limits<float>::quiet_NaN());
@@ -80,7 +80,8 @@ class Predictors {
 
   private:
     static double between(const Array2d<float>& values, const glm::dvec2& p) {
-        const int column = static_cast<int>(std::floor(p.x)), row = static_cast<int>(std::floor(p.y));
+        const int column = static_cast<int>(std::floor(p.x)),
+                  row = static_cast<int>(std::floor(p.y));
         if (column < 0 || row < 0 || column + 1 >= values.width() || row + 1 >= values.height())
             return kNone;
         const double tx = p.x - column, ty = p.y - row;
@@ -91,6 +92,14 @@ class Predictors {
     const dem::Heightfield& field_;
     std::array<Array2d<float>, kPredictors> of_posts_;
 };
+
+/// Leaves out what the others leave out.
+Values only_where(Values values, const Values& others) {
+    for (int y = 0; y < values.height(); ++y)
+        for (int x = 0; x < values.width(); ++x)
+            if (std::isnan(others.at(x, y))) values.at(x, y) = kNone;
+    return values;
+}
 
 /// Takes away the mean of what is around, kWide_px on each side and NaN left out.
 Values narrow(const Values& values) {
@@ -114,13 +123,19 @@ double linear(double srgb) {
     return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
 }
 
-Values luminance_of(const image::Image8& picture) {
+double lightness(double luminance) {
+    return luminance > 0.008856 ? 116 * std::cbrt(luminance) - 16 : 903.3 * luminance;
+}
+
+/// Luminance as eyes tell it, CIE 1976 L*: differences of it are as large as they look, where a
+/// border of snow is a hundred times the luminance of a wooded slope's light and shade.
+Values lightness_of(const image::Image8& picture) {
     Values result(picture.width, picture.height, 0);
     for (int y = 0; y < picture.height; ++y)
         for (int x = 0; x < picture.width; ++x)
-            result.at(x, y) = 0.2126 * linear(picture.at(x, y, 0) / 255.0) +
-                              0.7152 * linear(picture.at(x, y, 1) / 255.0) +
-                              0.0722 * linear(picture.at(x, y, 2) / 255.0);
+            result.at(x, y) = lightness(0.2126 * linear(picture.at(x, y, 0) / 255.0) +
+                                        0.7152 * linear(picture.at(x, y, 1) / 255.0) +
+                                        0.0722 * linear(picture.at(x, y, 2) / 255.0));
     return result;
 }
 
@@ -178,7 +193,7 @@ Explained explained_of(const std::string& dem) {
     scene.stamps.legend = false;
     FilesInUse files;
     Session session(scene, {.device = "software"}, files);
-    const Values plain = luminance_of(picture_of(session));
+    const Values plain = lightness_of(picture_of(session));
     std::vector<float> depths_m;
     session.read_depths(depths_m);
     const SeenGround seen(session.camera(), kSide_px, kSide_px, std::move(depths_m));
@@ -199,6 +214,7 @@ Explained explained_of(const std::string& dem) {
             for (std::size_t k = 0; k < kPredictors; ++k)
                 by[k].at(x, y) = values[k];
         }
+    const Values ground = by.front();
     for (Values& one : by)
         one = narrow(one);
     scene::Scene paper = session.scene();
@@ -206,23 +222,25 @@ Explained explained_of(const std::string& dem) {
     FilesInUse more_files;
     Session of_paper(paper, {.device = "software", .dem = session.dem()}, more_files);
     of_paper.set_moment(session.moment());
-    const Values before = luminance_of(picture_of(of_paper));
-    return {explained(narrow(plain), by), explained(narrow(before), by)};
+    const Values before = lightness_of(picture_of(of_paper));
+    return {explained(narrow(only_where(plain, ground)), by),
+            explained(narrow(only_where(before, ground)), by)};
 }
 
 TEST(Legible, WhatIsSeenFromAboveIsRelief) {
     SKIP_WITHOUT_TEST_DATA(data);
     Explained mean;
     const std::vector<std::string> names{
-        "N42E001.hgt",           "mt_rainier_90m.tif", "srtm_bigtujunga30m_utm11.tif",
-        "SainteHelens.dem",      "rmnp/rmnp-dem.tif",  "colorado_tut_relief.nc",
-        "missoula_valley.img",   "holyroodpark.tif",   "swellendam/srtm_41_19_4326.tif",
+        "N42E001.hgt",         "mt_rainier_90m.tif", "srtm_bigtujunga30m_utm11.tif",
+        "SainteHelens.dem",    "rmnp/rmnp-dem.tif",  "colorado_tut_relief.nc",
+        "missoula_valley.img", "holyroodpark.tif",   "swellendam/srtm_41_19_4326.tif",
         "hawaii_rotated20.tif"};
     for (const std::string& name : names) {
         const Explained one = explained_of((data / "dem" / name).string());
-        fmt::print("[ accuracy ] {}: light explains {:.0f} % of the paper's picture, {:.0f} % of "
-                   "the plain one\n",
-                   name, 100 * one.paper, 100 * one.plain);
+        fmt::print(
+            "[ accuracy ] {}: light explains {:.0f} % of the paper's picture, {:.0f} % of "
+            "the plain one\n",
+            name, 100 * one.paper, 100 * one.plain);
         EXPECT_GT(one.plain, 0.3) << name;
         mean.paper += one.paper / static_cast<double>(names.size());
         mean.plain += one.plain / static_cast<double>(names.size());
@@ -231,6 +249,30 @@ TEST(Legible, WhatIsSeenFromAboveIsRelief) {
                100 * mean.plain);
     EXPECT_GE(mean.plain, 0.6);
     EXPECT_LE(1 - mean.plain, 0.5 * (1 - mean.paper));
+}
+
+TEST(Legible, NoSeaLiesInTheShadowOfItsFloor) {
+    SKIP_WITHOUT_TEST_DATA(data);
+    // Hawaii, 1500 km wide: how high water stands over its floor is found a continent away.
+    scene::Scene scene;
+    scene.dems = {(data / "dem/HI_topo_04.nc").string()};
+    scene.width_px = 320;
+    scene.height_px = 200;
+    FilesInUse files, more_files;
+    Session lit(scene, {.device = "software"}, files);
+    const Values with = lightness_of(picture_of(lit));
+    scene = lit.scene();
+    scene.effects.switches.disable = {"shadows"};
+    Session bare(scene, {.device = "software", .dem = lit.dem()}, more_files);
+    bare.set_moment(lit.moment());
+    const Values without = lightness_of(picture_of(bare));
+    int darker = 0;
+    for (int y = 0; y < scene.height_px; ++y)
+        for (int x = 0; x < scene.width_px; ++x)
+            darker += with.at(x, y) < without.at(x, y) - 2;
+    fmt::print("[ accuracy ] {:.2f} % of the picture is darker for shadows\n",
+               100.0 * darker / (scene.width_px * scene.height_px));
+    EXPECT_LT(darker, 0.01 * scene.width_px * scene.height_px);
 }
 
 }  // namespace

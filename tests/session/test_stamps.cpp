@@ -130,8 +130,8 @@ Found places_on_lines(const Shown& shown, const Graticule& graticule, bool latit
             float most = 0;
             for (int dy = -1; dy <= 1; ++dy)
                 for (int dx = -1; dx <= 1; ++dx)
-                    most = std::max(most, graticule.line[static_cast<std::size_t>(
-                                              (y + dy) * 480 + x + dx)]);
+                    most = std::max(
+                        most, graticule.line[static_cast<std::size_t>((y + dy) * 480 + x + dx)]);
             found.drawn += most > 0.4f;
         }
     return found;
@@ -140,21 +140,21 @@ Found places_on_lines(const Shown& shown, const Graticule& graticule, bool latit
 TEST(Graticule, LinesAreWhereTheirLatitudesAndLongitudesAreProjected) {
     for (const double elevation_deg : {30.0, 89.99}) {
         const Shown shown(scene_of(160, elevation_deg));
-        const Graticule graticule =
-            make_graticule(shown.seen, shown.session.ground().frame, [](const auto&) { return true; });
+        const Graticule graticule = make_graticule(shown.seen, shown.session.ground().frame,
+                                                   [](const auto&) { return true; });
         ASSERT_GT(graticule.latitude_step_deg, 0);
         EXPECT_GE(graticule.labels.size(), 4u);
         for (const bool latitudes : {true, false}) {
             const Found found = places_on_lines(shown, graticule, latitudes);
             ASSERT_GT(found.seen, 200) << elevation_deg;
             EXPECT_GT(found.drawn, 0.95 * found.seen) << elevation_deg << ' ' << latitudes;
-            fmt::print("[ accuracy ] {} of {} places on lines of {} have one, seen from {} degrees\n",
-                       found.drawn, found.seen, latitudes ? "latitude" : "longitude",
-                       elevation_deg);
+            fmt::print(
+                "[ accuracy ] {} of {} places on lines of {} have one, seen from {} degrees\n",
+                found.drawn, found.seen, latitudes ? "latitude" : "longitude", elevation_deg);
         }
         // And nowhere else: most of the picture has none.
-        const auto drawn =
-            std::count_if(graticule.line.begin(), graticule.line.end(), [](float a) { return a > 0; });
+        const auto drawn = std::count_if(graticule.line.begin(), graticule.line.end(),
+                                         [](float a) { return a > 0; });
         EXPECT_LT(drawn, 0.1 * 480 * 360);
     }
 }
@@ -195,8 +195,7 @@ TEST(Stamps, AreOnPicturesOfScenesThatWantThem) {
     scene.height_px = 36;
     const auto [tiny, notes] = picture();
     ASSERT_FALSE(notes.empty());
-    EXPECT_EQ(notes.front(),
-              "stamp: title: no room in a picture of 48 x 36 pixels, left out");
+    EXPECT_EQ(notes.front(), "stamp: title: no room in a picture of 48 x 36 pixels, left out");
 }
 
 TEST(Stamps, FollowASceneThatIsShownNext) {

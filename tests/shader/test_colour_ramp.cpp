@@ -13,8 +13,7 @@ ColourRamp ramp_of(const std::string& glsl) {
 }
 
 std::string error(const std::string& glsl) {
-    const std::string what =
-        test::error_of([&] { parse_snippet("haze", "haze.glsl", glsl); });
+    const std::string what = test::error_of([&] { parse_snippet("haze", "haze.glsl", glsl); });
     const std::string begin = "exit 3: shader::parse: haze.glsl:";
     EXPECT_EQ(what.substr(0, begin.size()), begin);
     return what.substr(begin.size());
@@ -38,8 +37,9 @@ TEST(ColourRamp, IsReadFromAConstantOverSeveralLines) {
 
 TEST(ColourRamp, MistakesNameTheirLine) {
     const std::string two = "const vec3 haze_a[2] = vec3[](vec3(0.1, 0.2, 0.3), vec3(0.5, 1, 1)); ";
-    EXPECT_EQ(error(two + "//@ ramp(60, 0) label(\"A\")"),
-              "1: haze_a: expected ramp(from, to), the first below the second, but got ramp(60, 0)");
+    EXPECT_EQ(
+        error(two + "//@ ramp(60, 0) label(\"A\")"),
+        "1: haze_a: expected ramp(from, to), the first below the second, but got ramp(60, 0)");
     EXPECT_EQ(error(two + "//@ label(\"A\")"),
               "1: haze_a: a constant's annotation is a ramp(from, to), which is missing");
     EXPECT_EQ(error(two + "//@ ramp(ring)"),
