@@ -2,12 +2,14 @@
 """What `relevo run` costs beside single frames, and whether its pictures hang on how it was run: the day of
 docs/jobs.md, 96 pictures of 1280 x 1024, with every effect on.
 
-Usage: bench_job.py [BUILD] [--device NAME] [--without EFFECTS] [--kills N] [--size WxH]     BUILD: build/release (default)
+Usage: bench_job.py [BUILD] [--device NAME] [--without EFFECTS] [--kills N] [--size WxH] [--cost]
+
+BUILD: build/release (default)
 
 Prints
 - processor and wall time of the job for each picture, and the processor time of a frame whose sun is moved
-  (`capture --repeat`, mean of seven hours of that day), with their ratio: machines that do other work as well spoil
-  wall times only;
+  (`capture --repeat`, mean of every third hour of that day), with their ratio: machines that do other work as well
+  spoil wall times only. What opening takes, as a job of one picture has it, is told apart;
 - whether four shards, one after the other, give the bytes of the whole;
 - whether N runs with --resume that SIGKILL ends at random moments leave whole pictures alone, and a last one gives the
   files of the whole.
@@ -28,7 +30,7 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-HOURS = ("06:00", "09:00", "12:00", "15:00", "18:00", "20:00", "23:00")
+HOURS = [f"{hour:02}:00" for hour in range(0, 24, 3)]
 
 
 def shown_job():
@@ -81,19 +83,28 @@ class Job:
         return json.loads(timings.read_text(encoding="utf-8"))["frames_with_sun_moved"]["processor_ms"]
 
 
-def cost(job):
-    """@returns the files of the whole job, and how long it took [s]"""
+def times(command):
+    """@returns wall and processor time [s]"""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     began = time.monotonic()
-    subprocess.run(job.command(), check=True)
+    subprocess.run(command, check=True)
     wall = time.monotonic() - began
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def cost(job):
+    """@returns the files of the whole job, and how long it took [s]"""
+    wall, processor = times(job.command())
     whole = job.take()
-    processor = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / len(whole)
+    one_wall, one = times(job.command("--shard", f"{len(whole) // 2}/{len(whole)}"))
+    job.take()
     frame = sum(job.frame_ms(hour) for hour in HOURS) / len(HOURS)
-    print(f"{len(whole)} pictures: {1e3 * wall / len(whole):.0f} ms of wall time and {1e3 * processor:.0f} ms of "
-          f"processor time a picture, encoding and opening included; a frame with the sun moved takes {frame:.0f} ms "
-          f"of processor time: {1e3 * processor / frame:.2f} times")
+    more = len(whole) - 1
+    print(f"a job of one picture takes {one_wall:.1f} s of wall time and {one:.1f} s of processor time; each of the "
+          f"{more} others {1e3 * (wall - one_wall) / more:.0f} ms and {1e3 * (processor - one) / more:.0f} ms, encoding "
+          f"included; a frame with the sun moved {frame:.0f} ms of processor time: "
+          f"{1e3 * (processor - one) / more / frame:.2f} times")
     return whole, wall
 
 
@@ -132,12 +143,15 @@ def main():
                         help="vsm excludes shadows, layering cover; tint hides the ground")
     parser.add_argument("--kills", type=int, default=10)
     parser.add_argument("--size", default="1280x1024")
+    parser.add_argument("--cost", action="store_true", help="nothing but that")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         job = Job(arguments, pathlib.Path(name))
         print(f"processors: {len(os.sched_getaffinity(0))}, load before: {os.getloadavg()[0]:.1f}", flush=True)
         whole, wall_s = cost(job)
         sys.stdout.flush()
+        if arguments.cost:
+            return
         good = shards(job, whole)
         sys.stdout.flush()
         good &= killed(job, whole, arguments.kills, wall_s)

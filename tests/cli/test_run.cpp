@@ -270,6 +270,8 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
               fmt::format("run: {0}: exists, the first of 1; pass --overwrite to replace it, or "
                           "--resume to make what is missing",
                           bundled_dem()));
+    EXPECT_EQ(error(job(at + ", \"output\": \"a.png\""), {"-o", ""}, 2),
+              "-o: expected a template of names but got nothing");
     EXPECT_EQ(error(job(at + ", \"output\": \"a.png\""), {"--shard", "array"}, 2),
               "--shard: array: expected a task of an array of Slurm, PBS, LSF, Grid Engine or AWS "
               "Batch, but none of their variables is set; write --shard I/N");
@@ -462,6 +464,9 @@ TEST_F(Run, ADryRunSaysWhatWouldHappenAndTouchesNothing) {
                 HasSubstr(fmt::format("would be refused: run: {}: no file can be made in it, Not a "
                                       "directory\n",
                                       path.string())));
+    // In the working folder, too.
+    EXPECT_EQ(dry({"-o", "relevo_dry_run_{camera}.png"}).out,
+              "relevo_dry_run_a.png\nrelevo_dry_run_b.png\n");
     EXPECT_TRUE(files_in(dir_) == before);
 }
 
