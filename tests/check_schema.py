@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Checks the JSON that the documentation shows against the published schemas of scenes and jobs.
+"""Checks the JSON that the documentation shows against the published schemas of scenes and jobs, and files of the
+program's own.
 
-Usage: check_schema.py ROOT [SCENE.json...]. Prints every violation and exits with 1 if there is one.
+Usage: check_schema.py ROOT [SCENE.json...] [--jobs JOB.json...]. Prints every violation and exits with 1 if there is
+one.
 """
 
 import json
@@ -46,7 +48,12 @@ def main():
     check = validators(root / "docs")
     texts = [(check[kind], f"{page}: {name}", text)
              for page, kind in SHOWN.items() for name, text in shown_files(root / "docs" / page)]
-    texts += [(check["scene"], name, pathlib.Path(name).read_text(encoding="utf-8")) for name in sys.argv[2:]]
+    kind = "scene"
+    for name in sys.argv[2:]:
+        if name == "--jobs":
+            kind = "job"
+        else:
+            texts.append((check[kind], name, pathlib.Path(name).read_text(encoding="utf-8")))
     faults = 0
     for validator, name, text in texts:
         for error in validator.iter_errors(json.loads(text)):

@@ -262,7 +262,7 @@ class Run {
         std::set<fs::path> folders;
         for (const scene::Shot& shot : shots_) {
             if (!folders.insert(shot.output.parent_path()).second) continue;
-            fs::path there = fs::absolute(shot.output.parent_path());
+            fs::path there = fs::absolute(shot.output).parent_path();
             std::error_code missing;
             while (there.has_relative_path() && !fs::exists(there, missing))
                 there = there.parent_path();
@@ -296,8 +296,9 @@ void add_run(CLI::App& app) {
     verb.add_option("JOB", arguments->job, "Job: a file of JSON, docs/jobs.md")->required();
     arguments->scene.add_to(verb, /*with_file=*/false);
     arguments->scene.dem.dem_option->required(false);
-    verb.add_option("-o,--output", arguments->output,
-                    "Template of the names, {dem}_{time:%Y%m%dT%H%M}_{n:04}.png");
+    const CLI::Option* const output =
+        verb.add_option("-o,--output", arguments->output,
+                        "Template of the names, {dem}_{time:%Y%m%dT%H%M}_{n:04}.png");
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
     verb.add_flag("--resume", arguments->resume,
                   "Leave out pictures that are there, whole and of the same scene");
@@ -313,7 +314,11 @@ void add_run(CLI::App& app) {
                   "Take pictures without ground in them too");
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
-    verb.callback([arguments] { Run(*arguments).run(); });
+    verb.callback([arguments, template_given = output] {
+        if (template_given->count() > 0 && arguments->output.empty())
+            bad_usage("-o: expected a template of names but got nothing");
+        Run(*arguments).run();
+    });
 }
 
 }  // namespace relevo::cli

@@ -270,6 +270,8 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
               fmt::format("run: {0}: exists, the first of 1; pass --overwrite to replace it, or "
                           "--resume to make what is missing",
                           bundled_dem()));
+    EXPECT_EQ(error(job(at + ", \"output\": \"a.png\""), {"-o", ""}, 2),
+              "-o: expected a template of names but got nothing");
     EXPECT_EQ(error(job(at + ", \"output\": \"a.png\""), {"--shard", "array"}, 2),
               "--shard: array: expected a task of an array of Slurm, PBS, LSF, Grid Engine or AWS "
               "Batch, but none of their variables is set; write --shard I/N");
@@ -291,6 +293,33 @@ TEST_F(Run, ADiskThatIsFullFailsThePicturesThatDoNotFit) {
                                                (dir_ / "1.png").string())));
     EXPECT_FALSE(fs::exists(dir_ / "1.png"));
     EXPECT_FALSE(fs::exists(dir_ / "2.png"));
+}
+
+TEST_F(Run, ASmallDiskThatIsFullHasWholePicturesAndNoOthers) {
+    const fs::path disk = dir_ / "disk";
+    fs::create_directory(disk);
+    const std::string mount = "mount -t tmpfs -o size=48k none \"$1\" && ";
+    if (test::run("/usr/bin/unshare", {"-rm", "/bin/sh", "-c", mount + "true", "sh", disk.string()})
+            .status != 0)
+        GTEST_SKIP() << "a file system of its own cannot be mounted here";
+    const fs::path path =
+        job("\"time\": {\"at\": \"2026-06-21T16:00Z\"}, \"sweep\": [{\"set\": \"haze.density\", "
+            "\"from\": 0, \"to\": 0.2, \"step\": 0.02}], \"output\": \"disk/{n}.png\"");
+    fs::create_directory(dir_ / "kept");
+    const Result run =
+        test::run("/usr/bin/unshare", {"-rm", "/bin/sh", "-c",
+                                       mount + "\"$2\" -q run \"$3\" --device software; status=$?; "
+                                               "cp -a \"$1\"/. \"$4\" && exit $status",
+                                       "sh", disk.string(), (build_dir() / "bin/relevo").string(),
+                                       path.string(), (dir_ / "kept").string()});
+    EXPECT_EQ(run.status, 5) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("cannot be written, No space left on device\n"));
+    ASSERT_EQ(relevo({"-q", "run", path.string()}).status, 0);
+    const auto whole = files_in(disk), kept = files_in(dir_ / "kept");
+    EXPECT_GT(kept.size(), 0u);
+    EXPECT_LT(kept.size(), whole.size());
+    for (const auto& [name, bytes] : kept)
+        EXPECT_TRUE(whole.contains(name) && whole.at(name) == bytes) << name;
 }
 
 TEST_F(Run, ShardsOfAllSchedulersAreThoseOfTheirArrays) {
@@ -435,6 +464,9 @@ TEST_F(Run, ADryRunSaysWhatWouldHappenAndTouchesNothing) {
                 HasSubstr(fmt::format("would be refused: run: {}: no file can be made in it, Not a "
                                       "directory\n",
                                       path.string())));
+    // In the working folder, too.
+    EXPECT_EQ(dry({"-o", "relevo_dry_run_{camera}.png"}).out,
+              "relevo_dry_run_a.png\nrelevo_dry_run_b.png\n");
     EXPECT_TRUE(files_in(dir_) == before);
 }
 
@@ -460,6 +492,55 @@ TEST_F(Run, EffectsAreThoseOfACaptureWhateverTheDemHas) {
     };
     EXPECT_EQ(effects_of("run.png.json"), effects_of("capture.png.json"));
     EXPECT_EQ(effects_of("run.png.json").find("sea"), std::string::npos);
+}
+
+TEST_F(Run, ScenesThatAreSavedAreAsTheSchemaHasThem) {
+    const Result hours = relevo({"-q", "sun", "sky-view", bundled_dem(), "-o",
+                                 (dir_ / "sky.tif").string(), "--directions", "8"});
+    ASSERT_EQ(hours.status, 0) << hours.err;
+    Raster plain;
+    plain.columns = plain.rows = 20;
+    write_raster(dir_ / "west.tif", plain);
+    plain.geotransform = {{500600, 30, 0, 5200000, 0, -30}};
+    write_raster(dir_ / "east.tif", plain);
+    const std::string dem = bundled_dem(), west = (dir_ / "west.tif").string(),
+                      east = (dir_ / "east.tif").string();
+    const std::vector<std::vector<std::string>> all{
+        {dem},
+        {dem, "--time", "sunset-1h", "--date", "2026-10-01", "--tz", "solar"},
+        {dem, "--time", "2026-06-21T08:00", "--tz", "Europe/Zurich", "--enable", "wet", "--disable",
+         "haze", "--preset", "paper", "--set", "sky.stars=3", "--exposure", "1.5"},
+        {dem, "--only", "", "--refraction", "saemundsson", "--exaggerate", "2", "--holes", "mark"},
+        {dem, "--eye", "36.33,-84.28,30agl", "--heading", "350", "--pitch=-5", "--fov", "60"},
+        {dem, "--eye", "36.33,-84.28", "--look-at", "36.36,-84.23,100agl", "--focal-length", "35"},
+        {dem, "--view", "top"},
+        {dem, "--overlay", (dir_ / "sky.tif").string(), "--overlay-range", "0.5,1",
+         "--overlay-opacity", "0.5", "--overlay-title", "sky", "--overlay-colours", "viridis"},
+        {west, east, "--unit", "ft", "--nodata", "none", "--memory", "100", "--pixel-error", "1"},
+        {west, "--crs", "EPSG:32632", "--band", "1", "--nodata", "-5"},
+    };
+    std::vector<std::string> files{(source_dir() / "tests/check_schema.py").string(),
+                                   source_dir().string()};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        std::vector<std::string> arguments = all[i];
+        files.push_back((dir_ / fmt::format("{}.json", i)).string());
+        arguments.insert(arguments.begin(), {"-q", "capture"});
+        for (const std::string& more :
+             {std::string("-o"), (dir_ / fmt::format("{}.png", i)).string(),
+              std::string("--save-scene"), files.back(), std::string("--size"),
+              std::string("40x30"), std::string("--allow-blank")})
+            arguments.push_back(more);
+        const Result saved = relevo(arguments);
+        ASSERT_EQ(saved.status, 0) << i << ": " << saved.err;
+        // What pictures carry is a scene as well.
+        files.push_back((dir_ / fmt::format("{}_carried.json", i)).string());
+        std::ofstream(files.back())
+            << image::read_metadata(dir_ / fmt::format("{}.png", i)).at("relevo:scene");
+    }
+    const Result checked = test::run("/usr/bin/python3", files);
+    EXPECT_EQ(checked.status, 0);
+    EXPECT_EQ(checked.out, "");
+    EXPECT_EQ(checked.err, "");
 }
 
 TEST_F(Run, PicturesOfEveryFormatAreMadeAgainByteForByte) {

@@ -113,6 +113,11 @@ TEST_F(Viewer, TheDayIsSavedAsAJobThatRuns) {
         of_job.erase(key);
     }
     EXPECT_EQ(of_job, shown);
+    test::WindowedProgram schema(
+        display_, "/usr/bin/python3",
+        {(test::source_dir() / "tests/check_schema.py").string(), test::source_dir().string(),
+         "--jobs", name.string(), day.string()});
+    EXPECT_EQ(schema.status(), 0) << schema.output();
     test::WindowedProgram run(display_, test::build_dir() / "bin/relevo",
                               {"run", day.string(), "--dry-run", "--size", "64x48"});
     ASSERT_EQ(run.status(), 0) << run.output();
