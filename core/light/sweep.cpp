@@ -663,9 +663,14 @@ class GroundRows {
         : steps_(steps),
           line_(line),
           kept_(kept),
-          width_(in_vectors(lines + steps.ground_columns)),
+          width_(width_of(steps, lines)),
           pitch_(width_ + Sweep::kMostLanes),
           height_m_(static_cast<std::size_t>(pitch_ * kept), kNaN) {}
+
+    /// Of ground that lines next to each other need.
+    static int width_of(const Steps& steps, int lines) {
+        return in_vectors(lines + steps.ground_columns);
+    }
 
     /// @param sheet  that has the row where it looks for it
     /// @param copy   puts so many heights from one place into another, the first on that column
@@ -1237,22 +1242,25 @@ void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look
     const SweepWindow& w = view.window;
     Sheet& sheet = view.sheet;
     const Plan plan(sheet, view.sun, w, drop_m);
-    // Ground that is read has room for a strip, and how far that goes aside over the rows.
-    const auto rows_before = [&](int row) { return std::max(plan.begin(), row - kRowsBefore); };
-    if (read_) {
-        double aside = 0;
-        for (int row = plan.begin(); row < plan.end(); row += kReadRows) {
-            const auto [least, most] =
-                plan.columns(rows_before(row), std::min(row + kReadRows, plan.end()));
-            aside = std::max(aside, most - least);
-        }
-        sheet.stride = OneStrip::kMostWidth + static_cast<int>(std::ceil(aside)) + 16;
-    }
     const Steps steps = steps_of(plan, w, OneStrip::kNearness);
     const Extent extent(steps, w);
     const int lines = extent.end_line - extent.first_line;
     const int width = width_of_strips(lines, OneStrip::kMostWidth);
     const int strips = (lines + width - 1) / width;
+    // Ground that is read has room for a strip's, and for how far that goes aside over the rows.
+    const int ground = GroundRows::width_of(steps, width + 1);
+    const auto columns_from = [&](int row) {
+        return plan.columns(std::max(plan.begin(), row - kRowsBefore),
+                            std::min(row + kReadRows + 1, plan.end()));
+    };
+    if (read_) {
+        double aside = 0;
+        for (int row = plan.begin(); row < plan.end(); row += kReadRows) {
+            const auto [least, most] = columns_from(row);
+            aside = std::max(aside, most - least);
+        }
+        sheet.stride = ground + static_cast<int>(std::ceil(aside)) + 8;
+    }
     parallel_for(0, strips, 1, [&](int begin, int end) {
         std::vector<float> buffer;
         for (int k = begin; k < end; ++k) {
@@ -1260,12 +1268,12 @@ void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look
             auto strip = make(steps, line, width);
             for (int row = steps.begin; row < plan.end(); ++row) {
                 if (read_ && (row - steps.begin) % kReadRows == 0) {
-                    const int first = rows_before(row),
+                    const int first = std::max(plan.begin(), row - kRowsBefore),
                               last = std::min(row + kReadRows, plan.end());
-                    const auto [least, most] = plan.columns(first, last);
+                    const auto [least, most] = columns_from(row);
                     const int column = std::max(0, static_cast<int>(std::floor(least)) + line - 2);
                     const int end_column = std::min(
-                        sheet.columns, static_cast<int>(std::ceil(most)) + line + width + 6);
+                        sheet.columns, static_cast<int>(std::ceil(most)) + line + ground + 2);
                     if (column < end_column)
                         view.read(read_, strip->sheet(), first, last, column, end_column, buffer);
                 }
