@@ -20,7 +20,7 @@ namespace relevo::light {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr double kAirTolerance_rad = radians(0.03);  // seven seconds of the sun's way
+constexpr double kAirTolerance_rad = radians(0.02);  // five seconds of the sun's way
 constexpr double kTwilight_rad = radians(0.25);  // a sun so much too low is looked at all the same
 constexpr int kLeastTile = 2;                    // posts a side
 constexpr int kLarge = 64;                       // likewise
