@@ -156,6 +156,18 @@ void run(const Arguments& arguments) {
                      bands_of(arguments.bands), 1,
                      (options.spells ? 44 : 20) + (options.irradiation ? 48 : 0));
     options.done = raster.done();
+    raster.warn_of(
+        [&] {
+            return light::terrain_beyond(posts, ground.window,
+                                         light::suns_of(posts.grid(), begin, end),
+                                         {.refraction = options.refraction,
+                                          .air = options.air,
+                                          .soft = false,
+                                          .part = {},
+                                          .done = {}},
+                                         arguments.raster.highest_m);
+        },
+        "hide sun that is taken to shine");
     Summary sum;
     raster.each_part([&](const dem::Window& part) {
         options.part = part;

@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
+#include "light/horizon.h"
 #include "session/sun_raster.h"
 
 namespace relevo::cli {
@@ -47,6 +48,10 @@ void RasterArguments::add_to(CLI::App& verb) {
                     "the same")
         ->type_name("W,S,E,N");
     verb.add_option("--clip-crs", clip_crs, "CRS of --clip instead: EPSG:4326");
+    verb.add_option("--highest", highest_m,
+                    "Height of the terrain beyond the DEM at most, for the warning that it may "
+                    "matter; else the DEM's highest post")
+        ->check(in_range(-500.0, light::kHighestTerrain_m));
     verb.add_flag("--dry-run", dry_run,
                   "Say how long it takes and how much memory, from computing a little of it, and "
                   "write nothing");
@@ -134,6 +139,21 @@ bool RasterRun::each_part(const std::function<void(const dem::Window&)>& body) {
     return true;
 }
 
+void RasterRun::warn_of(const std::function<std::optional<light::Beyond>()>& look,
+                        const std::string& would) {
+    if (!writer_) return;
+    const std::optional<light::Beyond> beyond = look();
+    if (!beyond) return;
+    beyond_ = fmt::format(
+        "terrain beyond the DEM may matter at some {:.0f} % of the posts: above {:.0f} m it would "
+        "{}, as far as {:.0f} km from the edge if it is up to {:.0f} m high",
+        std::max(1.0, 100 * beyond->share), beyond->least_m, would, beyond->needed_m / 1000,
+        beyond->highest_m);
+    log::warning(beyond_ +
+                 "; use a DEM that goes so far with --clip, or --highest with the height that "
+                 "terrain has there at most");
+}
+
 bool RasterRun::finish(const std::string& definition, std::int64_t holes,
                        light::RasterMetadata more) {
     bar_.reset();
@@ -144,6 +164,7 @@ bool RasterRun::finish(const std::string& definition, std::int64_t holes,
     if (holes > 0)
         log::warning(
             fmt::format("the DEM has {} holes: they get no figure, and hide nothing", holes));
+    if (!beyond_.empty()) more.emplace_back("BEYOND_DEM", beyond_);
     writer_->finish(arguments_.about(ground_, definition, holes, std::move(more)));
     return true;
 }

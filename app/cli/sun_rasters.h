@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "cli/sun_options.h"
 #include "dem/clip.h"
+#include "light/beyond.h"
 #include "light/raster.h"
 
 /// What the verbs that give a figure for every post of a DEM share.
@@ -23,13 +24,14 @@ struct RasterGround {
     dem::Grid grid() const;  ///< of the result
 };
 
-/// DEM..., -k, -o, --overwrite, --co, --clip, --clip-crs.
+/// DEM..., -k, -o, --overwrite, --co, --clip, --clip-crs, --highest.
 struct RasterArguments {
     DemArguments dem;
     double terrestrial_refraction = 0.13;
     OutputArguments output;
     std::vector<std::string> creation_options;
     std::string clip, clip_crs;
+    std::optional<double> highest_m;  ///< of terrain beyond the DEM
     bool dry_run = false;
 
     void add_to(CLI::App& verb);
@@ -64,6 +66,11 @@ class RasterRun {
             writer_->put(band, part.column - ground_.window.column, part.row - ground_.window.row,
                          values);
     }
+    /// Terrain beyond the DEM that could change figures is told of, and written into the file.
+    /// @param look   for it; a dry run does not
+    /// @param would  what it would do: "hide sun that is taken to shine"
+    void warn_of(const std::function<std::optional<light::Beyond>()>& look,
+                 const std::string& would);
     /// Gives the file its name; for a dry run says instead what it has found out.
     /// @return whether there is a file
     bool finish(const std::string& definition, std::int64_t holes, light::RasterMetadata more);
@@ -73,6 +80,7 @@ class RasterRun {
 
     const RasterArguments& arguments_;
     const RasterGround& ground_;
+    std::string beyond_;
     std::optional<light::RasterWriter> writer_;
     std::optional<ProgressBar> bar_;
     std::size_t calls_, bands_;

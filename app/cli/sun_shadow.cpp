@@ -223,6 +223,15 @@ void run(const Arguments& arguments) {
     RasterRun raster(arguments.raster, file, ground,
                      options.soft ? light::RasterType::Float : light::RasterType::Byte,
                      bands_of(suns, timed, options.soft), suns.size(), options.soft ? 16 : 13);
+    raster.warn_of(
+        [&] {
+            std::vector<light::SunOverDem> all;
+            for (const Asked& asked : suns)
+                all.push_back(asked.sun);
+            return light::terrain_beyond(posts, ground.window, all, options,
+                                         arguments.raster.highest_m);
+        },
+        "hide sun that is taken to shine");
     std::vector<Counts> counts(suns.size());
     const std::string definition = light_all(posts, suns, options, raster, counts);
     light::RasterMetadata more{{"REFRACTION", air}};

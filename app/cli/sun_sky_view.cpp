@@ -19,6 +19,13 @@ struct Arguments {
     bool level = false;
 };
 
+std::vector<double> azimuths_of(int directions) {
+    std::vector<double> azimuth_rad;
+    for (int i = 0; i < directions; ++i)
+        azimuth_rad.push_back(2 * kPi * i / directions);
+    return azimuth_rad;
+}
+
 void run_sky_view(const Arguments& arguments) {
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
@@ -30,6 +37,13 @@ void run_sky_view(const Arguments& arguments) {
                                   .level = arguments.level,
                                   .part = {},
                                   .done = raster.done()};
+    raster.warn_of(
+        [&] {
+            return light::terrain_beyond(
+                ground.posts, ground.window, azimuths_of(arguments.directions),
+                arguments.raster.terrestrial_refraction, arguments.raster.highest_m);
+        },
+        "stand over these horizons");
     double sum = 0, posts = 0;
     std::int64_t holes = 0;
     std::string definition;
@@ -53,16 +67,22 @@ void run_horizons(const Arguments& arguments) {
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
-    std::vector<double> azimuth_rad;
+    const std::vector<double> azimuth_rad = azimuths_of(arguments.directions);
     std::vector<light::RasterBand> bands;
-    for (int i = 0; i < arguments.directions; ++i) {
-        azimuth_rad.push_back(2 * kPi * i / arguments.directions);
-        const std::string azimuth_deg = fmt::format("{:.10g}", degrees(azimuth_rad.back()));
+    for (const double azimuth : azimuth_rad) {
+        const std::string azimuth_deg = fmt::format("{:.10g}", degrees(azimuth));
         bands.push_back(
             {"horizon towards azimuth " + azimuth_deg, "deg", {{"AZIMUTH_DEG", azimuth_deg}}});
     }
     RasterRun raster(arguments.raster, file, ground, light::RasterType::Float, bands,
                      azimuth_rad.size(), 12);
+    raster.warn_of(
+        [&] {
+            return light::terrain_beyond(ground.posts, ground.window, azimuth_rad,
+                                         arguments.raster.terrestrial_refraction,
+                                         arguments.raster.highest_m);
+        },
+        "stand over these horizons");
     const std::function<void(double)> done = raster.done();
     std::int64_t holes = 0;
     std::string definition;

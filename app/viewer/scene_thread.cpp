@@ -82,9 +82,11 @@ struct SceneThread::Impl {
             std::unique_lock lock(mutex);
             changed.wait(lock, [&] { return ends || has_new_wants; });
             session->resize(wanted.width_px, wanted.height_px);
+            std::optional<chart::Legend> legend;
+            if (session->scene().overlay) legend = session->legends().front();
             opened = std::make_shared<Opened>(Opened{session->dem(), session->ground(),
                                                      session->scene(), session->camera(),
-                                                     session->moment(), session->legend()});
+                                                     session->moment(), std::move(legend)});
         } catch (...) {
             const std::lock_guard lock(mutex);
             failure = std::current_exception();

@@ -95,8 +95,12 @@ Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, doub
         values.turn(sky.along_columns());
         ground.each_horizon(sky, kHorizonTolerance_rad, part, [&](const SweepRun& run) {
             float* const out = values.of(run);
-            for (int i = 0; i < run.count; ++i)
-                out[i] = std::isnan(run.height_m[i]) ? run.height_m[i] : std::atan(run.found[i]);
+            for (int i = 0; i < run.count; ++i) {
+                const float t = run.found[i];
+                const float elevation_rad = std::copysign(quick_atan(std::abs(t)), t);
+                // A hole has no number.
+                out[i] = run.height_m[i] == run.height_m[i] ? elevation_rad : run.height_m[i];
+            }
         });
         values.put(result.elevation_rad.emplace_back(part.columns, part.rows), part);
     }

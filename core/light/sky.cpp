@@ -20,10 +20,10 @@ namespace relevo::light {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr double kAirTolerance_rad = radians(0.03);  // seven seconds of the sun's way
-constexpr int kLeastTile = 2;                        // posts a side
-constexpr int kLarge = 64;                           // likewise
-constexpr double kNight_rad = radians(-4);           // no ground of the Earth sees the sun so low
+constexpr double kAirTolerance_rad = radians(0.02);  // five seconds of the sun's way
+constexpr double kTwilight_rad = radians(0.25);  // a sun so much too low is looked at all the same
+constexpr int kLeastTile = 2;                    // posts a side
+constexpr int kLarge = 64;                       // likewise
 
 /// @param soft  shares of discs are asked for
 float floor_under(float lowest_m, double relief_m, double curvature, bool soft) {
@@ -192,10 +192,14 @@ double DemSky::horizon_reach_m() const {
     return 2.05 * std::sqrt(2 * relief_m_ / curvature_);
 }
 
+double DemSky::lowest_sun_rad() const {
+    return -std::sqrt(2 * curvature_ * relief_m_) - radians(0.7);
+}
+
 std::size_t DemSky::levels(double elevation_rad) const {
     const bool differ = !airs_.empty() &&
                         std::abs(apparent_rad(elevation_rad, 1) - apparent_rad(elevation_rad, 0)) >
-                            kAirTolerance_rad;
+                            2 * kAirTolerance_rad;
     return differ ? 2 : 1;
 }
 
@@ -204,7 +208,10 @@ double DemSky::level_height_m(std::size_t level) const {
 }
 
 double DemSky::apparent_rad(double elevation_rad, std::size_t level) const {
-    return airs_.empty() ? elevation_rad : airs_[level].apparent_rad(elevation_rad);
+    if (airs_.empty()) return elevation_rad;
+    if (level == kBetween)
+        return (airs_[0].apparent_rad(elevation_rad) + airs_[1].apparent_rad(elevation_rad)) / 2;
+    return airs_[level].apparent_rad(elevation_rad);
 }
 
 SunSky::SunSky(const DemSky& dem, const SunOverDem& sun) : SunSky(dem, dem.grid().center(), sun) {}
@@ -261,7 +268,7 @@ bool SunSky::is_night() const {
     for (int i = 0; i < 9; ++i) {
         const Local sun =
             at((grid.columns() - 1) * (i % 3) / 2.0, (grid.rows() - 1) * (i / 3) / 2.0);
-        if (!(sun.elevation_rad < kNight_rad)) return false;
+        if (!(sun.elevation_rad < dem_.lowest_sun_rad() - kTwilight_rad)) return false;
     }
     return true;
 }
@@ -356,7 +363,8 @@ double SunSky::path_error_rad(const SunTile& tile, const glm::dvec2& post, const
 double SunSky::error_rad(const SunTile& tile) const {
     double worst = 0;
     const SweepWindow& w = tile.window;
-    for (std::size_t level = 0; level < levels_; ++level) {
+    for (std::size_t k = 0; k < levels_; ++k) {
+        const std::size_t level = k == 0 ? first_level() : 1;
         const SweepSun model = sun(tile, level, 0);
         for (int i = 0; i < 9; ++i) {
             const glm::dvec2 post(w.column + (w.columns - 1) * (i % 3) / 2.0,
@@ -366,7 +374,7 @@ double SunSky::error_rad(const SunTile& tile) const {
             const double seen =
                 std::min(dem_.apparent_rad(local.elevation_rad, level), radians(89.99));
             worst = std::max(worst, std::abs(std::atan(tangent) - seen));
-            if (level == 0) worst = std::max(worst, path_error_rad(tile, post, local));
+            if (k == 0) worst = std::max(worst, path_error_rad(tile, post, local));
             if (std::isnan(worst + local.elevation_rad)) return kPi;
         }
     }
@@ -404,7 +412,7 @@ void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doubl
                TileValues& scratch, const Sweep::Use& use) {
     const DemSky& dem = sky.dem();
     const SweepWindow &w = tile.window, &part_of = tile.part;
-    const SweepSun lower = sky.sun(tile, 0, offset_rad);
+    const SweepSun lower = sky.sun(tile, sky.first_level(), offset_rad);
     const auto sweep_edges = [&](const SweepSun& sun, const Sweep::Use& each) {
         sweep.each_edge(sun, part_of, each, Sweep::kMostLanes, dem.floor_m());
     };

@@ -58,11 +58,16 @@ class DemSky {
     /// whatever height.
     double horizon_reach_m() const;
     bool has_air() const { return !airs_.empty(); }
-    /// How many levels of air matter to a sun: its lowest post's, and its highest one's where the
-    /// two see it otherwise.
+    /// A sun without air that no post sees: from the highest one the sea's horizon dips, and air
+    /// lifts the sun by up to 0.7 degrees.
+    double lowest_sun_rad() const;
+    /// How many levels of air matter to a sun: the lowest post's and the highest one's where the
+    /// two see it otherwise, else what is between them.
     std::size_t levels(double elevation_rad) const;
     double level_height_m(std::size_t level) const;
+    /// @param level  0: of the lowest post, 1: of the highest one, kBetween: the mean of both
     double apparent_rad(double elevation_rad, std::size_t level) const;
+    static constexpr std::size_t kBetween = 2;
 
   private:
     const dem::Posts& posts_;
@@ -83,6 +88,8 @@ class SunSky {
 
     const DemSky& dem() const { return dem_; }
     std::size_t levels() const { return levels_; }
+    /// The first of its levels, for DemSky::apparent_rad(); where there is another one that is 1.
+    std::size_t first_level() const { return levels_ == 2 ? 0 : DemSky::kBetween; }
     /// How sweeps of all its tiles go, so that their posts come in one order.
     bool along_columns() const { return along_columns_; }
 

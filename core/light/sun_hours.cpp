@@ -7,6 +7,10 @@
 #include <limits>
 #include <vector>
 
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
@@ -49,8 +53,7 @@ SunOverDem sun_over(const sun::PositionTable& table, sun::Instant utc,
 ///     lies changes there with every minute, and margins are not linear
 Moments moments(const DemSky& dem, sun::Instant begin, double length_s, double step_s, int finer) {
     const geo::Geodetic place = dem.grid().center();
-    // From the highest post the sea's horizon dips, and air lifts the sun by up to 0.7 degrees.
-    const double lowest_rad = -std::sqrt(2 * dem.curvature() * dem.relief_m()) - radians(0.7);
+    const double lowest_rad = dem.lowest_sun_rad();
     const sun::PositionTable table(begin, begin + length_s);
     const sun::Observer observer(place);
     const auto sun_at = [&](double at_s) { return sun_over(table, begin + at_s, observer); };
@@ -159,8 +162,24 @@ using Numbers [[gnu::vector_size(kPosts * sizeof(float))]] = float;
 }
 
 #if defined(__x86_64__)
+/// As add_light_of_some(), which no compiler makes as fast.
 [[gnu::target("avx512f")]] void add_light_512(const Light& light, int count) {
-    add_light_to_all(light, count);
+    const __m512 zero = _mm512_setzero_ps(), most = _mm512_set1_ps(kOpen_m);
+    int i = 0;
+    for (; i + kPosts <= count; i += kPosts) {
+        const __m512 open =
+            _mm512_sub_ps(_mm512_loadu_ps(light.height_m + i), _mm512_loadu_ps(light.edge_m + i));
+        const __m512 now =
+            _mm512_mask_mov_ps(open, _mm512_cmp_ps_mask(open, most, _CMP_GT_OQ), most);
+        const __m512 before = _mm512_loadu_ps(light.margin_m + i);
+        const auto changes = static_cast<unsigned>(_mm512_cmp_ps_mask(before, zero, _CMP_GE_OQ)) ^
+                             static_cast<unsigned>(_mm512_cmp_ps_mask(now, zero, _CMP_GE_OQ));
+        for (unsigned left = changes; left != 0; left &= left - 1)
+            add_light_of_one(light, i + __builtin_ctz(left));
+        _mm512_storeu_ps(light.margin_m + i, now);
+    }
+    for (; i < count; ++i)
+        add_light_of_one(light, i);
 }
 [[gnu::target("avx2")]] void add_light_256(const Light& light, int count) {
     add_light_to_all(light, count);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/parallel_for.h"
+#include "base/units.h"
 
 namespace relevo::light {
 namespace {
@@ -18,31 +19,44 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 constexpr float kNothing_m = -kInfinity;  // where nothing shades
 
-constexpr int kNearRows = 4;          // whose ground a post's own ray is followed over
-constexpr std::size_t kLineSets = 2;  // lines from post to post
-constexpr double kSteepest = 1e4;     // tangent: 0.006 degrees from the zenith
-constexpr double kOnLine = 1e-6;      // of a post: a ray that meets a row there meets the post
-constexpr int kStripLines = 512;      // which a thread sweeps together: its rows stay in the cache
+/// How a sweep looks at ground.
+struct Nearness {
+    int near_rows;          // whose ground a post's own ray is followed over
+    std::size_t line_sets;  // lines from post to post
+};
+constexpr std::size_t kMostLineSets = 2;
+constexpr Nearness kOfEdges{4, 2};
+constexpr Nearness kOfHorizons{8, 1};  // a row near costs less than a fan of rays
+constexpr double kSteepest = 1e4;      // tangent: 0.006 degrees from the zenith
+constexpr double kOnLine = 1e-6;       // of a post: a ray that meets a row there meets the post
+constexpr int kStripLines = 1023;      // which a thread sweeps together: its rows stay in the cache
+constexpr int kFanLines = 63;          // likewise, where each line has a fan
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// How far lines fall: fall + ramp * line.
+/// Numbers of floats are filled up to whole vectors.
+constexpr int in_vectors(int count) {
+    return (count + Sweep::kMostLanes - 1) / Sweep::kMostLanes * Sweep::kMostLanes;
+}
+
+/// Of all lines, how far they have come down: fall + ramp * line.
 struct Slope {
     float fall = 0, ramp = 0;
 };
 
-/// Ground under rays: height p[i] + part * (q[i] - p[i]) at the i-th line, which falls from there
-/// on.
+/// Ground under rays: at the i-th line it is p[i] + part * (q[i] - p[i]) high, where p is of a row
+/// and a column, and q of the next ones, or of one of them.
 struct Term {
-    std::ptrdiff_t p, q;  // of line 0, from the first post
+    int row, column;
+    int next_row, next_column;  // 0 or 1 on
     float part;
-    Slope slope;
-    int begin, end;  // lines that have such ground
+    double distance;  // fallen from there on, which is the way where tangents are 1
+    int begin, end;   // lines that have such ground
 };
 
 /// The same from some line on.
 struct Ground {
     const float *p = nullptr, *q = nullptr;
     float part = 0;
-    Slope slope;
 };
 
 /// Loads that cross lines of the cache are what a sweep waits for: what is used twice is loaded
@@ -53,61 +67,114 @@ struct Ground {
 #define RELEVO_IN_REGISTER(v)
 #endif
 
-/// Lines next to each other that rise to their ground: e[i] = max(before[i] - slope, all ground).
+/// Vectors come and go by reference: how a wide one is returned hangs on the processor.
+template <typename V>
+[[gnu::always_inline]] inline void load(const float* from, V& v) {
+    std::memcpy(&v, from, sizeof v);
+}
+
+template <typename V>
+[[gnu::always_inline]] inline void store(const V& v, float* to) {
+    std::memcpy(to, &v, sizeof v);
+}
+
+template <typename V>
+constexpr int kWidthOf = static_cast<int>(sizeof(V) / sizeof(float));
+
+/// 0, 1, 2 ...
+template <typename V>
+[[gnu::always_inline]] inline void count(V& lane) {
+    for (int k = 0; k < kWidthOf<V>; ++k)
+        lane[k] = static_cast<float>(k);
+}
+
+/// Whole vectors of lines that rise to their ground: e[i] = max(before[i], all ground). NaN, a
+/// hole, changes nothing.
 struct Lift {
     float* e;
-    const float* before;       // or null: of ground alone
-    float least = kNothing_m;  // without
-    int line;                  // the number of the first
+    const float* before;  // or null: of ground alone
     int lines;
-    Slope slope;
     const Ground* ground;
     int grounds;
 };
 
-/// kVectors vectors of lines, from the i-th on. NaN, a hole, changes nothing. Multiplications and
-/// additions are not contracted (CMakeLists.txt), so that the bits are the same for every V.
+/// kVectors vectors of lines, from the i-th on. Multiplications and additions are not contracted
+/// (CMakeLists.txt), so that the bits are the same for every V.
 template <typename V, int kVectors>
-[[gnu::always_inline]] inline void raise_some(const Lift& lift, int i, const V& lane) {
-    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float));
-    V line[kVectors], height[kVectors];
+[[gnu::always_inline]] inline void raise_some(const Lift& lift, int i) {
+    V height[kVectors];
 #pragma GCC unroll 8
-    for (int k = 0; k < kVectors; ++k) {
-        line[k] = static_cast<float>(lift.line + i + k * kWidth) + lane;
-        height[k] = V{} + lift.least;
-        if (lift.before) std::memcpy(&height[k], lift.before + i + k * kWidth, sizeof(V));
-        height[k] -= lift.slope.fall + lift.slope.ramp * line[k];
-    }
+    for (int k = 0; k < kVectors; ++k)
+        if (lift.before)
+            load(lift.before + i + k * kWidthOf<V>, height[k]);
+        else
+            height[k] = V{} + kNothing_m;
     for (const Ground* g = lift.ground; g < lift.ground + lift.grounds; ++g)
 #pragma GCC unroll 8
         for (int k = 0; k < kVectors; ++k) {
             V a, b;
-            std::memcpy(&a, g->p + i + k * kWidth, sizeof(V));
-            std::memcpy(&b, g->q + i + k * kWidth, sizeof(V));
+            load(g->p + i + k * kWidthOf<V>, a);
+            load(g->q + i + k * kWidthOf<V>, b);
             RELEVO_IN_REGISTER(a);
-            const V h = (a + g->part * (b - a)) - (g->slope.fall + g->slope.ramp * line[k]);
+            const V h = a + g->part * (b - a);
             height[k] = h > height[k] ? h : height[k];
         }
 #pragma GCC unroll 8
     for (int k = 0; k < kVectors; ++k)
-        std::memcpy(lift.e + i + k * kWidth, &height[k], sizeof(V));
+        store(height[k], lift.e + i + k * kWidthOf<V>);
 }
 
 template <typename V>
 [[gnu::always_inline]] inline void raise_all(const Lift& lift) {
-    // As many as there are registers for.
-    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float)),
-                  kTogether = kWidth == 4 ? 2 : 4;
-    V lane{};
-    for (int k = 0; k < kWidth; ++k)
-        lane[k] = static_cast<float>(k);
     int i = 0;
-    for (; i + kTogether * kWidth <= lift.lines; i += kTogether * kWidth)
-        raise_some<V, kTogether>(lift, i, lane);
-    for (; i + kWidth <= lift.lines; i += kWidth)
-        raise_some<V, 1>(lift, i, lane);
-    for (; i < lift.lines; ++i)
-        raise_some<float, 1>(lift, i, 0);
+    for (; i + 4 * kWidthOf<V> <= lift.lines; i += 4 * kWidthOf<V>)
+        raise_some<V, 4>(lift, i);
+    for (; i < lift.lines; i += kWidthOf<V>)
+        raise_some<V, 1>(lift, i);
+}
+
+/// A row of ground or of edges, from some line on: numbers that change with what rays have fallen
+/// by there, which is slope.fall + slope.ramp * (line + between).
+struct Tilted {
+    const float* from;
+    float* to;
+    int lines;      // any number to tilt, whole vectors to take that away again
+    int line;       // the first one
+    float between;  // how far on towards the next line each post stands
+    Slope slope;
+    float base_m, least_m;  // added, and the least result
+};
+
+/// What rays have fallen by is added, so that rays over it are level.
+template <typename V>
+[[gnu::always_inline]] inline void tilt_all(const Tilted& row) {
+    V lane;
+    count(lane);
+    int i = 0;
+    for (; i + kWidthOf<V> <= row.lines; i += kWidthOf<V>) {
+        const V line = (static_cast<float>(row.line + i) + lane) + row.between;
+        V h;
+        load(row.from + i, h);
+        store((h + row.base_m) + (row.slope.fall + row.slope.ramp * line), row.to + i);
+    }
+    for (; i < row.lines; ++i)
+        row.to[i] =
+            (row.from[i] + row.base_m) +
+            (row.slope.fall + row.slope.ramp * (static_cast<float>(row.line + i) + row.between));
+}
+
+/// And taken away.
+template <typename V>
+[[gnu::always_inline]] inline void untilt_all(const Tilted& row) {
+    V lane;
+    count(lane);
+    for (int i = 0; i < row.lines; i += kWidthOf<V>) {
+        const V line = (static_cast<float>(row.line + i) + lane) + row.between;
+        V h;
+        load(row.from + i, h);
+        h = (h - (row.slope.fall + row.slope.ramp * line)) + row.base_m;
+        store(h > row.least_m ? h : V{} + row.least_m, row.to + i);
+    }
 }
 
 /// Ground before posts next to each other, as their own rays meet it.
@@ -115,83 +182,216 @@ struct Sight {
     float* tangent;  // max(tangent, that of all ground)
     const float* height_m;
     int posts;
-    const Ground* ground;  // its slope is 1 / distance, and what the ground has sunk by there
+    const Ground* ground;
+    const Slope* slopes;  // 1 / distance, and what the ground has sunk by there
     int grounds;
 };
 
 /// kVectors vectors of posts, likewise.
 template <typename V, int kVectors>
 [[gnu::always_inline]] inline void look_some(const Sight& sight, int i) {
-    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float));
     V height[kVectors], tangent[kVectors];
 #pragma GCC unroll 8
     for (int k = 0; k < kVectors; ++k) {
-        std::memcpy(&height[k], sight.height_m + i + k * kWidth, sizeof(V));
-        tangent[k] = V{} + kNothing_m;
+        load(sight.height_m + i + k * kWidthOf<V>, height[k]);
+        load(sight.tangent + i + k * kWidthOf<V>, tangent[k]);
     }
-    for (const Ground* g = sight.ground; g < sight.ground + sight.grounds; ++g)
+    for (int j = 0; j < sight.grounds; ++j) {
+        const Ground& g = sight.ground[j];
+        const Slope& slope = sight.slopes[j];
 #pragma GCC unroll 8
         for (int k = 0; k < kVectors; ++k) {
             V a, b;
-            std::memcpy(&a, g->p + i + k * kWidth, sizeof(V));
-            std::memcpy(&b, g->q + i + k * kWidth, sizeof(V));
+            load(g.p + i + k * kWidthOf<V>, a);
+            load(g.q + i + k * kWidthOf<V>, b);
             RELEVO_IN_REGISTER(a);
-            const V t = ((a + g->part * (b - a)) - height[k]) * g->slope.fall - g->slope.ramp;
+            const V t = ((a + g.part * (b - a)) - height[k]) * slope.fall - slope.ramp;
             tangent[k] = t > tangent[k] ? t : tangent[k];
         }
-#pragma GCC unroll 8
-    for (int k = 0; k < kVectors; ++k) {
-        V before;
-        std::memcpy(&before, sight.tangent + i + k * kWidth, sizeof(V));
-        before = tangent[k] > before ? tangent[k] : before;
-        std::memcpy(sight.tangent + i + k * kWidth, &before, sizeof(V));
     }
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k)
+        store(tangent[k], sight.tangent + i + k * kWidthOf<V>);
 }
 
 template <typename V>
 [[gnu::always_inline]] inline void look_all(const Sight& sight) {
-    // As many as there are registers for.
-    constexpr int kWidth = static_cast<int>(sizeof(V) / sizeof(float)),
-                  kTogether = kWidth == 4 ? 2 : 4;
     int i = 0;
-    for (; i + kTogether * kWidth <= sight.posts; i += kTogether * kWidth)
-        look_some<V, kTogether>(sight, i);
-    for (; i + kWidth <= sight.posts; i += kWidth)
+    for (; i + 4 * kWidthOf<V> <= sight.posts; i += 4 * kWidthOf<V>)
+        look_some<V, 4>(sight, i);
+    for (; i < sight.posts; i += kWidthOf<V>)
         look_some<V, 1>(sight, i);
-    for (; i < sight.posts; ++i)
-        look_some<float, 1>(sight, i);
 }
 
-/// Both by vectors of some width.
-struct Kernel {
-    void (*raise)(const Lift& lift);
-    void (*look)(const Sight& sight);
+// --- Fans
+
+/// Tangents of rays, some degrees apart, that every line carries over its ground: for each the
+/// post that holds it up, whose distance and height are known. Between two of them a horizon is
+/// seen over that post's neighbours, from where their difference is of second order.
+constexpr std::array kFanDegrees{-4.0, -2.5, -1.3, -0.3, 0.7,  1.7,  2.9,  4.2,  5.6,  7.1,
+                                 8.7,  10.4, 12.2, 14.1, 16.1, 18.2, 20.5, 23.0, 25.7, 28.6,
+                                 31.8, 35.2, 38.8, 42.6, 46.8, 51.4, 57.0, 64.0, 73.0};
+constexpr int kRays = kFanDegrees.size();
+constexpr int kFanPoints = 4;  // of the ground that a fan is laid over at once
+
+/// A post of ground under each line, less what that has sunk by below the tangent plane.
+struct FanPoint {
+    Ground ground;
+    float sunk_m, distance_m;  // away from the sun
 };
 
-#define RELEVO_SWEEP_KERNEL(lanes, ...)                                      \
-    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float; \
-    __VA_ARGS__ void raise_##lanes(const Lift& lift) {                       \
-        raise_all<Vector##lanes>(lift);                                      \
-    }                                                                        \
-    __VA_ARGS__ void look_##lanes(const Sight& sight) {                      \
-        look_all<Vector##lanes>(sight);                                      \
+/// Whole vectors of lines, whose fans are raised to points of ground.
+struct FanLift {
+    float *height_m, *distance_m;  // of the first ray's; those of the next begin `pitch` on
+    std::ptrdiff_t pitch;
+    int lines;
+    const float* tangents;  // kRays
+    const FanPoint* points;
+    const float* rises;  // for each ray those of the points: tangent * distance
+};
+
+template <typename V, int kPoints>
+[[gnu::always_inline]] inline void raise_fans_over(const FanLift& lift) {
+    for (int i = 0; i < lift.lines; i += kWidthOf<V>) {
+        V over[kPoints];
+#pragma GCC unroll 8
+        for (int j = 0; j < kPoints; ++j) {
+            const FanPoint& point = lift.points[j];
+            V a, b;
+            load(point.ground.p + i, a);
+            load(point.ground.q + i, b);
+            over[j] = (a + point.ground.part * (b - a)) - point.sunk_m;
+        }
+        for (int k = 0; k < kRays; ++k) {
+            float* const to_height = lift.height_m + k * lift.pitch + i;
+            float* const to_distance = lift.distance_m + k * lift.pitch + i;
+            V height, distance;
+            load(to_height, height);
+            load(to_distance, distance);
+            V most = height + lift.tangents[k] * distance;
+#pragma GCC unroll 8
+            for (int j = 0; j < kPoints; ++j) {
+                const V here = over[j] + lift.rises[k * kFanPoints + j];
+                const auto higher = here > most;
+                height = higher ? over[j] : height;
+                distance = higher ? V{} + lift.points[j].distance_m : distance;
+                if (j + 1 < kPoints) most = higher ? here : most;
+            }
+            store(height, to_height);
+            store(distance, to_distance);
+        }
+    }
+}
+
+/// @param points  1 to kFanPoints
+template <typename V>
+[[gnu::always_inline]] inline void raise_all_fans(const FanLift& lift, int points) {
+    switch (points) {
+        case 1:
+            return raise_fans_over<V, 1>(lift);
+        case 2:
+            return raise_fans_over<V, 2>(lift);
+        case 3:
+            return raise_fans_over<V, 3>(lift);
+        default:
+            return raise_fans_over<V, 4>(lift);
+    }
+}
+
+/// Posts next to each other behind fans, one for each.
+struct FanSight {
+    float* tangent;
+    const float* ground_m;
+    const float *height_m, *distance_m;  // as in FanLift
+    std::ptrdiff_t pitch;
+    int posts;
+    int first_ray;  // that is looked at
+    const float* tangents;
+    float from_m, sunk_m, tilt;  // how far off the posts are, and the plane there
+    bool both;                   // what holds the next steeper ray up is looked over, too
+};
+
+/// The tangent over what holds the steepest ray up that passes over a post, or minus infinity.
+template <typename V>
+[[gnu::always_inline]] inline void look_over_all_fans(const FanSight& sight) {
+    for (int i = 0; i < sight.posts; i += kWidthOf<V>) {
+        V eye;
+        load(sight.ground_m + i, eye);
+        eye -= sight.sunk_m;
+        V rise = V{} + kNothing_m, way = V{} + 1, next_rise = rise, next_way = way;
+        auto over_last = eye == eye;  // not of holes
+        for (int k = sight.first_ray; k < kRays; ++k) {
+            V up, along;
+            load(sight.height_m + k * sight.pitch + i, up);
+            load(sight.distance_m + k * sight.pitch + i, along);
+            up -= eye;
+            along = sight.from_m - along;
+            const auto over = up > sight.tangents[k] * along;
+            next_rise = over_last ? up : next_rise;
+            next_way = over_last ? along : next_way;
+            rise = over ? up : rise;
+            way = over ? along : way;
+            over_last = over;
+        }
+        V tangent = rise / way;
+        if (sight.both) {
+            const V next = next_rise / next_way;
+            tangent = next > tangent ? next : tangent;
+        }
+        store(tangent - sight.tilt, sight.tangent + i);
+    }
+}
+
+/// All of them by vectors of some width.
+struct Kernel {
+    void (*raise)(const Lift& lift);
+    void (*tilt)(const Tilted& row);
+    void (*untilt)(const Tilted& row);
+    void (*look)(const Sight& sight);
+    void (*raise_fans)(const FanLift& lift, int points);
+    void (*look_over_fans)(const FanSight& sight);
+};
+
+#define RELEVO_SWEEP_KERNEL(lanes, ...)                                                \
+    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float;           \
+    __VA_ARGS__ void raise_##lanes(const Lift& lift) {                                 \
+        raise_all<Vector##lanes>(lift);                                                \
+    }                                                                                  \
+    __VA_ARGS__ void tilt_##lanes(const Tilted& row) {                                 \
+        tilt_all<Vector##lanes>(row);                                                  \
+    }                                                                                  \
+    __VA_ARGS__ void untilt_##lanes(const Tilted& row) {                               \
+        untilt_all<Vector##lanes>(row);                                                \
+    }                                                                                  \
+    __VA_ARGS__ void look_##lanes(const Sight& sight) {                                \
+        look_all<Vector##lanes>(sight);                                                \
+    }                                                                                  \
+    __VA_ARGS__ void raise_fans_##lanes(const FanLift& lift, int points) {             \
+        raise_all_fans<Vector##lanes>(lift, points);                                   \
+    }                                                                                  \
+    __VA_ARGS__ void look_over_fans_##lanes(const FanSight& sight) {                   \
+        look_over_all_fans<Vector##lanes>(sight);                                      \
+    }                                                                                  \
+    constexpr Kernel kKernel##lanes {                                                  \
+        raise_##lanes, tilt_##lanes, untilt_##lanes, look_##lanes, raise_fans_##lanes, \
+            look_over_fans_##lanes                                                     \
     }
 
-RELEVO_SWEEP_KERNEL(4)
+RELEVO_SWEEP_KERNEL(4);
 #if defined(__x86_64__)
-RELEVO_SWEEP_KERNEL(8, [[gnu::target("avx2")]])
-RELEVO_SWEEP_KERNEL(16, [[gnu::target("avx512f")]])
+RELEVO_SWEEP_KERNEL(8, [[gnu::target("avx2")]]);
+RELEVO_SWEEP_KERNEL(16, [[gnu::target("avx512f")]]);
 #endif
 #undef RELEVO_SWEEP_KERNEL
 
 /// With the widest vectors that this processor has and that are allowed.
-Kernel widest_kernel(int lanes) {
+const Kernel& widest_kernel(int lanes) {
 #if defined(__x86_64__)
-    if (lanes >= 16 && __builtin_cpu_supports("avx512f")) return {raise_16, look_16};
-    if (lanes >= 8 && __builtin_cpu_supports("avx2")) return {raise_8, look_8};
+    if (lanes >= 16 && __builtin_cpu_supports("avx512f")) return kKernel16;
+    if (lanes >= 8 && __builtin_cpu_supports("avx2")) return kKernel8;
 #endif
     assert(lanes >= 4);
-    return {raise_4, look_4};
+    return kKernel4;
 }
 
 /// A grid as the sweep goes over it: `row` 0 is the one nearest to the sun.
@@ -256,7 +456,6 @@ class Plan {
 
     /// The ground of a row, for rays that are at `shift` there, and fall from there to `to`.
     Term row_term(int at, double shift, const RowPlan& to) const {
-        const RowPlan& from = row(at);
         double whole = std::floor(shift);
         double part = shift - whole;
         if (part > 1 - kOnLine) {
@@ -266,15 +465,15 @@ class Plan {
             part = 0;
         }
         const int column = static_cast<int>(whole);
-        Term term;
-        term.p = at * sheet_.stride + column;
-        term.q = term.p + (part > 0);  // at a post, what is beside it plays no part
-        term.part = static_cast<float>(part);
-        term.slope = {static_cast<float>(to.fall - from.fall),
-                      static_cast<float>(to.ramp - from.ramp)};
-        term.begin = -column;
-        term.end = sheet_.columns - column - (part > 0);
-        return term;
+        const int beside = part > 0;  // at a post, what is beside it plays no part
+        return {at,
+                column,
+                0,
+                beside,
+                static_cast<float>(part),
+                to.fall - row(at).fall,
+                -column,
+                sheet_.columns - column - beside};
     }
 
     /// Appends the ground of all columns that such rays cross between row `at - 1` and row `at`.
@@ -286,15 +485,10 @@ class Plan {
         const double low = std::min(from, until) + kOnLine, high = std::max(from, until) - kOnLine;
         for (double column = std::ceil(low); column <= high; ++column) {
             const double part = (column - from) / (until - from);
-            Term term;
-            term.p = (at - 1) * sheet_.stride + static_cast<int>(column);
-            term.q = term.p + sheet_.stride;
-            term.part = static_cast<float>(part);
-            term.slope = {static_cast<float>(to.fall - (a.fall + part * (b.fall - a.fall))),
-                          static_cast<float>(to.ramp - (a.ramp + part * (b.ramp - a.ramp)))};
-            term.begin = -static_cast<int>(column);
-            term.end = sheet_.columns - static_cast<int>(column);
-            terms.push_back(term);
+            const int at_column = static_cast<int>(column);
+            terms.push_back({at - 1, at_column, 1, 0, static_cast<float>(part),
+                             to.fall - (a.fall + part * (b.fall - a.fall)), -at_column,
+                             sheet_.columns - at_column});
         }
     }
 
@@ -353,21 +547,24 @@ class Plan {
 /// All that a sweep does, row by row, the same for all strips.
 struct Steps {
     struct Row {
-        std::array<std::size_t, kLineSets + 1> lines{};  // where terms begin, and of the posts
+        std::array<std::size_t, kMostLineSets + 1> lines{};  // where terms begin, and of the posts
         std::size_t end = 0;
-        int column = 0;                    // of the post that belongs to line 0
-        float between = 0;                 // how far on towards the next line each post stands
-        Slope slope;                       // of lines, from the row before
-        double fallen = 0;                 // line 0 from the row of the reference on
-        Slope far_slope;                   // of posts' rays, from the last row that is not near
+        int column = 0;      // of the post that belongs to line 0
+        float between = 0;   // how far on towards the next line each post stands
+        double fallen = 0;   // line 0 from the row of the reference on
+        double ramp = 0;     // likewise, more for each line
+        float far_part = 0;  // of posts, between the lines before and behind
+        int far_set = 0;
         int first_line = 0, end_line = 0;  // which come over posts of the window that it shades
+        int ground_column = 0;             // the first one that terms of line 0 have
 
-        std::size_t& posts() { return lines[kLineSets]; }
-        std::size_t posts() const { return lines[kLineSets]; }
+        std::size_t& posts() { return lines[kMostLineSets]; }
+        std::size_t posts() const { return lines[kMostLineSets]; }
     };
     std::vector<Term> terms;
     std::vector<Row> rows;  // from `begin` on
     int begin = 0;
+    int ground_columns = 0;  // that terms of a line have at most
 
     const Row& row(int row) const { return rows[static_cast<std::size_t>(row - begin)]; }
     /// How far line 0 has come from the row of the reference on, where tangents are 1.
@@ -404,61 +601,159 @@ void set_lines(const Plan& plan, const SweepWindow& window, Steps& steps) {
     }
 }
 
-Steps steps_of(const Plan& plan, const SweepWindow& window) {
+/// The columns that terms of rows beside a row, and of itself, may have.
+void set_ground(const Plan& plan, Steps& steps) {
+    for (int row = plan.begin(); row < plan.end(); ++row) {
+        const auto [least, most] =
+            plan.columns(std::max(plan.begin(), row - 1), std::min(plan.end(), row + 2));
+        Steps::Row& step = steps.rows[static_cast<std::size_t>(row - steps.begin)];
+        step.ground_column = static_cast<int>(std::floor(least)) - 1;
+        const int end = static_cast<int>(std::ceil(most)) + 3;
+        steps.ground_columns = std::max(steps.ground_columns, end - step.ground_column);
+    }
+}
+
+Steps steps_of(const Plan& plan, const SweepWindow& window, const Nearness& nearness) {
     const int first_row = window.row, end_row = window.row + window.rows;
     Steps steps;
     steps.begin = plan.begin();
+    const std::size_t rows = static_cast<std::size_t>(end_row - plan.begin());
+    steps.rows.reserve(rows);
+    steps.terms.reserve(rows * 2 *
+                        (nearness.line_sets + static_cast<std::size_t>(nearness.near_rows)));
     for (int row = plan.begin(); row < end_row; ++row) {
         Steps::Row step;
         const RowPlan& here = plan.row(row);
         step.fallen = here.fall;
-        for (std::size_t set = 0; set < kLineSets; ++set) {
-            const double offset = double(set) / kLineSets;
+        step.ramp = here.ramp;
+        for (std::size_t set = 0; set < kMostLineSets; ++set) {
             step.lines[set] = steps.terms.size();
+            if (set >= nearness.line_sets) continue;
+            const double offset = double(set) / double(nearness.line_sets);
             steps.terms.push_back(plan.row_term(row, here.shift + offset, here));
             if (row > plan.begin()) plan.add_column_terms(row, offset, here, steps.terms);
-            // In the order in which rays meet them: columns, and the row itself.
-            std::sort(steps.terms.begin() + static_cast<std::ptrdiff_t>(step.lines[set]),
-                      steps.terms.end(),
-                      [&](const Term& a, const Term& b) { return a.slope.fall > b.slope.fall; });
-            for (std::size_t k = step.lines[set]; k < steps.terms.size(); ++k)
-                steps.terms[k].slope.fall += static_cast<float>(offset) * steps.terms[k].slope.ramp;
-        }
-        if (row > plan.begin()) {
-            step.slope = {static_cast<float>(here.fall - plan.row(row - 1).fall),
-                          static_cast<float>(here.ramp - plan.row(row - 1).ramp)};
         }
         step.posts() = steps.terms.size();
         step.column = static_cast<int>(std::ceil(here.shift - kOnLine));
         const double between = std::max(0.0, step.column - here.shift);
         step.between = static_cast<float>(between < kOnLine ? 0 : between);
-        for (int at = row - 1; row >= first_row && at >= std::max(row - kNearRows, plan.begin());
-             --at) {
+        for (int at = row - 1;
+             row >= first_row && at >= std::max(row - nearness.near_rows, plan.begin()); --at) {
             steps.terms.push_back(plan.row_term(at, plan.row(at).shift + between, here));
             plan.add_column_terms(at + 1, between, here, steps.terms);
         }
         step.end = steps.terms.size();
-        for (std::size_t k = step.posts(); k < step.end; ++k)  // by the line that a post is on
-            steps.terms[k].slope.fall += step.between * steps.terms[k].slope.ramp;
-        if (const int at = row - kNearRows - 1; at >= plan.begin()) {
-            const float ramp = static_cast<float>(here.ramp - plan.row(at).ramp);
-            step.far_slope = {
-                static_cast<float>(here.fall - plan.row(at).fall) + step.between * ramp, ramp};
-        }
+        const float at = step.between * static_cast<float>(nearness.line_sets);
+        step.far_set = static_cast<int>(at);
+        step.far_part = at - static_cast<float>(step.far_set);
         steps.rows.push_back(step);
     }
     set_lines(plan, window, steps);
+    set_ground(plan, steps);
     return steps;
 }
 
+/// The last rows of ground under lines next to each other: those that posts look back over, and the
+/// two at which lines are meanwhile. Beside the grid there are holes.
+class GroundRows {
+  public:
+    /// @param lines  how many, in vectors
+    /// @param kept   a power of two
+    GroundRows(const Steps& steps, int line, int lines, int kept)
+        : steps_(steps),
+          line_(line),
+          kept_(kept),
+          width_(width_of(steps, lines)),
+          pitch_(width_ + Sweep::kMostLanes),
+          height_m_(static_cast<std::size_t>(pitch_ * kept), kNaN) {}
+
+    /// Of ground that lines next to each other need.
+    static int width_of(const Steps& steps, int lines) {
+        return in_vectors(lines + steps.ground_columns);
+    }
+
+    /// @param sheet  that has the row where it looks for it
+    /// @param copy   puts so many heights from one place into another, the first on that column
+    template <typename Copy>
+    void take(const Sheet& sheet, int row, const Copy& copy) {
+        const int first = first_of(row);
+        const int from = std::max(0, first), to = std::min(sheet.columns, first + width_);
+        float* const out = begin_of(row);
+        bool& is_empty = empty_[static_cast<std::size_t>(row & (kept_ - 1))];
+        if (from >= to) {
+            if (!std::exchange(is_empty, true)) std::fill_n(out, width_, kNaN);
+            return;
+        }
+        is_empty = false;
+        std::fill_n(out, from - first, kNaN);
+        copy(sheet.first + row * sheet.stride + from, to - from, out + (from - first), from);
+        std::fill_n(out + (to - first), first + width_ - to, kNaN);
+    }
+
+    /// @param line  of the first post that is looked at
+    const float* at(int row, int column, int line) const {
+        return height_m_.data() + (row & (kept_ - 1)) * pitch_ + (column + line - first_of(row));
+    }
+    Ground at(const Term& term, int line) const {
+        return {at(term.row, term.column, line),
+                at(term.row + term.next_row, term.column + term.next_column, line), term.part};
+    }
+
+    /// What a row begins with, for changes to all of it.
+    float* begin_of(int row) { return height_m_.data() + (row & (kept_ - 1)) * pitch_; }
+    int first_of(int row) const { return steps_.row(row).ground_column + line_; }
+    int width() const { return width_; }
+
+    int kept() const { return kept_; }
+
+  private:
+    const Steps& steps_;
+    int line_, kept_;
+    int width_;
+    std::ptrdiff_t pitch_;
+    std::array<bool, 16> empty_{};
+    std::vector<float> height_m_;
+};
+
+/// Grounds of terms [begin, end), some at a time.
+/// @param use  takes the first term, grounds, and how many there are
+template <typename Use>
+void each_grounds(const Steps& steps, const GroundRows& rows, std::size_t begin, std::size_t end,
+                  int line, const Use& use) {
+    std::array<Ground, 16> grounds;  // of which the first `some` are set
+    while (begin < end) {
+        const std::size_t some = std::min(end - begin, grounds.size());
+        for (std::size_t k = 0; k < some; ++k)
+            grounds[k] = rows.at(steps.terms[begin + k], line);
+        use(begin, grounds.data(), static_cast<int>(some));
+        begin += some;
+    }
+}
+
 /// Lines next to each other, from the sun to the end of the window.
+///
+/// To all heights is added what rays have fallen by from the row of the reference on, so that rays
+/// are level, and a line is as high as the highest ground that it has met. Since rays may fall by
+/// any amount, a whole number of kBase_m is taken from that, which changes no bits.
 class Strip {
   public:
-    static constexpr int kWidth = kStripLines;
+    static constexpr int kMostWidth = kStripLines;
+    static constexpr Nearness kNearness = kOfEdges;
+    static constexpr int kKeptRows = 8;
+    static_assert(kKeptRows >= kNearness.near_rows + 3);
 
-    /// @param line  the first one
-    Strip(const Sheet& sheet, const Steps& steps, Kernel kernel, int line, float floor_m)
-        : sheet_(sheet), steps_(steps), kernel_(kernel), line_(line), floor_m_(floor_m) {
+    /// @param line   the first one
+    /// @param width  how many whose posts it has, kMostWidth at most
+    Strip(const Sheet& sheet, const Steps& steps, const Kernel& kernel, int line, int width,
+          float lowest_m, float floor_m)
+        : sheet_(sheet),
+          steps_(steps),
+          kernel_(kernel),
+          line_(line),
+          width_(width),
+          zero_m_(lowest_m < kInfinity ? kZero_m * std::floor(lowest_m / kZero_m) : 0),
+          floor_m_(floor_m),
+          rows_(steps, line, width + 1, kKeptRows) {
         for (Lines& lines : height_m_)
             lines.fill(kNothing_m);
     }
@@ -466,228 +761,250 @@ class Strip {
     /// Where its ground is, from now on.
     Sheet& sheet() { return sheet_; }
 
-    /// To the next row, and the ground there.
+    /// The ground of the next row.
+    void take(int row) {
+        rebase(row);
+        const Steps::Row& step = steps_.row(row);
+        rows_.take(sheet_, row, [&](const float* from, int count, float* to, int column) {
+            kernel_.tilt({.from = from,
+                          .to = to,
+                          .lines = count,
+                          .line = column - step.column,
+                          .between = step.between,
+                          .slope = fallen(step),
+                          .base_m = -zero_m_,
+                          .least_m = 0});
+        });
+    }
+
+    /// Lines go to the next row.
     void advance(int row) {
         const Steps::Row& step = steps_.row(row);
-        const int from = std::max(line_, step.first_line),
-                  to = std::min(line_ + kLines, step.end_line);
+        const int from = std::max(line_, step.first_line) - line_,
+                  to = std::min(line_ + width_ + 1, step.end_line) - line_;
         if (from >= to) return;
-        for (std::size_t set = 0; set < kLineSets; ++set) {
-            float* const lines = height_m_[set].data() + (from - line_);
-            const float offset = static_cast<float>(set) / kLineSets;
-            raise({.e = lines,
-                   .before = lines,
-                   .line = from,
-                   .lines = to - from,
-                   .slope = {step.slope.fall + offset * step.slope.ramp, step.slope.ramp}},
-                  nullptr, step.lines[set], step.lines[set + 1]);
+        const int first = from / Sweep::kMostLanes * Sweep::kMostLanes;
+        for (std::size_t set = 0; set < kNearness.line_sets; ++set) {
+            float* const lines = height_m_[set].data() + first;
+            each_grounds(steps_, rows_, step.lines[set], step.lines[set + 1], line_ + first,
+                         [&](std::size_t, const Ground* ground, int grounds) {
+                             kernel_.raise({lines, lines, in_vectors(to - first), ground, grounds});
+                         });
         }
     }
 
-    /// The edge at the posts of a row, the lines having been left kNearRows + 1 rows before.
+    /// The edge at the posts of a row, the lines having been left kNearness.near_rows + 1 rows
+    /// before.
     /// @param first, end  of the columns that are wanted
     /// @param use         takes the first column, how many there are, and their edges
     template <typename Use>
-    void edge(int row, int first, int end, const Use& use) {
+    void look(int row, int first, int end, const Use& use) {
         const Steps::Row& step = steps_.row(row);
         const int from = std::max(line_, first - step.column);
-        const int to = std::min(line_ + kStripLines, end - step.column);
+        const int to = std::min(line_ + width_, end - step.column);
         if (from >= to) return;
-        Ground far;
-        if (row - kNearRows - 1 >= steps_.begin) {
-            // The lines before and behind a post; the next one of the first set is one on.
-            const float at = step.between * kLineSets;
-            const auto set = static_cast<std::size_t>(at);
-            far.part = at - static_cast<float>(set);
-            far.p = height_m_[set].data() + (from - line_);
-            far.q = set + 1 < kLineSets ? height_m_[set + 1].data() + (from - line_)
-                                        : height_m_[0].data() + (from - line_) + 1;
-            if (far.part == 0) far.q = far.p;
-            far.slope = step.far_slope;
-        }
+        const int posts = in_vectors(to - from);
         float* const e = edge_m_.data();
-        raise({.e = e, .before = nullptr, .least = floor_m_, .line = from, .lines = to - from},
-              far.p ? &far : nullptr, step.posts(), step.end);
+        const float* before = nullptr;
+        if (row - kNearness.near_rows - 1 >= steps_.begin) {
+            // The lines before and behind a post; the next one of the first set is one on.
+            const auto set = static_cast<std::size_t>(step.far_set);
+            Ground far{height_m_[set].data() + (from - line_), nullptr, step.far_part};
+            far.q = set + 1 < kNearness.line_sets ? height_m_[set + 1].data() + (from - line_)
+                                                  : height_m_[0].data() + (from - line_) + 1;
+            if (far.part == 0) far.q = far.p;
+            kernel_.raise({e, nullptr, posts, &far, 1});
+            before = e;
+        }
+        each_grounds(steps_, rows_, step.posts(), step.end, from,
+                     [&](std::size_t, const Ground* ground, int grounds) {
+                         kernel_.raise({e, before, posts, ground, grounds});
+                         before = e;
+                     });
+        if (!before) std::fill_n(e, posts, kNothing_m);
+        kernel_.untilt({.from = e,
+                        .to = e,
+                        .lines = posts,
+                        .line = from,
+                        .between = step.between,
+                        .slope = fallen(step),
+                        .base_m = zero_m_,
+                        .least_m = floor_m_});
         use(step.column + from, to - from, e);
     }
 
   private:
-    static constexpr int kLines = kStripLines + 1;  // the posts of the last one lie before the next
+    static constexpr float kZero_m = 256;  // of which heights have some taken away
+    static constexpr double kBase_m = 2048;
 
-    /// Lines fall, and rise to terms [begin, end).
-    void raise(Lift lift, const Ground* far, std::size_t begin, std::size_t end) const {
-        const int first = lift.line, last = lift.line + lift.lines;
-        std::array<Ground, 16> ground;  // of which the first `count` are set
-        std::size_t count = 0;
-        if (far) ground[count++] = *far;
-        lift.ground = ground.data();
-        const auto settle = [&] {
-            lift.grounds = static_cast<int>(std::exchange(count, 0));
-            kernel_.raise(lift);
-            lift.before = lift.e;
-            lift.slope = {};
-        };
-        for (std::size_t k = begin; k < end; ++k) {
-            const Term& term = steps_.terms[k];
-            const int from = std::max(first, term.begin), to = std::min(last, term.end);
-            if (from >= to) continue;
-            const bool whole = from == first && to == last;
-            if (!whole || count == ground.size()) settle();
-            ground[count] = {sheet_.first + term.p + from, sheet_.first + term.q + from, term.part,
-                             term.slope};
-            if (whole) {
-                ++count;
-                continue;
-            }
-            float* const e = lift.e + (from - first);
-            kernel_.raise({e, e, kNothing_m, from, to - from, {}, ground.data(), 1});
-        }
-        settle();
+    Slope fallen(const Steps::Row& step) const {
+        return {static_cast<float>(step.fallen - base_m_), static_cast<float>(step.ramp)};
+    }
+
+    /// Takes another base where rays have fallen by so much.
+    void rebase(int row) {
+        const double base_m = kBase_m * std::floor(steps_.row(row).fallen / kBase_m);
+        const auto more_m = static_cast<float>(base_m - base_m_);
+        base_m_ = base_m;
+        if (row == steps_.begin || more_m == 0) return;
+        for (Lines& lines : height_m_)
+            for (float& height : lines)
+                height -= more_m;
+        for (int at = std::max(steps_.begin, row - rows_.kept() + 1); at < row; ++at)
+            std::for_each_n(rows_.begin_of(at), rows_.width(), [=](float& h) { h -= more_m; });
     }
 
     Sheet sheet_;
     const Steps& steps_;
-    Kernel kernel_;
-    int line_;
-    float floor_m_;
-    using Lines = std::array<float, kLines>;
-    std::array<Lines, kLineSets> height_m_;
-    std::array<float, kStripLines> edge_m_;
+    const Kernel& kernel_;
+    int line_, width_;
+    float zero_m_, floor_m_;
+    double base_m_ = 0;
+    GroundRows rows_;
+    using Lines =
+        std::array<float, in_vectors(kStripLines + 1) + Sweep::kMostLanes>;  // the next, too
+    std::array<Lines, kNearness.line_sets> height_m_;
+    std::array<float, in_vectors(kStripLines)> edge_m_;
 };
 
-/// The upper convex hull of the ground under a line, from the sun on. Heights are less what the
-/// ground has sunk by below the tangent plane of the reference.
-class Hull {
+/// Lines next to each other, each with a fan of rays over the ground behind it. Heights are less
+/// what the ground has sunk by below the tangent plane of the reference.
+class FanStrip {
   public:
-    struct Point {
-        float distance_m, height_m;  // away from the sun, over the plane
-    };
-
-    /// @param first  where its points are put, with room for as many as there will be
-    explicit Hull(Point* first = nullptr) : first_(first) {}
-
-    void add(const Point& point) {
-        // The last one but for this goes where it lies under the line to the one before.
-        while (count_ >= 2 && !is_over(first_[count_ - 1], first_[count_ - 2], point))
-            --count_;
-        first_[count_++] = point;
-    }
-
-    /// The tangent at which the hull is seen, for an eye that is farther from the sun than it.
-    float tangent(const Point& eye) const {
-        float best = kNothing_m;
-        for (int k = count_ - 1; k >= 0; --k) {
-            const float seen =
-                (first_[k].height_m - eye.height_m) / (eye.distance_m - first_[k].distance_m);
-            if (!(seen > best)) break;
-            best = seen;
-        }
-        return best;
-    }
-
-  private:
-    static bool is_over(const Point& middle, const Point& before, const Point& after) {
-        return (middle.height_m - before.height_m) * (after.distance_m - before.distance_m) >
-               (after.height_m - before.height_m) * (middle.distance_m - before.distance_m);
-    }
-
-    Point* first_;
-    int count_ = 0;
-};
-
-/// Lines next to each other, with the hulls of the ground under them.
-class HullStrip {
-  public:
-    static constexpr int kLines = 128, kWidth = kLines;
+    static constexpr int kMostWidth = kFanLines;
+    static constexpr Nearness kNearness = kOfHorizons;
+    static constexpr int kKeptRows = 16;
+    static_assert(kKeptRows >= kNearness.near_rows + 3);
 
     /// @param steps      for a tangent of 1 everywhere: what lines fall by is how far they go
     /// @param line       the first one
     /// @param curvature  [1/m]
-    HullStrip(const Sheet& sheet, const Steps& steps, const Kernel& kernel, double curvature,
-              int line)
-        : sheet_(sheet), steps_(steps), kernel_(kernel), curvature_(curvature), line_(line) {
-        std::size_t most = 0;  // no line meets more, and no memory is touched before it does
-        for (const Steps::Row& row : steps.rows)
-            most += row.posts() - row.lines[0];
-        points_ = std::make_unique_for_overwrite<Hull::Point[]>(kLineSets * (kLines + 1) * most);
-        for (std::size_t i = 0; i < kLineSets * (kLines + 1); ++i)
-            hulls_[i / (kLines + 1)][i % (kLines + 1)] = Hull(points_.get() + i * most);
+    /// @param least      the tangent under which no ray is looked at
+    FanStrip(const Sheet& sheet, const Steps& steps, const Kernel& kernel, double curvature,
+             int line, int width, double least)
+        : sheet_(sheet),
+          steps_(steps),
+          kernel_(kernel),
+          curvature_(curvature),
+          line_(line),
+          width_(width),
+          least_(least),
+          rows_(steps, line, width + 1, kKeptRows) {
+        for (std::size_t k = 0; k < tangents_.size(); ++k)
+            tangents_[k] = static_cast<float>(std::tan(kFanDegrees[k] * kPi / 180));
+        for (Fans& fans : fans_) {
+            fans.height_m.fill(kNothing_m);
+            fans.distance_m.fill(-kFarther_m);  // whatever is seen there is infinitely low
+        }
     }
 
     Sheet& sheet() { return sheet_; }
+    void take(int row) {
+        rows_.take(sheet_, row, [](const float* from, int count, float* to, int) {
+            std::copy_n(from, count, to);
+        });
+    }
 
     /// The ground of the next row, and of the columns before it.
     void advance(int row) {
         const Steps::Row& step = steps_.row(row);
-        for (std::size_t set = 0; set < kLineSets; ++set)
-            for (std::size_t k = step.lines[set]; k < step.lines[set + 1]; ++k)
-                add(set, steps_.terms[k], step);
+        const int from = std::max(line_, step.first_line) - line_,
+                  to = std::min(line_ + width_ + 1, step.end_line) - line_;
+        if (from >= to) return;
+        const int first = from / Sweep::kMostLanes * Sweep::kMostLanes;
+        for (std::size_t set = 0; set < kNearness.line_sets; ++set)
+            for (std::size_t k = step.lines[set]; k < step.lines[set + 1]; k += kFanPoints)
+                raise(set, step, k, std::min(step.lines[set + 1], k + kFanPoints), first,
+                      in_vectors(to - first));
     }
 
     template <typename Use>
     void look(int row, int first, int end, const Use& use) {
         const Steps::Row& step = steps_.row(row);
         const int from = std::max(line_, first - step.column);
-        const int to = std::min(line_ + kLines, end - step.column);
+        const int to = std::min(line_ + width_, end - step.column);
         if (from >= to) return;
-        const float* const height = sheet_.first + row * sheet_.stride + step.column + from;
-        std::array<float, kLines> tangent;
-        const double s = steps_.distance_m(row);
-        const float sunk_m = static_cast<float>(curvature_ * s * s / 2),
-                    tilt = static_cast<float>(curvature_ * s);
+        const float* const ground_m = rows_.at(row, step.column, from);
+        std::array<float, in_vectors(kFanLines)> tangent;
         // The line nearest to a post.
-        const int half = static_cast<int>(step.between * 2 * kLineSets + 1) / 2;
-        const auto& hulls = hulls_[static_cast<std::size_t>(half) % kLineSets];
-        const int on = half / static_cast<int>(kLineSets) - line_;
-        for (int i = from; i < to; ++i)
-            tangent[static_cast<std::size_t>(i - from)] =
-                hulls[static_cast<std::size_t>(i + on)].tangent(
-                    {static_cast<float>(s), height[i - from] - sunk_m}) -
-                tilt;
-        look_near(step, from, to, height, tangent.data());
+        const int half = static_cast<int>(step.between * 2 * kNearness.line_sets + 1) / 2;
+        const Fans& fans = fans_[static_cast<std::size_t>(half) % kNearness.line_sets];
+        const int on = half / static_cast<int>(kNearness.line_sets) + from - line_;
+        const double s = steps_.distance_m(row);
+        const double tilt = curvature_ * s;
+        int ray = 0;
+        while (ray < kRays && tangents_[static_cast<std::size_t>(ray)] - tilt < least_)
+            ++ray;
+        kernel_.look_over_fans({.tangent = tangent.data(),
+                                .ground_m = ground_m,
+                                .height_m = fans.height_m.data() + on,
+                                .distance_m = fans.distance_m.data() + on,
+                                .pitch = kPitch,
+                                .posts = in_vectors(to - from),
+                                .first_ray = ray,
+                                .tangents = tangents_.data(),
+                                .from_m = static_cast<float>(s),
+                                .sunk_m = static_cast<float>(curvature_ * s * s / 2),
+                                .tilt = static_cast<float>(tilt),
+                                .both = least_ == -std::numeric_limits<double>::infinity()});
+        look_near(step, from, to, ground_m, tangent.data());
         use(step.column + from, to - from, tangent.data());
     }
 
   private:
-    void add(std::size_t set, const Term& term, const Steps::Row& step) {
-        const double s = step.fallen - term.slope.fall;
-        const float distance_m = static_cast<float>(s),
-                    sunk_m = static_cast<float>(curvature_ * s * s / 2);
-        const int from = std::max({line_, term.begin, step.first_line}),
-                  to = std::min({line_ + kLines + 1, term.end, step.end_line});
-        const float *const p = sheet_.first + term.p, *const q = sheet_.first + term.q;
-        for (int i = from; i < to; ++i) {
-            const float height_m = p[i] + term.part * (q[i] - p[i]);
-            if (!std::isnan(height_m))
-                hulls_[set][static_cast<std::size_t>(i - line_)].add(
-                    {distance_m, height_m - sunk_m});
+    static constexpr float kFarther_m = 1e9F;  // than any ground
+    static constexpr std::ptrdiff_t kPitch = in_vectors(kFanLines + 1) + Sweep::kMostLanes;
+    struct Fans {
+        std::array<float, kRays * kPitch> height_m, distance_m;
+    };
+
+    void raise(std::size_t set, const Steps::Row& step, std::size_t begin, std::size_t end,
+               int first, int lines) {
+        std::array<FanPoint, kFanPoints> points;
+        std::array<float, kRays * kFanPoints> rises;
+        for (std::size_t k = begin; k < end; ++k) {
+            const Term& term = steps_.terms[k];
+            const double s = step.fallen - term.distance;
+            points[k - begin] = {rows_.at(term, line_ + first),
+                                 static_cast<float>(curvature_ * s * s / 2), static_cast<float>(s)};
+            for (std::size_t ray = 0; ray < kRays; ++ray)
+                rises[ray * kFanPoints + (k - begin)] =
+                    tangents_[ray] * points[k - begin].distance_m;
         }
+        kernel_.raise_fans({.height_m = fans_[set].height_m.data() + first,
+                            .distance_m = fans_[set].distance_m.data() + first,
+                            .pitch = kPitch,
+                            .lines = lines,
+                            .tangents = tangents_.data(),
+                            .points = points.data(),
+                            .rises = rises.data()},
+                           static_cast<int>(end - begin));
     }
 
     void look_near(const Steps::Row& step, int from, int to, const float* height_m,
                    float* tangent) const {
-        for (std::size_t k = step.posts(); k < step.end; ++k) {
-            const Term& term = steps_.terms[k];
-            const int first = std::max(from, term.begin), last = std::min(to, term.end);
-            if (first >= last) continue;
-            const double d = term.slope.fall;
-            const Ground ground{
-                sheet_.first + term.p + first,
-                sheet_.first + term.q + first,
-                term.part,
-                {static_cast<float>(1 / d), static_cast<float>(curvature_ * d / 2)}};
-            kernel_.look(
-                {tangent + (first - from), height_m + (first - from), last - first, &ground, 1});
-        }
+        each_grounds(
+            steps_, rows_, step.posts(), step.end, from,
+            [&](std::size_t begin, const Ground* ground, int grounds) {
+                std::array<Slope, 16> slopes;
+                for (std::size_t k = 0; k < static_cast<std::size_t>(grounds); ++k) {
+                    const double d = steps_.terms[begin + k].distance;
+                    slopes[k] = {static_cast<float>(1 / d), static_cast<float>(curvature_ * d / 2)};
+                }
+                kernel_.look(
+                    {tangent, height_m, in_vectors(to - from), ground, slopes.data(), grounds});
+            });
     }
 
     Sheet sheet_;
     const Steps& steps_;
     const Kernel& kernel_;
     double curvature_;
-    int line_;
-    std::unique_ptr<Hull::Point[]> points_;
-    std::array<std::array<Hull, kLines + 1>, kLineSets> hulls_;
+    int line_, width_;
+    double least_;
+    GroundRows rows_;
+    std::array<float, kRays> tangents_;
+    std::array<Fans, kNearness.line_sets> fans_;
 };
 
 /// What lies where on a sheet for a sweep.
@@ -702,9 +1019,8 @@ struct Extent {
     }
 };
 
-/// Rows that ground is read for together, and those before them that it takes besides: posts look
-/// back over kNearRows of them, and lines that are left behind those cross the columns before.
-constexpr int kReadRows = 256, kRowsBefore = kNearRows + 2;
+/// Rows that ground is read for together, and those before them.
+constexpr int kReadRows = 256, kRowsBefore = 2;
 
 constexpr int kTransposeBlock = 4;  // posts a side
 
@@ -781,7 +1097,9 @@ double SweepSun::distance_m(double row) const {
     for (int step = 0; step < 8; ++step) {  // Newton's; two or three do
         const double slope = (twist.row / 2 * s + bend.row) * s + towards.row;
         if (!(slope * towards.row > 0)) return std::numeric_limits<double>::quiet_NaN();
-        s -= (way(s).row - posts) / slope;
+        const double off_m = (way(s).row - posts) / slope;
+        s -= off_m;
+        if (std::abs(off_m) <= 1e-12 * std::abs(s)) break;
     }
     return s;
 }
@@ -907,46 +1225,61 @@ Sweep::View Sweep::view(const SweepSun& given, const SweepWindow& window) const 
     return view;
 }
 
+/// Strips of one width, as many for every thread.
+static int width_of_strips(int lines, int most) {
+    const int threads = std::min(thread_count(), std::max(1, lines / (4 * Sweep::kMostLanes)));
+    const int least = (lines + most - 1) / most;
+    const int strips = (least + threads - 1) / threads * threads;
+    const int width = (lines + strips - 1) / strips;
+    return std::min(most, in_vectors(width + 1) - 1);  // and the line beside are whole vectors
+}
+
 /// Has strips of lines over a window go from the first row that matters to its last.
-/// @param make  a strip from the steps and its first line
+/// @param make  a strip from the steps, its first line and how many it has
 /// @param look  at a row of the window with a strip
 template <typename OneStrip, typename Make, typename Look>
 void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look& look) const {
     const SweepWindow& w = view.window;
     Sheet& sheet = view.sheet;
     const Plan plan(sheet, view.sun, w, drop_m);
-    constexpr int kLines = OneStrip::kWidth;
-    // Ground that is read has room for a strip, and how far that goes aside over the rows.
-    const auto rows_before = [&](int row) { return std::max(plan.begin(), row - kRowsBefore); };
+    const Steps steps = steps_of(plan, w, OneStrip::kNearness);
+    const Extent extent(steps, w);
+    const int lines = extent.end_line - extent.first_line;
+    const int width = width_of_strips(lines, OneStrip::kMostWidth);
+    const int strips = (lines + width - 1) / width;
+    // Ground that is read has room for a strip's, and for how far that goes aside over the rows.
+    const int ground = GroundRows::width_of(steps, width + 1);
+    const auto columns_from = [&](int row) {
+        return plan.columns(std::max(plan.begin(), row - kRowsBefore),
+                            std::min(row + kReadRows + 1, plan.end()));
+    };
     if (read_) {
         double aside = 0;
         for (int row = plan.begin(); row < plan.end(); row += kReadRows) {
-            const auto [least, most] =
-                plan.columns(rows_before(row), std::min(row + kReadRows, plan.end()));
+            const auto [least, most] = columns_from(row);
             aside = std::max(aside, most - least);
         }
-        sheet.stride = kLines + static_cast<int>(std::ceil(aside)) + 8;
+        sheet.stride = ground + static_cast<int>(std::ceil(aside)) + 8;
     }
-    const Steps steps = steps_of(plan, w);
-    const Extent extent(steps, w);
-    const int strips = (extent.end_line - extent.first_line + kLines - 1) / kLines;
     parallel_for(0, strips, 1, [&](int begin, int end) {
         std::vector<float> buffer;
         for (int k = begin; k < end; ++k) {
-            const int line = extent.first_line + k * kLines;
-            auto strip = make(steps, line);
+            const int line = extent.first_line + k * width;
+            auto strip = make(steps, line, width);
             for (int row = steps.begin; row < plan.end(); ++row) {
                 if (read_ && (row - steps.begin) % kReadRows == 0) {
-                    const int first = rows_before(row),
+                    const int first = std::max(plan.begin(), row - kRowsBefore),
                               last = std::min(row + kReadRows, plan.end());
-                    const auto [least, most] = plan.columns(first, last);
+                    const auto [least, most] = columns_from(row);
                     const int column = std::max(0, static_cast<int>(std::floor(least)) + line - 2);
                     const int end_column = std::min(
-                        sheet.columns, static_cast<int>(std::ceil(most)) + line + kLines + 4);
+                        sheet.columns, static_cast<int>(std::ceil(most)) + line + ground + 2);
                     if (column < end_column)
                         view.read(read_, strip->sheet(), first, last, column, end_column, buffer);
                 }
-                if (const int at = row - kNearRows - 1; at >= steps.begin) strip->advance(at);
+                strip->take(row);
+                if (const int at = row - OneStrip::kNearness.near_rows - 1; at >= steps.begin)
+                    strip->advance(at);
                 if (row >= w.row) look(*strip, row);
             }
         }
@@ -964,14 +1297,15 @@ void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Us
     const SweepWindow& w = view.window;
     const double drop_m =
         std::max(0.0, double{highest_m_} - (floor_m > kNoFloor_m ? floor_m : lowest_m_));
-    const Kernel kernel = widest_kernel(lanes);
+    const Kernel& kernel = widest_kernel(lanes);
     sweep_strips<Strip>(
         view, drop_m,
-        [&](const Steps& steps, int line) {
-            return std::make_unique<Strip>(view.sheet, steps, kernel, line, floor_m);
+        [&](const Steps& steps, int line, int width) {
+            return std::make_unique<Strip>(view.sheet, steps, kernel, line, width, lowest_m_,
+                                           floor_m);
         },
         [&](Strip& strip, int row) {
-            strip.edge(row, w.column, w.column + w.columns,
+            strip.look(row, w.column, w.column + w.columns,
                        [&](int column, int count, const float* edge_m) {
                            use(view.run(strip.sheet(), row, column, count, edge_m));
                        });
@@ -984,13 +1318,20 @@ void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
     view.sun.tangent = 1;
     view.sun.tangent_a_post = {};
     const SweepWindow& w = view.window;
-    const Kernel kernel = widest_kernel(lanes);
-    sweep_strips<HullStrip>(
+    const Kernel& kernel = widest_kernel(lanes);
+    // Of ground that is farther off some windows see more than others, but never higher than so.
+    const double relief_m = std::max(0.0, double{highest_m_} - lowest_m_);
+    const double across_m = reach_m * std::hypot(way.towards.column, way.towards.row);
+    const double least = across_m > std::hypot(columns_, rows_)
+                             ? -std::numeric_limits<double>::infinity()
+                             : relief_m / reach_m - curvature * reach_m / 2;
+    sweep_strips<FanStrip>(
         view, reach_m,
-        [&](const Steps& steps, int line) {
-            return std::make_unique<HullStrip>(view.sheet, steps, kernel, curvature, line);
+        [&](const Steps& steps, int line, int width) {
+            return std::make_unique<FanStrip>(view.sheet, steps, kernel, curvature, line, width,
+                                              least);
         },
-        [&](HullStrip& strip, int row) {
+        [&](FanStrip& strip, int row) {
             strip.look(row, w.column, w.column + w.columns,
                        [&](int column, int count, const float* tangent) {
                            use(view.run(strip.sheet(), row, column, count, tangent));

@@ -327,6 +327,32 @@ TEST(SunRasters, ADryRunSaysWhatARunTakesAndWritesNothing) {
         EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
 }
 
+TEST(SunRasters, TellOfTerrainBeyondTheDemThatCouldMatter) {
+    // The sun in the east, 10 degrees high: 100 m over the plain reach 567 m from the edge on.
+    const std::string dem = walled();
+    const std::string tells =
+        "terrain beyond the DEM may matter at some 46 % of the posts: above 504 m it would hide "
+        "sun that is taken to shine, as far as 1 km from the edge if it is up to 600 m high";
+    const auto shadow = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"sun",        "shadow", dem,          "--sun",
+                                           "grid:90,10", "-o",     out("b.tif"), "--overwrite"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Result run = relevo(arguments);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return run.err;
+    };
+    EXPECT_NE(shadow({}).find("relevo: warning: " + tells +
+                              "; use a DEM that goes so far with --clip, or --highest with the "
+                              "height that terrain has there at most\n"),
+              std::string::npos);
+    EXPECT_EQ(opened(out("b.tif"))->GetMetadataItem("BEYOND_DEM"), tells);
+    EXPECT_EQ(shadow({"--highest", "500"}).find("beyond"), std::string::npos);
+    EXPECT_EQ(opened(out("b.tif"))->GetMetadataItem("BEYOND_DEM"), nullptr);
+    EXPECT_NE(relevo({"sun", "sky-view", dem, "-o", out("v.tif")})
+                  .err.find("it would stand over these horizons"),
+              std::string::npos);
+}
+
 TEST(SunRasters, WhatMeansNothingIsRefused) {
     const std::string dem = walled();
     const auto hours = [&](const std::vector<std::string>& more) {

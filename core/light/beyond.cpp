@@ -1,0 +1,183 @@
+#include "light/beyond.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/units.h"
+#include "light/horizon.h"
+#include "light/sky.h"
+#include "sun/position.h"
+#include "sun/position_table.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr int kSide = 24;  // posts that are looked from, each way
+constexpr double kDay_s = 86400;
+
+/// A post that is looked from.
+struct Eye {
+    int column, row;
+    double height_m;
+};
+
+/// What of the DEM a ray meets.
+struct View {
+    double tangent = -std::numeric_limits<double>::infinity();  // of its ground
+    double until_m = 0;                                         // where it ends
+};
+
+class Looking {
+  public:
+    Looking(const dem::Posts& posts, const dem::Window& part, double curvature,
+            const std::optional<double>& highest_m)
+        : posts_(posts), curvature_(curvature) {
+        found_.highest_m =
+            highest_m.value_or(std::min<double>(posts.highest_m(), kHighestTerrain_m));
+        const SweepWindow w = window_of(part, posts.grid());
+        if (posts.in_memory())
+            all_ = posts.view({0, 0, posts.grid().columns(), posts.grid().rows()}, buffer_);
+        std::vector<float> one;
+        for (int i = 0; i < kSide * kSide; ++i) {
+            const int column = w.column + place(i % kSide, w.columns),
+                      row = w.row + place(i / kSide, w.rows);
+            const double height_m = all_ ? *all_->at(column, row)
+                                         : *posts.view({column, row, 1, 1}, one).at(column, row);
+            if (!std::isnan(height_m)) eyes_.push_back({column, row, height_m});
+        }
+        touched_.resize(eyes_.size(), false);
+    }
+
+    std::size_t count() const { return eyes_.size(); }
+    const Eye& eye(std::size_t i) const { return eyes_[i]; }
+
+    /// @param way_a_metre  posts
+    View look(const Eye& eye, const GridPair& way_a_metre) const {
+        View view;
+        const double post_m = 1 / std::max(std::abs(way_a_metre.column), std::abs(way_a_metre.row));
+        const dem::Grid& grid = posts_.grid();
+        // Near ground is looked at post by post, far ground as far apart as a 64th of the way.
+        for (double s = post_m;; s += std::max(post_m, s / 64)) {
+            const auto column = static_cast<int>(std::lround(eye.column + s * way_a_metre.column)),
+                       row = static_cast<int>(std::lround(eye.row + s * way_a_metre.row));
+            if (column < 0 || row < 0 || column >= grid.columns() || row >= grid.rows()) {
+                if (!all_) view.until_m = s;
+                break;
+            }
+            const double height_m = all_ ? *all_->at(column, row) : -1e9;
+            if (std::isnan(height_m)) continue;
+            view.until_m = s;
+            view.tangent =
+                std::max(view.tangent, (height_m - eye.height_m) / s - curvature_ * s / 2);
+        }
+        view.until_m = std::max(view.until_m, post_m / 2);
+        return view;
+    }
+
+    /// Terrain beyond a view that stands over a tangent matters.
+    void consider(std::size_t i, const View& view, double tangent) {
+        const double over_m = found_.highest_m - eyes_[i].height_m;
+        const double needed_m = eyes_[i].height_m + view.until_m * tangent +
+                                curvature_ * view.until_m * view.until_m / 2;
+        if (!(needed_m < found_.highest_m) || !(over_m > 0)) return;
+        if (std::none_of(touched_.begin(), touched_.end(), [](bool t) { return t; }))
+            found_.least_m = needed_m;
+        touched_[i] = true;
+        found_.least_m = std::min(found_.least_m, needed_m);
+        const double reach_m =
+            (std::sqrt(tangent * tangent + 2 * curvature_ * over_m) - tangent) / curvature_;
+        found_.needed_m = std::max(found_.needed_m, reach_m - view.until_m);
+    }
+
+    std::optional<Beyond> found() {
+        const auto count = std::count(touched_.begin(), touched_.end(), true);
+        if (count == 0) return std::nullopt;
+        found_.share = double(count) / double(eyes_.size());
+        return found_;
+    }
+
+  private:
+    static int place(int i, int count) { return static_cast<int>((i + 0.5) * count / kSide); }
+
+    const dem::Posts& posts_;
+    double curvature_;
+    std::vector<float> buffer_;
+    std::optional<dem::Posts::View> all_;
+    std::vector<Eye> eyes_;
+    std::vector<bool> touched_;
+    Beyond found_;
+};
+
+/// Towards a sun from the middle of a DEM, posts a metre.
+std::optional<GridPair> way_of(const SunSky& sky, const dem::Grid& grid) {
+    const std::optional<SunTile> tile = sky.tile(whole(grid));
+    if (!tile) return std::nullopt;
+    return tile->path.towards;
+}
+
+}  // namespace
+
+std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window& part,
+                                     const std::vector<SunOverDem>& suns,
+                                     const ShadowOptions& options,
+                                     const std::optional<double>& highest_m) {
+    const DemSky dem(posts, options);
+    Looking looking(posts, part, dem.curvature(), highest_m);
+    for (const SunOverDem& sun : suns) {
+        const SunSky sky(dem, sun);
+        if (sky.is_night()) continue;
+        const std::optional<GridPair> way = way_of(sky, posts.grid());
+        if (!way) continue;
+        for (std::size_t i = 0; i < looking.count(); ++i) {
+            const Eye& eye = looking.eye(i);
+            const double seen_rad =
+                dem.apparent_rad(sky.elevation_rad(eye.column, eye.row), DemSky::kBetween);
+            if (!(seen_rad > 0) || seen_rad > radians(80)) continue;
+            const View view = looking.look(eye, *way);
+            if (view.tangent < std::tan(seen_rad)) looking.consider(i, view, std::tan(seen_rad));
+        }
+    }
+    return looking.found();
+}
+
+std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window& part,
+                                     const std::vector<double>& azimuth_rad, double refraction,
+                                     const std::optional<double>& highest_m) {
+    const DemSky dem(posts, {.refraction = refraction});
+    Looking looking(posts, part, dem.curvature(), highest_m);
+    for (const double azimuth : azimuth_rad) {
+        const std::optional<GridPair> way = way_of(SunSky(dem, azimuth), posts.grid());
+        if (!way) continue;
+        for (std::size_t i = 0; i < looking.count(); ++i) {
+            const Eye& eye = looking.eye(i);
+            const View view = looking.look(eye, *way);
+            const double dip =
+                -std::sqrt(2 * dem.curvature() * std::max(0.0, eye.height_m - posts.lowest_m()));
+            looking.consider(i, view, std::max(view.tangent, dip));
+        }
+    }
+    return looking.found();
+}
+
+std::vector<SunOverDem> suns_of(const dem::Grid& grid, sun::Instant begin, sun::Instant end) {
+    constexpr double kStep_s = 1200, kApart_s = 30 * kDay_s;
+    const double length_s = end - begin;
+    const geo::Geodetic place = grid.center();
+    const sun::PositionTable table(begin, end);
+    const sun::Observer observer(place);
+    std::vector<SunOverDem> suns;
+    const auto add_day = [&](double from_s) {
+        for (double s = from_s; s <= std::min(length_s, from_s + kDay_s); s += kStep_s) {
+            const glm::dvec3 direction = table.direction(begin + s, observer);
+            suns.push_back({sun::azimuth_of(direction), sun::elevation_of(direction), 0});
+        }
+    };
+    const double last_s = std::max(0.0, length_s - kDay_s);
+    for (double from_s = 0; from_s < last_s; from_s += kApart_s)
+        add_day(from_s);
+    add_day(last_s);
+    return suns;
+}
+
+}  // namespace relevo::light

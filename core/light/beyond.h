@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "dem/posts.h"
+#include "light/shadows.h"
+#include "sun/time.h"
+
+namespace relevo::light {
+
+/// What terrain beyond a DEM could do to a raster of light, as far as some of its posts tell.
+struct Beyond {
+    double share = 0;      ///< of the posts at which such terrain could change a figure
+    double least_m = 0;    ///< the height from which on it could, at the edge of the DEM
+    double highest_m = 0;  ///< what was assumed of its height
+    double needed_m = 0;   ///< how far beyond the edge it could stand and matter
+};
+
+/// Terrain that would hide a sun which the DEM's own ground leaves to shine.
+///
+/// Some hundreds of posts, evenly over the part, look towards every sun over the posts nearest to
+/// their ray, to where the DEM ends or has only holes left. Of a DEM beyond memory its own ground
+/// is not looked at, so that more is told than need be.
+/// @param part       as ShadowOptions::part
+/// @param highest_m  of the terrain beyond; none: the DEM's highest post, the Earth's at most
+/// @return none where no terrain of that height could matter
+std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window& part,
+                                     const std::vector<SunOverDem>& suns,
+                                     const ShadowOptions& options,
+                                     const std::optional<double>& highest_m = {});
+
+/// Likewise terrain that would stand over the horizon in a direction.
+/// @param azimuth_rad  from true north
+std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window& part,
+                                     const std::vector<double>& azimuth_rad, double refraction,
+                                     const std::optional<double>& highest_m = {});
+
+/// Suns that stand for a time: twenty minutes apart on its first day and its last one, and on a day
+/// of each month between.
+std::vector<SunOverDem> suns_of(const dem::Grid& grid, sun::Instant begin, sun::Instant end);
+
+}  // namespace relevo::light

@@ -1,0 +1,76 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "base/units.h"
+#include "light/beyond.h"
+#include "light/fields.h"
+#include "sun/zone.h"
+
+namespace relevo::light {
+namespace {
+
+// 201 x 201 posts 10 m apart: 2 km of a plain at 100 m, and a tower of 400 m in the middle.
+dem::Heightfield plain_with_tower(double tower_m) {
+    return test::field_of(
+        201, 201, {500000, 10, 0, 0, 0, -10}, "EPSG:32631",
+        [=](int column, int row) { return column == 100 && row == 100 ? tower_m : 100.0; });
+}
+
+SunOverDem sun_in_the_south(double elevation_deg) {
+    return {kPi, radians(elevation_deg), 0};
+}
+
+TEST(TerrainBeyond, MattersAsFarAsItsShadowReaches) {
+    const dem::Heightfield field = plain_with_tower(400);
+    const dem::Posts posts(field);
+    // 300 m over the plain, at 45 degrees: posts within 300 m of the southern edge, of 2010.
+    const auto found =
+        terrain_beyond(posts, {}, {sun_in_the_south(45)},
+                       {.refraction = 0.13, .air = {}, .soft = false, .part = {}, .done = {}});
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->share, 300.0 / 2010, 1.0 / 24);
+    EXPECT_EQ(found->highest_m, 400);
+    EXPECT_GT(found->least_m, 100);
+    EXPECT_LT(found->least_m, 100 + 2010.0 / 24 + 20) << "the post nearest to the edge";
+    EXPECT_NEAR(found->needed_m, 300, 2010.0 / 24 + 20);
+    // What is known to be lower does not.
+    EXPECT_FALSE(terrain_beyond(posts, {}, {sun_in_the_south(45)}, {}, 100));
+    // At 5 degrees it reaches 3.4 km: over all of the DEM.
+    EXPECT_GT(terrain_beyond(posts, {}, {sun_in_the_south(5)}, {})->share, 0.95);
+    // Nor does what lies far from the part that is asked for.
+    EXPECT_FALSE(terrain_beyond(posts, {0, 0, 201, 100}, {sun_in_the_south(45)}, {}));
+}
+
+TEST(TerrainBeyond, MattersNotWhereTheDemsOwnGroundHidesTheSun) {
+    // A wall of 110 m along the southern edge, as high as any ground.
+    const dem::Heightfield field =
+        test::field_of(201, 201, {500000, 10, 0, 0, 0, -10}, "EPSG:32631",
+                       [=](int, int row) { return row >= 190 ? 400.0 : 100.0; });
+    const dem::Posts posts(field);
+    EXPECT_FALSE(terrain_beyond(posts, {0, 0, 201, 180}, {sun_in_the_south(20)}, {}));
+    EXPECT_TRUE(terrain_beyond(posts, {0, 0, 201, 180}, {{0, radians(5), 0}}, {})) << "the north";
+    // A sun that is down has nothing that hides it.
+    EXPECT_FALSE(terrain_beyond(posts, {}, {sun_in_the_south(-3)}, {}));
+}
+
+TEST(TerrainBeyond, StandsOverHorizons) {
+    const dem::Heightfield field = plain_with_tower(400);
+    const dem::Posts posts(field);
+    const auto found = terrain_beyond(posts, {}, std::vector<double>{0, kPi}, 0.13);
+    ASSERT_TRUE(found);
+    EXPECT_GT(found->share, 0.95);
+    EXPECT_FALSE(terrain_beyond(posts, {}, std::vector<double>{0, kPi}, 0.13, 90));
+}
+
+TEST(TerrainBeyond, SunsOfATimeStandForIt) {
+    const dem::Heightfield field = plain_with_tower(400);
+    const sun::Instant begin = sun::parse_time("2026-06-21T00:00Z", {}).utc;
+    EXPECT_EQ(suns_of(field.grid, begin, begin + 86400.0).size(), 73U);
+    EXPECT_EQ(suns_of(field.grid, begin, begin + 2 * 86400.0).size(), 2 * 73U);
+    const std::vector<SunOverDem> year = suns_of(field.grid, begin, begin + 365 * 86400.0);
+    EXPECT_EQ(year.size(), 14 * 73U);
+}
+
+}  // namespace
+}  // namespace relevo::light
