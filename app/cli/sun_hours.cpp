@@ -167,7 +167,7 @@ void run(const Arguments& arguments) {
                                           .done = {}},
                                          arguments.raster.highest_m);
         },
-        "hide sun that is taken to shine");
+        light::kHides);
     Summary sum;
     raster.each_part([&](const dem::Window& part) {
         options.part = part;

@@ -144,11 +144,7 @@ void RasterRun::warn_of(const std::function<std::optional<light::Beyond>()>& loo
     if (!writer_) return;
     const std::optional<light::Beyond> beyond = look();
     if (!beyond) return;
-    beyond_ = fmt::format(
-        "terrain beyond the DEM may matter at some {:.0f} % of the posts: above {:.0f} m it would "
-        "{}, as far as {:.0f} km from the edge if it is up to {:.0f} m high",
-        std::max(1.0, 100 * beyond->share), beyond->least_m, would, beyond->needed_m / 1000,
-        beyond->highest_m);
+    beyond_ = beyond->text(would);
     log::warning(beyond_ +
                  "; use a DEM that goes so far with --clip, or --highest with the height that "
                  "terrain has there at most");

@@ -68,7 +68,7 @@ class RasterRun {
     }
     /// Terrain beyond the DEM that could change figures is told of, and written into the file.
     /// @param look   for it; a dry run does not
-    /// @param would  what it would do: "hide sun that is taken to shine"
+    /// @param would  as light::Beyond::text()
     void warn_of(const std::function<std::optional<light::Beyond>()>& look,
                  const std::string& would);
     /// Gives the file its name; for a dry run says instead what it has found out.

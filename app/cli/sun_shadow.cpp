@@ -231,7 +231,7 @@ void run(const Arguments& arguments) {
             return light::terrain_beyond(posts, ground.window, all, options,
                                          arguments.raster.highest_m);
         },
-        "hide sun that is taken to shine");
+        light::kHides);
     std::vector<Counts> counts(suns.size());
     const std::string definition = light_all(posts, suns, options, raster, counts);
     light::RasterMetadata more{{"REFRACTION", air}};

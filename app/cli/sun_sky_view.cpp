@@ -43,7 +43,7 @@ void run_sky_view(const Arguments& arguments) {
                 ground.posts, ground.window, azimuths_of(arguments.directions),
                 arguments.raster.terrestrial_refraction, arguments.raster.highest_m);
         },
-        "stand over these horizons");
+        light::kStandsOver);
     double sum = 0, posts = 0;
     std::int64_t holes = 0;
     std::string definition;
@@ -82,7 +82,7 @@ void run_horizons(const Arguments& arguments) {
                                          arguments.raster.terrestrial_refraction,
                                          arguments.raster.highest_m);
         },
-        "stand over these horizons");
+        light::kStandsOver);
     const std::function<void(double)> done = raster.done();
     std::int64_t holes = 0;
     std::string definition;

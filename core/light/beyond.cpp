@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "base/units.h"
 #include "light/horizon.h"
 #include "light/sky.h"
@@ -117,6 +119,13 @@ std::optional<GridPair> way_of(const SunSky& sky, const dem::Grid& grid) {
 }
 
 }  // namespace
+
+std::string Beyond::text(const std::string& would) const {
+    return fmt::format(
+        "terrain beyond the DEM may matter at some {:.0f} % of the posts: above {:.0f} m it would "
+        "{}, as far as {:.0f} km from the edge if it is up to {:.0f} m high",
+        std::max(1.0, 100 * share), least_m, would, needed_m / 1000, highest_m);
+}
 
 std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window& part,
                                      const std::vector<SunOverDem>& suns,

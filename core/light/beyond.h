@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "dem/posts.h"
@@ -15,7 +16,13 @@ struct Beyond {
     double least_m = 0;    ///< the height from which on it could, at the edge of the DEM
     double highest_m = 0;  ///< what was assumed of its height
     double needed_m = 0;   ///< how far beyond the edge it could stand and matter
+
+    /// A sentence without its full stop.
+    /// @param would  what such terrain would do: kHides or kStandsOver
+    std::string text(const std::string& would) const;
 };
+inline constexpr const char *kHides = "hide sun that is taken to shine",
+                            *kStandsOver = "stand over these horizons";
 
 /// Terrain that would hide a sun which the DEM's own ground leaves to shine.
 ///

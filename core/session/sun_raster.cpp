@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
+#include "light/beyond.h"
 #include "light/horizons.h"
 #include "light/sun_hours.h"
 #include "session/words.h"
@@ -79,6 +80,26 @@ light::RasterMetadata metadata_of(const dem::Posts& posts, const SunRasterWanted
     for (auto& item : metadata_of(sun_over_middle(posts, wanted.begin, wanted.refraction)))
         about.push_back(std::move(item));
     return about;
+}
+
+/// Terrain beyond the DEM that could change the figures.
+std::optional<light::Beyond> beyond_of(const dem::Posts& posts, const SunRasterWanted& wanted) {
+    const dem::Grid& grid = posts.grid();
+    const dem::Window all{0, 0, grid.columns(), grid.rows()};
+    if (wanted.figure == SunFigure::SkyView) {
+        std::vector<double> azimuth_rad;
+        for (int i = 0; i < kSkyDirections; ++i)
+            azimuth_rad.push_back(2 * kPi * i / kSkyDirections);
+        return light::terrain_beyond(posts, all, azimuth_rad, kTerrestrialRefraction);
+    }
+    light::ShadowOptions options;
+    options.refraction = kTerrestrialRefraction;
+    options.air = air_of(wanted.refraction);
+    if (wanted.figure == SunFigure::Hours)
+        return light::terrain_beyond(posts, all, light::suns_of(grid, wanted.begin, wanted.end),
+                                     options);
+    return light::terrain_beyond(
+        posts, all, {sun_over_middle(posts, wanted.begin, wanted.refraction).sun}, options);
 }
 
 }  // namespace
@@ -212,6 +233,10 @@ void write_sun_raster(OutputFile& file, const dem::Posts& posts, const SunRaster
         raster_metadata(posts, version, definition, kTerrestrialRefraction, holes);
     for (auto& item : metadata_of(posts, wanted))
         about.push_back(std::move(item));
+    if (const auto beyond = beyond_of(posts, wanted))
+        about.emplace_back(
+            "BEYOND_DEM",
+            beyond->text(wanted.figure == SunFigure::SkyView ? light::kStandsOver : light::kHides));
     writer.finish(about);
 }
 
