@@ -121,10 +121,13 @@ def killed(job, whole, kills, wall_s):
     broken = 0
     reached = []
     for _ in range(kills):
-        process = subprocess.Popen(job.command("--resume"), stderr=subprocess.DEVNULL)
+        process = subprocess.Popen(job.command("--resume"))
         time.sleep(random.uniform(0.2, wall_s / 4))
         process.send_signal(signal.SIGKILL)
-        process.wait()
+        ended = process.wait()
+        if ended not in (-signal.SIGKILL, 0):
+            print(f"a run ended by itself with {ended}")
+            broken += 1
         there = files_of(job.folder / "out") if (job.folder / "out").exists() else {}
         broken += sum(whole.get(name) != content for name, content in there.items())
         reached.append(len(there))
