@@ -126,9 +126,11 @@ class Sweep {
 
     /// The tangent of the horizon's elevation for all posts of a window, each as seen from the
     /// ground there: minus infinity where nothing of the grid lies that way. Called on several
-    /// threads, once for each post. For each line there is the convex hull of the ground that it
-    /// came over, so that a post costs nearly the same however far it sees; the ground of the
-    /// nearest rows is looked at along the post's own ray, as for edges.
+    /// threads, once for each post. Each line carries a fan of rays over the ground that it came
+    /// over, so that a post costs the same however far it sees; the ground of the nearest rows is
+    /// looked at along the post's own ray, as for edges, and more of them. Horizons under -4
+    /// degrees are those of the nearest rows alone. Accuracy: between two rays of the fan too low
+    /// by the square of what they are apart (tests/light/test_horizons.cpp has shares and figures).
     /// @param way        its tangents mean nothing
     /// @param curvature  of the ground under a line of sight [1/m]
     /// @param reach_m    how far the ground is looked at
