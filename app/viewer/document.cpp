@@ -164,9 +164,11 @@ const Document& History::redo() {
     return states_[++at_];
 }
 
-std::unique_ptr<EffectsModel> EffectsModel::of(const scene::Effects& effects) {
+std::unique_ptr<EffectsModel> EffectsModel::of(const scene::Effects& effects,
+                                               const effect::GroundWords& ground) {
     auto model = std::make_unique<EffectsModel>(effects);
-    model->selection = effect::select(model->registry, model->presets, effects.switches);
+    model->selection =
+        effect::select(model->registry, model->presets, effects.switches, {}, ground);
     effect::apply_settings(model->values, model->registry, model->selection, model->presets,
                            effects.settings);
     return model;

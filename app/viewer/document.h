@@ -69,8 +69,10 @@ struct EffectsModel : session::InstalledEffects {
     effect::Selection selection;  ///< points into registry
 
     using InstalledEffects::InstalledEffects;
+    /// @param ground  what the DEM has; none: it may have all
     /// @throws Error (BadInput) as those who load and select
-    static std::unique_ptr<EffectsModel> of(const scene::Effects& effects);
+    static std::unique_ptr<EffectsModel> of(const scene::Effects& effects,
+                                            const effect::GroundWords& ground = {});
 };
 
 /// The same with an effect on or off.

@@ -109,6 +109,23 @@ void param_row(State& state, const Param& param, bool on) {
     ImGui::PopID();
 }
 
+/// Why an effect that is on by default is not; empty: it is not for want of something.
+std::string lack_of(const State& state, const effect::Effect& effect) {
+    const effect::Switches& asked = state.document.scene.effects.switches;
+    const bool is_off =
+        std::find(asked.disable.begin(), asked.disable.end(), effect.id()) != asked.disable.end();
+    if (!effect.manifest.enabled_by_default || !state.ground_words || asked.only || is_off)
+        return {};
+    for (const std::string& word : effect.manifest.default_where)
+        if (std::find(state.ground_words->begin(), state.ground_words->end(), word) ==
+            state.ground_words->end()) {
+            std::string words = word;
+            std::replace(words.begin(), words.end(), '_', ' ');
+            return fmt::format("(the DEM has no {})", words);
+        }
+    return {};
+}
+
 void effect_row(State& state, const effect::Effect& effect) {
     const bool is_on = state.effects->selection.has(effect.id());
     ImGui::PushID(effect.id().c_str());
@@ -117,6 +134,10 @@ void effect_row(State& state, const effect::Effect& effect) {
     ImGui::SameLine();
     const bool open = ImGui::TreeNodeEx(effect.manifest.name.c_str(), ImGuiTreeNodeFlags_None);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", effect.manifest.description.c_str());
+    if (const std::string why = is_on ? "" : lack_of(state, effect); !why.empty()) {
+        ImGui::SameLine();
+        ImGui::TextDisabled("%s", why.c_str());
+    }
     if (open) {
         for (const Param& param : effect.params())
             if (!param.is_host) param_row(state, param, is_on);

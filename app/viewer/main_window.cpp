@@ -157,7 +157,7 @@ void MainWindow::panels() {
     if (std::exchange(closes_menus_, false)) ImGui::SetWindowFocus(nullptr);
     if (!is_open()) {
         if (state_.settings.panels) menu_bar(state_);
-        waiting_text(state_, has_failed_);
+        waiting_text(state_, has_failed_, last_good_.has_value());
         return;
     }
     if (picture_) {

@@ -76,6 +76,8 @@ class MainWindow {
     void watch_comparison();
     /// To what was open before, once: it may be gone as well.
     void go_back(std::string why);
+    /// What is being read is left to itself, and its result to nobody.
+    void give_up_opening();
     /// The scene has been opened: from here on it can be moved in.
     void start(std::shared_ptr<const Opened> opened);
     void watch(const scene::Scene& scene);
@@ -110,6 +112,8 @@ class MainWindow {
     // ---- what is kept, told and taken away: main_window_kept.cpp
 
     void remember_views();
+    /// Whether panels have letters to show that no font has been loaded with.
+    bool wants_new_letters();
     /// Between frames, where fonts may be made anew.
     void restyle();
     void remember_settings();
@@ -184,6 +188,7 @@ class MainWindow {
     std::optional<OverlayWanted> asked_overlay_;
     std::unique_ptr<OverlaySave> overlay_save_;
     std::vector<SavedOverlay> saved_overlays_;
+    const EffectsModel* lettered_ = nullptr;  // whose names have their letters
     LegendPicture legend_;
     bool saves_when_whole_ = false;
     History history_;

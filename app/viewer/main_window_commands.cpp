@@ -72,6 +72,10 @@ bool MainWindow::of_program(Command command) {
             sheet_ = !sheet_;
             return true;
         case Command::CloseKeys:
+            if (!is_open() && !has_failed_ && !has_gone_back_ && last_good_) {
+                give_up_opening();
+                return true;
+            }
             sheet_ = false;
             closes_menus_ = true;
             state_.message.clear();

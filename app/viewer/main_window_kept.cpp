@@ -19,10 +19,36 @@ void MainWindow::remember_views() {
 
 void MainWindow::restyle() {
     const Settings& now = state_.settings;
-    if (now.light_style == styled_.light_style && now.text_px == styled_.text_px) return;
+    const bool has_new_letters = wants_new_letters();
+    if (!has_new_letters && now.light_style == styled_.light_style &&
+        now.text_px == styled_.text_px)
+        return;
     styled_ = now;
     window_->set_style(now.light_style, now.text_px);
     busy_frames_ = 3;
+}
+
+bool MainWindow::wants_new_letters() {
+    bool any = window_->want_letters(state_.message);
+    const auto want = [&](const std::string& text) { any = window_->want_letters(text) || any; };
+    for (const std::string& dem : state_.document.scene.dems)
+        want(dem);
+    if (state_.document.scene.overlay) want(state_.document.scene.overlay->file);
+    for (const RecentDem& dem : state_.recent)
+        want(dem.files.front());
+    for (const SavedView& view : state_.views)
+        want(view.name);
+    if (!state_.effects || lettered_ == state_.effects.get()) return any;
+    lettered_ = state_.effects.get();
+    for (const effect::Effect& effect : state_.effects->registry.effects()) {
+        want(effect.manifest.name + effect.manifest.description);
+        for (const shader::Param& param : effect.params()) {
+            want(param.label + param.description + param.unit);
+            for (const std::string& word : param.words)
+                want(word);
+        }
+    }
+    return any;
 }
 
 void MainWindow::remember_settings() {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/paths.h"
+#include "base/text.h"
 #include "sun/zone_of_place.h"
 #include "viewer/file_dialog.h"
 #include "viewer/main_window.h"
@@ -111,6 +112,11 @@ void MainWindow::go_back(std::string why) {
     open();
 }
 
+void MainWindow::give_up_opening() {
+    const std::string name = printable(state_.document.scene.dems.front());
+    go_back("opening " + name + " was given up");
+}
+
 void MainWindow::start(std::shared_ptr<const Opened> opened) {
     opened_ = std::move(opened);
     const scene::Scene& scene = opened_->scene;
@@ -138,7 +144,9 @@ void MainWindow::start(std::shared_ptr<const Opened> opened) {
     has_gone_back_ = false;
     const std::vector<std::string> names = absolute_names(scene.dems);
     state_.views = memory_.views(names);
-    remember([&] { memory_.add_recent(names); });
+    remember([&] { memory_.add_recent({names, scene.dem, scene.holes}); });
+    state_.ground_words = opened_->dem->ground_words(scene.holes);
+    state_.effects = EffectsModel::of(document.scene.effects, state_.ground_words);
     state_.recent = memory_.recent();
     watch(scene);
     busy_frames_ = 3;
@@ -170,6 +178,8 @@ void MainWindow::open_files() {
         asked_files_.reset();
     }
     if (!state_.files_to_open.empty()) files = std::exchange(state_.files_to_open, {});
+    const std::optional<RecentDem> recent = std::exchange(state_.recent_to_open, std::nullopt);
+    if (recent) files = recent->files;
     if (files.empty() || !last_good_) return;
     tried_ = files.front();
     scene::Scene& scene = state_.document.scene;
@@ -178,6 +188,12 @@ void MainWindow::open_files() {
     scene.overlay.reset();  // it is of the other ground
     state_.document.overlay = {};
     scene.dem = {.max_posts = scene.dem.max_posts};  // the rest is said of the other file
+    if (recent) {
+        const std::int64_t max_posts = scene.dem.max_posts;  // is this window's
+        scene.dem = recent->options;
+        scene.dem.max_posts = max_posts;
+        scene.holes = recent->holes;
+    }
     has_gone_back_ = has_failed_ = false;
     state_.message.clear();
     open();

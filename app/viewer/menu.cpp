@@ -68,9 +68,9 @@ std::string short_name(const std::vector<std::string>& dems) {
 void recent_files(State& state) {
     if (!ImGui::BeginMenu("Open again", !state.recent.empty())) return;
     for (std::size_t i = 0; i < state.recent.size(); ++i) {
-        const std::vector<std::string>& dems = state.recent[i];
+        const std::vector<std::string>& dems = state.recent[i].files;
         if (ImGui::MenuItem(fmt::format("{}##{}", short_name(dems), i).c_str()))
-            state.files_to_open = dems;
+            state.recent_to_open = state.recent[i];
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", printable(dems.front()).c_str());
     }
     ImGui::EndMenu();

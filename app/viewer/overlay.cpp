@@ -175,7 +175,7 @@ void key_sheet() {
         {"F5", "read effects again, which happens by itself when their files are written"},
         {"Ctrl + Z, Ctrl + Y", "undo, redo"},
         {"Tab", "panels and menu on and off"},
-        {"H, Esc", "this sheet"},
+        {"H, Esc", "this sheet; Esc also gives up opening a DEM"},
         {"Ctrl + Q", "end"},
     }};
     ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x / 2, ImGui::GetIO().DisplaySize.y / 2},

@@ -66,14 +66,15 @@ void status_line(const State& state, bool is_drawing) {
     list.AddText(at, IM_COL32(255, 255, 255, 235), text.c_str());
 }
 
-void waiting_text(const State& state, bool has_failed) {
+void waiting_text(const State& state, bool has_failed, bool can_give_up) {
     ImGui::SetNextWindowPos({20, 20 + ImGui::GetFrameHeight()});
     ImGui::Begin("##opening", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
     if (has_failed)
         ImGui::TextWrapped("%s", state.message.c_str());
     else
-        ImGui::Text("opening %s ...", printable(state.document.scene.dems.front()).c_str());
+        ImGui::Text("opening %s ...%s", printable(state.document.scene.dems.front()).c_str(),
+                    can_give_up ? "   Esc gives up" : "");
     ImGui::End();
 }
 

@@ -110,6 +110,28 @@ std::optional<SavedView> view_of(const json& from) {
     return view;
 }
 
+/// As the "dem" of a scene; of the files alone where they are read as files say.
+ordered_json json_of(const RecentDem& dem) {
+    scene::Scene scene;
+    scene.dems = dem.files;
+    scene.dem = dem.options;
+    scene.holes = dem.holes;
+    ordered_json as_read = ordered_json::parse(scene::scene_text(scene, ""))["dem"];
+    return as_read.size() > 1 ? as_read : ordered_json(dem.files);
+}
+
+/// What is no DEM of a scene counts as nothing.
+std::optional<RecentDem> recent_of(const json& from) {
+    try {
+        const json scene{{"format", 1}, {"dem", from.is_array() ? json{{"files", from}} : from}};
+        const scene::Scene read = scene::read_scene_text(scene.dump(), "recent.json", "");
+        if (read.dems.empty()) return std::nullopt;
+        return RecentDem{read.dems, read.dem, read.holes};
+    } catch (const std::exception&) {
+        return std::nullopt;
+    }
+}
+
 ordered_json json_of(const SavedView& view) {
     return {{"name", view.name},
             {"lat_deg", degrees(view.eye.lat_rad)},
@@ -177,24 +199,26 @@ void Memory::write(const Settings& settings) const {
                  {"charts", settings.charts}});
 }
 
-std::vector<std::vector<std::string>> Memory::recent() const {
-    std::vector<std::vector<std::string>> result;
+std::vector<RecentDem> Memory::recent() const {
+    std::vector<RecentDem> result;
     const json from = state_.empty() ? json() : read(state_ / "recent.json");
     if (!from.is_array()) return result;
     for (const json& one : from)
-        if (std::vector<std::string> dems = strings(one);
-            !dems.empty() && result.size() < kMostRecent)
-            result.push_back(std::move(dems));
+        if (auto dem = recent_of(one); dem && result.size() < kMostRecent)
+            result.push_back(std::move(*dem));
     return result;
 }
 
-void Memory::add_recent(const std::vector<std::string>& dems) const {
+void Memory::add_recent(const RecentDem& dem) const {
     if (state_.empty()) return;
-    std::vector<std::vector<std::string>> all = recent();
-    std::erase(all, dems);
-    all.insert(all.begin(), dems);
+    std::vector<RecentDem> all = recent();
+    std::erase_if(all, [&](const RecentDem& one) { return one.files == dem.files; });
+    all.insert(all.begin(), dem);
     if (all.size() > kMostRecent) all.resize(kMostRecent);
-    write_whole(state_ / "recent.json", all);
+    ordered_json list = ordered_json::array();
+    for (const RecentDem& one : all)
+        list.push_back(json_of(one));
+    write_whole(state_ / "recent.json", list);
 }
 
 fs::path Memory::views_file(const std::vector<std::string>& dems) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geo/geodetic.h"
+#include "scene/scene.h"
 #include "sun/time.h"
 
 /// What the window remembers from one time to the next. Whatever is wrong with a file of it, the
@@ -38,6 +39,13 @@ struct SavedView {
     sun::Instant utc;
 };
 
+/// A DEM that was opened: the files that it is made of, and how they are read.
+struct RecentDem {
+    std::vector<std::string> files;
+    dem::LoadOptions options;
+    dem::Holes holes = dem::Holes::Fill;
+};
+
 /// The files in which that is kept.
 class Memory {
   public:
@@ -52,10 +60,10 @@ class Memory {
     /// @throws Error (BadInput, Failed) as OutputFile; here and below
     void write(const Settings& settings) const;
 
-    /// DEMs that were opened, the last one first, each the files that it is made of.
-    std::vector<std::vector<std::string>> recent() const;
-    /// Puts a DEM before the others, of which some are kept.
-    void add_recent(const std::vector<std::string>& dems) const;
+    /// DEMs that were opened, the last one first.
+    std::vector<RecentDem> recent() const;
+    /// Puts a DEM before the others, of which some are kept; one of the same files goes.
+    void add_recent(const RecentDem& dem) const;
 
     /// Of a DEM.
     std::vector<SavedView> views(const std::vector<std::string>& dems) const;

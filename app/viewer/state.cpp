@@ -29,7 +29,7 @@ void State::take_effects(bool is_step) {
     if (!asked_effects) return;
     const scene::Effects changed = *std::exchange(asked_effects, std::nullopt);
     try {
-        effects = EffectsModel::of(changed);
+        effects = EffectsModel::of(changed, ground_words);
         document.scene.effects = changed;
         new_effects = changed;
         step = step || is_step;

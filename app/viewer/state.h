@@ -33,6 +33,7 @@ struct State {
     geo::Geodetic centre;                           ///< of the DEM
     sun::Refraction air = sun::Refraction::none();  ///< over it
     std::unique_ptr<EffectsModel> effects;
+    effect::GroundWords ground_words;  ///< what the DEM has; none: it is not known yet
     SunDay day;
     std::vector<SunDay> extremes;  ///< the solstices of its year
 
@@ -42,9 +43,9 @@ struct State {
     bool compare_is_wanted = false;  ///< with the effects as they are when it is
 
     Settings settings;
-    std::vector<std::vector<std::string>> recent;  ///< DEMs that were opened
-    std::vector<SavedView> views;                  ///< of this DEM
-    double spacing_m = 1;                          ///< of its posts, about
+    std::vector<RecentDem> recent;  ///< DEMs that were opened
+    std::vector<SavedView> views;   ///< of this DEM
+    double spacing_m = 1;           ///< of its posts, about
 
     std::optional<Cursor> cursor;
     std::optional<geo::Geodetic> chosen;      ///< that was clicked
@@ -63,6 +64,7 @@ struct State {
     // What panels have done in this frame.
     std::vector<Command> commands;
     std::vector<std::string> files_to_open;
+    std::optional<RecentDem> recent_to_open;
     std::optional<std::size_t> view_to_go_to;  ///< of views
     bool views_changed = false;
     glm::ivec2 chart_px{0};  ///< that drawings of the point have room in; 0: none is shown
@@ -96,7 +98,8 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit);
 /// The ground under the cursor, at the lower edge.
 void status_line(const State& state, bool is_drawing);
 /// While no scene is open.
-void waiting_text(const State& state, bool has_failed);
+/// @param can_give_up  there was another one before
+void waiting_text(const State& state, bool has_failed, bool can_give_up);
 /// State::message, at the upper edge, also where there are no panels.
 void message_box(State& state, glm::vec2 size_px, double px_a_unit);
 void point_panel(State& state);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
-#include <filesystem>
+#include <list>
 #include <optional>
 #include <set>
 #include <span>
@@ -22,6 +22,7 @@
 #include "base/watchdog.h"
 #include "gl/context.h"
 #include "gl/framebuffer.h"
+#include "viewer/fonts.h"
 #include "viewer/scene_thread.h"
 
 namespace relevo::viewer {
@@ -72,41 +73,27 @@ std::atomic<bool>& is_open() {
     return open;
 }
 
-/// The first of the system's fonts that is there.
-std::string font_file() {
-    for (const char* file : {"/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
-                             "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"}) {
-        std::error_code ignored;
-        if (std::filesystem::exists(file, ignored)) return file;
-    }
-    return {};
-}
-
-/// One that has Chinese, Japanese and Korean, for names of files and places.
-std::string wide_font_file() {
-    for (const char* file : {"/usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc",
-                             "/usr/share/fonts/truetype/wqy/wqy-microhei.ttc",
-                             "/usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf"}) {
-        std::error_code ignored;
-        if (std::filesystem::exists(file, ignored)) return file;
-    }
-    return {};
-}
-
 /// @param text_px  of the display
-void load_fonts(float text_px) {
+/// @param letters  besides the usual ones
+void load_fonts(float text_px, const std::set<char32_t>& letters) {
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-    // Latin with its accents, Greek, Cyrillic, and dashes and degrees.
-    static const ImWchar ranges[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x2044, 0x2190, 0x2193, 0};
-    const std::string file = font_file();
+    // Latin with its accents, Greek, Cyrillic, and dashes and degrees: is_usual().
+    static const ImWchar usual[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x2044, 0x2190, 0x2193, 0};
+    const std::string file = usual_font_file();
     if (file.empty()) return;
-    fonts.AddFontFromFileTTF(file.c_str(), text_px, nullptr, ranges);
-    if (const std::string wide = wide_font_file(); !wide.empty()) {
+    fonts.AddFontFromFileTTF(file.c_str(), text_px, nullptr, usual);
+    // ImGui reads them when the atlas is built.
+    static std::list<std::vector<ImWchar>> ranges;
+    ranges.clear();
+    for (const FontFile& font : fonts_with(letters)) {
+        std::vector<ImWchar>& range = ranges.emplace_back();
+        for (const char32_t letter : font.letters)
+            range.insert(range.end(), 2, static_cast<ImWchar>(letter));
+        range.push_back(0);
         ImFontConfig config;
         config.MergeMode = true;
-        fonts.AddFontFromFileTTF(wide.c_str(), text_px, &config,
-                                 fonts.GetGlyphRangesChineseSimplifiedCommon());
-        fonts.AddFontFromFileTTF(wide.c_str(), text_px, &config, fonts.GetGlyphRangesJapanese());
+        config.FontNo = font.face;
+        fonts.AddFontFromFileTTF(font.path.c_str(), text_px, &config, range.data());
     }
 }
 
@@ -135,6 +122,7 @@ struct Window::Impl {
     std::optional<gl::Context> context;
     Shown shown, before;
     float line = 0.5f;
+    std::set<char32_t> letters;  // that panels show besides the usual ones
     std::vector<KeyPress> keys;
     std::set<int> held;  // pressed without Ctrl, whichever of the two is let go first
     std::vector<std::string> dropped;
@@ -201,7 +189,7 @@ struct Window::Impl {
         float scale = 1;
         glfwGetWindowContentScale(handle, &scale, nullptr);
         ImGui::GetIO().Fonts->Clear();
-        load_fonts(static_cast<float>(text_px) * scale);
+        load_fonts(static_cast<float>(text_px) * scale, letters);
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
         scale *= static_cast<float>(text_px) / kText_px;
@@ -264,6 +252,12 @@ void Window::hide() {
 
 void Window::set_style(bool light, int text_px) {
     impl_->set_style(light, text_px);
+}
+
+bool Window::want_letters(std::string_view text) {
+    const std::size_t before = impl_->letters.size();
+    impl_->letters.merge(unusual_letters(text));
+    return impl_->letters.size() != before;
 }
 
 void Window::set_title(const std::string& title) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -44,6 +45,9 @@ class Window {
     /// How panels look from the next frame on.
     /// @param text_px  height of letters, on a display of usual density
     void set_style(bool light, int text_px);
+    /// Has panels show the letters of a text, of whatever script, from the next set_style() on.
+    /// @returns whether there are any that they do not show yet
+    bool want_letters(std::string_view text);
 
     /// Waits for input for so long at most, or for wake().
     void wait(double at_most_s);

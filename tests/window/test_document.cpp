@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -19,6 +20,7 @@
 #include "support/support.h"
 #include "viewer/document.h"
 #include "viewer/file_watch.h"
+#include "viewer/fonts.h"
 #include "viewer/navigation.h"
 #include "viewer/point_light.h"
 #include "viewer/settings.h"
@@ -70,6 +72,28 @@ TEST(Effects, AreSwitchedWhateverWasSaidBefore) {
     EXPECT_EQ(without_values(effects, "haze.density").settings.size(), 1u);
     EXPECT_EQ(without_values(effects, "haze").settings.size(), 0u);
     EXPECT_EQ(without_values(effects, "ha").settings.size(), 2u);
+}
+
+TEST(Effects, OfAGroundThatADemHasNotAreOff) {
+    const scene::Effects effects;
+    EXPECT_TRUE(EffectsModel::of(effects)->selection.has("sea"));
+    EXPECT_TRUE(EffectsModel::of(effects, {{"water"}})->selection.has("sea"));
+    EXPECT_FALSE(EffectsModel::of(effects, effect::GroundWords(std::vector<std::string>{}))
+                     ->selection.has("sea"));
+    EXPECT_TRUE(EffectsModel::of(switched(effects, "sea", true),
+                                 effect::GroundWords(std::vector<std::string>{}))
+                    ->selection.has("sea"));
+}
+
+TEST(Fonts, AreFoundForTheLettersOfAnyScript) {
+    EXPECT_THAT(unusual_letters("Höhe ύψος высота 5°"), testing::IsEmpty());
+    EXPECT_THAT(unusual_letters("雪 and 山, 雪"), ElementsAre(U'山', U'雪'));
+    EXPECT_THAT(fonts_with({}), testing::IsEmpty());
+    ASSERT_NE(usual_font_file(), "");
+    const std::vector<FontFile> fonts = fonts_with({U'山', U'雪', U'の', U'ᚠ'});
+    if (fonts.empty()) GTEST_SKIP() << "not run: no font has Chinese or Japanese here";
+    EXPECT_TRUE(std::filesystem::exists(fonts[0].path));
+    EXPECT_THAT(fonts[0].letters, testing::Contains(U'雪'));
 }
 
 TEST(Command, IsQuotedForAShell) {
@@ -285,11 +309,25 @@ TEST(Memory, KeepsWhatWasWrittenAndStandsWhateverIsThere) {
     EXPECT_EQ(memory.settings(), settings);
     // The last one first, each once, and not without end.
     for (int i = 0; i < 30; ++i)
-        memory.add_recent({fmt::format("/dem{}.tif", i % 20)});
-    memory.add_recent({"/dem5.tif", "/dem6.tif"});
+        memory.add_recent({{fmt::format("/dem{}.tif", i % 20)}, {}});
+    memory.add_recent({{"/dem5.tif", "/dem6.tif"}, {}});
     ASSERT_EQ(memory.recent().size(), 12u);
-    EXPECT_THAT(memory.recent()[0], ElementsAre("/dem5.tif", "/dem6.tif"));
-    EXPECT_THAT(memory.recent()[1], ElementsAre("/dem9.tif"));
+    EXPECT_THAT(memory.recent()[0].files, ElementsAre("/dem5.tif", "/dem6.tif"));
+    EXPECT_THAT(memory.recent()[1].files, ElementsAre("/dem9.tif"));
+    // With the options that they were read with.
+    RecentDem odd{{"/dem7.tif"}, {}};
+    odd.options.crs = "EPSG:2056";
+    odd.options.unit = "ft";
+    odd.options.nodata = -32767;
+    odd.holes = dem::Holes::Mark;
+    memory.add_recent(odd);
+    ASSERT_EQ(memory.recent().size(), 12u);
+    EXPECT_EQ(memory.recent()[0].options.crs, "EPSG:2056");
+    EXPECT_EQ(memory.recent()[0].options.unit, "ft");
+    EXPECT_EQ(memory.recent()[0].options.nodata, -32767);
+    EXPECT_EQ(memory.recent()[0].holes, dem::Holes::Mark);
+    EXPECT_EQ(memory.recent()[1].options.crs, "");
+    EXPECT_THAT(memory.recent()[1].files, ElementsAre("/dem5.tif", "/dem6.tif"));
     SavedView view;
     view.name = "Über \"quoted\"";
     view.eye = geo::geodetic_deg(-46.5, 170.25, 1234.5);
@@ -317,14 +355,14 @@ TEST(Memory, KeepsWhatWasWrittenAndStandsWhateverIsThere) {
     std::filesystem::remove(folder / "state/recent.json");
     std::filesystem::create_directories(folder / "state/recent.json");
     EXPECT_THAT(memory.recent(), testing::IsEmpty());
-    EXPECT_THROW(memory.add_recent({"/a.tif"}), Error);
+    EXPECT_THROW(memory.add_recent({{"/a.tif"}, {}}), Error);
     // Names of any bytes.
     std::filesystem::remove(folder / "state/recent.json");
-    EXPECT_NO_THROW(memory.add_recent({"/\xff.tif"}));
+    EXPECT_NO_THROW(memory.add_recent({{"/\xff.tif"}, {}}));
     // Nowhere to remember anything.
     const Memory none({}, {});
     none.write(settings);
-    none.add_recent({"/a.tif"});
+    none.add_recent({{"/a.tif"}, {}});
     none.write_views({"/a.tif"}, {view});
     EXPECT_EQ(none.settings(), Settings{});
 }

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <thread>
 
+#include "viewer/fonts.h"
 #include "window/viewer_fixture.h"
 
 namespace relevo {
@@ -88,6 +89,75 @@ TEST_F(Viewer, GoesToTheNextDemOfTheFolderAndRemembersWhatWasOpen) {
     EXPECT_TRUE(shows("a.tif"));
 }
 
+/// A DEM that takes seconds to read: one of many posts, which come from a small one.
+std::filesystem::path slow_dem(const std::filesystem::path& folder, const std::string& from) {
+    const auto file = folder / "slow.vrt";
+    constexpr int kPosts = 24000;
+    std::ofstream(file) << fmt::format(
+        R"(<VRTDataset rasterXSize="{0}" rasterYSize="{0}"><SRS>EPSG:4326</SRS>)"
+        R"(<GeoTransform>-84.4,1e-5,0,36.4,0,-1e-5</GeoTransform>)"
+        R"(<VRTRasterBand dataType="Float32" band="1" ><SimpleSource>)"
+        R"(<SourceFilename>{1}</SourceFilename><SrcRect xOff="0" yOff="0" xSize="400" ySize="340"/>)"
+        R"(<DstRect xOff="0" yOff="0" xSize="{0}" ySize="{0}"/></SimpleSource></VRTRasterBand>)"
+        R"(</VRTDataset>)",
+        kPosts, from);
+    return file;
+}
+
+TEST_F(Viewer, ShowsNamesInTheLettersOfTheirScript) {
+    if (viewer::fonts_with({U'山'}).empty())
+        GTEST_SKIP() << "not run: no font has Chinese or Japanese here";
+    // Two names of the same length: without their letters both would be the same marks.
+    const auto name_of = [&](const std::string& name) {
+        std::filesystem::create_directories(plugins_ / "aname");
+        std::ofstream(plugins_ / "aname/plugin.json")
+            << R"({"format": 1, "id": "aname", "name": ")" << name
+            << R"(", "description": "A name", "version": "1.0.0"})";
+        std::ofstream(plugins_ / "aname/aname.glsl")
+            << "void aname_on_lit(in Surface s, inout vec3 radiance) {}\n";
+    };
+    name_of("雪雪雪");
+    std::filesystem::create_directories(folder_ / "地形");
+    const auto dem = folder_ / "地形/山岳.tif";
+    std::filesystem::copy_file(dem_, dem);
+    open({dem.string(), "--only", "aname", "--plugin-path", plugins_.string()});
+    EXPECT_THAT(program_->title(), testing::HasSubstr("山岳.tif"));
+    const image::Image8 before = display_.screen();
+    constexpr glm::ivec4 kPanel{60, 505, 280, 25};  // of the first effect
+    const auto differing = [&] {
+        const image::Image8 now = display_.screen();
+        int count = 0;
+        for (int y = kPanel.y; y < kPanel.y + kPanel.w; ++y)
+            for (int x = kPanel.x; x < kPanel.x + kPanel.z; ++x)
+                count += std::abs(now.row(y)[3 * x] - before.row(y)[3 * x]) > 60;
+        return count;
+    };
+    name_of("山山山");
+    EXPECT_TRUE(wait([&] { return differing() > 40; }));
+    EXPECT_LT(differing(), 1500);  // three letters
+}
+
+TEST_F(Viewer, EscGivesUpOpeningADem) {
+    const std::filesystem::path slow = slow_dem(folder_, dem_);
+    std::filesystem::create_directories(folder_ / "bin");
+    std::ofstream(folder_ / "bin/zenity") << "#!/bin/sh\necho '" << slow.string() << "'\n";
+    std::filesystem::permissions(folder_ / "bin/zenity", std::filesystem::perms::owner_all);
+    open({dem_, "--only", "--memory", "64"});
+    const image::Image8 before = display_.screen();
+    act({"key", "ctrl+o"});
+    // No panel then.
+    ASSERT_TRUE(wait([&] { return test::difference(display_.screen(), before) > 0.1; }));
+    const auto began = std::chrono::steady_clock::now();
+    act({"key", "Escape"});
+    EXPECT_TRUE(wait([&] { return test::difference(display_.screen(), before) < 0.05; }));
+    const double took_s =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    fmt::print("[ measured ] given up after {:.1f} s\n", took_s);
+    EXPECT_THAT(program_->title(), testing::HasSubstr("jacksboro.tif"));
+    act({"key", "ctrl+q"});
+    EXPECT_EQ(program_->status(), 0) << program_->output();
+}
+
 TEST_F(Viewer, KeepsViewsAndSettingsTillTheNextTime) {
     open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
     act({"key", "Home"});
@@ -160,21 +230,6 @@ TEST_F(Viewer, ScrollingWithShiftMovesTheGround) {
     const double way_m = 111e3 * std::hypot(changed(0), changed(1) * 0.8);
     EXPECT_GT(way_m, 1000);
     EXPECT_LT(std::abs(changed(2)), way_m / 100);
-}
-
-/// A DEM that takes seconds to read: one of many posts, which come from a small one.
-std::filesystem::path slow_dem(const std::filesystem::path& folder, const std::string& from) {
-    const auto file = folder / "slow.vrt";
-    constexpr int kPosts = 24000;
-    std::ofstream(file) << fmt::format(
-        R"(<VRTDataset rasterXSize="{0}" rasterYSize="{0}"><SRS>EPSG:4326</SRS>)"
-        R"(<GeoTransform>-84.4,1e-5,0,36.4,0,-1e-5</GeoTransform>)"
-        R"(<VRTRasterBand dataType="Float32" band="1" ><SimpleSource>)"
-        R"(<SourceFilename>{1}</SourceFilename><SrcRect xOff="0" yOff="0" xSize="400" ySize="340"/>)"
-        R"(<DstRect xOff="0" yOff="0" xSize="{0}" ySize="{0}"/></SimpleSource></VRTRasterBand>)"
-        R"(</VRTDataset>)",
-        kPosts, from);
-    return file;
 }
 
 TEST_F(Viewer, NeverWaitsForADemThatIsStillBeingRead) {
