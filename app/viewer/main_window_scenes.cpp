@@ -146,7 +146,8 @@ void MainWindow::start(std::shared_ptr<const Opened> opened) {
     state_.views = memory_.views(names);
     remember([&] { memory_.add_recent({names, scene.dem, scene.holes}); });
     state_.ground_words = opened_->dem->ground_words(scene.holes);
-    state_.effects = EffectsModel::of(document.scene.effects, state_.ground_words);
+    say_or_fail(
+        [&] { state_.effects = EffectsModel::of(document.scene.effects, state_.ground_words); });
     state_.recent = memory_.recent();
     watch(scene);
     busy_frames_ = 3;
