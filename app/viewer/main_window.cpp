@@ -165,7 +165,7 @@ void MainWindow::panels() {
         draw_measured(state_.measured, state_.profile, *picture_, size());
         const float top = state_.settings.panels ? ImGui::GetFrameHeight() : 0;
         draw_scale_and_north(*picture_, state_.land, hand_->ground_at(0.5f * size()), size(), top);
-        legend_.draw(state_, size(), top, unit());
+        legend_.draw(legends(), size(), top, unit());
         if (before_) draw_sides(window_->line() * size().x, top);
     }
     if (state_.settings.panels) {

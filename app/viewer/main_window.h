@@ -170,6 +170,8 @@ class MainWindow {
     void put_overlay(scene::Scene& scene) const;
     /// What is to be said of a scene that lacks it; else empty.
     std::string overlay_note() const;
+    /// What colours of the shown picture mean.
+    std::vector<chart::Legend> legends() const;
 
     std::unique_ptr<Window> window_;  // ends after the threads that wake it
     Discard discard_;

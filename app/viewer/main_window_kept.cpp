@@ -73,15 +73,20 @@ bool MainWindow::is_answered() const {
            same(*wanted_, wanted_now()) && overlay_rests();
 }
 
+std::vector<chart::Legend> MainWindow::legends() const {
+    std::vector<chart::Legend> all = picture_->legends;
+    if (state_.overlay && state_.overlay->error.empty())
+        all.insert(all.begin(), state_.overlay->overlay.legend);
+    return all;
+}
+
 void MainWindow::take_picture() {
     takes_when_sharp_ = !is_answered();
     if (takes_when_sharp_) return;
-    const chart::Legend* const legend =
-        state_.overlay && state_.overlay->error.empty() ? &state_.overlay->overlay.legend : nullptr;
     say_or_fail([&] {
         std::string note = overlay_note();
         if (!note.empty()) note = "; its scene is" + note.substr(1);
-        done(save_picture(*picture_, whole(), legend) + note);
+        done(save_picture(*picture_, whole(), legends()) + note);
     });
 }
 

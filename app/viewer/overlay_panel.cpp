@@ -108,24 +108,26 @@ std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& plac
     }
 }
 
-void LegendPicture::draw(const State& state, glm::vec2 size_px, float top_px, double px_a_unit) {
-    if (!state.overlay || !state.overlay->error.empty()) {
-        of_ = nullptr;
-        texture_ = {};
-        return;
-    }
-    if (of_ != state.overlay || px_a_unit_ != px_a_unit) {
-        of_ = state.overlay;
+void LegendPicture::draw(const std::vector<chart::Legend>& legends, glm::vec2 size_px, float top_px,
+                         double px_a_unit) {
+    if (of_ != legends || px_a_unit_ != px_a_unit) {
+        of_ = legends;
         px_a_unit_ = px_a_unit;
-        texture_ = texture_of(chart::to_image(chart::legend(of_->overlay.legend), px_a_unit));
+        textures_.clear();
+        for (const chart::Legend& legend : legends)
+            textures_.push_back(texture_of(chart::to_image(chart::legend(legend), px_a_unit)));
     }
     constexpr float kMargin_px = 12, kNorth_px = 92;
-    const gl::Extent extent = texture_.extent();
-    const ImVec2 from{size_px.x - kMargin_px - static_cast<float>(extent.width),
-                      top_px + kNorth_px};
-    ImGui::GetBackgroundDrawList()->AddImage(
-        reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.name())), from,
-        {from.x + static_cast<float>(extent.width), from.y + static_cast<float>(extent.height)});
+    float y = top_px + kNorth_px;
+    for (const gl::Texture& texture : textures_) {
+        const gl::Extent extent = texture.extent();
+        const ImVec2 from{size_px.x - kMargin_px - static_cast<float>(extent.width), y};
+        ImGui::GetBackgroundDrawList()->AddImage(
+            reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.name())), from,
+            {from.x + static_cast<float>(extent.width),
+             from.y + static_cast<float>(extent.height)});
+        y += static_cast<float>(extent.height) + kMargin_px;
+    }
 }
 
 }  // namespace relevo::viewer

@@ -196,6 +196,7 @@ struct SceneThread::Impl {
         session->read_depths(made->depths_m);
         made->camera = session->camera();
         made->utc = session->moment();
+        made->legends = session->colour_legends();
         made->sharp = sharp;
         made->answers = answers;
         ms_a_pixel = milliseconds_since(began) / static_cast<double>(pixels);

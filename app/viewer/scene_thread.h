@@ -44,6 +44,7 @@ struct Picture {
     std::vector<float> depths_m;     ///< as session::Session::read_depths
     scene::Camera camera;
     sun::Instant utc;
+    std::vector<chart::Legend> legends;  ///< of what effects colour the ground by
     bool sharp = false;  ///< in the window's size, with all its ground and its sun's shadows
 };
 

@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "base/output_file.h"
+#include "chart/stamps.h"
 #include "image/image.h"
 #include "scene/job.h"
-#include "session/overlay.h"
 #include "session/record.h"
 #include "viewer/settings.h"
 
@@ -74,9 +74,11 @@ std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zo
 }
 
 std::string save_picture(const Picture& picture, const scene::Scene& scene,
-                         const chart::Legend* legend) {
+                         std::vector<chart::Legend> legends) {
     image::Image8 image = image::from_device(picture.width_px, picture.height_px, picture.rgba);
-    if (legend) session::add_legend(*legend, image);
+    chart::Stamps stamps;
+    if (scene.stamps.legend) stamps.legends = std::move(legends);
+    chart::stamp(stamps, image);
     const image::Metadata metadata{{"Software", "Relevo"},
                                    {"Description", capture_command(scene, "picture.png")},
                                    {session::kSceneKeyword, scene::scene_line(scene)}};

@@ -28,8 +28,8 @@ std::string save_scene(const scene::Scene& scene);
 /// and sets on it.
 std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone);
 /// Likewise a picture, with the command that takes it.
-/// @param legend  of its overlay; null: it has none
+/// @param legends  of what its colours mean, stamped where the scene wants that
 std::string save_picture(const Picture& picture, const scene::Scene& scene,
-                         const chart::Legend* legend);
+                         std::vector<chart::Legend> legends);
 
 }  // namespace relevo::viewer

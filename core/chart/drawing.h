@@ -16,6 +16,8 @@ namespace relevo::chart {
 struct Color {
     std::uint32_t rgb = 0;
     double opacity = 1;
+
+    bool operator==(const Color&) const = default;
 };
 
 /// How an outline is drawn and filled.

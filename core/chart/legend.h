@@ -13,6 +13,8 @@ struct Legend {
     std::string unit;   ///< "h"; empty or "1": none
     Ramp ramp;
     bool ring = false;  ///< of directions, 0 to 360 degrees clockwise from north
+
+    bool operator==(const Legend&) const = default;
 };
 
 /// A panel that stands alone on any picture: the title, the ramp and its values, of which round

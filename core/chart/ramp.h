@@ -14,6 +14,8 @@ struct Ramp {
     struct Stop {
         double value = 0;
         Color color;
+
+        bool operator==(const Stop&) const = default;
     };
     std::vector<Stop> stops;      ///< at least one, their values rising
     std::optional<Color> none{};  ///< of cells without a value; none: nothing is drawn there
@@ -22,6 +24,8 @@ struct Ramp {
 
     /// Beyond the ends the ends' colours; opacity 0 for NaN without `none`.
     Color at(double value) const;
+
+    bool operator==(const Ramp&) const = default;
 };
 
 /// Names of the built-in ramps: "sun", "shade", "steel", "viridis", "inferno", "grey".

@@ -91,14 +91,6 @@ Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {
     return overlay_of(band.values, std::move(legend), asked.opacity);
 }
 
-void add_legend(const chart::Legend& about, image::Image8& picture) {
-    constexpr double kUsual_px = 1024, kMargin = 12;
-    const chart::Drawing drawing = chart::legend(about);
-    const double scale = std::clamp(std::min(picture.width, picture.height) / kUsual_px, 0.5, 8.0);
-    const int x = static_cast<int>(picture.width - scale * (drawing.width() + kMargin));
-    chart::paint(drawing, x, static_cast<int>(scale * kMargin), scale, picture);
-}
-
 void add_files(const scene::Overlay& overlay, FilesInUse& files) {
     dem::add_all(std::span(&overlay.file, 1), files);
     if (chart::is_ramp_file(overlay.colours)) files.add_input(overlay.colours, "the colours");

@@ -32,9 +32,6 @@ chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
 /// @throws Error (BadInput) as dem::read_band_over(), chart::named_ramp() and read_ramp()
 Overlay read_overlay(const scene::Overlay& overlay, const dem::Grid& grid);
 
-/// Puts a legend into the upper right corner of a picture, as large as that has room for.
-void add_legend(const chart::Legend& about, image::Image8& picture);
-
 /// Adds what an overlay is read from to what a run reads.
 void add_files(const scene::Overlay& overlay, FilesInUse& files);
 

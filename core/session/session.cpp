@@ -496,9 +496,12 @@ void Session::drape(std::shared_ptr<const render::Drape> drape) {
     impl_->lay(std::move(drape));
 }
 
+std::vector<chart::Legend> Session::colour_legends() const {
+    return session::colour_legends(effects(), impl_->ground->lowest_m, impl_->ground->highest_m);
+}
+
 std::vector<chart::Legend> Session::legends() const {
-    std::vector<chart::Legend> all =
-        colour_legends(effects(), impl_->ground->lowest_m, impl_->ground->highest_m);
+    std::vector<chart::Legend> all = colour_legends();
     if (impl_->legend) all.insert(all.begin(), *impl_->legend);
     return all;
 }

@@ -108,6 +108,8 @@ class Session {
     void drape(std::shared_ptr<const render::Drape> drape);
     /// What colours on the ground mean: of the scene's overlay, and of effects that say it.
     std::vector<chart::Legend> legends() const;
+    /// Likewise of effects alone.
+    std::vector<chart::Legend> colour_legends() const;
     /// Whether native effects leave what they have made as it is, such as shadow maps while the sun
     /// is dragged, which cost more than the frame. The light that core finds by place never lags.
     void keep_native(bool keep);

@@ -281,6 +281,24 @@ TEST_F(Viewer, LaysTheShownDaysSunHoursOnTheGroundAndSavesThem) {
     EXPECT_GT(orange(display_.screen()), plain + 50000);
 }
 
+TEST_F(Viewer, APictureHasTheLegendsOfWhatColoursTheGround) {
+    open({dem_, "--preset", "slope", "--time", "2026-06-21T20:00:00Z"});
+    act({"key", "F12"});
+    const auto taken = folder_ / "relevo-1.png";
+    ASSERT_TRUE(wait([&] { return std::filesystem::exists(taken); })) << program_->output();
+    const auto capture = [&](const std::string& name, const std::vector<std::string>& options) {
+        std::vector<std::string> arguments{"-q",           "capture", "--from",
+                                           taken.string(), "-o",      (folder_ / name).string()};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        test::WindowedProgram program(display_, test::build_dir() / "bin/relevo", arguments);
+        EXPECT_EQ(program.status(), 0) << program.output();
+        return image::read(folder_ / name);
+    };
+    const image::Image8 picture = image::read(taken);
+    EXPECT_LE(test::difference(picture, capture("with.png", {}), 1), 2e-4);
+    EXPECT_GT(test::difference(picture, capture("without.png", {"--no-legend"}), 1), 0.005);
+}
+
 TEST_F(Viewer, AScenesOverlayIsThereAndCanBeTakenAway) {
     test::WindowedProgram sky(display_, test::build_dir() / "bin/relevo",
                               {"-q", "sun", "hours", dem_, "--date", "2026-12-21", "-o",
