@@ -307,7 +307,8 @@ TEST_F(Viewer, AScenesOverlayIsThereAndCanBeTakenAway) {
     open({dem_, "--only", "--overlay", (folder_ / "hours.tif").string(), "--overlay-title", "H"});
     EXPECT_GT(orange(display_.screen()), 50000);
     EXPECT_EQ(scene()["overlay"]["title"], "H");
-    // By the panel: its choice, the first entry.
+    // By the panel: its choice, the first entry. Once the window is at rest.
+    ASSERT_TRUE(settles());
     ASSERT_TRUE(changes([&] {
         act({"mousemove", "180", "341", "click", "1"});
         std::this_thread::sleep_for(std::chrono::milliseconds(400));
