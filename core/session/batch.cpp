@@ -225,6 +225,21 @@ std::string installed_key(const scene::Effects& effects) {
            fmt::format("{}", fmt::join(effects.plugin_path, "\n"));
 }
 
+/// Effects whose switches and settings mean something, with absolute names of files.
+/// @param plugins  those that are installed for them; read where they have not been
+scene::Effects settled_effects(const scene::Effects& effects,
+                               std::unique_ptr<InstalledEffects>& plugins) {
+    if (!plugins) plugins = std::make_unique<InstalledEffects>(effects);
+    const effect::Selection selection =
+        effect::select(plugins->registry, plugins->presets, effects.switches);
+    shader::ParamStore values = plugins->values;
+    effect::apply_settings(values, plugins->registry, selection, plugins->presets,
+                           effects.settings);
+    scene::Effects settled = effects;
+    settled.settings = effect::with_absolute_files(std::move(settled.settings), plugins->values);
+    return settled;
+}
+
 }  // namespace
 
 void refuse_blank(std::string_view who) {
@@ -252,16 +267,11 @@ void settle(std::vector<scene::Shot>& shots, Moments& moments) {
         scene::Effects& effects = shot.scene.effects;
         const auto [known, fresh] = settled.try_emplace(effects_key(shot.scene));
         if (fresh) {
-            auto& plugins = installed[installed_key(effects)];
-            if (!plugins) plugins = std::make_unique<InstalledEffects>(effects);
-            const effect::Selection selection =
-                effect::select(plugins->registry, plugins->presets, effects.switches);
-            shader::ParamStore values = plugins->values;
-            effect::apply_settings(values, plugins->registry, selection, plugins->presets,
-                                   effects.settings);
-            known->second = effects;
-            known->second.settings =
-                effect::with_absolute_files(std::move(known->second.settings), plugins->values);
+            try {
+                known->second = settled_effects(effects, installed[installed_key(effects)]);
+            } catch (const Error& error) {
+                throw Error(error.code(), printable(shot.output.string()) + ": " + error.what());
+            }
         }
         effects = known->second;
         shot.scene.moment.time = sun::exact_iso(shot.utc);

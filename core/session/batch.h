@@ -17,7 +17,8 @@ namespace relevo::session {
 
 /// Makes of each shot's scene what pictures carry: its moment in UTC, absolute paths, effects that
 /// there are.
-/// @throws Error (BadInput) for effects and parameters that there are not
+/// @throws Error (BadInput) for effects and parameters that there are not, with the name of the
+///     first picture that would have them
 void settle(std::vector<scene::Shot>& shots, Moments& moments);
 
 /// Whether a file is a whole picture of exactly that scene, and no older than any of `inputs`.

@@ -238,8 +238,9 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
         "job: " + file + ":2: exaggeration: expected a number in [0.01, 1000] but got \"high\"");
     EXPECT_EQ(error(job("\"swep\": []")),
               "job: " + file + ":2: swep: no such key; did you mean \"sweep\"?");
-    EXPECT_EQ(error(job(at + ", \"effects\": {\"enable\": [\"hase\"]}")),
-              "effect::select: hase: no such plugin; did you mean haze?");
+    EXPECT_EQ(
+        error(job(at + ", \"effects\": {\"enable\": [\"hase\"]}, \"output\": \"a.png\"")),
+        (dir_ / "a.png").string() + ": effect::select: hase: no such plugin; did you mean haze?");
     EXPECT_EQ(
         error(write("job.json", "{\"format\": 1, \"dem\": {\"files\": [\"no.tif\"]}," + at + "}")),
         fmt::format("dem::load: {}: cannot be read, no such file", (dir_ / "no.tif").string()));
