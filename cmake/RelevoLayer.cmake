@@ -25,15 +25,14 @@ endfunction()
 #
 # One GoogleTest program for a layer. ctest has an entry for each case, "<layer>.<suite>.<case>"; they are found when
 # ctest starts, so that a build runs nothing of what it has built. Tests that do no sums of their own are compiled
-# without optimisation in the presets of developers, which takes half the time; REFERENCES are those that compute what they
-# compare with.
+# without optimisation in the presets of developers, which takes half the time; REFERENCES are those that compute
+# what they compare with.
 include(GoogleTest)
 function(relevo_test name)
     cmake_parse_arguments(TEST "REFERENCES" "" "SOURCES;DEPENDS;LINKS" ${ARGN})
     add_executable(test_${name} ${TEST_SOURCES})
-    if(NOT TEST_REFERENCES)
-        target_compile_options(test_${name} PRIVATE $<$<CONFIG:Dev,Asan,Tsan>:-O0>)
-    endif()
+    target_compile_options(test_${name} PRIVATE
+        $<$<CONFIG:Dev,Asan,Tsan>:$<IF:$<BOOL:${TEST_REFERENCES}>,-O2,-O0>>)
     list(TRANSFORM TEST_DEPENDS PREPEND relevo::)
     target_link_libraries(test_${name} PRIVATE relevo_options relevo_test_support ${TEST_DEPENDS}
         ${TEST_LINKS} GTest::gmock GTest::gtest)

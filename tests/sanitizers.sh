@@ -9,8 +9,12 @@ cd "$(dirname "$0")/.."
 export TSAN_OPTIONS=${TSAN_OPTIONS:-suppressions=$PWD/tests/tsan.txt}
 export LSAN_OPTIONS=${LSAN_OPTIONS:-suppressions=$PWD/tests/lsan.txt:print_suppressions=0}
 
+# What the build itself runs (minutes under a sanitizer) is taken from the build of test.sh where there is one.
+makers=()
+[ -x build/dev/bin/relevo_make_ground ] && makers=(-DRELEVO_HOST_TOOLS="$PWD/build/dev/bin")
+
 for preset in asan tsan; do
-    [ -f build/$preset/build.ninja ] || cmake --preset $preset >/dev/null
+    [ -f build/$preset/build.ninja ] || cmake --preset $preset "${makers[@]}" >/dev/null
     if [ "${1:-}" = reduced ]; then
         cmake --build --preset $preset --target relevo_program
         RELEVO_PROGRAM=$PWD/build/$preset/bin/relevo RELEVO_SHARE=$PWD/build/dev/share/relevo \
