@@ -71,7 +71,9 @@ struct Bytes2 {
 
 constexpr std::uint32_t kHoles = 0x7bff7bffU;  // GroundLight::kHole twice
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// Which clone is taken is found out while the program is loaded, before the thread sanitizer can
+// run.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define RELEVO_WIDE [[gnu::target_clones("avx2", "default")]]
 #else
 #define RELEVO_WIDE
