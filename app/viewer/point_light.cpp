@@ -1,10 +1,7 @@
 #include "viewer/point_light.h"
 
 #include <algorithm>
-#include <condition_variable>
 #include <exception>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 #include "base/units.h"
@@ -14,6 +11,7 @@
 #include "light/doubt.h"
 #include "light/horizon.h"
 #include "session/words.h"
+#include "viewer/latest_work.h"
 
 namespace relevo::viewer {
 namespace {
@@ -28,6 +26,10 @@ bool same_place(const geo::Geodetic& a, const geo::Geodetic& b) {
 
 bool same_ground(const PointWanted& a, const PointWanted& b) {
     return a.dem == b.dem && a.refraction == b.refraction;
+}
+
+bool same_point(const PointWanted& a, const PointWanted& b) {
+    return same_ground(a, b) && same_place(a.place, b.place);
 }
 
 /// As the options of `relevo sun` have it.
@@ -50,9 +52,7 @@ class Worker {
                                                  : dem::Posts::load(wanted.dems, wanted.options));
     }
 
-    bool serves(const PointWanted& other) const {
-        return same_ground(wanted_, other) && same_place(wanted_.place, other.place);
-    }
+    bool serves(const PointWanted& other) const { return same_point(wanted_, other); }
     void want(const PointWanted& other) { wanted_ = other; }
 
     void add_day(PointLight& to) {
@@ -143,46 +143,19 @@ std::optional<sun::Instant> PointLight::next_change(sun::Instant utc) const {
 }
 
 struct PointWork::Impl {
-    std::function<void()> on_change;
-
-    mutable std::mutex mutex;
-    std::condition_variable changed;
-    std::optional<PointWanted> wanted;
-    bool is_new = false, ends = false, is_done = true;
-    std::shared_ptr<const PointLight> answer;
-
     std::unique_ptr<Worker> worker;  // the thread's own
-    std::thread thread;
+    LatestWork<PointWanted, PointLight> work;
 
-    void run() {
-        std::unique_lock lock(mutex);
-        while (true) {
-            changed.wait(lock, [&] { return ends || is_new; });
-            if (ends) return;
-            is_new = false;
-            const std::optional<PointWanted> now = wanted;
-            lock.unlock();
-            if (now)
-                work_out(*now);
-            else
-                worker.reset();  // and with it the posts of a DEM that may be gone
-            lock.lock();
-        }
-    }
-
-    bool is_given_up() const {
-        const std::lock_guard lock(mutex);
-        return is_new || ends;
-    }
+    explicit Impl(std::function<void()> on_change)
+        : work(std::move(on_change), &same_point, [this](const PointWanted* now) {
+              if (now)
+                  work_out(*now);
+              else
+                  worker.reset();  // and with it the posts of a DEM that may be gone
+          }) {}
 
     void publish(const PointLight& light, bool done) {
-        {
-            const std::lock_guard lock(mutex);
-            if (is_new || ends) return;
-            answer = std::make_shared<const PointLight>(light);
-            is_done = done;
-        }
-        on_change();
+        work.publish(std::make_shared<const PointLight>(light), done);
     }
 
     void work_out(const PointWanted& now) {
@@ -193,14 +166,14 @@ struct PointWork::Impl {
                 worker->want(now);
             else
                 worker = std::make_unique<Worker>(now, worker.get());
-            if (is_given_up()) return;
+            if (work.is_given_up()) return;
             const bool drawn = now.chart_px.x > 0 && now.chart_px.y > 0;
             worker->add_day(light);
             publish(light, !drawn);
-            if (!drawn || is_given_up()) return;
+            if (!drawn || work.is_given_up()) return;
             light.horizon = worker->horizon_picture();
             publish(light, false);
-            if (is_given_up()) return;
+            if (work.is_given_up()) return;
             light.year = worker->year_picture();
             publish(light, true);
         } catch (const std::exception& error) {
@@ -210,52 +183,25 @@ struct PointWork::Impl {
     }
 };
 
-PointWork::PointWork(std::function<void()> on_change) : impl_(std::make_unique<Impl>()) {
-    impl_->on_change = std::move(on_change);
-    impl_->thread = std::thread([this] { impl_->run(); });
-}
+PointWork::PointWork(std::function<void()> on_change)
+    : impl_(std::make_unique<Impl>(std::move(on_change))) {}
 
-PointWork::~PointWork() {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->ends = true;
-    }
-    impl_->changed.notify_one();
-    impl_->thread.join();
-}
+PointWork::~PointWork() = default;
 
 void PointWork::want(PointWanted wanted) {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        const bool other = !impl_->wanted || !same_ground(*impl_->wanted, wanted) ||
-                           !same_place(impl_->wanted->place, wanted.place);
-        if (other) impl_->answer = nullptr;
-        impl_->wanted = std::move(wanted);
-        impl_->is_new = true;
-        impl_->is_done = false;
-    }
-    impl_->changed.notify_one();
+    impl_->work.want(std::move(wanted));
 }
 
 void PointWork::forget() {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->wanted.reset();
-        impl_->answer = nullptr;
-        impl_->is_new = true;
-        impl_->is_done = true;
-    }
-    impl_->changed.notify_one();
+    impl_->work.forget();
 }
 
 std::shared_ptr<const PointLight> PointWork::answer() const {
-    const std::lock_guard lock(impl_->mutex);
-    return impl_->answer;
+    return impl_->work.answer();
 }
 
 bool PointWork::is_done() const {
-    const std::lock_guard lock(impl_->mutex);
-    return impl_->is_done;
+    return impl_->work.is_done();
 }
 
 }  // namespace relevo::viewer

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
 #include <limits>
-#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "viewer/latest_work.h"
 #include "viewer/sun_model.h"
 #include "viewer/take_away.h"
 
@@ -162,55 +161,30 @@ double OverlayShown::value_at(const geo::Geodetic& place) const {
 
 struct OverlayWork::Impl {
     std::function<void()> on_change;
-
-    mutable std::mutex mutex;
-    std::condition_variable changed;
-    std::optional<OverlayWanted> wanted;
-    bool is_new = false, ends = false, is_done = true;
-    std::shared_ptr<const OverlayShown> answer;
     std::atomic<double> progress = 0;
 
     // The thread's own.
     std::unique_ptr<Levels> levels;
     std::shared_ptr<const OverlayShown> last;
     Clock::time_point told_at;
-    std::thread thread;
+    LatestWork<OverlayWanted, OverlayShown> work;
 
-    void run() {
-        std::unique_lock lock(mutex);
-        while (true) {
-            changed.wait(lock, [&] { return ends || is_new; });
-            if (ends) return;
-            is_new = false;
-            progress = 0;
-            const std::optional<OverlayWanted> now = wanted;
-            lock.unlock();
-            if (now) {
-                work_out(*now);
-            } else {  // and with it what is known of a DEM that may be gone
-                levels.reset();
-                last.reset();
-            }
-            lock.lock();
-        }
-    }
-
-    /// @param also_for_others  of the same DEM: what comes first is soon there, and worth showing
-    ///     while one wish follows the other
-    bool is_given_up(const OverlayWanted& now, bool also_for_others) const {
-        const std::lock_guard lock(mutex);
-        return ends || (is_new && (also_for_others || !wanted || wanted->dem != now.dem));
-    }
+    /// What comes first is soon there, and worth showing while one wish of a DEM follows the other.
+    explicit Impl(std::function<void()> on_change_of)
+        : on_change(std::move(on_change_of)),
+          work(
+              on_change,
+              [](const OverlayWanted& of, const OverlayWanted& now) { return of.dem == now.dem; },
+              [this](const OverlayWanted* now) {
+                  progress = 0;
+                  if (now) return work_out(*now);
+                  levels.reset();  // and with it what is known of a DEM that may be gone
+                  last.reset();
+              }) {}
 
     void publish(OverlayShown shown, bool done) {
         last = std::make_shared<const OverlayShown>(std::move(shown));
-        {
-            const std::lock_guard lock(mutex);
-            if (ends || (is_new && (!wanted || wanted->dem != last->of.dem))) return;
-            answer = last;
-            if (!is_new) is_done = done;
-        }
-        on_change();
+        work.publish(last, done);
     }
 
     void work_out(const OverlayWanted& now) {
@@ -246,21 +220,24 @@ struct OverlayWork::Impl {
         if (!levels || levels->dem() != now.dem.get()) levels = std::make_unique<Levels>(now.dem);
         for (const Levels::Level& level : levels->all()) {
             const bool is_last = &level == &levels->all().back();
+            const auto is_given_up = [&] {
+                return is_last ? work.is_given_up() : work.is_of_no_use(now);
+            };
             double share = 0;
             OverlayShown shown;
             shown.of = now;
             shown.raster = std::make_shared<const session::SunRaster>(
                 session::sun_raster(level.posts, now.raster, {}, [&](double more) {
                     share += more;
-                    if (is_given_up(now, is_last)) throw GivenUp();
+                    if (is_given_up()) throw GivenUp();
                     if (is_last) tell(share);
                 }));
-            if (is_given_up(now, is_last)) return;
+            if (is_given_up()) return;
             shown.grid = level.posts.grid();
             shown.every = level.every;
             colour(shown);
             publish(std::move(shown), is_last);
-            if (!is_last && is_given_up(now, true)) return;
+            if (work.is_given_up()) return;
         }
     }
 
@@ -280,50 +257,25 @@ struct OverlayWork::Impl {
     }
 };
 
-OverlayWork::OverlayWork(std::function<void()> on_change) : impl_(std::make_unique<Impl>()) {
-    impl_->on_change = std::move(on_change);
-    impl_->thread = std::thread([this] { impl_->run(); });
-}
+OverlayWork::OverlayWork(std::function<void()> on_change)
+    : impl_(std::make_unique<Impl>(std::move(on_change))) {}
 
-OverlayWork::~OverlayWork() {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->ends = true;
-    }
-    impl_->changed.notify_one();
-    impl_->thread.join();
-}
+OverlayWork::~OverlayWork() = default;
 
 void OverlayWork::want(OverlayWanted wanted) {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        if (impl_->answer && impl_->answer->of.dem != wanted.dem) impl_->answer = nullptr;
-        impl_->wanted = std::move(wanted);
-        impl_->is_new = true;
-        impl_->is_done = false;
-    }
-    impl_->changed.notify_one();
+    impl_->work.want(std::move(wanted));
 }
 
 void OverlayWork::forget() {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->wanted.reset();
-        impl_->answer = nullptr;
-        impl_->is_new = true;
-        impl_->is_done = true;
-    }
-    impl_->changed.notify_one();
+    impl_->work.forget();
 }
 
 std::shared_ptr<const OverlayShown> OverlayWork::answer() const {
-    const std::lock_guard lock(impl_->mutex);
-    return impl_->answer;
+    return impl_->work.answer();
 }
 
 bool OverlayWork::is_done() const {
-    const std::lock_guard lock(impl_->mutex);
-    return impl_->is_done;
+    return impl_->work.is_done();
 }
 
 double OverlayWork::progress() const {

@@ -29,25 +29,29 @@ std::function<sun::Refraction(const geo::Geodetic&)> air_of(const std::string& r
     return [refraction](const geo::Geodetic& place) { return refraction_at(refraction, place); };
 }
 
-SunRaster hours_of(const dem::Posts& posts, const SunRasterWanted& wanted, const dem::Window& part,
-                   const std::function<void(double)>& done) {
-    light::SunHoursOptions options;
+/// What all figures are found with.
+template <typename Options>
+Options options_for(const dem::Window& part, const std::function<void(double)>& done) {
+    Options options;
     options.refraction = kTerrestrialRefraction;
-    options.air = air_of(wanted.refraction);
-    options.step_s = kSunStep_s;
     options.part = part;
     options.done = done;
+    return options;
+}
+
+SunRaster hours_of(const dem::Posts& posts, const SunRasterWanted& wanted, const dem::Window& part,
+                   const std::function<void(double)>& done) {
+    auto options = options_for<light::SunHoursOptions>(part, done);
+    options.air = air_of(wanted.refraction);
+    options.step_s = kSunStep_s;
     light::SunHours hours = light::sun_hours(posts, wanted.begin, wanted.end, options);
     return {std::move(hours.hours), hours.holes, std::move(hours.definition)};
 }
 
 SunRaster shadow_of(const dem::Posts& posts, const SunRasterWanted& wanted, const dem::Window& part,
                     const std::function<void(double)>& done) {
-    light::ShadowOptions options;
-    options.refraction = kTerrestrialRefraction;
+    auto options = options_for<light::ShadowOptions>(part, done);
     options.air = air_of(wanted.refraction);
-    options.part = part;
-    options.done = done;
     const SunOverMiddle sun = sun_over_middle(posts, wanted.begin, wanted.refraction);
     light::Shadows shadows = light::shadows(posts, sun.sun, options);
     for (float& value : shadows.lit)
@@ -57,11 +61,8 @@ SunRaster shadow_of(const dem::Posts& posts, const SunRasterWanted& wanted, cons
 
 SunRaster sky_of(const dem::Posts& posts, const dem::Window& part,
                  const std::function<void(double)>& done) {
-    light::SkyViewOptions options;
+    auto options = options_for<light::SkyViewOptions>(part, done);
     options.directions = kSkyDirections;
-    options.refraction = kTerrestrialRefraction;
-    options.part = part;
-    options.done = done;
     light::SkyView view = light::sky_view(posts, options);
     return {std::move(view.share), view.holes, std::move(view.definition)};
 }

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace relevo::viewer {
+
+/// Works out what was wanted last, on a thread of its own. An Answer says in `of` what Wanted it is
+/// an answer to.
+template <typename Wanted, typename Answer>
+class LatestWork {
+  public:
+    /// Whether an answer to one wish is worth showing while another is worked out.
+    using Serves = bool (*)(const Wanted& of, const Wanted& now);
+
+    /// @param on_change  called on that thread whenever there is a new answer
+    /// @param work_out   likewise with each wish, and with null where nothing is wanted any more.
+    ///                   What it uses outlives this.
+    LatestWork(std::function<void()> on_change, Serves serves,
+               std::function<void(const Wanted*)> work_out)
+        : on_change_(std::move(on_change)),
+          serves_(serves),
+          work_out_(std::move(work_out)),
+          thread_([this] { run(); }) {}
+    LatestWork(const LatestWork&) = delete;
+    LatestWork& operator=(const LatestWork&) = delete;
+    /// Waits for the step in work.
+    ~LatestWork() {
+        {
+            const std::lock_guard lock(mutex_);
+            ends_ = true;
+        }
+        changed_.notify_one();
+        thread_.join();
+    }
+
+    void want(Wanted wanted) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (answer_ && !serves_(answer_->of, wanted)) answer_ = nullptr;
+            wanted_ = std::move(wanted);
+            is_new_ = true;
+            is_done_ = false;
+        }
+        changed_.notify_one();
+    }
+    void forget() {
+        {
+            const std::lock_guard lock(mutex_);
+            wanted_.reset();
+            answer_ = nullptr;
+            is_new_ = is_done_ = true;
+        }
+        changed_.notify_one();
+    }
+    std::shared_ptr<const Answer> answer() const {
+        const std::lock_guard lock(mutex_);
+        return answer_;
+    }
+    /// Whether all that was wanted is there.
+    bool is_done() const {
+        const std::lock_guard lock(mutex_);
+        return is_done_;
+    }
+
+    // ---- for work_out
+
+    /// Whether something else is wanted by now.
+    bool is_given_up() const {
+        const std::lock_guard lock(mutex_);
+        return ends_ || is_new_;
+    }
+    /// Whether an answer to this is not even worth showing meanwhile.
+    bool is_of_no_use(const Wanted& of) const {
+        const std::lock_guard lock(mutex_);
+        return ends_ || is_useless(of);
+    }
+    /// @param done  it is all that was wanted
+    void publish(std::shared_ptr<const Answer> answer, bool done) {
+        {
+            const std::lock_guard lock(mutex_);
+            if (ends_ || is_useless(answer->of)) return;
+            answer_ = std::move(answer);
+            if (!is_new_) is_done_ = done;
+        }
+        on_change_();
+    }
+
+  private:
+    bool is_useless(const Wanted& of) const {
+        return is_new_ && !(wanted_ && serves_(of, *wanted_));
+    }
+
+    void run() {
+        std::unique_lock lock(mutex_);
+        while (true) {
+            changed_.wait(lock, [&] { return ends_ || is_new_; });
+            if (ends_) return;
+            is_new_ = false;
+            const std::optional<Wanted> now = wanted_;
+            lock.unlock();
+            work_out_(now ? &*now : nullptr);
+            lock.lock();
+        }
+    }
+
+    std::function<void()> on_change_;
+    Serves serves_;
+    std::function<void(const Wanted*)> work_out_;
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::optional<Wanted> wanted_;
+    std::shared_ptr<const Answer> answer_;
+    bool is_new_ = false, ends_ = false, is_done_ = true;
+    std::thread thread_;  // last: it uses what stands above
+};
+
+}  // namespace relevo::viewer
