@@ -126,6 +126,7 @@ struct Window::Impl {
     std::vector<KeyPress> keys;
     std::set<int> held;  // pressed without Ctrl, whichever of the two is let go first
     std::vector<std::string> dropped;
+    bool has_input = false;  // clicks, keys or turns of the wheel
 
     explicit Impl(const std::string& title) {
         glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
@@ -158,13 +159,18 @@ struct Window::Impl {
         }
     }
 
+    static Impl& of(GLFWwindow* window) {
+        return *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+    }
+
     void open() {
         context.emplace(gl::Context::of_others([this] { glfwMakeContextCurrent(handle); }));
         glfwSwapInterval(1);
         glfwSetWindowUserPointer(handle, this);
         glfwSetKeyCallback(
             handle, [](GLFWwindow* window, int code, int scancode, int action, int mods) {
-                auto& self = *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+                Impl& self = of(window);
+                self.has_input = true;
                 const bool control = (mods & GLFW_MOD_CONTROL) != 0;
                 if (action == GLFW_PRESS && !control) self.held.insert(code);
                 if (action == GLFW_RELEASE) self.held.erase(code);
@@ -172,8 +178,15 @@ struct Window::Impl {
                 if (action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key)))
                     self.keys.push_back({key, control, (mods & GLFW_MOD_SHIFT) != 0});
             });
+        // ImGui's own callbacks call these.
+        glfwSetMouseButtonCallback(
+            handle, [](GLFWwindow* window, int, int, int) { of(window).has_input = true; });
+        glfwSetScrollCallback(
+            handle, [](GLFWwindow* window, double, double) { of(window).has_input = true; });
+        glfwSetCharCallback(handle,
+                            [](GLFWwindow* window, unsigned) { of(window).has_input = true; });
         glfwSetDropCallback(handle, [](GLFWwindow* window, int count, const char** names) {
-            auto& self = *static_cast<Impl*>(glfwGetWindowUserPointer(window));
+            Impl& self = of(window);
             self.dropped.assign(names, names + count);
         });
         IMGUI_CHECKVERSION();
@@ -281,6 +294,10 @@ void Window::wait(double at_most_s) {
         glfwWaitEventsTimeout(at_most_s);
     else
         glfwPollEvents();
+}
+
+bool Window::take_input() {
+    return std::exchange(impl_->has_input, false);
 }
 
 void Window::wake() {

@@ -51,6 +51,9 @@ class Window {
 
     /// Waits for input for so long at most, or for wake().
     void wait(double at_most_s);
+    /// Whether clicks, keys or turns of the wheel have come since the last call. Panels need frames
+    /// of their own for each: a click that is let go is taken where the mouse is by then.
+    bool take_input();
     /// Ends a wait; from any thread.
     static void wake();
 
