@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "base/units.h"
+#include "scene/scene_words.h"
 
 namespace relevo::viewer {
 namespace {
@@ -112,6 +113,16 @@ void add_overlay(Command& command, const scene::Overlay& overlay) {
     if (overlay.opacity != 1)
         command.option("--overlay-opacity", fmt::format("{}", overlay.opacity));
     if (!overlay.title.empty()) command.option("--overlay-title", overlay.title);
+}
+
+void add_stamps(Command& command, const scene::Stamps& stamps) {
+    std::vector<std::string> words;
+    for (const auto& [word, member] : scene::stamp_words())
+        if (member != &scene::Stamps::legend && stamps.*member) words.emplace_back(word);
+    command.list("--stamp", words);
+    if (stamps.title && !stamps.title_text.empty()) command.option("--title", stamps.title_text);
+    if (stamps.attribution) command.option("--attribution", stamps.attribution_text);
+    if (!stamps.legend) command.word("--no-legend");
 }
 
 }  // namespace
@@ -228,6 +239,7 @@ std::string capture_command(const scene::Scene& scene, const std::string& output
     if (scene.exposure_ev != 0) command.option("--exposure", fmt::format("{}", scene.exposure_ev));
     if (scene.pixel_error != scene::Scene{}.pixel_error)
         command.option("--pixel-error", fmt::format("{}", scene.pixel_error));
+    add_stamps(command, scene.stamps);
     command.option("--size", fmt::format("{}x{}", scene.width_px, scene.height_px));
     command.option("-o", output);
     return command.take();

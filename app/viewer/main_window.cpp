@@ -14,9 +14,10 @@ namespace {
 
 /// At the end work in progress is waited for so long; reading a large DEM may take longer.
 constexpr auto kLeave = std::chrono::milliseconds(600);
-/// While the hand moves the camera and no new picture has come, the window is drawn so often; each
-/// time takes from the scene what it could be drawn with.
-constexpr double kSame_s = 0.08;
+/// While the hand moves the camera and no new picture has come, the window is drawn so often: well
+/// above what a picture takes, because each time takes from the scene what it could be drawn with,
+/// and the picture would come in the middle of it.
+constexpr double kSame_s = 0.25;
 
 }  // namespace
 
@@ -45,7 +46,7 @@ void MainWindow::run() {
         window_->wait(most_s);
         // Panels take in a frame what has come before it, and show it in the next.
         const bool input = most_s >= kWatch_s && seconds_since(waits_from) < most_s;
-        if (input) busy_frames_ = std::max(busy_frames_, 3);
+        if (window_->take_input() || input) busy_frames_ = std::max(busy_frames_, 3);
         const double passed_s = seconds_since(frame_at_);
         frame_at_ = Clock::now();
         read_thread();
@@ -122,7 +123,7 @@ void MainWindow::moved() {
 }
 
 void MainWindow::follow_the_day() {
-    if (!state_.chosen) return;
+    if (!state_.chosen || stands_in()) return;
     const bool same = asked_point_ && asked_point_->date == state_.day.date &&
                       asked_point_->chart_px == state_.chart_px &&
                       asked_point_->px_a_unit == unit();

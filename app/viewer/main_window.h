@@ -80,6 +80,12 @@ class MainWindow {
     void give_up_opening();
     /// The scene has been opened: from here on it can be moved in.
     void start(std::shared_ptr<const Opened> opened);
+    /// What is told of the ground is told of the DEM that is open.
+    void stand_on_ground();
+    /// Of the DEM that is open all posts are there, and those that stood in are not shown any more.
+    void take_all_posts(std::shared_ptr<const Opened> opened);
+    /// Whether no figure may come of the heights in memory yet.
+    bool stands_in() const;
     void watch(const scene::Scene& scene);
     void read_again();
     void open_files();
@@ -153,8 +159,10 @@ class MainWindow {
         std::string file;        ///< absolute
         std::string shown_name;  ///< as it is told of
     };
-    /// None: nothing is to lie there.
+    /// None: nothing is to lie there, or not yet.
     std::optional<OverlayWanted> overlay_wanted() const;
+    /// Whether figures of the sun are to lie there when all posts have been read.
+    bool overlay_waits() const;
     /// What lies on the ground is of the day, the moment or the file that is shown.
     void follow_overlay();
     void lay_overlay();
@@ -199,8 +207,9 @@ class MainWindow {
     std::unique_ptr<SceneThread> before_;  // of a comparison
     std::shared_ptr<const Picture> picture_before_;
     std::optional<Wanted> wanted_;
-    std::optional<scene::Scene> last_good_;  // that was open
-    std::string tried_;                      // the DEM that was to be opened last
+    std::optional<scene::Scene> last_good_;    // that was open
+    std::optional<scene::Scene> good_before_;  // likewise, before that
+    std::string tried_;                        // the DEM that was to be opened last
     bool has_gone_back_ = false, has_failed_ = false;
     std::optional<std::future<std::vector<std::string>>> asked_files_;
     FileWatch effect_files_, dem_files_;

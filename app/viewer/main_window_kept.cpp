@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "viewer/main_window.h"
@@ -83,10 +84,11 @@ std::vector<chart::Legend> MainWindow::legends() const {
 void MainWindow::take_picture() {
     takes_when_sharp_ = !is_answered();
     if (takes_when_sharp_) return;
+    busy_frames_ = std::max(busy_frames_, 2);  // what is told of it is to be seen
     say_or_fail([&] {
         std::string note = overlay_note();
         if (!note.empty()) note = "; its scene is" + note.substr(1);
-        done(save_picture(*picture_, whole(), legends()) + note);
+        done(save_picture(*picture_, whole(), *opened_, legends()) + note);
     });
 }
 

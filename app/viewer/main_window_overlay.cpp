@@ -27,7 +27,7 @@ std::string verb_of(session::SunFigure figure) {
 std::optional<OverlayWanted> MainWindow::overlay_wanted() const {
     const Document& document = state_.document;
     const OverlayKind kind = document.overlay.kind;
-    if (kind == OverlayKind::None) return std::nullopt;
+    if (kind == OverlayKind::None || overlay_waits()) return std::nullopt;
     OverlayWanted wanted;
     wanted.dem = opened_->dem;
     wanted.dems = opened_->scene.dems;
@@ -42,6 +42,11 @@ std::optional<OverlayWanted> MainWindow::overlay_wanted() const {
         wanted.title = title_of(kind, wanted.raster);
     }
     return wanted;
+}
+
+bool MainWindow::overlay_waits() const {
+    const OverlayKind kind = state_.document.overlay.kind;
+    return stands_in() && kind != OverlayKind::None && kind != OverlayKind::File;
 }
 
 void MainWindow::follow_overlay() {
@@ -74,6 +79,7 @@ void MainWindow::lay_overlay() {
 }
 
 bool MainWindow::overlay_rests() const {
+    if (overlay_waits()) return false;
     return !asked_overlay_ ||
            (overlay_work_->is_done() && state_.overlay == overlay_work_->answer());
 }
@@ -88,7 +94,8 @@ const MainWindow::SavedOverlay* MainWindow::saved_overlay() const {
 }
 
 void MainWindow::save_overlay() {
-    saves_when_whole_ = false;
+    saves_when_whole_ = overlay_waits();
+    if (saves_when_whole_) return;
     if (!asked_overlay_ || asked_overlay_->file) {
         state_.message = "there is no overlay of the sun to be saved; O shows the day's sun hours";
         return;
@@ -154,7 +161,8 @@ void MainWindow::put_overlay(scene::Scene& scene) const {
 }
 
 std::string MainWindow::overlay_note() const {
-    const bool is_missing = asked_overlay_ && !asked_overlay_->file && !saved_overlay();
+    const bool is_missing =
+        overlay_waits() || (asked_overlay_ && !asked_overlay_->file && !saved_overlay());
     return is_missing ? ", without the overlay, which is in no file yet: Ctrl+E writes one" : "";
 }
 

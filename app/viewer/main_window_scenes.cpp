@@ -63,12 +63,13 @@ void MainWindow::read_thread() {
     try {
         scene_->check();
     } catch (const std::exception& error) {
-        if (!last_good_) throw;  // what the program was started for
+        if (stands_in()) last_good_ = good_before_;  // of this one a part alone was
+        if (!last_good_) throw;                      // what the program was started for
         go_back(error.what());
         return;
     }
-    if (!is_open())
-        if (auto opened = scene_->opened()) start(std::move(opened));
+    if (auto opened = scene_->opened(); opened && opened != opened_)
+        is_open() ? take_all_posts(std::move(opened)) : start(std::move(opened));
     if (const auto newer = scene_->newer_than(picture_ ? picture_->number : 0)) {
         picture_ = newer;
         hand_->see(picture_);
@@ -120,14 +121,7 @@ void MainWindow::give_up_opening() {
 void MainWindow::start(std::shared_ptr<const Opened> opened) {
     opened_ = std::move(opened);
     const scene::Scene& scene = opened_->scene;
-    state_.land.frame = &opened_->ground.frame;
-    state_.land.exaggeration = scene.exaggeration;
-    state_.land.height_m = [dem = opened_->dem](const geo::Geodetic& at) {
-        return dem->height_m(at);
-    };
-    const glm::dvec2 spacing_m = opened_->dem->field.grid.post_spacing_m();
-    state_.spacing_m = std::sqrt(spacing_m.x * spacing_m.y);
-    state_.stand_on(opened_->ground);
+    stand_on_ground();
     Document& document = state_.document;
     if (opened_->legend) {  // till its file has been read here, too
         auto shown = std::make_shared<OverlayShown>();
@@ -139,18 +133,55 @@ void MainWindow::start(std::shared_ptr<const Opened> opened) {
     state_.set_utc(last_good_ ? document.utc : opened_->utc);
     history_.add(document);
     window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
+    good_before_ = has_gone_back_ ? std::nullopt : last_good_;
     last_good_ = document.scene;
     if (!has_gone_back_) tried_ = scene.dems.front();
     has_gone_back_ = false;
     const std::vector<std::string> names = absolute_names(scene.dems);
     state_.views = memory_.views(names);
     remember([&] { memory_.add_recent({names, scene.dem, scene.holes}); });
-    state_.ground_words = opened_->dem->ground_words(scene.holes);
-    say_or_fail(
-        [&] { state_.effects = EffectsModel::of(document.scene.effects, state_.ground_words); });
     state_.recent = memory_.recent();
     watch(scene);
+}
+
+void MainWindow::stand_on_ground() {
+    state_.land.frame = &opened_->ground.frame;
+    state_.land.exaggeration = opened_->scene.exaggeration;
+    state_.land.height_m = [dem = opened_->dem](const geo::Geodetic& at) {
+        return dem->height_m(at);
+    };
+    const session::LoadedDem& dem = *opened_->dem;
+    const dem::Grid& grid = stands_in() ? dem.source->grid() : dem.field.grid;
+    const glm::dvec2 spacing_m = grid.post_spacing_m();
+    state_.spacing_m = std::sqrt(spacing_m.x * spacing_m.y);
+    state_.stand_on(opened_->ground);
+    state_.stands_in = stands_in();
+    state_.ground_words = dem.ground_words(opened_->scene.holes);
+    say_or_fail([&] {
+        state_.effects = EffectsModel::of(state_.document.scene.effects, state_.ground_words);
+    });
     busy_frames_ = 3;
+}
+
+void MainWindow::take_all_posts(std::shared_ptr<const Opened> opened) {
+    const std::shared_ptr<const Opened> before = std::exchange(opened_, std::move(opened));
+    Document& document = state_.document;
+    const bool is_as_opened = !history_.can_undo() && !history_.differs(document);
+    stand_on_ground();
+    home_ = pose_of(opened_->camera, state_.land);
+    if (is_as_opened) {
+        document.pose = home_;
+        if (document.utc == before->utc) document.utc = opened_->utc;
+        history_ = {};
+        history_.add(document);
+    }
+    state_.set_utc(document.utc);
+    asked_point_.reset();
+    if (before_) before_->want_dem(opened_->dem);
+}
+
+bool MainWindow::stands_in() const {
+    return is_open() && opened_->dem->stands_in;
 }
 
 void MainWindow::watch(const scene::Scene& scene) {

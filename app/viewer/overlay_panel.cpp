@@ -56,7 +56,9 @@ void opacity(State& state) {
 /// Of how many posts the figures are, and how far they have come.
 void work(const State& state) {
     const ImVec2 size{-1, ImGui::GetTextLineHeight()};
-    if (state.overlay_progress)
+    if (state.stands_in)
+        ImGui::TextDisabled("waits for all posts to be read ...");
+    else if (state.overlay_progress)
         ImGui::ProgressBar(static_cast<float>(*state.overlay_progress), size, "finer ...");
     else if (state.overlay && state.overlay->raster && !state.overlay->is_whole())
         ImGui::TextWrapped(

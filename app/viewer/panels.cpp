@@ -57,6 +57,7 @@ void status_line(const State& state, bool is_drawing) {
     } else {
         text = "H: keys";
     }
+    if (state.stands_in) text += "   reading all posts; ground and shadows are coarser till then";
     if (is_drawing) text += "   drawing ...";
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());

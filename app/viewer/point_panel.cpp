@@ -94,6 +94,8 @@ void point_panel(State& state) {
     ImGui::Text("height %.1f m", place.height_m);
     if (state.point && !state.point->error.empty())
         ImGui::TextWrapped("%s", state.point->error.c_str());
+    else if (state.stands_in)
+        ImGui::TextDisabled("waits for all posts to be read ...");
     else if (!state.point || state.point->of.date != state.day.date)
         ImGui::TextDisabled("looking at its horizon ...");
     else

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <exception>
+#include <future>
 #include <map>
 #include <mutex>
 #include <new>
@@ -27,6 +28,9 @@ constexpr double kSoon_ms = 30;
 /// Shares of the window's sides that frames are drawn at then, the largest that is soon enough.
 constexpr std::array<double, 5> kScales = {1, 0.8, 0.65, 0.5, 0.34};
 constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
+/// A picture stays so long at most while the pages of all posts are made in place of those that
+/// stood in: coarser ones would take its place.
+constexpr auto kNewPages = std::chrono::seconds(2);
 /// Shadows are this old at most while the sun is dragged.
 constexpr auto kShadowsAge = std::chrono::milliseconds(350);
 
@@ -60,14 +64,20 @@ struct SceneThread::Impl {
     std::optional<std::string> message;
     std::exception_ptr failure;
     std::shared_ptr<const Opened> opened;
+    std::shared_ptr<const session::LoadedDem> all_posts;  // that have not been taken yet
     std::uint64_t wants = 0;
 
     // The thread's own.
+    bool reads_rest = false;    // where others stand in for all posts
+    bool awaits_pages = false;  // of a picture at rest
+    Clock::duration pause{};    // before it is drawn again: as long as it took
     std::unique_ptr<session::Session> session;
     glm::dvec3 shadows_eye_m{0};
     double ms_a_pixel = 0;
     Clock::time_point shadows_at;
     bool shadows_lag = false;
+    std::optional<Clock::time_point> new_pages_at;  // not all of them are there yet
+    std::future<void> reading;                      // ends before what it writes to
 
     std::thread thread;
 
@@ -75,6 +85,8 @@ struct SceneThread::Impl {
         try {
             session::Options options;
             options.device = device;
+            options.may_stand_in = true;
+            reads_rest = !dem;
             options.dem = std::move(dem);
             FilesInUse files;
             session = std::make_unique<session::Session>(scene, options, files);
@@ -82,11 +94,7 @@ struct SceneThread::Impl {
             std::unique_lock lock(mutex);
             changed.wait(lock, [&] { return ends || has_new_wants; });
             session->resize(wanted.width_px, wanted.height_px);
-            std::optional<chart::Legend> legend;
-            if (session->scene().overlay) legend = session->legends().front();
-            opened = std::make_shared<Opened>(Opened{session->dem(), session->ground(),
-                                                     session->scene(), session->camera(),
-                                                     session->moment(), std::move(legend)});
+            opened = as_opened();
         } catch (...) {
             const std::lock_guard lock(mutex);
             failure = std::current_exception();
@@ -96,27 +104,82 @@ struct SceneThread::Impl {
         session.reset();
     }
 
+    std::shared_ptr<const Opened> as_opened() const {
+        std::optional<chart::Legend> legend;
+        if (session->scene().overlay) legend = session->legends().front();
+        return std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
+                                               session->camera(), session->moment(),
+                                               std::move(legend)});
+    }
+
+    /// Beside, when there is a picture of what stands in.
+    void read_rest() {
+        if (!reads_rest || reading.valid() || !session->dem()->stands_in) return;
+        reading = std::async(std::launch::async, [this, source = session->dem()->source] {
+            std::shared_ptr<const session::LoadedDem> read;
+            std::exception_ptr error;
+            try {
+                read = session::load_dem(source, scene);
+            } catch (...) {
+                error = std::current_exception();
+            }
+            {
+                const std::lock_guard lock(mutex);
+                all_posts = std::move(read);
+                if (error) failure = error;
+            }
+            changed.notify_one();
+            if (error) on_change();
+        });
+    }
+
+    void take(std::shared_ptr<const session::LoadedDem> posts) {
+        session->take(std::move(posts), scene);
+        new_pages_at = Clock::now();
+        auto anew = as_opened();
+        const std::lock_guard lock(mutex);
+        opened = std::move(anew);
+    }
+
     void draw_until_end() {
         bool sharp = false;
         std::unique_lock lock(mutex);
         while (!ends) {
             const auto is_asked = [&] {
-                return ends || has_new_wants || effects || !values.empty() || drape || !sharp;
+                return ends || has_new_wants || effects || !values.empty() || drape || all_posts;
             };
-            rests = !is_asked();
-            changed.wait(lock, is_asked);
+            // Drawing the same again at once would take from the pages that it waits for.
+            if (awaits_pages)
+                changed.wait_for(lock, pause, is_asked);
+            else if (sharp) {
+                rests = !is_asked();
+                changed.wait(lock, is_asked);
+            }
             rests = false;
             if (ends) return;
             const Wanted now = wanted;
             const auto new_effects = std::exchange(effects, std::nullopt);
             const auto new_values = std::exchange(values, {});
             const auto new_drape = std::exchange(drape, std::nullopt);
+            auto new_posts = std::exchange(all_posts, nullptr);
             const std::uint64_t answers = wants;
             has_new_wants = false;
             lock.unlock();
+            if (new_posts) {
+                try {
+                    take(std::move(new_posts));
+                } catch (...) {
+                    lock.lock();
+                    failure = std::current_exception();
+                    lock.unlock();
+                    on_change();
+                    return;
+                }
+            }
             // Where something fails the last good picture stays until something changes.
             attempt([&] { change(new_effects, new_values); });
             if (new_drape) attempt([&] { session->drape(*new_drape); });
+            awaits_pages = false;
             if (!attempt([&] { sharp = draw(now, answers); })) sharp = true;
             on_change();
             lock.lock();
@@ -174,12 +237,19 @@ struct SceneThread::Impl {
                           Clock::now() - shadows_at < kShadowsAge;
         session->keep_native(keep);
         const bool whole = session->draw_what_is_there();
+        awaits_pages = !whole && !now.moving && !now.sun_moving;
+        pause = Clock::now() - began;
         if (!keep) {
             shadows_at = Clock::now();
             shadows_eye_m = session->camera().eye_m;
             shadows_lag = false;
         }
-        publish(began, answers, whole && scale == 1 && !keep);
+        if (whole || now.moving || now.sun_moving ||
+            (new_pages_at && Clock::now() - *new_pages_at > kNewPages))
+            new_pages_at.reset();
+        if (new_pages_at) return false;
+        publish(began, answers, whole && scale == 1 && !keep && !session->dem()->stands_in);
+        read_rest();
         // What is coarse or lags is drawn anew when the hand has come to rest.
         return whole && (scale == 1 || now.moving || now.sun_moving);
     }
@@ -259,6 +329,15 @@ void SceneThread::want_value(const std::string& address, const std::string& valu
     {
         const std::lock_guard lock(impl_->mutex);
         impl_->values[address] = value;
+        ++impl_->wants;
+    }
+    impl_->changed.notify_one();
+}
+
+void SceneThread::want_dem(std::shared_ptr<const session::LoadedDem> dem) {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        impl_->all_posts = std::move(dem);
         ++impl_->wants;
     }
     impl_->changed.notify_one();

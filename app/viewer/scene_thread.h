@@ -45,12 +45,14 @@ struct Picture {
     scene::Camera camera;
     sun::Instant utc;
     std::vector<chart::Legend> legends;  ///< of what effects colour the ground by
-    bool sharp = false;  ///< in the window's size, with all its ground and its sun's shadows
+    /// In the window's size, with all its ground, from all posts, and with its sun's shadows.
+    bool sharp = false;
 };
 
 class SceneThread {
   public:
-    /// Opens the scene and draws.
+    /// Opens the scene and draws. Where the DEM takes long to read, first what stands in for it
+    /// (session::LoadedDem::stands_in); all posts are then read beside, and take its place.
     /// @param device    as session::Options
     /// @param on_change called on that thread whenever there is something to fetch
     /// @param dem       the scene's, where it has been read already; else it is read
@@ -61,9 +63,10 @@ class SceneThread {
     /// Waits for the frame in work, or for the scene to be open: Discard does it beside.
     ~SceneThread();
 
-    /// Once the scene is open; else null.
+    /// Once the scene is open; else null. Another one when all posts have taken the place of what
+    /// stood in for them; its frame is the same.
     std::shared_ptr<const Opened> opened() const;
-    /// Why it cannot be opened.
+    /// Why it cannot be opened, or all of it not be read.
     /// @throws Error what opening threw
     void check() const;
 
@@ -72,6 +75,9 @@ class SceneThread {
     void want_effects(const scene::Effects& effects);
     /// A value of a parameter that is not static.
     void want_value(const std::string& address, const std::string& value);
+
+    /// All posts of the DEM, of which others stand in.
+    void want_dem(std::shared_ptr<const session::LoadedDem> dem);
 
     /// Colours on the ground; null: none.
     void want_drape(std::shared_ptr<const render::Drape> drape);

@@ -34,6 +34,7 @@ struct State {
     sun::Refraction air = sun::Refraction::none();  ///< over it
     std::unique_ptr<EffectsModel> effects;
     effect::GroundWords ground_words;  ///< what the DEM has; none: it is not known yet
+    bool stands_in = false;            ///< not all of its posts have been read
     SunDay day;
     std::vector<SunDay> extremes;  ///< the solstices of its year
 

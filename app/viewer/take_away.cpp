@@ -6,10 +6,12 @@
 
 #include "base/error.h"
 #include "base/output_file.h"
-#include "chart/stamps.h"
 #include "image/image.h"
 #include "scene/job.h"
 #include "session/record.h"
+#include "session/stamps.h"
+#include "session/words.h"
+#include "sun/position.h"
 #include "viewer/settings.h"
 
 namespace relevo::viewer {
@@ -73,12 +75,31 @@ std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zo
                        by_sun ? " from sunrise to sunset" : "", name);
 }
 
-std::string save_picture(const Picture& picture, const scene::Scene& scene,
-                         std::vector<chart::Legend> legends) {
+namespace {
+
+/// As session::Session::sun_text().
+std::string sun_of(const Picture& picture, const scene::Scene& scene,
+                   const render::Ground& ground) {
+    const auto eye = session::told_eye(ground.frame, picture.camera, scene.exaggeration);
+    const geo::Geodetic middle = ground.frame.origin();
+    const geo::Geodetic air =
+        eye.value_or(geo::Geodetic{middle.lat_rad, middle.lon_rad, ground.air_height_m()});
+    return session::sun_text(sun::position(picture.utc, eye.value_or(middle)),
+                             session::refraction_at(scene.refraction, air));
+}
+
+}  // namespace
+
+std::string save_picture(const Picture& picture, const scene::Scene& scene, const Opened& opened,
+                         const std::vector<chart::Legend>& legends) {
     image::Image8 image = image::from_device(picture.width_px, picture.height_px, picture.rgba);
-    chart::Stamps stamps;
-    if (scene.stamps.legend) stamps.legends = std::move(legends);
-    chart::stamp(stamps, image);
+    const geo::LocalFrame& frame = opened.ground.frame;
+    session::Stamped stamped{scene, *opened.dem, frame, picture.camera};
+    if (session::needs_depths(scene.stamps)) stamped.depths_m = picture.depths_m;
+    if (scene.stamps.date)
+        stamped.clock = session::clock_text(picture.utc, scene.moment.zone, frame.origin());
+    if (scene.stamps.sun) stamped.sun = sun_of(picture, scene, opened.ground);
+    const std::vector<std::string> notes = session::add_stamps(std::move(stamped), legends, image);
     const image::Metadata metadata{{"Software", "Relevo"},
                                    {"Description", capture_command(scene, "picture.png")},
                                    {session::kSceneKeyword, scene::scene_line(scene)}};
@@ -86,7 +107,10 @@ std::string save_picture(const Picture& picture, const scene::Scene& scene,
         image::write(file, image, metadata);
         file.finish();
     });
-    return name + " has the picture";
+    std::string told = name + " has the picture";
+    for (const std::string& note : notes)
+        told += "; " + note;
+    return told;
 }
 
 }  // namespace relevo::viewer

@@ -27,9 +27,11 @@ std::string save_scene(const scene::Scene& scene);
 /// Likewise a job of the scene at every hour of a day, from sunrise to sunset where the sun rises
 /// and sets on it.
 std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone);
-/// Likewise a picture, with the command that takes it.
-/// @param legends  of what its colours mean, stamped where the scene wants that
-std::string save_picture(const Picture& picture, const scene::Scene& scene,
-                         std::vector<chart::Legend> legends);
+/// Likewise a picture, with the scene's stamps and the command that takes it.
+/// @param scene    of the picture, with an eye
+/// @param opened   its DEM
+/// @param legends  of what its colours mean
+std::string save_picture(const Picture& picture, const scene::Scene& scene, const Opened& opened,
+                         const std::vector<chart::Legend>& legends);
 
 }  // namespace relevo::viewer

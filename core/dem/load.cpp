@@ -93,50 +93,83 @@ void refuse_endless_sides(const Source& source) {
                         source.description().path, grid.columns(), grid.rows(), kMaxPostsASide));
 }
 
+namespace {
+
+/// How many posts of a DEM are left where means of `reduction` x `reduction` stand for them.
+std::int64_t posts_at(const Grid& full, int reduction) {
+    return std::int64_t{full.columns() / reduction} * (full.rows() / reduction);
+}
+
+/// The least power of two by which posts are few enough, or the greatest that leaves two a side.
+int reduction_to(const Grid& full, std::int64_t max_posts) {
+    int reduction = 1;
+    while (posts_at(full, reduction) > max_posts &&
+           std::min(full.columns(), full.rows()) / (2 * reduction) >= 2)
+        reduction *= 2;
+    return reduction;
+}
+
+/// Without what is to be said of them but their statistics.
+Heightfield read_reduced(const Source& source, int reduction) {
+    const Grid& full = source.grid();
+    const int columns = full.columns() / reduction, rows = full.rows() / reduction;
+    // What is left over at the last row and column is less than one mean.
+    const Window all{0, 0, columns * reduction, rows * reduction};
+    Array2d<float> height_m = source.read(all, columns, rows);
+    Description about = source.description();
+    about.statistics = statistics(height_m);
+    Grid grid = reduction == 1 ? full : full.part(all, columns, rows);
+    return {std::move(height_m), std::move(grid), std::move(about), reduction};
+}
+
+}  // namespace
+
+std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_posts) {
+    refuse_endless_sides(source);
+    const int reduction = reduction_to(source.grid(), most_posts);
+    if (reduction == 1 || posts_at(source.grid(), reduction) > most_posts ||
+        source.cells_for_means(reduction) > 4 * static_cast<double>(most_posts))
+        return std::nullopt;
+    Heightfield field = read_reduced(source, reduction);
+    if (field.about.statistics.valid == 0) return std::nullopt;
+    return field;
+}
+
 Heightfield load(const Source& source, std::int64_t max_posts) {
     refuse_endless_sides(source);
     const Grid& full = source.grid();
-    Description about = source.description();
-    int reduction = 1;
-    const auto reduced_posts = [&] {
-        return std::int64_t{full.columns() / reduction} * (full.rows() / reduction);
-    };
-    while (reduced_posts() > max_posts &&
-           std::min(full.columns(), full.rows()) / (2 * reduction) >= 2)
-        reduction *= 2;
+    const int reduction = reduction_to(full, max_posts);
+    const std::int64_t posts = posts_at(full, reduction);
+    const std::string& path = source.description().path;
     constexpr double kMiB = 1 << 20;
-    if (reduced_posts() > max_posts) {
-        const double wanted = std::ceil(4.0 * static_cast<double>(reduced_posts()) / kMiB);
+    if (posts > max_posts) {
+        const double wanted = std::ceil(4.0 * static_cast<double>(posts) / kMiB);
         bad_input(fmt::format(
             "dem::load: {}: memory for its heights, expected at most {:.0f} MiB but got {:.0f}: "
             "{} x {} posts are too narrow for means; pass --memory {:.0f}, or cut it up with "
             "gdal_translate",
-            about.path, 4.0 * static_cast<double>(max_posts) / kMiB, wanted, full.columns(),
-            full.rows(), wanted));
+            path, 4.0 * static_cast<double>(max_posts) / kMiB, wanted, full.columns(), full.rows(),
+            wanted));
     }
     const int columns = full.columns() / reduction, rows = full.rows() / reduction;
-    // What is left over at the last row and column is less than one mean.
-    const Window all{0, 0, columns * reduction, rows * reduction};
-    if (reduction > 1)
-        about.assumptions.push_back(fmt::format(
-            "reduced from {} x {} to {} x {} posts, means of {} x {}, to keep within the memory "
-            "allowed",
-            full.columns(), full.rows(), columns, rows, reduction, reduction));
-    Array2d<float> height_m;
     try {
-        height_m = source.read(all, columns, rows);
+        Heightfield field = read_reduced(source, reduction);
+        if (reduction > 1)
+            field.about.assumptions.push_back(fmt::format(
+                "reduced from {} x {} to {} x {} posts, means of {} x {}, to keep within the "
+                "memory allowed",
+                full.columns(), full.rows(), columns, rows, reduction, reduction));
+        report_heights(
+            source, field.about,
+            field.about.statistics.valid > 0 ? find_collar(field.height_m) : std::nullopt);
+        return field;
     } catch (const std::bad_alloc&) {
         failed(
             fmt::format("dem::load: {}: no memory for {} x {} heights ({:.0f} MiB); pass a "
                         "smaller --memory, now {:.0f}",
-                        about.path, columns, rows, 4.0 * columns * rows / kMiB,
+                        path, columns, rows, 4.0 * columns * rows / kMiB,
                         4.0 * static_cast<double>(max_posts) / kMiB));
     }
-    about.statistics = statistics(height_m);
-    report_heights(source, about,
-                   about.statistics.valid > 0 ? find_collar(height_m) : std::nullopt);
-    Grid grid = reduction == 1 ? full : full.part(all, columns, rows);
-    return {std::move(height_m), std::move(grid), std::move(about), reduction};
 }
 
 }  // namespace relevo::dem

@@ -29,6 +29,13 @@ Heightfield load(std::span<const std::string> paths, const LoadOptions& options 
 /// The same for what is open already.
 Heightfield load(const Source& source, std::int64_t max_posts);
 
+/// Means of at most so many posts where overviews give them without the posts being read: what can
+/// be shown until load() is through. Says nothing of what looks wrong.
+/// @param most_posts  that are kept; files are read for up to four times as many cells
+/// @returns none where more would have to be read, all posts are that few, or no mean has a height
+/// @throws Error (BadInput) as Source::read()
+std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_posts);
+
 /// Says what heights look wrong, in the description and with log::info.
 /// @param source  they are from
 /// @param about   with its statistics

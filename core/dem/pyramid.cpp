@@ -86,6 +86,10 @@ Pyramid::Pyramid(const Heightfield& means, const Source& source)
     make_coarser_levels();
 }
 
+Pyramid Pyramid::of(const Heightfield& field, const Source* source) {
+    return source && field.reduction > 1 ? Pyramid(field, *source) : Pyramid(field.height_m);
+}
+
 void Pyramid::make_coarser_levels() {
     bound_tiles(first_);
     while (std::max(sizes_.back().x, sizes_.back().y) > kTileQuads + 1) {

@@ -48,6 +48,10 @@ class Pyramid {
     /// @throws Error (BadInput) where the file is damaged, also from block()
     Pyramid(const Heightfield& means, const Source& source);
 
+    /// The one or the other, by whether the heightfield has means.
+    /// @param source  null: the means are all there is
+    static Pyramid of(const Heightfield& field, const Source* source);
+
     int levels() const { return static_cast<int>(sizes_.size()); }
     int columns() const { return sizes_.front().x; }  ///< of posts
     int rows() const { return sizes_.front().y; }

@@ -537,6 +537,15 @@ Array2d<float> Source::read() const {
     return read({0, 0, grid().columns(), grid().rows()}, grid().columns(), grid().rows());
 }
 
+double Source::cells_for_means(int side) const {
+    double cells = 0;
+    for (const Piece& piece : impl_->pieces) {
+        const Resolution& level = coarsest_level(piece, side, side);
+        cells += double{1} * level.columns * level.rows;
+    }
+    return cells;
+}
+
 double Source::height_at(const geo::Geodetic& place) const {
     const glm::dvec2 post = grid().post(place);
     if (!(post.x >= 0 && post.y >= 0 && post.x <= grid().columns() - 1 &&

@@ -81,6 +81,10 @@ class Source {
     /// All posts, as stored.
     Array2d<float> read() const;
 
+    /// Cells that the files are read for where all posts are read as means of `side` x `side`: of
+    /// overviews, where there are any that are fine enough.
+    double cells_for_means(int side) const;
+
     /// The number that a file stores for a post, as --nodata takes it: before scale, offset and
     /// unit; of encoded colours the height [m]. Of several files, that of the one on top; NaN where
     /// there is none.

@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/parallel_for.h"
 #include "geo/ellipsoid.h"
 
 namespace relevo::render {
@@ -83,10 +84,14 @@ void make_block(const dem::Heightfield& dem, Ground& ground) {
 }  // namespace
 
 Ground make_ground(const dem::Heightfield& dem) {
-    Ground ground{.frame = geo::LocalFrame(dem.grid.center())};
+    return make_ground(dem, dem.grid);
+}
+
+Ground make_ground(const dem::Heightfield& dem, const dem::Grid& whole) {
+    Ground ground{.frame = geo::LocalFrame(whole.center())};
     ground.lowest_m = dem.about.statistics.min_m;
     ground.highest_m = dem.about.statistics.max_m;
-    const double columns = dem.grid.columns() - 1, rows = dem.grid.rows() - 1;
+    const double columns = whole.columns() - 1, rows = whole.rows() - 1;
     ground.south_west_m = glm::dvec2(1e300);
     ground.north_east_m = glm::dvec2(-1e300);
     // A map of the world has corners that are no place; more of it then says where its ground is.
@@ -94,7 +99,7 @@ Ground make_ground(const dem::Heightfield& dem) {
         bool all_on_earth = true;
         for (int i = 0; i <= steps; ++i) {
             for (int j = 0; j <= steps; ++j) {
-                const geo::Geodetic place = dem.grid.place(columns * i / steps, rows * j / steps);
+                const geo::Geodetic place = whole.place(columns * i / steps, rows * j / steps);
                 all_on_earth = all_on_earth && std::isfinite(place.lat_rad);
                 if (!std::isfinite(place.lat_rad)) continue;
                 const glm::dvec2 at(ground.frame.to_local(place));
@@ -175,10 +180,12 @@ GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground,
     result.net =
         scene::GroundNet((height_m.width() + step_x - 1) / step_x,
                          (height_m.height() + step_y - 1) / step_y, glm::dvec3(std::nan("")));
-    for (int y0 = 0; y0 < height_m.height(); y0 += step_y) {
+    std::vector<std::vector<glm::dvec3>> rows(static_cast<std::size_t>(result.net.height()));
+    const auto take_row = [&](int j) {
+        std::vector<glm::dvec3>& points = rows[static_cast<std::size_t>(j)];
+        const int y0 = j * step_y, y1 = std::min(y0 + step_y, height_m.height());
         for (int x0 = 0; x0 < height_m.width(); x0 += step_x) {
             const int x1 = std::min(x0 + step_x, height_m.width());
-            const int y1 = std::min(y0 + step_y, height_m.height());
             glm::ivec2 lowest(-1), highest(-1);
             for (int y = y0; y < y1; ++y) {
                 for (int x = x0; x < x1; ++x) {
@@ -189,13 +196,19 @@ GroundToShow ground_to_show(const dem::Heightfield& dem, const Ground& ground,
                 }
             }
             if (lowest.x < 0) continue;
-            collector.add(lowest.x, lowest.y, result.points);
-            collector.add(highest.x, highest.y, result.points);
+            collector.add(lowest.x, lowest.y, points);
+            collector.add(highest.x, highest.y, points);
             const glm::ivec2 middle((x0 + x1) / 2, (y0 + y1) / 2);
             const glm::ivec2 post = collector.has(middle.x, middle.y) ? middle : highest;
-            result.net.at(x0 / step_x, y0 / step_y) = collector.at(post.x, post.y);
+            result.net.at(x0 / step_x, j) = collector.at(post.x, post.y);
         }
-    }
+    };
+    parallel_for(0, result.net.height(), 1, [&](int first, int last) {
+        for (int j = first; j < last; ++j)
+            take_row(j);
+    });
+    for (const std::vector<glm::dvec3>& points : rows)
+        result.points.insert(result.points.end(), points.begin(), points.end());
     collector.add_ends(result.rim);
     result.points.insert(result.points.end(), result.rim.begin(), result.rim.end());
     return result;

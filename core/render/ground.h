@@ -17,6 +17,9 @@ namespace relevo::render {
 
 /// The ground of a DEM: its local frame about the DEM's centre at height 0, its range and its
 /// extent.
+/// @param whole  the grid of all its posts, where `dem` has means of them; else the same. Frame and
+///               extent are of these, whatever they were averaged to.
+Ground make_ground(const dem::Heightfield& dem, const dem::Grid& whole);
 Ground make_ground(const dem::Heightfield& dem);
 
 /// What a camera has to see to see the DEM, in the local frame [m].

@@ -112,8 +112,9 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
                  const TerrainOptions& options, const dem::Source* finer)
     : serial_(next_serial()),
       options_(options),
-      pyramid_(finer && heightfield.reduction > 1 ? dem::Pyramid(heightfield, *finer)
-                                                  : dem::Pyramid(heightfield.height_m)),
+      own_pyramid_(options.pyramid ? std::nullopt
+                                   : std::optional(dem::Pyramid::of(heightfield, finer))),
+      pyramid_(options.pyramid ? *options.pyramid : *own_pyramid_),
       grid_(finer && heightfield.reduction > 1 ? finer->grid() : heightfield.grid),
       frame_(frame),
       tree_(pyramid_, grid_, frame_),

@@ -35,6 +35,8 @@ struct TerrainOptions {
     /// Vertices in a frame above which the error is let grow.
     int vertex_budget = 250000;
     int max_array_layers = 2048;  ///< the device's
+    /// Of the heightfield, made already; must outlive the terrain. Null: it makes its own.
+    const dem::Pyramid* pyramid = nullptr;
     /// Of the heightfield's posts, for lib/water.glsl; both must outlive the terrain.
     const dem::Water* water = nullptr;              ///< null: it is looked for when needed
     const Array2d<std::uint8_t>* filled = nullptr;  ///< not 0 on posts that were holes
@@ -159,7 +161,8 @@ class Terrain {
 
     std::uint64_t serial_;
     TerrainOptions options_;
-    dem::Pyramid pyramid_;
+    std::optional<dem::Pyramid> own_pyramid_;  // where none was given
+    const dem::Pyramid& pyramid_;
     const dem::Grid& grid_;
     const geo::LocalFrame& frame_;
     TileTree tree_;

@@ -26,13 +26,13 @@ std::string dem_key(const scene::Scene& scene) {
 }
 
 struct Moments::Dem {
-    std::optional<dem::Source> source;  ///< until the heights are read
+    std::shared_ptr<const dem::Source> source;
     std::shared_ptr<const LoadedDem> loaded;
     std::optional<dem::Posts> posts;                 ///< of `loaded`
     std::map<std::string, std::string> zones;        ///< of the middle, by the words for them
     std::map<double, render::GroundToShow> to_show;  ///< by the exaggeration
 
-    const dem::Source& open() const { return loaded ? loaded->source : *source; }
+    const dem::Source& open() const { return *source; }
 };
 
 Moments::Moments() = default;
@@ -42,7 +42,8 @@ Moments::Dem& Moments::dem_of(const scene::Scene& scene) {
     std::unique_ptr<Dem>& dem = dems_[dem_key(scene)];
     if (!dem) {
         auto opened = std::make_unique<Dem>();
-        opened->source = dem::Source::open(scene.dems, scene.dem);
+        opened->source =
+            std::make_shared<const dem::Source>(dem::Source::open(scene.dems, scene.dem));
         dem = std::move(opened);
     }
     return *dem;
@@ -50,10 +51,7 @@ Moments::Dem& Moments::dem_of(const scene::Scene& scene) {
 
 std::shared_ptr<const LoadedDem> Moments::loaded(const scene::Scene& scene) {
     Dem& dem = dem_of(scene);
-    if (!dem.loaded) {
-        dem.loaded = load_dem(std::move(*dem.source), scene);
-        dem.source.reset();
-    }
+    if (!dem.loaded) dem.loaded = load_dem(dem.source, scene);
     return dem.loaded;
 }
 
@@ -61,7 +59,7 @@ scene::View Moments::settled_view(const scene::Scene& scene) {
     scene::View view = scene.view;
     if (view.eye || (view.orbit.azimuth_deg && view.orbit.elevation_deg)) return view;
     const auto heights = loaded(scene);
-    const render::Ground ground = render::make_ground(heights->field);
+    const render::Ground ground = ground_of(*heights);
     auto& known = dem_of(scene).to_show;
     auto found = known.find(scene.exaggeration);
     if (found == known.end())
@@ -77,7 +75,7 @@ scene::View Moments::settled_view(const scene::Scene& scene) {
 /// The hour that a session shows a scene at which has none.
 sun::Instant Moments::usual_moment(const scene::Scene& scene) {
     const auto heights = loaded(scene);
-    const render::Ground ground = render::make_ground(heights->field);
+    const render::Ground ground = ground_of(*heights);
     const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);
     const render::GroundToShow to_show =
         render::ground_to_show(heights->field, ground, scene.exaggeration);
@@ -130,8 +128,8 @@ sun::ParsedTime Moments::of(const scene::Scene& scene) {
                      if (heights->field.reduction == 1)
                          dem.posts.emplace(heights->field);
                      else
-                         dem.posts.emplace(heights->source, static_cast<std::int64_t>(
-                                                                heights->field.height_m.size()));
+                         dem.posts.emplace(*heights->source, static_cast<std::int64_t>(
+                                                                 heights->field.height_m.size()));
                      return *dem.posts;
                  }});
     if (!time.note.empty()) log::info(time.note);

@@ -53,7 +53,7 @@ ordered_json camera_json(const Session& session) {
 }
 
 ordered_json dem_json(const Session& session, const std::vector<HashedFile>& files) {
-    const dem::Grid& grid = session.dem()->source.grid();
+    const dem::Grid& grid = session.dem()->source->grid();
     ordered_json json;
     json["files"] = ordered_json::array();
     for (const HashedFile& file : files)

@@ -64,8 +64,25 @@ LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
     return drawn;
 }
 
-std::shared_ptr<const LoadedDem> load(const scene::Scene& scene) {
-    return load_dem(dem::Source::open(scene.dems, scene.dem), scene);
+/// Posts above which others stand in for them, and how many of these there are at most.
+constexpr std::int64_t kManyPosts = std::int64_t{1} << 24, kStandInPosts = std::int64_t{1} << 22;
+
+std::shared_ptr<const LoadedDem> load(const scene::Scene& scene, bool may_stand_in) {
+    auto source = std::make_shared<const dem::Source>(dem::Source::open(scene.dems, scene.dem));
+    if (may_stand_in)
+        if (auto stand_in = load_stand_in(source, scene)) return stand_in;
+    return load_dem(std::move(source), scene);
+}
+
+std::shared_ptr<const LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
+                                            dem::Heightfield field, const scene::Scene& scene,
+                                            Clock::time_point began, bool stands_in) {
+    auto dem = std::make_shared<LoadedDem>(
+        LoadedDem{.source = std::move(source), .field = std::move(field), .stands_in = stands_in});
+    dem->drawn = drawn_of(dem->field, scene.holes);
+    dem->pyramid.emplace(dem::Pyramid::of(dem->to_draw(), dem->source.get()));
+    dem->took_ms = milliseconds_since(began);
+    return dem;
 }
 
 constexpr int kDivider_px = 2;
@@ -85,16 +102,31 @@ Picture side_by_side(const Picture& left, const Picture& right, Value line) {
 
 }  // namespace
 
-std::shared_ptr<const LoadedDem> load_dem(dem::Source source, const scene::Scene& scene) {
+std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> source,
+                                          const scene::Scene& scene) {
     const auto began = Clock::now();
-    dem::Heightfield field = dem::load(source, scene.dem.max_posts);
-    LoadedDem::Drawn drawn = drawn_of(field, scene.holes);
-    return std::make_shared<const LoadedDem>(LoadedDem{
-        std::move(source), std::move(field), milliseconds_since(began), std::move(drawn)});
+    dem::Heightfield field = dem::load(*source, scene.dem.max_posts);
+    return loaded_dem(std::move(source), std::move(field), scene, began, /*stands_in=*/false);
+}
+
+std::shared_ptr<const LoadedDem> load_stand_in(std::shared_ptr<const dem::Source> source,
+                                               const scene::Scene& scene) {
+    const auto began = Clock::now();
+    const dem::Grid& grid = source->grid();
+    const std::int64_t posts = std::int64_t{grid.columns()} * grid.rows();
+    // Of more posts than memory holds, means are read anyway.
+    if (posts <= kManyPosts || posts > scene.dem.max_posts) return nullptr;
+    std::optional<dem::Heightfield> field = dem::load_quickly(*source, kStandInPosts);
+    if (!field) return nullptr;
+    return loaded_dem(std::move(source), std::move(*field), scene, began, /*stands_in=*/true);
+}
+
+render::Ground ground_of(const LoadedDem& dem) {
+    return render::make_ground(dem.field, dem.source->grid());
 }
 
 double LoadedDem::height_m(const geo::Geodetic& at) const {
-    if (field.reduction > 1) return source.height_at(at);
+    if (field.reduction > 1) return source->height_at(at);
     const glm::dvec2 post = field.grid.post(at);
     return field.height_at(post.x, post.y);
 }
@@ -147,7 +179,7 @@ struct Session::Impl {
         if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
         // Where the system gives no further thread it is read when it is waited for.
         auto loading = std::async(std::launch::async | std::launch::deferred,
-                                  [this] { return options.dem ? options.dem : load(scene); });
+                                  [this] { return options.dem ? options.dem : load_own(); });
         open_device(files);
         // Which effects are on may depend on the ground.
         loaded = loading.get();
@@ -156,10 +188,16 @@ struct Session::Impl {
         compile(drawn);
         stages.emplace_back("compile", milliseconds_since(began));
         stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
-        if (timed && !time) time = parse_over(scene.moment, loaded->source, loaded->field);
+        if (timed && !time) time = parse_over(scene.moment, *loaded->source, loaded->field);
         upload();
         look(scene.view);
         set_moment(time ? time->utc : default_moment());
+    }
+
+    /// Events over the ground are looked for in all of it.
+    std::shared_ptr<const LoadedDem> load_own() const {
+        const bool timed = !scene.moment.time.empty();
+        return load(scene, options.may_stand_in && !(timed && needs_dem(scene.moment)));
     }
 
     /// Of the camera as it is.
@@ -325,15 +363,16 @@ struct Session::Impl {
 
     void upload() {
         const auto began = Clock::now();
-        ground = render::make_ground(loaded->field);
+        ground = ground_of(*loaded);
         terrain.emplace(
             loaded->to_draw(), ground->frame,
             render::TerrainOptions{
                 .pixel_error = scene.pixel_error,
                 .max_array_layers = context->info().max_array_layers,
+                .pyramid = loaded->pyramid ? &*loaded->pyramid : nullptr,
                 .water = &loaded->drawn.water,
                 .filled = loaded->drawn.is_filled.empty() ? nullptr : &loaded->drawn.is_filled},
-            &loaded->source);
+            loaded->source.get());
         if (scene.overlay) {
             Overlay overlay = read_overlay(*scene.overlay, terrain->grid());
             drape = overlay.drape;
@@ -342,6 +381,18 @@ struct Session::Impl {
         }
         stages.emplace_back("upload", milliseconds_since(began));
         take_shape(/*other=*/true);
+    }
+
+    void take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given) {
+        context->make_current();
+        const bool others = loaded->ground_words(scene.holes) != dem->ground_words(scene.holes);
+        terrain.reset();  // refers to the one before
+        loaded = std::move(dem);
+        upload();
+        if (!scene.overlay) terrain->drape(drape);
+        look(given.view);
+        set_moment(given.moment.time.empty() ? default_moment() : utc);
+        if (others) set_effects(scene::Effects(as_given));
     }
 
     /// @param other  the ground is exaggerated otherwise than before
@@ -401,11 +452,11 @@ struct Session::Impl {
         scene.view = view;
     }
 
-    /// Where the sun that is told of is seen from, as `relevo sun position` has it.
-    geo::Geodetic eye() const {
-        geo::Geodetic eye = ground->frame.to_geodetic(inputs.camera.eye_m);
-        eye.height_m /= scene.exaggeration;
-        return eye;
+    /// The eye where the sun that is told of is seen from, as `relevo sun position` has it; none
+    /// where it is the DEM's middle, also of eyes so high that no sun is told of there.
+    std::optional<geo::Geodetic> eye() const {
+        if (!scene.view.eye) return std::nullopt;
+        return session::told_eye(ground->frame, inputs.camera, scene.exaggeration);
     }
 
     void draw(render::Loading loading, render::PassTimes* times = nullptr) {
@@ -459,6 +510,10 @@ void Session::set_moment(sun::Instant utc) {
     impl_->set_moment(utc);
     impl_->scene.moment.time = sun::exact_iso(utc);
     impl_->scene.moment.date.clear();
+}
+
+void Session::take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given) {
+    impl_->take(std::move(dem), given);
 }
 
 sun::Instant Session::moment() const {
@@ -588,24 +643,20 @@ std::vector<std::string> Session::ground_notes() const {
 }
 
 std::string Session::place_text() const {
-    return impl_->scene.view.eye ? geo::degrees_text(impl_->eye()) + " (the eye)"
-                                 : geo::degrees_text(impl_->ground->frame.origin());
+    const std::optional<geo::Geodetic> eye = impl_->eye();
+    return eye ? geo::degrees_text(*eye) + " (the eye)"
+               : geo::degrees_text(impl_->ground->frame.origin());
 }
 
 std::string Session::clock_text() const {
-    const sun::ChosenZone chosen =
-        sun::choose_zone(impl_->scene.moment.zone, impl_->ground->frame.origin());
-    const std::string iso = sun::to_iso(impl_->utc, chosen.zone);  // 2026-06-21T10:12:00+02:00
-    const std::string seconds = iso.substr(16, 3), offset = iso.substr(19);
-    return fmt::format("{} {}{} UTC{}", iso.substr(0, 10), iso.substr(11, 5),
-                       seconds == ":00" ? "" : seconds, offset == "Z" ? "" : offset);
+    return session::clock_text(impl_->utc, impl_->scene.moment.zone, impl_->ground->frame.origin());
 }
 
 std::string Session::sun_text() const {
-    if (!impl_->scene.view.eye) return session::sun_text(impl_->position, impl_->air);
-    const geo::Geodetic eye = impl_->eye();
-    return session::sun_text(sun::position(impl_->utc, eye),
-                             refraction_at(impl_->scene.refraction, eye));
+    const std::optional<geo::Geodetic> eye = impl_->eye();
+    if (!eye) return session::sun_text(impl_->position, impl_->air);
+    return session::sun_text(sun::position(impl_->utc, *eye),
+                             refraction_at(impl_->scene.refraction, *eye));
 }
 
 std::string Session::view_reason() const {

@@ -11,6 +11,7 @@
 #include "chart/legend.h"
 #include "dem/fill_holes.h"
 #include "dem/heightfield.h"
+#include "dem/pyramid.h"
 #include "dem/source.h"
 #include "dem/water.h"
 #include "gl/context.h"
@@ -24,9 +25,12 @@ namespace relevo::session {
 
 /// A DEM that has been read. What refers to it may be used on several threads at once.
 struct LoadedDem {
-    dem::Source source;
-    dem::Heightfield field;  ///< all posts, or means of them
+    std::shared_ptr<const dem::Source> source;  ///< never null
+    dem::Heightfield field;                     ///< all posts, or means of them
     double took_ms = 0;
+    /// Memory would hold finer ones, which are not read yet: for pictures in the meantime, and no
+    /// figure may come of `field`.
+    bool stands_in = false;
     /// For pictures alone, where holes were filled.
     struct Drawn {
         std::optional<dem::Heightfield> filled;  ///< none: as `field`
@@ -35,6 +39,7 @@ struct LoadedDem {
         std::string holes_text;                  ///< for people; empty where there are none
     };
     Drawn drawn{};
+    std::optional<dem::Pyramid> pyramid{};  ///< of to_draw(); none: a session makes its own
 
     const dem::Heightfield& to_draw() const { return drawn.filled ? *drawn.filled : field; }
     /// Words of effect::ground_words() that hold.
@@ -46,7 +51,16 @@ struct LoadedDem {
 
 /// Reads the heights of a scene's DEM, and finds what is drawn of them.
 /// @throws Error as dem::load()
-std::shared_ptr<const LoadedDem> load_dem(dem::Source source, const scene::Scene& scene);
+std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> source,
+                                          const scene::Scene& scene);
+
+/// What stands in for a large DEM with overviews while it is read (LoadedDem::stands_in), and else
+/// null. @throws Error likewise
+std::shared_ptr<const LoadedDem> load_stand_in(std::shared_ptr<const dem::Source> source,
+                                               const scene::Scene& scene);
+
+/// The ground of a DEM, in a frame about the middle of all its posts.
+render::Ground ground_of(const LoadedDem& dem);
 
 struct Options {
     std::string device = "auto";  ///< as gl::Context takes it
@@ -55,6 +69,9 @@ struct Options {
     /// The scene's DEM where it has been read already, such as for another session; else it is
     /// read.
     std::shared_ptr<const LoadedDem> dem{};
+    /// Begin with what stands in for a DEM that takes long to read, where the scene allows it:
+    /// Session::dem() says whether it does, and Session::take() brings the rest.
+    bool may_stand_in = false;
     bool radiance = false;  ///< keep linear light, for Session::radiance()
     /// Keep with each frame what audits read, for read_sun_seen().
     bool audited = false;
@@ -113,6 +130,12 @@ class Session {
     /// Whether native effects leave what they have made as it is, such as shadow maps while the sun
     /// is dragged, which cost more than the frame. The light that core finds by place never lags.
     void keep_native(bool keep);
+
+    /// Goes on with all posts of a DEM of which others stood in. The frame stays; view and moment
+    /// become those that a session opened with these posts would have.
+    /// @param given  the scene as it was opened
+    /// @throws Error as those who open; the session cannot be used then
+    void take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given);
 
     sun::Instant moment() const;
 

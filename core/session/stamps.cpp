@@ -12,6 +12,7 @@
 #include "session/graticule.h"
 #include "session/seen_ground.h"
 #include "sun/zone.h"
+#include "sun/zone_of_place.h"
 
 namespace relevo::session {
 namespace {
@@ -37,12 +38,11 @@ std::string length_text(double length_m) {
 
 class Stamper {
   public:
-    explicit Stamper(const Session& session) : session_(session), wanted_(session.scene().stamps) {
-        if (!wanted_.scale && !wanted_.north && !wanted_.graticule) return;
-        std::vector<float> depths_m;
-        session.read_depths(depths_m);
-        seen_.emplace(session.camera(), session.scene().width_px, session.scene().height_px,
-                      std::move(depths_m));
+    /// @param stamped  outlives this, but for its depths
+    Stamper(Stamped& stamped, const image::Image8& picture)
+        : of_(stamped), wanted_(stamped.scene.stamps) {
+        if (!needs_depths(wanted_)) return;
+        seen_.emplace(of_.camera, picture.width, picture.height, std::move(stamped.depths_m));
         middle_ = seen_->middle();
     }
 
@@ -50,11 +50,10 @@ class Stamper {
         chart::Stamps stamps;
         if (wanted_.legend) stamps.legends = legends;
         if (wanted_.title)
-            stamps.title =
-                wanted_.title_text.empty() ? name_of(session_.scene()) : wanted_.title_text;
+            stamps.title = wanted_.title_text.empty() ? name_of(of_.scene) : wanted_.title_text;
         if (wanted_.attribution) stamps.attribution = wanted_.attribution_text;
-        if (wanted_.date) stamps.lines.push_back(session_.clock_text());
-        if (wanted_.sun) stamps.lines.push_back("Sun: " + session_.sun_text());
+        if (wanted_.date) stamps.lines.push_back(of_.clock);
+        if (wanted_.sun) stamps.lines.push_back("Sun: " + of_.sun);
         if (!seen_) return stamps;
         if (!middle_) {
             notes_.emplace_back(
@@ -69,8 +68,8 @@ class Stamper {
     /// Draws the lines of the graticule.
     void add_graticule(image::Image8& picture, chart::Stamps& stamps) {
         if (!wanted_.graticule || !middle_) return;
-        const Graticule graticule = make_graticule(*seen_, session_.ground().frame,
-                                                   [&](const auto& p) { return is_ground(p); });
+        const Graticule graticule =
+            make_graticule(*seen_, of_.frame, [&](const auto& p) { return is_ground(p); });
         draw_lines(graticule, picture);
         stamps.graticule = graticule.labels;
         if (graticule.labels.empty())
@@ -95,7 +94,7 @@ class Stamper {
 
     std::optional<glm::dvec2> north() {
         const glm::dvec3 point = *seen_->point(middle_->x, middle_->y);
-        const geo::LocalFrame& frame = session_.ground().frame;
+        const geo::LocalFrame& frame = of_.frame;
         const geo::Geodetic place = frame.to_geodetic(point);
         const glm::dvec2 way = seen_->moved(point, frame.axes(place.lat_rad, place.lon_rad).north);
         if (length(way) >= kLeastNorth * seen_->px_per_m(seen_->depth_m(middle_->x, middle_->y)))
@@ -106,17 +105,16 @@ class Stamper {
 
     /// Walls hang below the ground's edge.
     bool is_ground(const glm::dvec3& point_m) const {
-        geo::Geodetic place = session_.ground().frame.to_geodetic(point_m);
+        geo::Geodetic place = of_.frame.to_geodetic(point_m);
         const double drawn_m = place.height_m;
-        const LoadedDem& dem = *session_.dem();
-        const glm::dvec2 post = dem.field.grid.post(place);
+        const glm::dvec2 post = of_.dem.field.grid.post(place);
         const double height_m =
-            dem.to_draw().height_at(post.x, post.y) * session_.scene().exaggeration;
-        const double depth_m = dot(point_m - session_.camera().eye_m, session_.camera().forward);
+            of_.dem.to_draw().height_at(post.x, post.y) * of_.scene.exaggeration;
+        const double depth_m = dot(point_m - of_.camera.eye_m, of_.camera.forward);
         return drawn_m >= height_m - kGround_px / seen_->px_per_m(depth_m);
     }
 
-    const Session& session_;
+    const Stamped& of_;
     const scene::Stamps& wanted_;
     std::optional<SeenGround> seen_;
     std::optional<glm::ivec2> middle_;
@@ -124,10 +122,40 @@ class Stamper {
 
 }  // namespace
 
+bool needs_depths(const scene::Stamps& wanted) {
+    return wanted.scale || wanted.north || wanted.graticule;
+}
+
+std::optional<geo::Geodetic> told_eye(const geo::LocalFrame& frame, const scene::Camera& camera,
+                                      double exaggeration) {
+    constexpr double kHighest_m = 100e3;
+    geo::Geodetic eye = frame.to_geodetic(camera.eye_m);
+    eye.height_m /= exaggeration;
+    return eye.height_m <= kHighest_m ? std::optional(eye) : std::nullopt;
+}
+
+std::string clock_text(sun::Instant utc, const std::string& zone, const geo::Geodetic& middle) {
+    const sun::ChosenZone chosen = sun::choose_zone(zone, middle);
+    const std::string iso = sun::to_iso(utc, chosen.zone);  // 2026-06-21T10:12:00+02:00
+    const std::string seconds = iso.substr(16, 3), offset = iso.substr(19);
+    return fmt::format("{} {}{} UTC{}", iso.substr(0, 10), iso.substr(11, 5),
+                       seconds == ":00" ? "" : seconds, offset == "Z" ? "" : offset);
+}
+
 std::vector<std::string> add_stamps(const Session& session,
                                     const std::vector<chart::Legend>& legends,
                                     image::Image8& picture) {
-    Stamper stamper(session);
+    const scene::Stamps& wanted = session.scene().stamps;
+    Stamped stamped{session.scene(), *session.dem(), session.ground().frame, session.camera()};
+    if (needs_depths(wanted)) session.read_depths(stamped.depths_m);
+    if (wanted.date) stamped.clock = session.clock_text();
+    if (wanted.sun) stamped.sun = session.sun_text();
+    return add_stamps(std::move(stamped), legends, picture);
+}
+
+std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Legend>& legends,
+                                    image::Image8& picture) {
+    Stamper stamper(stamped, picture);
     chart::Stamps stamps = stamper.stamps(legends);
     stamper.add_graticule(picture, stamps);
     for (const std::string& name : chart::stamp(stamps, picture))

@@ -1,9 +1,10 @@
-// make_dem IN COLUMNS ROWS OUT.tif|OUT.raw
+// make_dem IN COLUMNS ROWS OUT.tif|OUT.raw [--overviews]
 //
 // A DEM of any size from a small real one: mirrored copies side by side, so that the ground goes on
 // without a step and is as rough as the original everywhere. Benches are run on these. A .raw file
 // holds the bare heights as 32-bit floats, first row first, for programs that read no GeoTIFF.
 
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <string_view>
@@ -26,8 +27,9 @@ int mirrored(int index, int count) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc != 5) {
-        fmt::print(stderr, "usage: make_dem IN COLUMNS ROWS OUT.tif|OUT.raw\n");
+    const bool has_overviews = argc == 6 && std::string_view(argv[5]) == "--overviews";
+    if (argc != 5 && !has_overviews) {
+        fmt::print(stderr, "usage: make_dem IN COLUMNS ROWS OUT.tif|OUT.raw [--overviews]\n");
         return 2;
     }
     const relevo::dem::Heightfield source = relevo::dem::load(std::string(argv[1]));
@@ -65,6 +67,11 @@ int main(int argc, char** argv) {
                          columns, 1, GDT_Int16, 0, 0) != CE_None)
             return 1;
     }
+    const std::array<int, 5> factors{2, 4, 8, 16, 32};
+    if (has_overviews &&
+        GDALBuildOverviews(out, "AVERAGE", static_cast<int>(factors.size()), factors.data(), 0,
+                           nullptr, nullptr, nullptr) != CE_None)
+        return 1;
     GDALClose(out);
     return 0;
 }
