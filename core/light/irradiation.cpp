@@ -41,6 +41,11 @@ GroundForBeams::GroundForBeams(const DemSky& dem, const SweepWindow& part)
     });
 }
 
+GroundForBeams GroundForBeams::part(const SweepWindow& window, bool along_columns) const {
+    return GroundForBeams(east.part(window, along_columns), north.part(window, along_columns),
+                          air.part(window, along_columns), TileValues(window, 0, along_columns));
+}
+
 void GroundForBeams::turn(bool along_columns) {
     for (TileValues* const each : {&east, &north, &air, &beam_wh})
         each->turn(along_columns);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -20,6 +21,13 @@ struct GroundForBeams {
     TileValues beam_wh;  ///< so far, of a square metre of the ground
 
     GroundForBeams(const DemSky& dem, const SweepWindow& part);
+    GroundForBeams(TileValues rise_east, TileValues rise_north, TileValues of_air, TileValues given)
+        : east(std::move(rise_east)),
+          north(std::move(rise_north)),
+          air(std::move(of_air)),
+          beam_wh(std::move(given)) {}
+    /// Some of it, turned so, with nothing given so far.
+    GroundForBeams part(const SweepWindow& window, bool along_columns) const;
     void turn(bool along_columns);
 };
 

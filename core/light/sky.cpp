@@ -54,13 +54,76 @@ glm::dvec2 moved(const dem::Grid& grid, const geo::Geodetic& from, double azimut
                     grid.crs().name(), kLeastTile));
 }
 
-constexpr int kRun = 512;  // posts whose edges are looked at together
+constexpr double kNearLevel = 1e-5;  // tangent: what is over that is over level in floats, too
+constexpr int kRun = 512;            // posts whose edges are looked at together
+
+/// The edge that the smooth Earth makes: where a post sees the sun, from some post on.
+struct EarthLine {
+    float base, a_post, from, scale, lowest;
+};
+[[gnu::always_inline]] inline void add_earth_to_all(const EarthLine& line, int count,
+                                                    float* edge_m) {
+    for (int i = 0; i < count; ++i) {
+        const float t = line.base + line.a_post * (line.from + static_cast<float>(i));
+        const float earth_m = line.lowest + t * t * line.scale;
+        edge_m[i] = (t < 0) & (earth_m > edge_m[i]) ? earth_m : edge_m[i];
+    }
+}
+
+struct EdgesToMix {
+    const float *height_m, *low_edge_m;
+    float bottom_m, share;
+};
+[[gnu::always_inline]] inline void mix_all(const EdgesToMix& with, int count, float* edge_m) {
+    for (int i = 0; i < count; ++i) {
+        const float low = with.low_edge_m[i], high = edge_m[i];
+        const float between = low + (with.height_m[i] - with.bottom_m) * with.share * (high - low);
+        edge_m[i] = (low > -kInfinity) & (high > -kInfinity) ? between : low;
+    }
+}
+
+/// Both by the processor's vectors; the bits are the same for any width.
+struct Loops {
+    void (*add_earth)(const EarthLine& line, int count, float* edge_m);
+    void (*mix)(const EdgesToMix& with, int count, float* edge_m);
+};
+
+#define RELEVO_SKY_LOOPS(name, ...)                                                      \
+    __VA_ARGS__ void add_earth_##name(const EarthLine& line, int count, float* edge_m) { \
+        add_earth_to_all(line, count, edge_m);                                           \
+    }                                                                                    \
+    __VA_ARGS__ void mix_##name(const EdgesToMix& with, int count, float* edge_m) {      \
+        mix_all(with, count, edge_m);                                                    \
+    }                                                                                    \
+    constexpr Loops kLoops_##name {                                                      \
+        add_earth_##name, mix_##name                                                     \
+    }
+
+RELEVO_SKY_LOOPS(any);
+#if defined(__x86_64__)
+RELEVO_SKY_LOOPS(256, [[gnu::target("avx2")]]);
+RELEVO_SKY_LOOPS(512, [[gnu::target("avx512f")]]);
+#endif
+#undef RELEVO_SKY_LOOPS
+
+const Loops& loops() {
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f")) return kLoops_512;
+    if (__builtin_cpu_supports("avx2")) return kLoops_256;
+#endif
+    return kLoops_any;
+}
 
 /// The smooth Earth around the DEM hides a sun that is lower than level. From the reference on, so
 /// that bits do not hang on where a run begins.
 void add_earth(const SweepSun& sun, const SweepRun& run, double lowest_m, double curvature,
                float* edge_m) {
     const GridPair& middle = sun.reference;
+    const auto is_over = [&](int at) {
+        return run.along_column ? sun.tangent_at(run.line, at) > kNearLevel
+                                : sun.tangent_at(at, run.line) > kNearLevel;
+    };
+    if (is_over(run.first) && is_over(run.first + run.count)) return;
     const auto base =
                    static_cast<float>(run.along_column ? sun.tangent_at(run.line, middle.row)
                                                        : sun.tangent_at(middle.column, run.line)),
@@ -70,21 +133,14 @@ void add_earth(const SweepSun& sun, const SweepRun& run, double lowest_m, double
                    static_cast<float>(run.first - (run.along_column ? middle.row : middle.column)),
                scale = static_cast<float>(1 / (2 * curvature)),
                lowest = static_cast<float>(lowest_m);
-    for (int i = 0; i < run.count; ++i) {
-        const float t = base + a_post * (from + static_cast<float>(i));
-        const float earth_m = lowest + t * t * scale;
-        edge_m[i] = t < 0 && earth_m > edge_m[i] ? earth_m : edge_m[i];
-    }
+    loops().add_earth({base, a_post, from, scale, lowest}, run.count, edge_m);
 }
 
 /// Edges between those for the air of the lowest post and of the highest one, by a post's height.
 void mix(const SweepRun& run, const float* low_edge_m, double low_m, double span_m, float* edge_m) {
-    const auto bottom_m = static_cast<float>(low_m), share = static_cast<float>(1 / span_m);
-    for (int i = 0; i < run.count; ++i) {
-        const float low = low_edge_m[i], high = edge_m[i];
-        const float between = low + (run.height_m[i] - bottom_m) * share * (high - low);
-        edge_m[i] = low > -kInfinity && high > -kInfinity ? between : low;
-    }
+    loops().mix(
+        {run.height_m, low_edge_m, static_cast<float>(low_m), static_cast<float>(1 / span_m)},
+        run.count, edge_m);
 }
 
 /// Calls `use` with parts of a run, figures for which `fill` puts into an array of the part's
@@ -222,12 +278,12 @@ SunSky::SunSky(const DemSky& dem, const geo::Geodetic& place, const SunOverDem& 
     const double c = std::cos(sun.elevation_rad);
     direction_ = c * std::sin(sun.azimuth_rad) * axes.east +
                  c * std::cos(sun.azimuth_rad) * axes.north + std::sin(sun.elevation_rad) * axes.up;
-    along_columns_ = goes_along_columns();
+    find_way();
 }
 
 SunSky::SunSky(const DemSky& dem, double azimuth_rad)
     : dem_(dem), levels_(1), azimuth_rad_(azimuth_rad) {
-    along_columns_ = goes_along_columns();
+    find_way();
 }
 
 glm::dvec3 SunSky::direction(double column, double row) const {
@@ -237,13 +293,14 @@ glm::dvec3 SunSky::direction(double column, double row) const {
             std::sin(sun.elevation_rad)};
 }
 
-bool SunSky::goes_along_columns() const {
+void SunSky::find_way() {
     const dem::Grid& grid = dem_.grid();
     const glm::dvec2 middle((grid.columns() - 1) / 2.0, (grid.rows() - 1) / 2.0);
     const geo::Geodetic place = grid.place(middle.x, middle.y);
     const glm::dvec2 step =
         moved(grid, place, at(place).azimuth_rad, 4 * grid_spacing_m(grid)) - middle;
-    return std::abs(step.y) < std::abs(step.x);
+    along_columns_ = std::abs(step.y) < std::abs(step.x);
+    from_first_ = (along_columns_ ? step.x : step.y) < 0;
 }
 
 SunSky::Local SunSky::at(const geo::Geodetic& place) const {
@@ -408,38 +465,46 @@ void each_window(const std::vector<SweepWindow>& windows,
     });
 }
 
-void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
-               TileValues& scratch, const Sweep::Use& use) {
-    const DemSky& dem = sky.dem();
-    const SweepWindow &w = tile.window, &part_of = tile.part;
-    const SweepSun lower = sky.sun(tile, sky.first_level(), offset_rad);
-    const auto sweep_edges = [&](const SweepSun& sun, const Sweep::Use& each) {
-        sweep.each_edge(sun, part_of, each, Sweep::kMostLanes, dem.floor_m());
-    };
+TileEdges::TileEdges(const SunSky& sky, const SunTile& tile, double offset_rad)
+    : dem_(sky.dem()), suns_{sky.sun(tile, sky.first_level(), offset_rad)} {
+    const SweepWindow& w = tile.window;
     const auto is_over = [&](double column, double row) {
-        return lower.tangent_at(column, row) >= 0;
+        return suns_.front().tangent_at(column, row) >= 0;
     };
     const int right = w.column + w.columns, end = w.row + w.rows;
-    const bool over_earth = is_over(w.column, w.row) && is_over(right, w.row) &&
-                            is_over(w.column, end) && is_over(right, end);
-    const bool two = sky.levels() == 2;
-    if (over_earth && !two) return sweep_edges(lower, use);
+    over_earth_ = is_over(w.column, w.row) && is_over(right, w.row) && is_over(w.column, end) &&
+                  is_over(right, end);
+    if (sky.levels() == 2) suns_.push_back(sky.sun(tile, 1, offset_rad));
+}
+
+void TileEdges::each(const std::function<void(std::size_t, const Sweep::Use&)>& sweep,
+                     TileValues& scratch, const Sweep::Use& use) const {
+    const bool two = suns_.size() == 2;
+    if (over_earth_ && !two) return sweep(0, use);
 
     if (two)
-        sweep_edges(lower, [&](const SweepRun& run) {
-            std::copy_n(run.found, run.count, scratch.of(run));
-        });
-    const SweepSun sun = two ? sky.sun(tile, 1, offset_rad) : lower;
-    const double low_m = dem.level_height_m(0), span_m = dem.level_height_m(1) - low_m;
+        sweep(0, [&](const SweepRun& run) { std::copy_n(run.found, run.count, scratch.of(run)); });
+    const double low_m = dem_.level_height_m(0), span_m = dem_.level_height_m(1) - low_m;
     const auto fill = [&](const SweepRun& part, float* edge_m) {
         std::copy_n(part.found, part.count, edge_m);
-        add_earth(sun, part, low_m, dem.curvature(), edge_m);
+        add_earth(suns_.back(), part, low_m, dem_.curvature(), edge_m);
         if (!two) return;
         float* const other_m = scratch.of(part);
-        add_earth(lower, part, low_m, dem.curvature(), other_m);
+        add_earth(suns_.front(), part, low_m, dem_.curvature(), other_m);
         mix(part, other_m, low_m, span_m, edge_m);
     };
-    sweep_edges(sun, [&](const SweepRun& run) { each_part(run, fill, use); });
+    sweep(suns_.size() - 1, [&](const SweepRun& run) { each_part(run, fill, use); });
+}
+
+void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
+               TileValues& scratch, const Sweep::Use& use) {
+    const TileEdges edges(sky, tile, offset_rad);
+    edges.each(
+        [&](std::size_t sun, const Sweep::Use& each) {
+            sweep.each_edge(edges.suns()[sun], tile.part, each, Sweep::kMostLanes,
+                            sky.dem().floor_m());
+        },
+        scratch, use);
 }
 
 void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& tile,
@@ -458,8 +523,9 @@ void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& ti
                        [&](const SweepRun& run) { each_part(run, fill, use); });
 }
 
-TileValues::TileValues(const SweepWindow& window, float value)
+TileValues::TileValues(const SweepWindow& window, float value, bool along_columns)
     : window_(window),
+      along_columns_(along_columns),
       values_(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows),
               value) {}
 
@@ -471,6 +537,27 @@ void TileValues::turn(bool along_columns) {
     transpose(values_.data(), columns, rows, columns, turned.data(), rows);
     values_ = std::move(turned);
     along_columns_ = along_columns;
+}
+
+TileValues TileValues::part(const SweepWindow& window, bool along_columns) const {
+    TileValues part(window, 0, along_columns);
+    const SweepRun first{along_columns_,
+                         along_columns_ ? window.column : window.row,
+                         along_columns_ ? window.row : window.column,
+                         0,
+                         nullptr,
+                         nullptr};
+    const float* const from = of(first);
+    const int lines = along_columns_ ? window.columns : window.rows,
+              length = along_columns_ ? window.rows : window.columns,
+              stride = along_columns_ ? window_.rows : window_.columns;
+    if (along_columns == along_columns_)
+        for (int line = 0; line < lines; ++line)
+            std::copy_n(from + std::ptrdiff_t{line} * stride, length,
+                        part.values_.data() + std::ptrdiff_t{line} * length);
+    else
+        transpose(from, stride, lines, length, part.values_.data(), lines);
+    return part;
 }
 
 void TileValues::put(Array2d<float>& all, const SweepWindow& of) const {

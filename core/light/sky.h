@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -92,6 +93,10 @@ class SunSky {
     std::size_t first_level() const { return levels_ == 2 ? 0 : DemSky::kBetween; }
     /// How sweeps of all its tiles go, so that their posts come in one order.
     bool along_columns() const { return along_columns_; }
+    /// Whether they come from the same side, too, in the middle of the DEM.
+    bool goes_like(const SunSky& other) const {
+        return along_columns_ == other.along_columns_ && from_first_ == other.from_first_;
+    }
 
     /// The sun is under the horizon of every post.
     bool is_night() const;
@@ -121,14 +126,14 @@ class SunSky {
     };
     Local at(const geo::Geodetic& place) const;
     Local at(double column, double row) const { return at(dem_.grid().place(column, row)); }
-    bool goes_along_columns() const;
+    void find_way();
     double path_error_rad(const SunTile& tile, const glm::dvec2& post, const Local& sun) const;
 
     const DemSky& dem_;
     glm::dvec3 direction_{0};
     std::size_t levels_;
     std::optional<double> azimuth_rad_;  // instead of `direction_`
-    bool along_columns_ = false;
+    bool along_columns_ = false, from_first_ = false;
 };
 
 /// How far a tile's sun may be off where it is looked at, unless it is so high that no shadow is
@@ -165,28 +170,61 @@ SunTile tile_of(const SunSky& sky, const SweepWindow& window, const SweepWindow&
 /// A figure for each post of a window, in the order in which sweeps come to them.
 class TileValues {
   public:
-    TileValues(const SweepWindow& window, float value);
+    TileValues(const SweepWindow& window, float value, bool along_columns = false);
+    /// Some of them, turned so.
+    TileValues part(const SweepWindow& window, bool along_columns) const;
 
     /// Along columns, or along rows, which is how they begin.
     void turn(bool along_columns);
-    float* of(const SweepRun& run) {
-        const int line = run.line - (run.along_column ? window_.column : window_.row);
-        const int first = run.first - (run.along_column ? window_.row : window_.column);
-        return values_.data() +
-               std::ptrdiff_t{line} * (run.along_column ? window_.rows : window_.columns) + first;
-    }
+    float* of(const SweepRun& run) { return values_.data() + index_of(run); }
+    const float* of(const SweepRun& run) const { return values_.data() + index_of(run); }
     /// Puts them where the window is.
     /// @param of  the window that `all` has the posts of
     void put(Array2d<float>& all, const SweepWindow& of) const;
+    const SweepWindow& window() const { return window_; }
+    std::span<float> all() { return values_; }
+    /// The figures of one of the window's rows; only where they are not turned.
+    const float* row(int row) const {
+        return values_.data() + std::ptrdiff_t{row - window_.row} * window_.columns;
+    }
 
   private:
+    std::ptrdiff_t index_of(const SweepRun& run) const {
+        const int line = run.line - (run.along_column ? window_.column : window_.row);
+        const int first = run.first - (run.along_column ? window_.row : window_.column);
+        return std::ptrdiff_t{line} * (run.along_column ? window_.rows : window_.columns) + first;
+    }
+
     SweepWindow window_;
-    bool along_columns_ = false;
+    bool along_columns_;
     std::vector<float> values_;
 };
 
-/// Calls `use` with the posts of a tile's part and the edge of the shadow over each, the post's own
-/// air and the smooth Earth around the DEM considered, on several threads.
+/// The edges of shadow over a tile, the posts' own air and the smooth Earth around the DEM
+/// considered.
+class TileEdges {
+  public:
+    /// @param sky         outlives this
+    /// @param offset_rad  of the part of the disc over its centre
+    TileEdges(const SunSky& sky, const SunTile& tile, double offset_rad);
+
+    /// Those that are swept: one, or two for the air of the lowest post and of the highest one.
+    const std::vector<SweepSun>& suns() const { return suns_; }
+    /// @param sweep    calls its argument with edges of one of them, each post's once; it is called
+    ///     with one after the other
+    /// @param scratch  of a window that holds those posts, turned as the sweeps go
+    /// @param use      takes the posts and their edges
+    void each(const std::function<void(std::size_t sun, const Sweep::Use&)>& sweep,
+              TileValues& scratch, const Sweep::Use& use) const;
+
+  private:
+    const DemSky& dem_;
+    std::vector<SweepSun> suns_;
+    bool over_earth_;
+};
+
+/// Calls `use` with the posts of a tile's part and the edge of the shadow over each, on several
+/// threads.
 /// @param offset_rad  of the part of the disc over its centre
 /// @param scratch     of a window that holds that part, turned as the sun's sweeps go
 void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,

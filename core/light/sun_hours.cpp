@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <mutex>
+#include <span>
 #include <vector>
 
 #if defined(__x86_64__)
@@ -80,22 +83,31 @@ Moments moments(const DemSky& dem, sun::Instant begin, double length_s, double s
 
 // --- A few days: a sweep for every sun
 
-/// What is known of each post so far.
+/// What is known of the posts of a block so far, from the first of some suns on.
 struct PostLight {
-    TileValues margin_m, lit_h, first_h, last_h, spells, scratch;
+    TileValues margin_m, lit_h, scratch;
+    TileValues began_m, first_h, last_h, spells;  // with spells: margins at the first sun, ...
     std::optional<GroundForBeams> beams;
 
-    PostLight(const SweepWindow& window, bool with_spells)
-        : margin_m(window, -1),
-          lit_h(window, 0),
-          first_h(with_spells ? window : SweepWindow{}, kNaN),
-          last_h(with_spells ? window : SweepWindow{}, kNaN),
-          spells(with_spells ? window : SweepWindow{}, 0),
-          scratch(window, 0) {}
+    PostLight(const SweepWindow& window, bool along_columns, bool with_spells)
+        : margin_m(window, 1, along_columns),  // of what no sun's sweep has looked at
+          lit_h(window, 0, along_columns),
+          scratch(window, 0, along_columns),
+          began_m(with_spells ? window : SweepWindow{}, 0, along_columns),
+          first_h(with_spells ? window : SweepWindow{}, kNaN, along_columns),
+          last_h(with_spells ? window : SweepWindow{}, kNaN, along_columns),
+          spells(with_spells ? window : SweepWindow{}, 0, along_columns) {}
 
     void turn(bool along_columns) {
-        for (TileValues* const each : {&margin_m, &lit_h, &first_h, &last_h, &spells, &scratch})
+        for (TileValues* const each : {&margin_m, &scratch})
             each->turn(along_columns);
+        turn_figures(along_columns);
+    }
+    /// But for what serves the sweeps alone.
+    void turn_figures(bool along_columns) {
+        for (TileValues* const each : {&lit_h, &began_m, &first_h, &last_h, &spells})
+            each->turn(along_columns);
+        if (spells.window().columns > 0) margin_m.turn(along_columns);
         if (beams) beams->turn(along_columns);
     }
 };
@@ -195,11 +207,11 @@ void add_light(const Light& light, int count) {
     add_light_to_all(light, count);
 }
 
-/// Posts that are lit: light comes, or goes.
-void add_lit(const SweepRun& run, double at_h, bool comes, const float* margin_m, float* lit_h) {
-    const auto when_h = static_cast<float>(comes ? -at_h : at_h);
-    for (int i = 0; i < run.count; ++i)
-        if (margin_m[i] >= 0) lit_h[i] += when_h;
+/// Posts that are lit at the last moment: what they have had of it so far.
+void add_lit(double at_h, std::span<const float> margin_m, std::span<float> lit_h) {
+    const auto when_h = static_cast<float>(at_h);
+    for (std::size_t i = 0; i < lit_h.size(); ++i)
+        lit_h[i] += margin_m[i] >= 0 ? when_h : 0;
 }
 
 /// Where light comes or goes between two moments. Call before add_light().
@@ -234,6 +246,146 @@ void add_end(const SweepRun& run, double at_h, bool is_first, PostLight& posts) 
     }
 }
 
+/// Suns one after the other, whose light is summed up together: those of one series are swept
+/// alike. The last one is the first of the next series, unless night is between.
+struct Series {
+    std::size_t first, last;
+};
+
+/// The sums of all series, which come in any order and from several threads: whole numbers, so that
+/// the order changes no bit.
+class Totals {
+  public:
+    /// @param result  whose figures are not there yet
+    Totals(const SweepWindow& part, const std::vector<double>& at_h, SunHours& result)
+        : part_(part), at_h_(at_h), result_(result), lit_(part.columns, part.rows, 0) {
+        if (result.beam_kwh.size() > 0) beam_ = Array2d<std::int32_t>(part.columns, part.rows, 0);
+        if (result.spells.size() == 0) return;
+        for (float& spells : result.spells)
+            spells = 0;
+        for (auto* const each : {&ended_, &began_})
+            each->resize(at_h.size());
+    }
+
+    void add(const Series& series, PostLight& posts) {
+        posts.turn_figures(false);
+        const bool spells = !began_.empty();
+        if (spells) {
+            const std::lock_guard lock(bits_mutex_);
+            for (std::vector<std::uint8_t>* const bits :
+                 {&began_[series.first], &ended_[series.last]})
+                bits->resize(bytes_of_row() * static_cast<std::size_t>(part_.rows), 0);
+        }
+        each_chunk(posts.lit_h.window(), [&](int row, int column, int count) {
+            const int from = column - posts.lit_h.window().column;
+            add_whole(posts.lit_h.row(row) + from, kTicksOfHour, lit_, row, column, count);
+            if (posts.beams)
+                add_whole(posts.beams->beam_wh.row(row) + from, kTicksOfWh, beam_, row, column,
+                          count);
+            if (!spells) return;
+            add_spells(posts, from, row, column, count);
+            set_bits(posts.began_m.row(row) + from, began_[series.first], row, column, count);
+            set_bits(posts.margin_m.row(row) + from, ended_[series.last], row, column, count);
+        });
+    }
+
+    /// To be called once all is added.
+    void finish() {
+        for (std::size_t i = 0; i < lit_.size(); ++i)
+            result_.hours.data()[i] = static_cast<float>(lit_.data()[i]) / kTicksOfHour;
+        for (std::size_t i = 0; i < beam_.size(); ++i)
+            result_.beam_kwh.data()[i] = static_cast<float>(beam_.data()[i]) / kTicksOfWh;
+        for (std::size_t k = 0; k < began_.size(); ++k)
+            if (!began_[k].empty() && !ended_[k].empty()) join(k);
+    }
+
+  private:
+    static constexpr float kTicksOfHour = 1 << 24;  // 4 days are 1.6e9
+    static constexpr float kTicksOfWh = 1 << 13;    // 4 days are less than 1e9
+
+    /// Calls `use` with rows of posts, which no other thread looks at meanwhile.
+    template <typename Use>
+    void each_chunk(const SweepWindow& w, const Use& use) {
+        constexpr int kRows = 64, kColumns = 256;
+        const int end_row = w.row + w.rows, end = w.column + w.columns;
+        for (int row = w.row, next_row = 0; row < end_row; row = next_row) {
+            const int down = (row - part_.row) / kRows;
+            next_row = std::min(end_row, part_.row + (down + 1) * kRows);
+            for (int column = w.column, next = 0; column < end; column = next) {
+                const int across = (column - part_.column) / kColumns;
+                next = std::min(end, part_.column + (across + 1) * kColumns);
+                const std::lock_guard lock(
+                    mutexes_[static_cast<std::size_t>(down * 7 + across) % mutexes_.size()]);
+                for (int at = row; at < next_row; ++at)
+                    use(at, column, next - column);
+            }
+        }
+    }
+
+    void add_whole(const float* from, float ticks, Array2d<std::int32_t>& sums, int row, int column,
+                   int count) const {
+        std::int32_t* const to = &sums.at(column - part_.column, row - part_.row);
+        for (int i = 0; i < count; ++i)
+            to[i] += static_cast<std::int32_t>(from[i] * ticks + std::copysign(0.5F, from[i]));
+    }
+
+    void add_spells(const PostLight& posts, int from, int row, int column, int count) const {
+        const float *const first_h = posts.first_h.row(row) + from,
+                           *const last_h = posts.last_h.row(row) + from,
+                           *const spells = posts.spells.row(row) + from;
+        for (int i = 0; i < count; ++i) {
+            const int x = column - part_.column + i, y = row - part_.row;
+            note(first_h[i], last_h[i], spells[i], x, y);
+        }
+    }
+
+    void note(float first_h, float last_h, float spells, int x, int y) const {
+        float &first = result_.first_h.at(x, y), &last = result_.last_h.at(x, y);
+        if (!(first <= first_h) && first_h == first_h) first = first_h;
+        if (!(last >= last_h) && last_h == last_h) last = last_h;
+        result_.spells.at(x, y) += spells;
+    }
+
+    std::size_t bytes_of_row() const { return static_cast<std::size_t>(part_.columns + 7) / 8; }
+
+    void set_bits(const float* margin_m, std::vector<std::uint8_t>& bits, int row, int column,
+                  int count) const {
+        std::uint8_t* const to =
+            bits.data() + bytes_of_row() * static_cast<std::size_t>(row - part_.row);
+        for (int i = 0; i < count; ++i) {
+            const auto at = static_cast<std::size_t>(column - part_.column + i);
+            if (margin_m[i] >= 0) to[at / 8] |= static_cast<std::uint8_t>(1U << at % 8);
+        }
+    }
+
+    /// Posts that a series leaves lit and the next one finds in the shade at the same moment, or
+    /// the other way: the two divide the DEM otherwise, or go over it another way.
+    void join(std::size_t k) {
+        const auto when_h = static_cast<float>(at_h_[k]);
+        for (int y = 0; y < part_.rows; ++y)
+            for (std::size_t byte = 0; byte < bytes_of_row(); ++byte) {
+                const std::size_t i = bytes_of_row() * static_cast<std::size_t>(y) + byte;
+                const unsigned differ = began_[k][i] ^ ended_[k][i];
+                for (unsigned left = differ; left != 0; left &= left - 1) {
+                    const int bit = __builtin_ctz(left), x = static_cast<int>(8 * byte) + bit;
+                    if (began_[k][i] >> bit & 1U)
+                        note(when_h, kNaN, 1, x, y);
+                    else
+                        note(kNaN, when_h, 0, x, y);
+                }
+            }
+    }
+
+    SweepWindow part_;
+    const std::vector<double>& at_h_;
+    SunHours& result_;
+    Array2d<std::int32_t> lit_, beam_;
+    std::array<std::mutex, 61> mutexes_;
+    std::mutex bits_mutex_;
+    /// With spells, of moments at which a series ends, or begins: a bit for each lit post.
+    std::vector<std::vector<std::uint8_t>> ended_, began_;
+};
+
 class FewDays {
   public:
     FewDays(const DemSky& dem, const Sweep& sweep, const Moments& moments,
@@ -248,71 +400,196 @@ class FewDays {
             skies_.emplace_back(dem, sun);
         for (const SunSky& sky : skies_)
             night_.push_back(sky.is_night());
+        for (const double at_s : moments.at_s)
+            at_h_.push_back(at_s / kHour_s);
     }
 
     void light(SunHours& result, const std::function<void(double)>& done) const {
-        const double all = std::max<double>(
-            1, static_cast<double>(std::count(night_.begin(), night_.end(), false)));
-        PostLight posts(part_, spells_);
-        if (irradiation_) posts.beams.emplace(dem_, part_);
-        std::vector<SweepWindow> windows;
-        for (std::size_t k = 0; k < skies_.size(); ++k) {
-            if (night_[k]) continue;
-            if (k == 0 || night_[k - 1] || k % kTogether == 0) windows = windows_from(k);
-            result.windows = std::max(result.windows, static_cast<int>(windows.size()));
-            posts.turn(skies_[k].along_columns());
-            each_window(windows, [&](const SweepWindow& window) { add(window, k, posts); });
-            if (done) done(1 / all);
-        }
-        posts.lit_h.put(result.hours, part_);
-        if (irradiation_) posts.beams->beam_wh.put(result.beam_kwh, part_);
-        if (!spells_) return;
-        posts.first_h.put(result.first_h, part_);
-        posts.last_h.put(result.last_h, part_);
-        posts.spells.put(result.spells, part_);
+        std::optional<GroundForBeams> ground;
+        if (irradiation_) ground.emplace(dem_, part_);
+        const std::vector<Work> works = all_works(result);
+        double all = 0;
+        for (const Work& work : works)
+            all += work.size();
+        Totals totals(part_, at_h_, result);
+        std::mutex mutex;
+        std::atomic<std::size_t> next = 0;
+        std::atomic<bool> stopped = false;
+        parallel_for(0, thread_count(), 1, [&](int, int) {
+            for (std::size_t i = next++; i < works.size() && !stopped; i = next++) {
+                light_part(works[i], ground, totals);
+                const std::lock_guard lock(mutex);
+                if (!done || stopped) continue;
+                try {
+                    done(works[i].size() / all);
+                } catch (...) {
+                    stopped = true;
+                    throw;
+                }
+            }
+        });
+        totals.finish();
     }
 
   private:
-    static constexpr std::size_t kTogether = 8;  // suns for which the DEM is divided alike
+    static constexpr std::size_t kTogether = 16;  // steps from sun to sun
+    static constexpr int kWidest = 2048;          // posts across which suns are swept together
 
-    std::vector<SweepWindow> windows_from(std::size_t k) const {
-        std::vector<SunSky> suns{skies_[k]};
-        std::size_t last = k;
-        while (last + 1 < skies_.size() && !night_[last + 1] && (last + 1) % kTogether != 0)
-            ++last;
-        if (last > k) suns.push_back(skies_[last]);
-        return divide(suns, whole(dem_.grid()), part_);
+    /// Suns over a part of a window that is theirs.
+    struct Work {
+        Series series;
+        SweepWindow window, part;
+
+        double size() const {
+            return double(series.last - series.first + 1) * part.columns * part.rows;
+        }
+    };
+
+    /// One of the suns of a series over a tile.
+    struct TileSun {
+        std::size_t k;
+        TileEdges edges;
+        std::optional<SunBeam> beam;  // since the moment before
+    };
+
+    std::vector<Series> all_series() const {
+        std::vector<Series> all;
+        const auto is_day = [&](std::size_t k) { return k < night_.size() && !night_[k]; };
+        for (std::size_t k = 0; k < skies_.size(); ++k) {
+            if (night_[k]) continue;
+            std::size_t last = k;
+            while (is_day(last + 1) && last - k < kTogether &&
+                   skies_[last].goes_like(skies_[last + 1]))
+                ++last;
+            if (last == k && is_day(k + 1)) ++last;  // two that go otherwise
+            all.push_back({k, last});
+            if (is_day(last + 1))
+                k = last - 1;
+            else
+                k = last;
+        }
+        return all;
     }
 
-    void add(const SweepWindow& window, std::size_t k, PostLight& posts) const {
-        const SunTile tile = tile_of(skies_[k], window, part_);
-        // A night leaves all posts in the shade.
-        const bool is_first = k == 0 || night_[k - 1],
-                   is_last = k + 1 == skies_.size() || night_[k + 1];
-        const double now_h = moments_.at_s[k] / kHour_s;
-        const Step step{k == 0 ? 0 : moments_.at_s[k - 1] / kHour_s,
-                        k == 0 ? 0 : (moments_.at_s[k] - moments_.at_s[k - 1]) / kHour_s};
-        std::optional<SunBeam> beam;
-        if (irradiation_ && !is_first) {
-            const SunOverDem& middle = moments_.middles[k - 1];
-            const SunSky sky(dem_, middle);
-            beam.emplace(sky, tile, ClearSky(irradiation_->linke, moments_.distances_au[k - 1]),
-                         step.hours);
+    /// Parts of a window, no wider across the way of sweeps than they are to be.
+    static std::vector<SweepWindow> parts_of(const SweepWindow& window, bool along_columns) {
+        const int size = along_columns ? window.rows : window.columns;
+        const int count = (size + kWidest - 1) / kWidest;
+        std::vector<SweepWindow> parts;
+        for (int i = 0; i < count; ++i) {
+            const int from = static_cast<int>(std::int64_t{size} * i / count),
+                      to = static_cast<int>(std::int64_t{size} * (i + 1) / count);
+            parts.push_back(
+                along_columns
+                    ? SweepWindow{window.column, window.row + from, window.columns, to - from}
+                    : SweepWindow{window.column + from, window.row, to - from, window.rows});
         }
-        each_edge(skies_[k], sweep_, tile, 0, posts.scratch, [&](const SweepRun& run) {
+        return parts;
+    }
+
+    std::vector<Work> all_works(SunHours& result) const {
+        const std::vector<Series> all = all_series();
+        std::vector<std::vector<SweepWindow>> windows(all.size());
+        parallel_for(0, static_cast<int>(all.size()), 1, [&](int begin, int end) {
+            for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                const auto& [first, last] = all[i];
+                windows[i] = divide({skies_[first], skies_[last]}, whole(dem_.grid()), part_);
+            }
+        });
+        std::vector<Work> works;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            result.windows = std::max(result.windows, static_cast<int>(windows[i].size()));
+            for (const SweepWindow& window : windows[i])
+                for (const SweepWindow& part :
+                     parts_of(common(window, part_), skies_[all[i].first].along_columns()))
+                    works.push_back({all[i], window, part});
+        }
+        return works;
+    }
+
+    TileSun tile_sun(const Work& work, std::size_t k) const {
+        const SunTile tile = tile_of(skies_[k], work.window, work.part);
+        TileSun sun{k, TileEdges(skies_[k], tile, 0), std::nullopt};
+        if (irradiation_ && k > work.series.first) {
+            const SunSky sky(dem_, moments_.middles[k - 1]);
+            sun.beam.emplace(sky, tile, ClearSky(irradiation_->linke, moments_.distances_au[k - 1]),
+                             at_h_[k] - at_h_[k - 1]);
+        }
+        return sun;
+    }
+
+    void light_part(const Work& work, const std::optional<GroundForBeams>& ground,
+                    Totals& totals) const {
+        std::vector<TileSun> suns;
+        std::vector<Sweep::Blocks::Sun> sweeps;
+        for (std::size_t k = work.series.first; k <= work.series.last; ++k) {
+            suns.push_back(tile_sun(work, k));
+            sweeps.push_back(
+                {suns.back().edges.suns(), irradiation_ || k == 0 || k + 1 == skies_.size()});
+        }
+        const auto light_of = [&](const SweepWindow& window) {
+            const bool along_columns = skies_[work.series.first].along_columns();
+            PostLight posts(window, along_columns, spells_);
+            if (ground) posts.beams = ground->part(window, along_columns);
+            return posts;
+        };
+        if (Sweep::Blocks::go_together(sweeps)) {
+            Sweep::Blocks blocks(sweep_, sweeps, work.part, dem_.floor_m(), dem_.curvature());
+            while (const std::optional<SweepWindow> block = blocks.next()) {
+                PostLight posts = light_of(*block);
+                blocks.each_dark([&](const SweepRun& run) {
+                    for (TileValues* const each : {&posts.margin_m, &posts.began_m})
+                        if (spells_ || each == &posts.margin_m)
+                            std::fill_n(each->of(run), run.count, -1.0F);
+                });
+                for (const TileSun& sun : suns)
+                    add(work.series, sun, posts, [&](std::size_t i, const Sweep::Use& use) {
+                        blocks.each_edge(sun.k - work.series.first, i, use);
+                    });
+                finish(work.series, posts, totals);
+            }
+            return;
+        }
+        PostLight posts = light_of(work.part);
+        for (const TileSun& sun : suns) {
+            posts.turn(skies_[sun.k].along_columns());
+            add(work.series, sun, posts, [&](std::size_t i, const Sweep::Use& use) {
+                sweep_.each_edge(sun.edges.suns()[i], work.part, use, Sweep::kMostLanes,
+                                 dem_.floor_m());
+            });
+        }
+        finish(work.series, posts, totals);
+    }
+
+    /// What is lit at the last sun has had light until then.
+    void finish(const Series& series, PostLight& posts, Totals& totals) const {
+        add_lit(at_h_[series.last] - at_h_[series.first], posts.margin_m.all(), posts.lit_h.all());
+        totals.add(series, posts);
+    }
+
+    /// A sun over all posts of `posts`, whose edges `sweep` has. A series counts light from its
+    /// first sun to its last.
+    void add(const Series& series, const TileSun& sun, PostLight& posts,
+             const std::function<void(std::size_t, const Sweep::Use&)>& sweep) const {
+        const std::size_t k = sun.k;
+        const bool is_first = k == series.first;
+        const double begin_h = at_h_[series.first], now_h = at_h_[k];
+        const Step step{is_first ? now_h : at_h_[k - 1], is_first ? 0 : now_h - at_h_[k - 1]};
+        sun.edges.each(sweep, posts.scratch, [&](const SweepRun& run) {
             float *const margin_m = posts.margin_m.of(run), *const lit_h = posts.lit_h.of(run);
             if (is_first) {
                 measure(run, margin_m);
-                add_lit(run, now_h, true, margin_m, lit_h);
+                if (spells_) std::copy_n(margin_m, run.count, posts.began_m.of(run));
                 if (spells_ && k == 0) add_end(run, 0, true, posts);
             } else {
                 if (spells_) add_spells(run, step, posts);
-                if (beam && beam->given.back() > 0) add_beam(run, *beam, margin_m, *posts.beams);
-                add_light({static_cast<float>(step.from_h), static_cast<float>(step.hours),
-                           run.height_m, run.found, margin_m, lit_h},
-                          run.count);
+                if (sun.beam && sun.beam->given.back() > 0)
+                    add_beam(run, *sun.beam, margin_m, *posts.beams);
+                add_light(
+                    {static_cast<float>(step.from_h - begin_h), static_cast<float>(step.hours),
+                     run.height_m, run.found, margin_m, lit_h},
+                    run.count);
             }
-            if (is_last) add_lit(run, now_h, false, margin_m, lit_h);
             if (spells_ && k + 1 == skies_.size()) add_end(run, now_h, false, posts);
         });
     }
@@ -325,6 +602,7 @@ class FewDays {
     SweepWindow part_;
     std::vector<SunSky> skies_;
     std::vector<bool> night_;
+    std::vector<double> at_h_;
 };
 
 // --- Many days: a horizon for every direction, and how long the sun stood over what height there
@@ -626,7 +904,10 @@ void sum_up(const PartHeights& heights, const SweepWindow& part, SunHours& resul
             float& hours = result.hours.at(column, row);
             if (std::isnan(heights.at(part.column + column, part.row + row))) {
                 hours = kNaN;
-                if (result.spells.size() > 0) result.spells.at(column, row) = kNaN;
+                if (result.spells.size() > 0)
+                    for (Array2d<float>* const each :
+                         {&result.spells, &result.first_h, &result.last_h})
+                        each->at(column, row) = kNaN;
                 ++result.holes;
                 continue;
             }

@@ -7,10 +7,12 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "light/shade_cells.h"
 
 namespace relevo::light {
 namespace {
@@ -32,6 +34,7 @@ constexpr double kOnLine = 1e-6;       // of a post: a ray that meets a row ther
 constexpr int kStripLines = 1023;      // which a thread sweeps together: its rows stay in the cache
 constexpr int kFanLines = 63;          // likewise, where each line has a fan
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr ColumnRange kAllColumns{-(1 << 28), 1 << 28};
 
 /// Numbers of floats are filled up to whole vectors.
 constexpr int in_vectors(int count) {
@@ -401,14 +404,6 @@ struct Sheet {
     int columns, rows;
 };
 
-/// Lines at a row. Line i is the ray through the reference, which is a post, moved by i columns.
-struct RowPlan {
-    double distance_m = 0;  // from the reference towards the sun
-    double shift = 0;       // column of line 0
-    double fall = 0;        // of line 0, from the row of the reference on
-    double ramp = 0;        // likewise, more for each line
-};
-
 /// The rows that matter to a window, and all that is the same for their posts.
 class Plan {
   public:
@@ -424,6 +419,8 @@ class Plan {
     int begin() const { return begin_; }
     int end() const { return begin_ + static_cast<int>(rows_.size()); }
     const RowPlan& row(int row) const { return rows_[static_cast<std::size_t>(row - begin_)]; }
+    std::span<const RowPlan> rows() const { return rows_; }
+    int width() const { return sheet_.columns; }
 
     /// Lines never turn back over the columns that they came from.
     bool is_monotonic() const {
@@ -565,6 +562,14 @@ struct Steps {
     std::vector<Row> rows;  // from `begin` on
     int begin = 0;
     int ground_columns = 0;  // that terms of a line have at most
+    int first_row = 0;       // of the window: none before has terms of posts
+    Nearness nearness;
+
+    /// All but terms.
+    Steps(const Plan& plan, const SweepWindow& window, const Nearness& of);
+    /// The terms of a row, or of all, unless they are there.
+    void add_terms(const Plan& plan, int row);
+    void add_all_terms(const Plan& plan);
 
     const Row& row(int row) const { return rows[static_cast<std::size_t>(row - begin)]; }
     /// How far line 0 has come from the row of the reference on, where tangents are 1.
@@ -591,11 +596,10 @@ void set_lines(const Plan& plan, const SweepWindow& window, Steps& steps) {
         reached = plan.reached(row, reached);
         const int next = std::max(row, window.row);
         const auto near = over(next), far = over(std::max(next, reached));
-        int on_first = all.second, on_end = all.first;
-        for (std::size_t k = step.lines[0]; k < step.posts(); ++k) {
-            on_first = std::min(on_first, steps.terms[k].begin);
-            on_end = std::max(on_end, steps.terms[k].end);
-        }
+        // Lines that have ground there, or a few more.
+        const auto [least, most] = plan.columns(std::max(row - 1, plan.begin()), row + 1);
+        const int on_first = -static_cast<int>(std::ceil(most)) - 1,
+                  on_end = plan.width() - static_cast<int>(std::floor(least));
         step.first_line = std::max(std::min(near.first, far.first), on_first);
         step.end_line = std::min(std::max(near.second, far.second), on_end);
     }
@@ -613,44 +617,52 @@ void set_ground(const Plan& plan, Steps& steps) {
     }
 }
 
-Steps steps_of(const Plan& plan, const SweepWindow& window, const Nearness& nearness) {
-    const int first_row = window.row, end_row = window.row + window.rows;
-    Steps steps;
-    steps.begin = plan.begin();
-    const std::size_t rows = static_cast<std::size_t>(end_row - plan.begin());
-    steps.rows.reserve(rows);
-    steps.terms.reserve(rows * 2 *
-                        (nearness.line_sets + static_cast<std::size_t>(nearness.near_rows)));
-    for (int row = plan.begin(); row < end_row; ++row) {
-        Steps::Row step;
+Steps::Steps(const Plan& plan, const SweepWindow& window, const Nearness& of)
+    : begin(plan.begin()), first_row(window.row), nearness(of) {
+    rows.reserve(static_cast<std::size_t>(plan.end() - plan.begin()));
+    for (int row = plan.begin(); row < plan.end(); ++row) {
+        Row step;
         const RowPlan& here = plan.row(row);
         step.fallen = here.fall;
         step.ramp = here.ramp;
-        for (std::size_t set = 0; set < kMostLineSets; ++set) {
-            step.lines[set] = steps.terms.size();
-            if (set >= nearness.line_sets) continue;
-            const double offset = double(set) / double(nearness.line_sets);
-            steps.terms.push_back(plan.row_term(row, here.shift + offset, here));
-            if (row > plan.begin()) plan.add_column_terms(row, offset, here, steps.terms);
-        }
-        step.posts() = steps.terms.size();
         step.column = static_cast<int>(std::ceil(here.shift - kOnLine));
         const double between = std::max(0.0, step.column - here.shift);
         step.between = static_cast<float>(between < kOnLine ? 0 : between);
-        for (int at = row - 1;
-             row >= first_row && at >= std::max(row - nearness.near_rows, plan.begin()); --at) {
-            steps.terms.push_back(plan.row_term(at, plan.row(at).shift + between, here));
-            plan.add_column_terms(at + 1, between, here, steps.terms);
-        }
-        step.end = steps.terms.size();
         const float at = step.between * static_cast<float>(nearness.line_sets);
         step.far_set = static_cast<int>(at);
         step.far_part = at - static_cast<float>(step.far_set);
-        steps.rows.push_back(step);
+        rows.push_back(step);
     }
-    set_lines(plan, window, steps);
-    set_ground(plan, steps);
-    return steps;
+    set_lines(plan, window, *this);
+    set_ground(plan, *this);
+}
+
+void Steps::add_terms(const Plan& plan, int row) {
+    Row& step = rows[static_cast<std::size_t>(row - begin)];
+    if (step.end > 0) return;
+    const RowPlan& here = plan.row(row);
+    for (std::size_t set = 0; set < kMostLineSets; ++set) {
+        step.lines[set] = terms.size();
+        if (set >= nearness.line_sets) continue;
+        const double offset = double(set) / double(nearness.line_sets);
+        terms.push_back(plan.row_term(row, here.shift + offset, here));
+        if (row > plan.begin()) plan.add_column_terms(row, offset, here, terms);
+    }
+    step.posts() = terms.size();
+    const double between = std::max(0.0, step.column - here.shift);
+    for (int at = row - 1;
+         row >= first_row && at >= std::max(row - nearness.near_rows, plan.begin()); --at) {
+        terms.push_back(plan.row_term(at, plan.row(at).shift + between, here));
+        plan.add_column_terms(at + 1, between, here, terms);
+    }
+    step.end = terms.size();
+}
+
+void Steps::add_all_terms(const Plan& plan) {
+    terms.reserve(rows.size() * 2 *
+                  (nearness.line_sets + static_cast<std::size_t>(nearness.near_rows)));
+    for (int row = plan.begin(); row < plan.end(); ++row)
+        add_terms(plan, row);
 }
 
 /// The last rows of ground under lines next to each other: those that posts look back over, and the
@@ -672,27 +684,37 @@ class GroundRows {
         return in_vectors(lines + steps.ground_columns);
     }
 
-    /// @param sheet  that has the row where it looks for it
-    /// @param copy   puts so many heights from one place into another, the first on that column
+    /// @param sheet   that has the row where it looks for it
+    /// @param wanted  columns; what is kept of others is of no use
+    /// @param copy    puts so many heights from one place into another, the first on that column
     template <typename Copy>
-    void take(const Sheet& sheet, int row, const Copy& copy) {
-        const int first = first_of(row);
-        const int from = std::max(0, first), to = std::min(sheet.columns, first + width_);
-        float* const out = begin_of(row);
+    void take(const Sheet& sheet, int row, const ColumnRange& wanted, const Copy& copy) {
+        const int first = std::max(first_of(row), wanted.begin),
+                  end = std::min(first_of(row) + width_, wanted.end);
+        if (first >= end) return;
+        const int from = std::max(0, first), to = std::min(sheet.columns, end);
+        float* const out = begin_of(row) + (first - first_of(row));
         bool& is_empty = empty_[static_cast<std::size_t>(row & (kept_ - 1))];
         if (from >= to) {
-            if (!std::exchange(is_empty, true)) std::fill_n(out, width_, kNaN);
+            if (end - first < width_ || !std::exchange(is_empty, true))
+                std::fill_n(out, end - first, kNaN);
             return;
         }
         is_empty = false;
         std::fill_n(out, from - first, kNaN);
         copy(sheet.first + row * sheet.stride + from, to - from, out + (from - first), from);
-        std::fill_n(out + (to - first), first + width_ - to, kNaN);
+        std::fill_n(out + (to - first), end - to, kNaN);
+    }
+
+    /// A row is the next one from now on.
+    void come_to(int row) {
+        columns_[static_cast<std::size_t>(row & (kept_ - 1))] =
+            begin_of(row) - steps_.row(row).ground_column - line_;
     }
 
     /// @param line  of the first post that is looked at
     const float* at(int row, int column, int line) const {
-        return height_m_.data() + (row & (kept_ - 1)) * pitch_ + (column + line - first_of(row));
+        return columns_[static_cast<std::size_t>(row & (kept_ - 1))] + column + line;
     }
     Ground at(const Term& term, int line) const {
         return {at(term.row, term.column, line),
@@ -712,6 +734,7 @@ class GroundRows {
     int width_;
     std::ptrdiff_t pitch_;
     std::array<bool, 16> empty_{};
+    std::array<const float*, 16> columns_{};  // where column 0 of each row would be
     std::vector<float> height_m_;
 };
 
@@ -760,12 +783,20 @@ class Strip {
 
     /// Where its ground is, from now on.
     Sheet& sheet() { return sheet_; }
+    /// The columns of ground that it takes of a row, if the sheet has them.
+    int first_ground(int row) const { return rows_.first_of(row); }
+    int end_ground(int row) const { return rows_.first_of(row) + rows_.width(); }
 
-    /// The ground of the next row.
-    void take(int row) {
+    /// A row is the next one from now on.
+    void come_to(int row) {
         rebase(row);
+        rows_.come_to(row);
+    }
+
+    /// The ground of the row that it has come to.
+    void take(int row, const ColumnRange& wanted = kAllColumns) {
         const Steps::Row& step = steps_.row(row);
-        rows_.take(sheet_, row, [&](const float* from, int count, float* to, int column) {
+        rows_.take(sheet_, row, wanted, [&](const float* from, int count, float* to, int column) {
             kernel_.tilt({.from = from,
                           .to = to,
                           .lines = count,
@@ -778,10 +809,14 @@ class Strip {
     }
 
     /// Lines go to the next row.
-    void advance(int row) {
+    /// @param over  columns of that row; others are not raised
+    void advance(int row, const ColumnRange& over = kAllColumns) {
         const Steps::Row& step = steps_.row(row);
-        const int from = std::max(line_, step.first_line) - line_,
-                  to = std::min(line_ + width_ + 1, step.end_line) - line_;
+        // A line is on the column of its post there, or on the one before it.
+        const int first_line = std::max(step.first_line, over.begin - step.column),
+                  end_line = std::min(step.end_line, over.end - step.column + 1);
+        const int from = std::max(line_, first_line) - line_,
+                  to = std::min(line_ + width_ + 1, end_line) - line_;
         if (from >= to) return;
         const int first = from / Sweep::kMostLanes * Sweep::kMostLanes;
         for (std::size_t set = 0; set < kNearness.line_sets; ++set) {
@@ -899,8 +934,9 @@ class FanStrip {
     }
 
     Sheet& sheet() { return sheet_; }
+    void come_to(int row) { rows_.come_to(row); }
     void take(int row) {
-        rows_.take(sheet_, row, [](const float* from, int count, float* to, int) {
+        rows_.take(sheet_, row, kAllColumns, [](const float* from, int count, float* to, int) {
             std::copy_n(from, count, to);
         });
     }
@@ -1018,6 +1054,8 @@ struct Extent {
         }
     }
 };
+
+constexpr int kBlockRows = 16;  // of Sweep::Blocks
 
 /// Rows that ground is read for together, and those before them.
 constexpr int kReadRows = 256, kRowsBefore = 2;
@@ -1157,6 +1195,13 @@ const float* Sweep::transposed() const {
     return transposed_.data();
 }
 
+const ShadeCells& Sweep::cells() const {
+    std::call_once(cells_once_, [&] {
+        cells_ = std::make_shared<const ShadeCells>(height_m_, columns_, rows_, stride_);
+    });
+    return *cells_;
+}
+
 Sweep::Sweep(Read read, int columns, int rows, float lowest_m, float highest_m)
     : read_(std::move(read)),
       columns_(columns),
@@ -1225,6 +1270,19 @@ Sweep::View Sweep::view(const SweepSun& given, const SweepWindow& window) const 
     return view;
 }
 
+Sweep::View Sweep::edge_view(const SweepSun& given, const SweepWindow& window) const {
+    View view = this->view(given, window);
+    if (!(std::abs(view.sun.tangent) < kSteepest)) {
+        view.sun.tangent = std::copysign(kSteepest, view.sun.tangent);
+        view.sun.tangent_a_post = {};
+    }
+    return view;
+}
+
+double Sweep::drop_m(float floor_m) const {
+    return std::max(0.0, double{highest_m_} - (floor_m > kNoFloor_m ? floor_m : lowest_m_));
+}
+
 /// Strips of one width, as many for every thread.
 static int width_of_strips(int lines, int most) {
     const int threads = std::min(thread_count(), std::max(1, lines / (4 * Sweep::kMostLanes)));
@@ -1242,7 +1300,8 @@ void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look
     const SweepWindow& w = view.window;
     Sheet& sheet = view.sheet;
     const Plan plan(sheet, view.sun, w, drop_m);
-    const Steps steps = steps_of(plan, w, OneStrip::kNearness);
+    Steps steps(plan, w, OneStrip::kNearness);
+    steps.add_all_terms(plan);
     const Extent extent(steps, w);
     const int lines = extent.end_line - extent.first_line;
     const int width = width_of_strips(lines, OneStrip::kMostWidth);
@@ -1277,6 +1336,7 @@ void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look
                     if (column < end_column)
                         view.read(read_, strip->sheet(), first, last, column, end_column, buffer);
                 }
+                strip->come_to(row);
                 strip->take(row);
                 if (const int at = row - OneStrip::kNearness.near_rows - 1; at >= steps.begin)
                     strip->advance(at);
@@ -1288,18 +1348,11 @@ void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look
 
 void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Use& use, int lanes,
                       float floor_m) const {
-    View view = this->view(given, window);
-    SweepSun& sun = view.sun;
-    if (!(std::abs(sun.tangent) < kSteepest)) {
-        sun.tangent = std::copysign(kSteepest, sun.tangent);
-        sun.tangent_a_post = {};
-    }
+    View view = edge_view(given, window);
     const SweepWindow& w = view.window;
-    const double drop_m =
-        std::max(0.0, double{highest_m_} - (floor_m > kNoFloor_m ? floor_m : lowest_m_));
     const Kernel& kernel = widest_kernel(lanes);
     sweep_strips<Strip>(
-        view, drop_m,
+        view, drop_m(floor_m),
         [&](const Steps& steps, int line, int width) {
             return std::make_unique<Strip>(view.sheet, steps, kernel, line, width, lowest_m_,
                                            floor_m);
@@ -1336,6 +1389,194 @@ void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
                        [&](int column, int count, const float* tangent) {
                            use(view.run(strip.sheet(), row, column, count, tangent));
                        });
+        });
+}
+
+/// A sun whose sweep goes on from block to block.
+struct Sweep::Blocks::OneSun {
+    View view;
+    Plan plan;
+    Steps steps;
+    std::vector<std::unique_ptr<Strip>> strips;
+    OneSun(const Sweep& sweep, const View& of, float floor_m)
+        : view(of),
+          plan(view.sheet, view.sun, view.window, sweep.drop_m(floor_m)),
+          steps(plan, view.window, Strip::kNearness) {
+        const Extent extent(steps, view.window);
+        const int lines = extent.end_line - extent.first_line;
+        const int count = (lines + Strip::kMostWidth - 1) / Strip::kMostWidth;
+        const int width =
+            std::min(in_vectors((lines + count - 1) / count + 1) - 1, Strip::kMostWidth);
+        for (int line = extent.first_line; line < extent.end_line; line += width)
+            strips.push_back(std::make_unique<Strip>(view.sheet, steps, widest_kernel(kMostLanes),
+                                                     line, width, sweep.lowest_m_, floor_m));
+    }
+    OneSun(const OneSun&) = delete;
+    OneSun& operator=(const OneSun&) = delete;
+
+    CellSheet cell_sheet(const ShadeCells& of) const {
+        return {of, view.along_columns, view.mirrored, view.sheet.rows};
+    }
+
+    /// A strip comes to a row.
+    void step(const Moment& moment, Strip& strip, int row);
+};
+
+/// The suns of a moment, and what of the ground matters to them.
+struct Sweep::Blocks::Moment {
+    std::vector<std::unique_ptr<OneSun>> suns;
+    std::optional<CellSheet> cells;
+    std::optional<ShadeRanges> ranges;  // none: everywhere
+
+    template <typename Use>
+    void each_range(ShadeRanges::Of of, int row, const Use& use) const {
+        if (!ranges) return use(kAllColumns);
+        for (const ColumnRange& range : ranges->at(of, cells->row_of(row)))
+            use(range);
+    }
+};
+
+void Sweep::Blocks::OneSun::step(const Moment& moment, Strip& strip, int row) {
+    strip.come_to(row);
+    moment.each_range(ShadeRanges::kTake, row,
+                      [&](const ColumnRange& range) { strip.take(row, range); });
+    const int at = row - Strip::kNearness.near_rows - 1;
+    if (at < steps.begin) return;
+    moment.each_range(ShadeRanges::kRaise, at, [&](const ColumnRange& range) {
+        steps.add_terms(plan, at);
+        strip.advance(at, range);
+    });
+}
+
+bool Sweep::Blocks::go_together(const std::vector<Sun>& suns) {
+    const auto way = [](const SweepSun& sun) {
+        return std::pair(sun.along_columns(),
+                         (sun.along_columns() ? sun.towards.column : sun.towards.row) > 0);
+    };
+    for (const Sun& moment : suns)
+        for (const SweepSun& sun : moment.suns)
+            if (way(sun) != way(suns.front().suns.front())) return false;
+    return true;
+}
+
+Sweep::Blocks::Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const SweepWindow& window,
+                      float floor_m, double earth_curvature)
+    : sweep_(sweep) {
+    assert(!suns.empty() && go_together(suns));
+    row_ = std::numeric_limits<int>::max();
+    for (const Sun& of : suns) {
+        moments_.push_back(std::make_unique<Moment>());
+        for (const SweepSun& sun : of.suns) {
+            suns_.push_back(moments_.back()
+                                ->suns
+                                .emplace_back(std::make_unique<OneSun>(
+                                    sweep, sweep.edge_view(sun, window), floor_m))
+                                .get());
+            row_ = std::min(row_, suns_.back()->steps.begin);
+        }
+    }
+    end_row_ = row_;
+    if (!sweep.read_) leave_out(suns, earth_curvature);
+}
+
+Sweep::Blocks::~Blocks() = default;
+
+void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvature) {
+    std::vector<std::optional<ShadedCells>> shaded(suns.size());
+    for (std::size_t k = 0; k < suns.size(); ++k) {
+        if (suns[k].all_posts) continue;
+        Moment& moment = *moments_[k];
+        const View& view = moment.suns.front()->view;
+        moment.cells.emplace(
+            CellSheet{sweep_.cells(), view.along_columns, view.mirrored, view.sheet.rows});
+        for (const auto& sun : moment.suns) {
+            const ShadedCells found(*moment.cells, sun->view.sun, sun->plan.rows(),
+                                    sun->plan.begin(),
+                                    EarthAround{sweep_.lowest_m_, earth_curvature});
+            if (shaded[k])
+                shaded[k]->join(found);
+            else
+                shaded[k] = found;
+        }
+    }
+    for (std::size_t k = 0; k < suns.size(); ++k) {
+        const bool is_first = k == 0, is_last = k + 1 == suns.size();
+        if (!shaded[k] || (!is_first && !shaded[k - 1]) || (!is_last && !shaded[k + 1])) continue;
+        if (shaded[k]->is_mixed()) continue;
+        moments_[k]->ranges =
+            shade_ranges(*moments_[k]->cells, is_first ? nullptr : &*shaded[k - 1], *shaded[k],
+                         is_last ? nullptr : &*shaded[k + 1]);
+    }
+}
+
+/// Ground of rows for all suns, where it is not in memory.
+void Sweep::Blocks::read(int row, int end_row) {
+    Sheet sheet = suns_.front()->view.sheet;
+    int column = sheet.columns, end_column = 0;
+    for (const auto& sun : suns_)
+        for (int at = std::max(row, sun->steps.begin); at < end_row; ++at) {
+            column = std::min(column, sun->strips.front()->first_ground(at));
+            end_column = std::max(end_column, sun->strips.back()->end_ground(at));
+        }
+    column = std::max(column, 0), end_column = std::min(end_column, sheet.columns);
+    if (column >= end_column) return;
+    sheet.stride = end_column - column;
+    suns_.front()->view.read(sweep_.read_, sheet, row, end_row, column, end_column, buffer_);
+    for (const auto& sun : suns_)
+        for (const auto& strip : sun->strips)
+            strip->sheet() = sheet;
+}
+
+std::optional<SweepWindow> Sweep::Blocks::next() {
+    const View& view = suns_.front()->view;
+    const SweepWindow& w = view.window;
+    const int end = w.row + w.rows;
+    for (row_ = end_row_; row_ < end; row_ = end_row_) {
+        end_row_ = std::min(row_ + kBlockRows, row_ < w.row ? w.row : end);
+        if (sweep_.read_) read(row_, end_row_);
+        if (row_ >= w.row) {
+            const int line = view.mirrored ? view.sheet.rows - end_row_ : row_;
+            return view.along_columns ? SweepWindow{line, w.column, end_row_ - row_, w.columns}
+                                      : SweepWindow{w.column, line, w.columns, end_row_ - row_};
+        }
+        for (const auto& moment : moments_)
+            for (const auto& sun : moment->suns)
+                for (const auto& strip : sun->strips)
+                    for (int row = std::max(row_, sun->steps.begin); row < end_row_; ++row)
+                        sun->step(*moment, *strip, row);
+    }
+    return std::nullopt;
+}
+
+void Sweep::Blocks::each_edge(std::size_t index, std::size_t of_moment, const Use& use) {
+    const Moment& moment = *moments_[index];
+    OneSun& sun = *moment.suns[of_moment];
+    const SweepWindow& w = sun.view.window;
+    for (const auto& strip : sun.strips)
+        for (int row = row_; row < end_row_; ++row) {
+            sun.step(moment, *strip, row);
+            moment.each_range(ShadeRanges::kLook, row, [&](const ColumnRange& range) {
+                sun.steps.add_terms(sun.plan, row);
+                strip->look(row, std::max(w.column, range.begin),
+                            std::min(w.column + w.columns, range.end),
+                            [&](int column, int count, const float* edge_m) {
+                                use(sun.view.run(strip->sheet(), row, column, count, edge_m));
+                            });
+            });
+        }
+}
+
+void Sweep::Blocks::each_dark(const Use& use) const {
+    const Moment& moment = *moments_.front();
+    if (!moment.ranges) return;
+    const View& view = moment.suns.front()->view;
+    const SweepWindow& w = view.window;
+    for (int row = row_; row < end_row_; ++row)
+        moment.each_range(ShadeRanges::kDark, row, [&](const ColumnRange& range) {
+            const int from = std::max(w.column, range.begin),
+                      to = std::min(w.column + w.columns, range.end);
+            const int line = view.mirrored ? view.sheet.rows - 1 - row : row;
+            if (from < to) use({view.along_columns, line, from, to - from, nullptr, nullptr});
         });
 }
 

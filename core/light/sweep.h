@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -11,6 +12,8 @@
 /// The shadows that ground casts, for every post of a grid at once. This file and its source need
 /// nothing else of the project but base/parallel_for.h.
 namespace relevo::light {
+
+class ShadeCells;
 
 /// A figure for each way over a grid: along a row, from column to column, and along a column.
 struct GridPair {
@@ -137,6 +140,8 @@ class Sweep {
     void each_horizon(const SweepSun& way, double curvature, double reach_m,
                       const SweepWindow& window, const Use& use, int lanes = kMostLanes) const;
 
+    class Blocks;
+
     static constexpr int kMostLanes = 16;
     static constexpr float kNoFloor_m = -std::numeric_limits<float>::infinity();
 
@@ -146,7 +151,10 @@ class Sweep {
   private:
     struct View;
     View view(const SweepSun& sun, const SweepWindow& window) const;
+    View edge_view(const SweepSun& sun, const SweepWindow& window) const;
+    double drop_m(float floor_m) const;  // that matters of what rays fall by
     const float* transposed() const;
+    const ShadeCells& cells() const;
     template <typename OneStrip, typename Make, typename Look>
     void sweep_strips(View& view, double drop_m, const Make& make, const Look& look) const;
 
@@ -155,8 +163,57 @@ class Sweep {
     int columns_, rows_;
     std::ptrdiff_t stride_ = 0;
     float lowest_m_, highest_m_;
-    mutable std::once_flag once_;
-    mutable std::vector<float> transposed_;  // made for the first sun that needs it
+    mutable std::once_flag once_, cells_once_;
+    mutable std::vector<float> transposed_;            // made for the first sun that needs it
+    mutable std::shared_ptr<const ShadeCells> cells_;  // likewise
+};
+
+/// The edges of several suns over a window, block by block: some rows (or columns) of it for one
+/// sun after the other, then the next ones, so that the ground and what is kept of its posts stays
+/// in the processor's cache. They are those of Sweep::each_edge(), to the bit. For one thread.
+class Sweep::Blocks {
+  public:
+    /// A moment: one sun, or several of which each is taken for some posts.
+    struct Sun {
+        std::vector<SweepSun> suns;
+        /// Else those posts may be left out which are lit, or in the shade, by all that is known
+        /// before they are looked at, now and at the moments before and after.
+        bool all_posts = true;
+    };
+    /// @param suns     one after the other in time, that go_together()
+    /// @param floor_m  as Sweep::each_edge() has it
+    /// @param earth_curvature  of the smooth Earth around the grid, as high as the lowest post: it
+    ///     hides suns that are lower than level. Edges do not have it; where all_posts is not asked
+    ///     for, those that are under its own may be lower still
+    Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const SweepWindow& window,
+           float floor_m, double earth_curvature);
+    ~Blocks();
+    Blocks(const Blocks&) = delete;
+    Blocks& operator=(const Blocks&) = delete;
+
+    /// Whether all go along rows, or all along columns, and come from one side.
+    static bool go_together(const std::vector<Sun>& suns);
+
+    /// The next block of the window; none where all are done.
+    std::optional<SweepWindow> next();
+    /// To be called once for each sun of each moment in each block; `use` as Sweep::each_edge() has
+    /// it, along columns or rows as the suns go.
+    void each_edge(std::size_t moment, std::size_t sun, const Use& use);
+    /// Posts of a block that are in the shade at the first moment, others among them which are
+    /// looked at then: what is left out else is lit. Runs have neither heights nor edges.
+    void each_dark(const Use& use) const;
+
+  private:
+    struct OneSun;
+    struct Moment;
+    void leave_out(const std::vector<Sun>& suns, double earth_curvature);
+    void read(int row, int end_row);
+
+    const Sweep& sweep_;
+    std::vector<std::unique_ptr<Moment>> moments_;
+    std::vector<OneSun*> suns_;  // of all moments
+    std::vector<float> buffer_;
+    int row_, end_row_;  // of the block, as the suns go
 };
 
 /// Rows for columns.

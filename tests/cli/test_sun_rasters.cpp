@@ -1,13 +1,20 @@
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <random>
+#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
 #include <gdal_priv.h>
+#include <sched.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "base/units.h"
 #include "cli/program.h"
@@ -33,6 +40,11 @@ std::filesystem::path folder() {
 }
 std::string out(const std::string& name) {
     return (folder() / name).string();
+}
+
+std::string bytes_of(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
 }
 
 /// A plain at the equator in UTM with a wall of 100 m, which has a hole, along the column 60.
@@ -385,6 +397,133 @@ TEST(SunRasters, WhatMeansNothingIsRefused) {
     EXPECT_EQ(odd.err.find("holes"), std::string::npos) << "said before any work: " << odd.err;
     EXPECT_TRUE(odd.err.find("--co: GDAL's COG driver says: ") != std::string::npos) << odd.err;
     EXPECT_FALSE(std::filesystem::exists(out("x.tif")));
+}
+
+/// The verbs that write a raster, each with what it cannot do without.
+const std::vector<std::vector<std::string>> kRasterVerbs{{"hours", "--date", "2026-03-20"},
+                                                         {"shadow", "--sun", "135,20"},
+                                                         {"sky-view"},
+                                                         {"horizons", "--directions", "8"}};
+
+std::vector<std::string> verb_to(const std::vector<std::string>& verb, const std::string& dem,
+                                 const std::string& output) {
+    std::vector<std::string> arguments{"-q", "sun", verb.front(), dem};
+    arguments.insert(arguments.end(), verb.begin() + 1, verb.end());
+    arguments.insert(arguments.end(), {"-o", output});
+    return arguments;
+}
+
+std::vector<std::string> names_in(const std::filesystem::path& where) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(where))
+        names.push_back(entry.path().filename().string());
+    return names;
+}
+
+TEST(SunRasters, NeverReplaceTheirDem) {
+    const std::string dem = walled(), before = bytes_of(dem);
+    for (const std::vector<std::string>& verb : kRasterVerbs) {
+        std::vector<std::string> arguments = verb_to(verb, dem, dem);
+        arguments.emplace_back("--overwrite");
+        expect_failure(arguments, 3,
+                       fmt::format("-o: {0}: is the DEM {0}, which would be lost; give the result "
+                                   "another name",
+                                   dem));
+    }
+    EXPECT_EQ(bytes_of(dem), before);
+}
+
+TEST(SunRasters, NeedAFolderThatCanBeWritten) {
+    const std::string dem = walled();
+    const std::filesystem::path none = folder() / "none";
+    for (const std::vector<std::string>& verb : kRasterVerbs)
+        expect_failure(verb_to(verb, dem, (none / "a.tif").string()), 3,
+                       fmt::format("-o: {}: the folder {} does not exist; make it first",
+                                   (none / "a.tif").string(), none.string()));
+    // A file system that takes no files, from root neither.
+    for (const std::vector<std::string>& verb : kRasterVerbs)
+        expect_failure(verb_to(verb, dem, "/proc/a.tif"), 1,
+                       "-o: /proc/a.tif: cannot be written, No such file or directory");
+}
+
+TEST(SunRasters, OnAFullDiskAreErrorsThatLeaveNothing) {
+    const std::filesystem::path where = scratch_dir("sun_rasters_full");
+    const std::string output = (where / "a.tif").string(), dem = walled();
+    for (const std::vector<std::string>& verb : kRasterVerbs) {
+        std::vector<std::string> words{"-c", "ulimit -f 8; exec \"$0\" \"$@\"",
+                                       (build_dir() / "bin/relevo").string()};
+        const std::vector<std::string> arguments = verb_to(verb, dem, output);
+        words.insert(words.end(), arguments.begin(), arguments.end());
+        const Result result = run("/bin/sh", words);
+        EXPECT_EQ(result.status, 1) << verb.front();
+        EXPECT_TRUE(result.err.ends_with(
+            fmt::format("relevo: error: -o: {}: cannot be written, File too large\n", output)))
+            << result.err;
+        EXPECT_TRUE(names_in(where).empty()) << verb.front();
+    }
+}
+
+TEST(SunHours, OneThreadAndManyGiveTheSameBytes) {
+    cpu_set_t all, one;
+    ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+    if (CPU_COUNT(&all) < 2) GTEST_SKIP() << "not run: needs two processors";
+    const auto day = [&](const std::string& name) {
+        const Result run =
+            relevo({"-q", "sun", "hours", bundled_dem(), "--date", "2026-05-20", "--bands",
+                    "hours,first,last,spells,beam", "-o", out(name), "--overwrite"});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return bytes_of(out(name));
+    };
+    const std::string many = day("many.tif");
+    CPU_ZERO(&one);
+    for (int k = 0; k < CPU_SETSIZE && CPU_COUNT(&one) == 0; ++k)
+        if (CPU_ISSET(k, &all)) CPU_SET(k, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    const std::string single = day("one.tif");
+    ASSERT_EQ(sched_setaffinity(0, sizeof all, &all), 0);
+    EXPECT_FALSE(many.empty());
+    EXPECT_TRUE(many == single);
+}
+
+TEST(SunHours, KilledAtAnyMomentAreWholeOrNotThere) {
+    const std::filesystem::path where = scratch_dir("sun_hours_killed");
+    const std::string output = (where / "day.tif").string();
+    const std::vector<std::string> verb =
+        verb_to({"hours", "--date", "2026-03-20"}, bundled_dem(), output);
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_EQ(relevo(verb).status, 0);
+    const std::chrono::duration<double> whole_s = std::chrono::steady_clock::now() - begin;
+    const std::string whole = bytes_of(output);
+    std::filesystem::remove(output);
+    std::mt19937 lot(7);
+    int killed = 0;
+    for (int i = 0; i < 8; ++i) {
+        const pid_t child = fork();
+        if (child == 0) {
+            std::vector<char*> words{const_cast<char*>("relevo")};
+            for (const std::string& word : verb)
+                words.push_back(const_cast<char*>(word.c_str()));
+            words.push_back(nullptr);
+            execv((build_dir() / "bin/relevo").c_str(), words.data());
+            _exit(127);
+        }
+        // In the middle of the work, and once it writes.
+        const double share = 0.3 + 0.7 * std::uniform_real_distribution<>()(lot);
+        std::this_thread::sleep_for(whole_s * share);
+        kill(child, SIGKILL);
+        int status = 0;
+        waitpid(child, &status, 0);
+        killed += WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+        for (const std::string& name : names_in(where)) {
+            EXPECT_EQ(name, "day.tif");
+            EXPECT_TRUE(bytes_of(output) == whole);
+        }
+        std::filesystem::remove(output);
+    }
+    EXPECT_GT(killed, 0);
+    ASSERT_EQ(relevo(verb).status, 0);
+    EXPECT_EQ(names_in(where), std::vector<std::string>{"day.tif"});
+    EXPECT_TRUE(bytes_of(output) == whole);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <mutex>
 #include <vector>
 
 #include <fmt/format.h>
@@ -360,6 +361,114 @@ TEST(Sweep, HoldsTheSameBitsForAnyWidthOfVectorsAndAnyWindow) {
                 ASSERT_EQ(part.at(column, row), expected) << column << " " << row;
             }
     }
+}
+
+constexpr double kCurvature = 0.87 / 6371000;
+
+/// Suns one after the other, block by block, against each by itself.
+struct Together {
+    const Heights& heights;
+    SweepWindow window;
+    std::vector<SweepSun> suns;
+    bool all_posts;
+    long looked_at = 0, left_lit = 0, left_dark = 0;
+
+    /// Where a post is in arrays of the window.
+    std::size_t index(const SweepRun& run, int i) const {
+        const int column = run.along_column ? run.line : run.first + i,
+                  row = run.along_column ? run.first + i : run.line;
+        return static_cast<std::size_t>(row - window.row) *
+                   static_cast<std::size_t>(window.columns) +
+               static_cast<std::size_t>(column - window.column);
+    }
+    std::size_t posts() const {
+        return static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows);
+    }
+
+    void compare() {
+        const Sweep sweep(heights.data(), heights.width(), heights.height(), heights.width());
+        const float floor_m = sweep.lowest_m() - 300;
+        std::mutex mutex;
+        std::vector<Sweep::Blocks::Sun> moments;
+        for (const SweepSun& sun : suns)
+            moments.push_back({{sun}, all_posts});
+        ASSERT_TRUE(Sweep::Blocks::go_together(moments));
+        std::vector<std::vector<float>> found(suns.size(), std::vector<float>(posts(), kHole));
+        std::vector<bool> dark(posts());
+        Sweep::Blocks blocks(sweep, moments, window, floor_m, kCurvature);
+        while (blocks.next()) {
+            blocks.each_dark([&](const SweepRun& run) {
+                for (int i = 0; i < run.count; ++i)
+                    dark[index(run, i)] = true;
+            });
+            for (std::size_t k = 0; k < suns.size(); ++k)
+                blocks.each_edge(k, 0, [&](const SweepRun& run) {
+                    for (int i = 0; i < run.count; ++i)
+                        found[k][index(run, i)] = run.found[i];
+                });
+        }
+        for (std::size_t k = 0; k < suns.size(); ++k)
+            sweep.each_edge(
+                suns[k], window,
+                [&](const SweepRun& run) {
+                    const std::lock_guard lock(mutex);
+                    for (int i = 0; i < run.count; ++i)
+                        compare_post(run, i, found[k][index(run, i)], dark, suns[k],
+                                     sweep.lowest_m());
+                },
+                Sweep::kMostLanes, floor_m);
+    }
+
+    /// @param dark  posts that have been in the shade so far
+    void compare_post(const SweepRun& run, int i, float found, std::vector<bool>& dark,
+                      const SweepSun& sun, float lowest_m) {
+        const float edge_m = run.found[i], height_m = run.height_m[i];
+        const std::size_t at = index(run, i);
+        const double t = run.along_column ? sun.tangent_at(run.line, run.first + i)
+                                          : sun.tangent_at(run.first + i, run.line);
+        const double earth_m = t < 0 ? lowest_m + t * t / (2 * kCurvature) : kNone;
+        const bool is_dark = height_m < edge_m || height_m < earth_m;
+        if (!std::isnan(found)) {
+            ++looked_at;
+            // What the Earth hides anyway may be seen lower.
+            if (found != edge_m && std::max(found, edge_m) > earth_m - 0.1)
+                ADD_FAILURE() << run.line << " " << run.first + i;
+            dark[at] = is_dark;
+            return;
+        }
+        ++(dark[at] ? left_dark : left_lit);
+        if (!std::isnan(height_m) && dark[at] != is_dark)
+            ADD_FAILURE() << "left out and taken for " << (dark[at] ? "dark" : "lit");
+    }
+};
+
+TEST(Sweep, BlocksHaveTheBitsOfEachSunAndLeaveOutWhatIsKnown) {
+    Heights heights = test::bundled("jacksboro.tif").height_m;
+    for (int row = 100; row < 120; ++row)
+        heights.at(150, row) = kHole;
+    const SweepWindow whole{0, 0, heights.width(), heights.height()}, part{37, 101, 201, 99};
+    for (const double azimuth_deg : {20.0, 100.0, 200.0, 290.0, 359.0})
+        for (const double elevation_deg : {-1.2, 3.0, 12.0, 30.0, 60.0}) {
+            std::vector<SweepSun> suns;
+            for (int k = 0; k < 6; ++k)
+                suns.push_back(
+                    MapSun{azimuth_deg + 0.3 * k, elevation_deg + 0.2 * k, {75, 92}, kCurvature}
+                        .over(heights));
+            for (const SweepWindow& window : {whole, part}) {
+                Together all{heights, window, suns, true}, some{heights, window, suns, false};
+                all.compare();
+                EXPECT_EQ(all.left_lit + all.left_dark, 0);
+                some.compare();
+                const auto posts = static_cast<double>(some.posts() * suns.size());
+                if (elevation_deg == 60) {
+                    EXPECT_GT(some.left_lit / posts, 0.8) << azimuth_deg;
+                } else if (elevation_deg < 0) {
+                    EXPECT_GT(some.left_dark / posts, 0.2) << azimuth_deg;
+                }
+                EXPECT_FALSE(testing::Test::HasFailure()) << azimuth_deg << " " << elevation_deg;
+                if (testing::Test::HasFailure()) return;
+            }
+        }
 }
 
 TEST(Sweep, HolesNeitherShadeNorSpoilWhatIsBesideThem) {

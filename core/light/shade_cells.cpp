@@ -1,0 +1,369 @@
+#include "light/shade_cells.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel_for.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kPosts = ShadeCells::kPosts;
+constexpr double kSlack_m = 0.1;    // more than bounds of what rays fall by, and floats, are off
+constexpr double kSlack_posts = 2;  // as far as posts look beside them for lines
+
+using Flags = std::vector<unsigned char>;
+
+/// The highest of some lines of posts, by its lowest post; minus infinity where none is whole.
+/// @param step, count, next  from post to post of a line, how many, and from line to line
+float ridge_of(const float* first, std::ptrdiff_t step, int count, std::ptrdiff_t next, int lines) {
+    float ridge_m = -kInfinity;
+    for (int line = 0; line < lines; ++line) {
+        float least = kInfinity;
+        for (int i = 0; i < count; ++i) {
+            const float h = first[line * next + i * step];
+            least = h >= least ? least : h;  // a hole stays
+            if (h != h) least = -kInfinity;
+        }
+        ridge_m = std::max(ridge_m, least);
+    }
+    return ridge_m;
+}
+
+/// Rows and columns of a cell and of the ones beside, as far as those are whole.
+void find_ridges(const float* height_m, int columns, int rows, std::ptrdiff_t stride, int column,
+                 int row, ShadeCells::Cell& cell) {
+    if (column + kPosts > columns || row + kPosts > rows) return;
+    for (const int after : {0, 1}) {
+        const int first = column - (after == 0 ? kPosts : 2),
+                  first_row = row - (after == 0 ? kPosts : 2);
+        constexpr int kCount = 2 * kPosts + 2;
+        if (first >= 0 && first + kCount <= columns)
+            cell.row_ridge_m[after] =
+                ridge_of(height_m + row * stride + first, 1, kCount, stride, kPosts);
+        if (first_row >= 0 && first_row + kCount <= rows)
+            cell.column_ridge_m[after] =
+                ridge_of(height_m + first_row * stride + column, stride, kCount, 1, kPosts);
+    }
+}
+
+ShadeCells::Cell cell_of(const float* height_m, int columns, int rows, std::ptrdiff_t stride,
+                         int first_column, int first_row) {
+    ShadeCells::Cell cell{kInfinity,
+                          -kInfinity,
+                          {-kInfinity, -kInfinity, -kInfinity, -kInfinity},
+                          {-kInfinity, -kInfinity},
+                          {-kInfinity, -kInfinity}};
+    const int from = first_column - 1, end = first_column + kPosts + 1;
+    const int from_row = first_row - 1, last_row = first_row + kPosts + 1;
+    bool has_hole = false;
+    for (int row = std::max(0, from_row); row < std::min(rows, last_row); ++row)
+        for (int column = std::max(0, from); column < std::min(columns, end); ++column) {
+            const float* const at = height_m + row * stride + column;
+            has_hole = has_hole || *at != *at;
+            cell.lowest_m = *at < cell.lowest_m ? *at : cell.lowest_m;
+            cell.highest_m = *at > cell.highest_m ? *at : cell.highest_m;
+            if (row + 1 < std::min(rows, last_row)) {
+                const float down = at[0] - at[stride];
+                cell.down_m[0] = std::max(cell.down_m[0], down);
+                cell.down_m[1] = std::max(cell.down_m[1], -down);
+            }
+            if (column + 1 < std::min(columns, end)) {
+                const float down = at[0] - at[1];
+                cell.down_m[2] = std::max(cell.down_m[2], down);
+                cell.down_m[3] = std::max(cell.down_m[3], -down);
+            }
+        }
+    if (has_hole) {
+        cell.lowest_m = -kInfinity;
+        std::fill(std::begin(cell.down_m), std::end(cell.down_m), kInfinity);
+    }
+    find_ridges(height_m, columns, rows, stride, first_column, first_row, cell);
+    return cell;
+}
+
+/// What rays have fallen by over a row of cells.
+class RowOfRays {
+  public:
+    RowOfRays(const CellSheet& sheet, std::span<const RowPlan> plan, int begin, int row) {
+        const int end = begin + static_cast<int>(plan.size());
+        const int first = std::clamp(sheet.first_row(row) - 1, begin, end - 1),
+                  last = std::clamp(sheet.end_row(row), begin, end - 1);
+        ends_[0] = plan[static_cast<std::size_t>(first - begin)];
+        ends_[1] = plan[static_cast<std::size_t>(last - begin)];
+        for (int at = first + 1; at <= last; ++at) {
+            const RowPlan &a = plan[static_cast<std::size_t>(at - 1 - begin)],
+                          &b = plan[static_cast<std::size_t>(at - begin)];
+            const double aside = b.shift - a.shift;
+            least_aside_ = at == first + 1 ? aside : std::min(least_aside_, aside);
+            most_aside_ = at == first + 1 ? aside : std::max(most_aside_, aside);
+            for (const double line : {0.0 - a.shift, sheet.columns() * kPosts - a.shift}) {
+                const double fall = b.fall - a.fall + (b.ramp - a.ramp) * line;
+                least_fall_m_ = std::min(least_fall_m_, fall);
+            }
+        }
+    }
+
+    /// Ground goes down more steeply somewhere.
+    bool is_source(const CellSheet& sheet, const ShadeCells::Cell& cell) const {
+        const double down =
+            std::max(sheet.down_m(cell, least_aside_), sheet.down_m(cell, most_aside_));
+        return !(down < least_fall_m_ - kSlack_m / kPosts);
+    }
+
+    /// Of rays over a column of cells, from the row of the reference on.
+    double least_fall_m(int column) const { return fall_m(column, false) - kSlack_m; }
+    double most_fall_m(int column) const { return fall_m(column, true) + kSlack_m; }
+
+    /// Columns that lines go aside by, over the row.
+    double aside() const { return ends_[1].shift - ends_[0].shift; }
+
+    /// Columns of cells whose lines come over one while they go over the row.
+    ColumnRange from(int column, int columns) const {
+        const double low = column * kPosts - std::max(aside(), 0.0) - kSlack_posts,
+                     high = (column + 1) * kPosts - std::min(aside(), 0.0) + kSlack_posts;
+        return {std::max(0, static_cast<int>(std::floor(low / kPosts))),
+                std::min(columns, static_cast<int>(std::floor(high / kPosts)) + 1)};
+    }
+
+  private:
+    double fall_m(int column, bool most) const {
+        double found = most ? -kInfinity : kInfinity;
+        for (const RowPlan& end : ends_)
+            for (const double at : {column * kPosts - 1.0, (column + 1) * kPosts + 1.0}) {
+                const double fall = end.fall + end.ramp * (at - end.shift);
+                found = most ? std::max(found, fall) : std::min(found, fall);
+            }
+        return found;
+    }
+
+    RowPlan ends_[2];
+    double least_aside_ = 0, most_aside_ = 0, least_fall_m_ = kInfinity;
+};
+
+/// Flags and those so many columns beside.
+Flags beside(const unsigned char* flags, int columns, int reach) {
+    Flags wide(static_cast<std::size_t>(columns), 0);
+    for (int column = 0; column < columns; ++column)
+        if (flags[column])
+            for (int at = std::max(0, column - reach); at < std::min(columns, column + reach + 1);
+                 ++at)
+                wide[static_cast<std::size_t>(at)] = 1;
+    return wide;
+}
+
+/// Sets what lies between flags that are not far apart: there is less work in some posts than in
+/// going about them.
+void fill_gaps(unsigned char* flags, int columns) {
+    constexpr int kGap = 4;
+    for (int column = 0, last = -kGap - 1; column < columns; ++column) {
+        if (!flags[column]) continue;
+        if (column - last <= kGap) std::fill(flags + std::max(last, 0), flags + column, 1);
+        last = column;
+    }
+}
+
+std::vector<ColumnRange> ranges_of(const Flags& flags) {
+    constexpr int kFar = 1 << 28;
+    const int columns = static_cast<int>(flags.size());
+    std::vector<ColumnRange> ranges;
+    for (int column = 0; column < columns; ++column) {
+        if (!flags[static_cast<std::size_t>(column)]) continue;
+        const int first = column;
+        while (column + 1 < columns && flags[static_cast<std::size_t>(column) + 1])
+            ++column;
+        ranges.push_back({first == 0 ? -kFar : first * kPosts,
+                          column + 1 == columns ? kFar : (column + 1) * kPosts});
+    }
+    return ranges;
+}
+
+void add(const Flags& more, unsigned char* flags) {
+    for (std::size_t i = 0; i < more.size(); ++i)
+        flags[i] |= more[i];
+}
+
+}  // namespace
+
+ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdiff_t stride)
+    : columns_((columns + kPosts - 1) / kPosts), rows_((rows + kPosts - 1) / kPosts) {
+    cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    parallel_for(0, rows_, 4, [&](int first, int last) {
+        for (int row = first; row < last; ++row)
+            for (int column = 0; column < columns_; ++column)
+                cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                       static_cast<std::size_t>(column)] =
+                    cell_of(height_m, columns, rows, stride, column * kPosts, row * kPosts);
+    });
+}
+
+namespace {
+
+/// The edge that the smooth Earth makes over a cell, at least and at most.
+struct EarthEdge {
+    double least_m = -kInfinity, most_m = -kInfinity;
+
+    EarthEdge(const CellSheet& sheet, const SweepSun& sun, int column, int row,
+              const std::optional<EarthAround>& earth) {
+        if (!earth) return;
+        double least = kInfinity, most = -kInfinity;
+        for (const double y : {sheet.first_row(row) - 1.0, sheet.end_row(row) + 1.0})
+            for (const double x : {column * kPosts - 1.0, (column + 1) * kPosts + 1.0}) {
+                least = std::min(least, sun.tangent_at(x, y));
+                most = std::max(most, sun.tangent_at(x, y));
+            }
+        const auto edge_m = [&](double tangent) {
+            return earth->lowest_m + tangent * tangent / (2 * earth->curvature);
+        };
+        if (most < 0) least_m = edge_m(most) - kSlack_m;
+        if (least < 0) most_m = edge_m(least) + kSlack_m;
+    }
+};
+
+/// How high lines are where they leave the cells of a row, their fall added: at most, for what may
+/// hide anything, and at least.
+class Carried {
+  public:
+    explicit Carried(std::size_t columns)
+        : most_(columns, -kInfinity),
+          least_(columns, -kInfinity),
+          next_(most_),
+          next_least_(most_),
+          over_(most_) {}
+
+    /// The states of a row of cells, lines coming from the one before it.
+    void go_over(const CellSheet& sheet, const SweepSun& sun, int row, const RowOfRays& rays,
+                 const std::optional<EarthAround>& earth, const unsigned char* sources,
+                 unsigned char* states) {
+        const int columns = sheet.columns();
+        const bool after = rays.aside() < 0;
+        const bool narrow = std::abs(rays.aside()) <= kPosts + 1;
+        for (int column = 0; column < columns; ++column) {
+            const auto i = static_cast<std::size_t>(column);
+            over_[i] = most_[i];
+            if (sources[i])
+                over_[i] =
+                    std::max(over_[i], sheet.at(column, row).highest_m + rays.most_fall_m(column));
+        }
+        for (int column = 0; column < columns; ++column) {
+            const auto i = static_cast<std::size_t>(column);
+            const ShadeCells::Cell& cell = sheet.at(column, row);
+            const ColumnRange from = rays.from(column, columns);
+            double most = -kInfinity, least = kInfinity;
+            for (int k = from.begin; k < from.end; ++k) {
+                const auto at = static_cast<std::size_t>(k);
+                most = std::max(most, over_[at]);
+                least = std::min(least, least_[at]);
+            }
+            const bool at_border = column == 0 || column + 1 == columns;
+            if (at_border) least = -kInfinity;  // others come in from outside
+            const EarthEdge edge(sheet, sun, column, row, earth);
+            const bool may_shade = most > cell.lowest_m + rays.least_fall_m(column);
+            const bool is_dark =
+                least > cell.highest_m + rays.most_fall_m(column) || edge.least_m > cell.highest_m;
+            const bool is_lit = !may_shade && cell.lowest_m > edge.most_m;
+            states[i] = is_dark  ? ShadedCells::kDark
+                        : is_lit ? ShadedCells::kLit
+                                 : ShadedCells::kMixed;
+            next_[i] = may_shade ? most : -kInfinity;
+            next_least_[i] = least;
+            if (narrow && !at_border)
+                next_least_[i] =
+                    std::max(least, sheet.ridge_m(cell, after) + rays.least_fall_m(column));
+        }
+        most_.swap(next_);
+        least_.swap(next_least_);
+    }
+
+  private:
+    std::vector<double> most_, least_, next_, next_least_, over_;
+};
+
+}  // namespace
+
+ShadedCells::ShadedCells(const CellSheet& sheet, const SweepSun& sun, std::span<const RowPlan> plan,
+                         int begin, const std::optional<EarthAround>& earth) {
+    const int columns = sheet.columns();
+    const auto width = static_cast<std::size_t>(columns);
+    sources.resize(width * static_cast<std::size_t>(sheet.rows()), 0);
+    states.resize(sources.size(), kLit);
+    Carried carried(width);
+    const int last = sheet.row_of(begin + static_cast<int>(plan.size()) - 1);
+    for (int row = sheet.row_of(begin); row <= last; ++row) {
+        const RowOfRays rays(sheet, plan, begin, row);
+        unsigned char* const of_row = sources.data() + static_cast<std::size_t>(row) * width;
+        for (int column = 0; column < columns; ++column)
+            of_row[column] = rays.is_source(sheet, sheet.at(column, row));
+        carried.go_over(sheet, sun, row, rays, earth, of_row,
+                        states.data() + static_cast<std::size_t>(row) * width);
+    }
+}
+
+void ShadedCells::join(const ShadedCells& other) {
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        if (states[i] != other.states[i]) states[i] = kMixed;
+        sources[i] |= other.sources[i];
+    }
+}
+
+bool ShadedCells::is_mixed() const {
+    constexpr double kMost = 0.9;
+    return static_cast<double>(std::count(states.begin(), states.end(), kMixed)) >
+           kMost * static_cast<double>(states.size());
+}
+
+ShadeRanges shade_ranges(const CellSheet& sheet, const ShadedCells* before, const ShadedCells& sun,
+                         const ShadedCells* after) {
+    const int columns = sheet.columns(), rows = sheet.rows();
+    const auto width = static_cast<std::size_t>(columns);
+    Flags look(sun.states.size()), raise(look.size()), take(look.size()), dark(look.size()),
+        sources = sun.sources;
+    for (std::size_t i = 0; i < look.size(); ++i) {
+        dark[i] = sun.states[i] == ShadedCells::kDark;
+        look[i] = sun.states[i] == ShadedCells::kMixed ||
+                  (before && before->states[i] != sun.states[i]) ||
+                  (after && after->states[i] != sun.states[i]);
+        if (dark[i]) sources[i] = 0;  // all lines are over it
+    }
+    const auto row_of = [&](Flags& flags, int row) {
+        return flags.data() + static_cast<std::size_t>(row) * width;
+    };
+    for (int row = 0; row < rows; ++row)
+        fill_gaps(row_of(look, row), columns);
+    // Lines are raised to sources, and to what is before the nearest rows of a post.
+    for (int row = 0; row < rows; ++row) {
+        add(beside(sources.data() + static_cast<std::size_t>(row) * width, columns, 1),
+            row_of(raise, row));
+        add(beside(row_of(look, row), columns, 1), row_of(raise, row));
+        if (row + 1 < rows) add(beside(row_of(look, row + 1), columns, 1), row_of(raise, row));
+        fill_gaps(row_of(raise, row), columns);
+    }
+    // A line beside the grid is as high as the ground that it has left, be that how far off it may.
+    for (const int column : {0, columns - 1}) {
+        bool is_looked_at = false;
+        for (int row = rows - 1; row >= 0; --row) {
+            is_looked_at = is_looked_at || row_of(look, row)[column];
+            if (is_looked_at) row_of(raise, row)[column] = 1;
+        }
+    }
+    for (int row = 0; row < rows; ++row) {
+        add(beside(row_of(raise, row), columns, 2), row_of(take, row));
+        if (row + 1 < rows) add(beside(row_of(raise, row + 1), columns, 2), row_of(take, row));
+        fill_gaps(row_of(take, row), columns);
+    }
+    ShadeRanges found;
+    for (int row = 0; row < rows; ++row)
+        for (const auto of :
+             {ShadeRanges::kLook, ShadeRanges::kRaise, ShadeRanges::kTake, ShadeRanges::kDark}) {
+            const Flags& flags = *std::array{&look, &raise, &take, &dark}[of];
+            const auto from =
+                flags.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * width);
+            found.ranges[of].push_back(ranges_of(Flags(from, from + columns)));
+        }
+    return found;
+}
+
+}  // namespace relevo::light

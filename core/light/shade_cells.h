@@ -1,0 +1,135 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "light/sweep.h"
+
+/// Where shade can be at all: what spares sweeps most of the ground where the sun is high.
+namespace relevo::light {
+
+/// Lines of a sweep at a row. Line i is the ray through the reference, which is a post, moved by i
+/// columns.
+struct RowPlan {
+    double distance_m = 0;  // from the reference towards the sun
+    double shift = 0;       // column of line 0
+    double fall = 0;        // of line 0, from the row of the reference on
+    double ramp = 0;        // likewise, more for each line
+};
+
+/// What is known of the ground of squares of kPosts posts a side.
+class ShadeCells {
+  public:
+    static constexpr int kPosts = 16;
+
+    /// @param height_m  as Sweep has it
+    ShadeCells(const float* height_m, int columns, int rows, std::ptrdiff_t stride);
+
+    struct Cell {
+        /// With the posts beside; minus infinity where there are holes for the lowest.
+        float lowest_m, highest_m;
+        /// How far the ground goes down from post to post at most, also to those beside: to the
+        /// next row, to the one before, and to the next column, to the one before. Infinite
+        /// by holes.
+        float down_m[4];
+        /// Some row has no lower post, neither here nor in the cell before on that row nor in the
+        /// next one; likewise some column.
+        float row_ridge_m[2], column_ridge_m[2];
+    };
+    int columns() const { return columns_; }
+    int rows() const { return rows_; }
+    const Cell& at(int column, int row) const {
+        return cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                      static_cast<std::size_t>(column)];
+    }
+
+  private:
+    int columns_, rows_;
+    std::vector<Cell> cells_;
+};
+
+/// Columns [begin, end) of a sheet.
+struct ColumnRange {
+    int begin, end;
+};
+
+/// What a sweep has to look at, for each row of cells of a sheet.
+struct ShadeRanges {
+    /// A post whose edge is asked for; a line that is raised to its ground; ground of either.
+    /// Or that of posts in the dark.
+    enum Of { kLook, kRaise, kTake, kDark };
+    std::vector<std::vector<ColumnRange>> ranges[4];
+    /// Of a row of cells, one after the other; those at the border go on beyond it.
+    const std::vector<ColumnRange>& at(Of of, int row) const {
+        return ranges[of][static_cast<std::size_t>(row)];
+    }
+};
+
+/// The cells of a grid as a sweep goes over them: away from the sun from row to row.
+struct CellSheet {
+    const ShadeCells& cells;
+    bool along_columns, mirrored;
+    int lines;  ///< of the sheet: rows of posts
+
+    int columns() const { return along_columns ? cells.rows() : cells.columns(); }
+    int rows() const { return along_columns ? cells.columns() : cells.rows(); }
+    /// The row of cells that a row of the sheet is in.
+    int row_of(int row) const {
+        const int r = (mirrored ? lines - 1 - row : row) / ShadeCells::kPosts;
+        return mirrored ? rows() - 1 - r : r;
+    }
+    /// The rows of the sheet [first, end) that a row of cells has.
+    int first_row(int row) const {
+        return mirrored ? (row == 0 ? 0 : lines - (rows() - row) * ShadeCells::kPosts)
+                        : row * ShadeCells::kPosts;
+    }
+    int end_row(int row) const { return row + 1 < rows() ? first_row(row + 1) : lines; }
+    const ShadeCells::Cell& at(int column, int row) const {
+        const int r = mirrored ? rows() - 1 - row : row;
+        return along_columns ? cells.at(r, column) : cells.at(column, r);
+    }
+    /// So high is all ground of some row at least, here and on one side.
+    float ridge_m(const ShadeCells::Cell& cell, bool after) const {
+        return (along_columns ? cell.column_ridge_m : cell.row_ridge_m)[after];
+    }
+    /// Goes down at most, away from the sun, by a step of one row and so many columns.
+    double down_m(const ShadeCells::Cell& cell, double columns) const {
+        const int away = (along_columns ? 2 : 0) + mirrored, across = along_columns ? 0 : 2;
+        if (columns == 0) return cell.down_m[away];
+        return cell.down_m[away] +
+               (columns > 0 ? columns * cell.down_m[across] : -columns * cell.down_m[across + 1]);
+    }
+};
+
+/// The smooth Earth around a DEM, which hides suns that are lower than level.
+struct EarthAround {
+    double lowest_m = 0, curvature = 0;
+};
+
+/// What is known of the posts of cells before a sun is swept. Ground shades what is behind it only
+/// from where it goes down more steeply than the rays do: elsewhere the ground next to it is higher
+/// on the ray.
+struct ShadedCells {
+    enum State : unsigned char { kLit, kMixed, kDark };  ///< all of a cell's posts, or not known
+    std::vector<unsigned char> states, sources;          ///< row by row
+
+    /// @param sun    over the sheet; of its tangents
+    /// @param plan   rows of the sheet from `begin` on
+    /// @param earth  none: it hides nothing
+    ShadedCells(const CellSheet& sheet, const SweepSun& sun, std::span<const RowPlan> plan,
+                int begin, const std::optional<EarthAround>& earth);
+    /// What is known where this sun is taken for some posts and another one for others.
+    void join(const ShadedCells& other);
+    /// So much is not known that all may be looked at.
+    bool is_mixed() const;
+};
+
+/// What is to be looked at so that posts that any of three suns can shade have the edge of the one
+/// in the middle, to the bit, as if all were.
+/// @param before, after  none: the sun is the first, or the last one
+ShadeRanges shade_ranges(const CellSheet& sheet, const ShadedCells* before, const ShadedCells& sun,
+                         const ShadedCells* after);
+
+}  // namespace relevo::light
