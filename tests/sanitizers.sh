@@ -3,7 +3,7 @@
 #
 # sanitizers.sh           every test: builds the presets asan and tsan as a whole (an hour on two cores)
 # sanitizers.sh reduced   the program alone, driven by the tests of build/dev that tests/sanitized_tests.txt names
-# sanitizers.sh small     the layers base and dem: the pool of threads, files, and what reads foreign bytes
+# sanitizers.sh small     the pool of threads and files (base) by all three, and what reads foreign bytes (dem) by the first two
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export TSAN_OPTIONS=${TSAN_OPTIONS:-suppressions=$PWD/tests/tsan.txt}
@@ -21,8 +21,10 @@ for preset in asan tsan; do
             build/dev/bin/test_cli --gtest_brief=1 \
             --gtest_filter="$(sed '/^#/d; /^$/d' tests/sanitized_tests.txt | paste -sd:)"
     elif [ "${1:-}" = small ]; then
-        cmake --build --preset $preset --target test_base test_dem
-        ctest --preset $preset --no-tests=error -R '^(base|dem)[.]'
+        layers=(base)
+        [ $preset = asan ] && layers+=(dem)
+        cmake --build --preset $preset --target "${layers[@]/#/test_}"
+        ctest --preset $preset -j "$(nproc)" --no-tests=error -R "^($(IFS='|'; echo "${layers[*]}"))[.]"
     else
         cmake --build --preset $preset
         ctest --preset $preset --no-tests=error
