@@ -133,23 +133,25 @@ void check_ramps(const Effect& effect) {
     }
 }
 
-void check_bound(const Effect& effect, const DisplaceSpec& spec) {
+/// @param key, line  of plugin.json, which name the parameter
+void check_named(const Effect& effect, const std::string& address, std::string_view key, int line) {
     const std::vector<shader::Param> params = effect.params();
-    for (const DisplaceSpec::Length* length : spec.lengths()) {
-        if (length->address.empty()) continue;
-        const auto param = std::find_if(params.begin(), params.end(), [&](const shader::Param& p) {
-            return p.address == length->address;
-        });
-        // Host parameters are written when it is settled already what is drawn.
-        if (param == params.end() || param->type != shader::ParamType::Float || param->is_host)
-            fail(effect.manifest.file.string(), spec.line,
-                 fmt::format("displaces: expected a parameter of type float, not host, but got "
-                             "\"{}\", which is {}",
-                             length->address,
-                             param == params.end() ? "none of the plugin's"
-                             : param->is_host      ? "host"
-                                              : "of type " + std::string(glsl_name(param->type))));
-    }
+    const auto param = std::find_if(params.begin(), params.end(),
+                                    [&](const shader::Param& p) { return p.address == address; });
+    // Host parameters are written when it is settled already what is drawn.
+    if (param == params.end() || param->type != shader::ParamType::Float || param->is_host)
+        fail(effect.manifest.file.string(), line,
+             fmt::format("{}: expected a parameter of type float, not host, but got \"{}\", which "
+                         "is {}",
+                         key, address,
+                         param == params.end() ? "none of the plugin's"
+                         : param->is_host      ? "host"
+                                               : "of type " + std::string(glsl_name(param->type))));
+}
+
+void check_bound(const Effect& effect, const DisplaceSpec& spec) {
+    for (const DisplaceSpec::Length* length : spec.lengths())
+        if (!length->address.empty()) check_named(effect, length->address, "displaces", spec.line);
 }
 
 /// What is moved into sight has to be drawn: without a bound core would leave it out.
@@ -229,6 +231,8 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
     check_hooks(effect);
     check_ramps(effect);
     check_displace(effect);
+    if (const auto& invents = effect.manifest.invents)
+        check_named(effect, invents->address, "invents", invents->line);
     check_wants(effect);
     check_textures(effect);
     check_texts(effect);

@@ -128,6 +128,7 @@ class ManifestReader {
         textures(object);
         texts(object);
         displaces(object);
+        invents(object);
         object.finish();
         return std::move(manifest_);
     }
@@ -262,6 +263,24 @@ class ManifestReader {
         spec.aside = length(bound, "aside_m", 0);
         if (bound.take("to_m")) spec.to = length(bound, "to_m", -kMaxDisplaced_m);
         bound.finish();
+    }
+
+    void invents(ObjectReader& object) {
+        const Json* const value = object.take("invents");
+        if (!value) return;
+        ObjectReader said(kWho, manifest_.file.string(), "invents", *value);
+        Invention& invention = manifest_.invents.emplace();
+        invention.line = value->line;
+        invention.what = said.string("what");
+        const std::string by = said.string("by");
+        if (!is_word(by))
+            said.fail(said.line_of("by"), "by",
+                      fmt::format("expected a parameter of the plugin's own, such as \"strength\", "
+                                  "but got \"{}\"",
+                                  by));
+        invention.address = manifest_.id + '.' + by;
+        invention.pixel_posts = said.number("pixel_posts", 1, 0, 1e6, false);
+        said.finish();
     }
 
     /// @param min  of a number [m]

@@ -53,6 +53,14 @@ struct DisplaceSpec {
     }
 };
 
+/// What an effect shows of ground near the eye that nobody has measured, so that it can be said.
+struct Invention {
+    std::string what;        ///< a sentence without its end
+    std::string address;     ///< "bump.relief": the parameter that 0 takes it away by
+    double pixel_posts = 0;  ///< seen where a side of a pixel has fewer posts than that
+    int line = 0;            ///< in plugin.json
+};
+
 /// What plugin.json says. The format is docs/plugin-guide.md's.
 struct Manifest {
     std::string id;  ///< `[a-z][a-z0-9]*`
@@ -72,6 +80,7 @@ struct Manifest {
     std::vector<std::filesystem::path> glsl;  ///< files, in order. They exist
     std::vector<TextureSpec> textures;
     std::optional<DisplaceSpec> displaces;
+    std::optional<Invention> invents;
     std::string module;                    ///< name of a native library, or empty
     std::vector<shader::TextParam> texts;  ///< that the module reads
 

@@ -1,20 +1,87 @@
-//! provides  bumps: a normal map for each material
+//! provides  bumps: a normal map for each material, and near the eye relief between the DEM's posts
 //! hook      normal, facing
-//! reads     material, material_weight, texture_at, tangent frame
+//! reads     material, material_weight, texture_at, tangent frame, ground coordinates [m], slope
 //! writes    normal; factor of direct light
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
-//!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section 3.2, figure 3
+//!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section 3.2, figure 3; relief is not the
+//!           paper's: noise after K. Perlin, Improving Noise, ACM Transactions on Graphics 21 (2002), 681
 
 uniform sampler2DArray bump_normals;
 
 uniform float bump_strength = 1.0; //@ range(0, 4) label("Strength") description("Factor on the slopes of the bumps")
 uniform int bump_correction = 2; //@ enum(none, abrupt, smooth) static label("Correction") description("Light only where ground and bump both face the sun: not at all, the paper's figure 3a, and 3b")
 uniform float bump_softness = 0.12; //@ range(0.001, 1) label("Softness") description("Cosine of the sun's angle of incidence from which on ground is fully lit; of the smooth correction")
+uniform float bump_relief = 1.0; //@ range(0, 4) label("Relief between posts") description("Invented slopes smaller than the DEM's posts, on ground that is near; 0: none")
+
+const float bump_coarsest_m = 25.0;  // cells of the relief's coarsest noise: what is wider passes for the DEM's own
+const float bump_finest_m = 0.8;     // below it is what the materials' maps have
+const int bump_octaves = 5;          // from the coarsest to the finest
+const float bump_octave = 0.43;      // from a noise's cells to the next ones': no power of it is near that of a whole number
 
 /// Slopes of a material's map: how far its normal leans along tangent and bitangent, and its z.
 vec3 bump_read(in Surface s, in int material) {
     return 2.0 * textureGrad(bump_normals, vec3(s.texture_at, float(material)), s.texture_dx,
                              s.texture_dy).xyz - 1.0;
+}
+
+/// Two numbers of -1..1 for a node of a grid.
+/// source: M. Jarzynski and M. Olano, Hash functions for GPU rendering, J. Computer Graphics Techniques 9(3),
+/// 2020, pcg2d
+vec2 bump_random(in ivec2 node) {
+    uvec2 v = uvec2(node) * 1664525u + 1013904223u;
+    v.x += v.y * 1664525u;
+    v.y += v.x * 1664525u;
+    v ^= v >> 16u;
+    v.x += v.y * 1664525u;
+    v.y += v.x * 1664525u;
+    v ^= v >> 16u;
+    return vec2(v >> 8u) * (2.0 / 16777216.0) - 1.0;
+}
+
+/// Slopes of gradient noise whose cells have sides of 1, of mean 0 and variance 1 along either axis.
+/// source: Perlin 2002, with its quintic; the derivatives follow from it
+vec2 bump_noise_slope(in vec2 at) {
+    vec2 cell = floor(at), f = at - cell;
+    ivec2 node = ivec2(cell);
+    vec2 a = bump_random(node), b = bump_random(node + ivec2(1, 0)), c = bump_random(node + ivec2(0, 1)),
+         d = bump_random(node + ivec2(1, 1));
+    vec2 u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0), du = 30.0 * f * f * (f * (f - 2.0) + 1.0);
+    float va = dot(a, f), vb = dot(b, f - vec2(1.0, 0.0)), vc = dot(c, f - vec2(0.0, 1.0)), vd = dot(d, f - 1.0);
+    vec2 slope = a + u.x * (b - a) + u.y * (c - a) + u.x * u.y * (a - b - c + d) +
+                 du * (u.yx * (va - vb - vc + vd) + vec2(vb, vc) - va);
+    return slope / 0.51;  // the variance of its components, by a table of 400 000 of them
+}
+
+/// Turns by 37 degrees, so that the grids of two noises never lie along each other.
+const mat2 bump_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
+
+/// Slopes of noise below the post spacing, of variance 1 along either axis from near; none where a post has
+/// fewer than 20 pixels, and all from 64 on.
+/// @param at_m         east and north from the DEM's centre [m]
+/// @param pixel_m      the longer side of a pixel on the ground [m]
+/// @param pixel_posts  a side of it in posts
+vec2 bump_relief_slope(in vec2 at_m, in float pixel_m, in float pixel_posts) {
+    float near = 1.0 - smoothstep(1.0 / 64.0, 1.0 / 20.0, pixel_posts);
+    vec2 sum = vec2(0.0);
+    float size_m = min(0.5 / frame.normal_texels_per_m, bump_coarsest_m);
+    mat2 turn = bump_turn;
+    for (int i = 0; i < bump_octaves; ++i) {
+        if (near == 0.0 || size_m < max(bump_finest_m, 2.0 * pixel_m)) break;
+        float seen = 1.0 - smoothstep(0.2, 0.5, pixel_m / size_m);
+        // Slopes of a turned noise are turned back.
+        sum += seen * (bump_noise_slope(turn * at_m / size_m) * turn);
+        size_m *= bump_octave;
+        turn = bump_turn * turn;
+    }
+    return 0.5 * near * sum;
+}
+
+/// How far invented relief slopes: more on steep ground and on rock than on level ground and on snow.
+/// @param steep  tangent of the DEM's slope
+float bump_relief_strength(in Surface s, in float steep) {
+    const vec4 rough = vec4(0.7, 0.8, 1.5, 0.6);  // sand, grass, rock, snow
+    float kind = s.material_weight.x * rough[s.material.x] + s.material_weight.y * rough[s.material.y];
+    return bump_relief * kind * (0.05 + 0.13 * min(steep, 1.0));
 }
 
 /// A normal of the map in the tangent frame of the ground.
@@ -27,7 +94,15 @@ void bump_on_normal(inout Surface s) {
     int count = s.material_weight.y > 0.0 ? 2 : 1;  // a read less in most places
     for (int i = 0; i < count; ++i)
         map += s.material_weight[i] * bump_read(s, s.material[i]);
-    s.normal = bump_normal(map, s.tangent, s.bitangent, s.geometric_normal);
+    vec3 ground = s.geometric_normal;
+#if !HAS_outside
+    float upright = clamp(dot(s.ground_normal, s.up), 0.1, 1.0);
+    float steep = sqrt(1.0 - upright * upright) / upright;
+    vec2 slope = bump_relief_strength(s, steep) * frame.height_range.z *
+                 bump_relief_slope(s.ground_m.xy, max(length(s.ground_dx_m), length(s.ground_dy_m)), s.pixel_posts);
+    ground -= slope.x * s.tangent + slope.y * s.bitangent;
+#endif
+    s.normal = bump_normal(map, s.tangent, s.bitangent, ground);
 }
 
 /// Self-shadowing factor of one normal. @param cosine  of the angle between it and the sun

@@ -106,6 +106,31 @@ TEST(Manifest, SaysHowFarItMovesTheGround) {
     EXPECT_EQ(displaces->line, 1);
 }
 
+TEST(Manifest, SaysWhatItInvents) {
+    const Plugins plugins;
+    const auto add = [&](const char* by) {
+        plugins.add("haze",
+                    fmt::format(R"("invents": {{"what": "it is greyer", "by": "{}", )"
+                                R"("pixel_posts": 0.05}})",
+                                by),
+                    "uniform float haze_grey = 1.0; //@ range(0, 2)\n"
+                    "uniform int haze_kind = 0; //@ range(0, 2)\n"
+                    "void haze_on_albedo(inout Surface s) { s.diffuse *= haze_grey; }\n");
+        return load_effect(plugins.plugins() / "haze", plugins.data()).manifest.invents;
+    };
+    const auto invents = add("grey");
+    ASSERT_TRUE(invents);
+    EXPECT_EQ(invents->what, "it is greyer");
+    EXPECT_EQ(invents->address, "haze.grey");
+    EXPECT_EQ(invents->pixel_posts, 0.05);
+    EXPECT_EQ(plugins.relative(error_of([&] { add("kind"); })),
+              "exit 3: effect::load: plugins/haze/plugin.json:1: invents: expected a parameter of "
+              "type float, not host, but got \"haze.kind\", which is of type int");
+    EXPECT_EQ(plugins.relative(error_of([&] { add("green"); })),
+              "exit 3: effect::load: plugins/haze/plugin.json:1: invents: expected a parameter of "
+              "type float, not host, but got \"haze.green\", which is none of the plugin's");
+}
+
 TEST(Manifest, NeedsLittle) {
     const Plugins plugins;
     plugins.add("haze");

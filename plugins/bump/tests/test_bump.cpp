@@ -117,5 +117,79 @@ TEST(Bump, LitOnlyWhereGroundAndBumpBothFaceTheSun) {
     }
 }
 
+// ---- relief between the posts
+
+/// Slopes of the relief over a square of the ground, where posts are 30 m apart.
+/// @param step_m, pixel_m  from one to the next, and the width of a pixel
+std::vector<glm::vec4> relief(int side, double step_m, double pixel_m, double east_m = 0) {
+    test::GpuSnippet gpu("bump");
+    gpu.frame().normal_texels_per_m = 1.0f / 30;
+    return gpu.run(
+        fmt::format("vec2 at = vec2({:.9f} + {:.9f} * float(x), {:.9f} * float(y));\n"
+                    "result = vec4(bump_relief_slope(at, {:.9f}, {:.9f} / 30.0), 0.0, 0.0);",
+                    east_m, step_m, step_m, pixel_m, pixel_m),
+        side, side);
+}
+
+double variance(const std::vector<glm::vec4>& slopes) {
+    double sum = 0;
+    for (const glm::vec4& slope : slopes)
+        sum += (slope.x * slope.x + slope.y * slope.y) / 2.0 / static_cast<double>(slopes.size());
+    return sum;
+}
+
+TEST(Bump, ReliefIsNearTheEyeAlone) {
+    const double at_0_1 = variance(relief(400, 1.7, 0.1)), at_0_4 = variance(relief(400, 1.7, 0.4)),
+                 at_1 = variance(relief(400, 1.7, 1)), at_1_5 = variance(relief(400, 1.7, 1.5));
+    fmt::print(
+        "[ accuracy ] variance of slopes at pixels of 0.1, 0.4, 1 and 1.5 m on posts 30 m "
+        "apart: {:.3f}, {:.3f}, {:.3f}, {:g}\n",
+        at_0_1, at_0_4, at_1, at_1_5);
+    EXPECT_NEAR(at_0_1, 1, 0.1);
+    EXPECT_GT(at_0_4, 0.7);
+    EXPECT_LT(at_1, 0.5 * at_0_4);
+    EXPECT_GT(at_1, 0);
+    EXPECT_EQ(at_1_5, 0);
+}
+
+TEST(Bump, ReliefLeansNoWay) {
+    // So that ground has the light that the DEM's slopes give it, and a walk sees no plane tilt.
+    glm::dvec2 mean{};
+    const std::vector<glm::vec4> slopes = relief(600, 2.3, 0.1);
+    for (const glm::vec4& slope : slopes)
+        mean += glm::dvec2(slope.x, slope.y) / static_cast<double>(slopes.size());
+    fmt::print("[ accuracy ] mean slope {:.4f}, {:.4f}\n", mean.x, mean.y);
+    EXPECT_LT(length(mean), 0.01);
+}
+
+TEST(Bump, ReliefIsNarrowerThanThePosts) {
+    // Means over squares of two posts, which the DEM knows better.
+    constexpr int kSide = 640, kBlock = 40;
+    const std::vector<glm::vec4> slopes = relief(kSide, 1.5, 0.1);
+    std::vector<glm::vec4> means((kSide / kBlock) * (kSide / kBlock));
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x)
+            means[static_cast<std::size_t>((y / kBlock) * (kSide / kBlock) + x / kBlock)] +=
+                slopes[static_cast<std::size_t>(y * kSide + x)] / float{kBlock * kBlock};
+    fmt::print("[ accuracy ] variance of means over two posts: {:.4f} of {:.3f}\n", variance(means),
+               variance(slopes));
+    EXPECT_LT(variance(means), 0.02 * variance(slopes));
+}
+
+TEST(Bump, ReliefRepeatsNowhere) {
+    // Against itself moved by anything up to 3 km.
+    const std::vector<glm::vec4> here = relief(120, 1.1, 0.1);
+    double worst = 0;
+    for (int east_m = 60; east_m <= 3000; east_m += 210) {
+        const std::vector<glm::vec4> there = relief(120, 1.1, 0.1, east_m);
+        double product = 0;
+        for (std::size_t i = 0; i < here.size(); ++i)
+            product += (here[i].x * there[i].x + here[i].y * there[i].y) / 2.0;
+        worst = std::max(worst, std::abs(product) / (variance(here) * double(here.size())));
+    }
+    fmt::print("[ accuracy ] greatest correlation with itself elsewhere: {:.3f}\n", worst);
+    EXPECT_LT(worst, 0.15);
+}
+
 }  // namespace
 }  // namespace relevo
