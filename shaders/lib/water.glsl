@@ -31,11 +31,6 @@ vec4 water_at(in vec2 post, in float pixel_posts) {
 
 /// At a visible point.
 vec4 water_of(in Surface s) {
-#ifdef TERRAIN_NORMAL_VERTEX
-    return vec4(s.height_m <= 0.0 ? 1.0 : 0.0, 1.0, 1.0, 0.0);
-#else
-    vec2 post = uintBitsToFloat(texelFetch(gbuffer, ivec2(gl_FragCoord.xy), 0).xy);
     float pixel_m = 0.5 * (length(s.ground_dx_m) + length(s.ground_dy_m));
-    return water_at(post, pixel_m * frame.normal_texels_per_m);
-#endif
+    return water_at(s.post, pixel_m * frame.normal_texels_per_m);
 }

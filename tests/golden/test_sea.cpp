@@ -32,5 +32,32 @@ TEST(SeaPicture, HasNoShadowsOfItsFloorAtNoon) {
     EXPECT_LE(differing, 30);
 }
 
+TEST(SeaPicture, IsLevelAndInTheSamePlacesWithVertexNormals) {
+    if (!std::filesystem::exists(source_dir() / "plugins/sea"))
+        GTEST_SKIP() << "the plugin sea is not there";
+    // Sounds narrower than the posts' normals are wide, over a floor that leans.
+    const std::filesystem::path dir = scratch_dir("sea_vertex");
+    const auto take = [&](const std::string& normals) {
+        const Result run = relevo(
+            {"-q", "capture", (source_dir() / "data/dem/vancouver-island.tif").string(), "-o",
+             (dir / "taken.png").string(), "--overwrite", "--size", "320x240", "--view", "top",
+             "--set", "terrain.normal=" + normals, "--time", "2026-06-21T09:00-07:00"});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return image::read(dir / "taken.png");
+    };
+    const image::Image8 fragment = take("fragment"), vertex = take("vertex");
+    int water = 0, differing = 0;
+    for (int y = 0; y < fragment.height; ++y)
+        for (int x = 0; x < fragment.width; ++x) {
+            if (fragment.at(x, y, 2) < fragment.at(x, y, 0) + 30) continue;
+            ++water;
+            for (int c = 0; c < 3; ++c)
+                differing += std::abs(fragment.at(x, y, c) - vertex.at(x, y, c)) > 2;
+        }
+    EXPECT_GT(water, 20000);
+    // 10 000 and more where water is what lies at 0 or below, or where it leans as its floor.
+    EXPECT_LE(differing, 60);
+}
+
 }  // namespace
 }  // namespace relevo::test
