@@ -21,6 +21,7 @@ OWNERS = {
     "OpenImageIO": (re.compile(r"OpenImageIO/"), {"image"}),
     "Cairo": (re.compile(r"cairo"), {"chart"}),
     "zlib": (re.compile(r"zlib\.h"), {"climate"}),
+    "libdeflate": (re.compile(r"libdeflate\.h"), {"image"}),
     "libpng": (re.compile(r"png\.h"), {"image"}),
 }
 

@@ -35,6 +35,18 @@ TEST_F(ImageFiles, APngComesBackAsItWas) {
     }
 }
 
+TEST_F(ImageFiles, ALargePngComesBackToo) {
+    // Beyond 64 MiB rows are deflated one by one.
+    for (const int height : {4095, 4097}) {
+        const Image8 image = gradient(4096, height, 4);
+        const auto path = dir_ / fmt::format("large{}.png", height);
+        write(path, image, {{"Description", "a gradient"}});
+        EXPECT_TRUE(read(path).values == image.values) << height;
+        EXPECT_EQ(read_metadata(path).at("Description"), "a gradient");
+        std::filesystem::remove(path);
+    }
+}
+
 TEST_F(ImageFiles, OtherFormatsComeThroughTheModule) {
     const Image8 image = gradient(64, 48, 3);
     write(dir_ / "a.tif", image);
