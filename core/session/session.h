@@ -150,8 +150,8 @@ class Session {
     /// The DEM's ground; its local frame is the camera's.
     const render::Ground& ground() const;
 
-    /// What is drawn of holes, what was assumed of water, and what effects invent of the ground that
-    /// the camera is near: whole sentences.
+    /// What is drawn of holes, what was assumed of water, and what effects invent of the ground
+    /// that the camera is near: whole sentences.
     std::vector<std::string> ground_notes() const;
 
     /// "46.50 N 8.00 E", with " (the eye)" where it is that and not the DEM's middle.
