@@ -141,7 +141,6 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
         normal_count +=
             pages_across(pyramid_.columns(), level) * pages_across(pyramid_.rows(), level);
     normal_layers_ = std::min({normal_count, kMaxNormalPages, most});
-    clear_surface();
     const int across = power_of_two_from(
         std::max(pages_across(pyramid_.columns(), 0), pages_across(pyramid_.rows(), 0)));
     page_table_ =
@@ -211,7 +210,7 @@ void Terrain::clear_surface() {
 void Terrain::drape(std::shared_ptr<const Drape> drape) {
     if (drape == drape_) return;
     drape_ = std::move(drape);
-    clear_surface();
+    surface_ = PageCache();  // made when a picture asks for it, once for all that it reads
 }
 
 void Terrain::keep_water() {
@@ -220,13 +219,13 @@ void Terrain::keep_water() {
     if (!options_.water) own_water_ = dem::find_water(*drawn_m_, *drawn_grid_);
     water_.emplace(*drawn_m_, options_.water ? *options_.water : *own_water_, options_.filled,
                    reduction_);
-    clear_surface();
+    surface_ = PageCache();
 }
 
 void Terrain::keep_surface() {
     if (keeps_surface_) return;
     keeps_surface_ = true;
-    clear_surface();
+    surface_ = PageCache();
 }
 
 const climate::ClimateMap& Terrain::climate_map() {
@@ -333,6 +332,7 @@ TileSelection Terrain::select_for_picture(const scene::Camera& camera, int width
         LodView::of_camera(camera, width_px, height_px, options_.pixel_error, exaggeration);
     complete_ = true;
     TileSelection selection = loading == Loading::Beside ? select_beside(view) : select(view);
+    if (!surface_.find("normal_pages")) clear_surface();
     prepare_surface(LodView::of_camera(camera, width_px, height_px, 1, exaggeration), loading,
                     afresh);
     return selection;
