@@ -480,25 +480,6 @@ struct Session::Impl {
         return told;
     }
 
-    /// What effects show that the DEM does not have, of ground as near as that below the eye.
-    std::vector<std::string> inventions() const {
-        std::vector<std::string> told;
-        const double ground_m = loaded->height_m(ground->frame.to_geodetic(inputs.camera.eye_m));
-        const glm::dvec2 spacing_m = terrain->grid().post_spacing_m();
-        if (!scene.view.eye || std::isnan(ground_m)) return told;
-        const double pixel_rad = 2 * std::tan(inputs.camera.fov_y_rad / 2) / scene.height_px;
-        const double pixel_posts = (eye().height_m - ground_m) * scene.exaggeration * pixel_rad /
-                                   std::sqrt(spacing_m.x * spacing_m.y);
-        for (const effect::Effect* const effect : drawn.effects->loaded.selection.effects) {
-            const auto& invents = effect->manifest.invents;
-            if (!invents || pixel_posts >= invents->pixel_posts) continue;
-            if (drawn.effects->values.value(invents->address)[0] > 0)
-                told.push_back(fmt::format("{}: {}; --set {}=0 takes it away", effect->manifest.id,
-                                           invents->what, invents->address));
-        }
-        return told;
-    }
-
     void draw(render::Loading loading, render::PassTimes* times = nullptr) {
         context->make_current();
         render::FrameInputs frame = inputs;

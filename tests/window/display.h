@@ -12,6 +12,13 @@
 /// A display that nobody looks at, and programs with windows on it.
 namespace relevo::test {
 
+/// How long is waited for what has to come: only a test that fails waits so long [s].
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr double kPatience_s = 240;
+#else
+constexpr double kPatience_s = 60;
+#endif
+
 /// An X server of its own (Xvfb), whose screen is a file.
 class Display {
   public:
@@ -53,10 +60,10 @@ class WindowedProgram {
 
     std::string title() const;  ///< of its window; empty while there is none
     /// Waits until it holds. @returns whether it did within the time
-    static bool wait(const std::function<bool()>& holds, double at_most_s = 30);
+    static bool wait(const std::function<bool()>& holds, double at_most_s = kPatience_s);
     bool is_running();
     /// Waits for its end. @returns its exit status; -1 if it does not end in time or by a signal
-    int status(double at_most_s = 30);
+    int status(double at_most_s = kPatience_s);
     std::string output() const;  ///< standard output and error so far
     pid_t process() const { return process_; }
 

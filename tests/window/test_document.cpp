@@ -26,6 +26,7 @@
 #include "viewer/settings.h"
 #include "viewer/state.h"
 #include "viewer/sun_model.h"
+#include "window/display.h"
 
 namespace relevo::viewer {
 namespace {
@@ -203,10 +204,7 @@ TEST(PointWork, GivesUpWhatIsNotWantedAnyMoreAndNeverHoldsItsCallerUp) {
     std::atomic<int> answers = 0;
     PointWork work([&] { ++answers; });
     const auto wait = [&] {
-        const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-        while (!work.is_done() && std::chrono::steady_clock::now() < until)
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        ASSERT_TRUE(work.is_done());
+        ASSERT_TRUE(test::WindowedProgram::wait([&] { return work.is_done(); }));
     };
     wanted.place = at(40);
     work.want(wanted);
