@@ -299,7 +299,7 @@ TEST_F(Run, ADiskThatIsFullFailsThePicturesThatDoNotFit) {
 TEST_F(Run, ASmallDiskThatIsFullHasWholePicturesAndNoOthers) {
     const fs::path disk = dir_ / "disk";
     fs::create_directory(disk);
-    const std::string mount = "mount -t tmpfs -o size=48k none \"$1\" && ";
+    const std::string mount = "mount -t tmpfs -o size=24k none \"$1\" && ";
     if (test::run("/usr/bin/unshare", {"-rm", "/bin/sh", "-c", mount + "true", "sh", disk.string()})
             .status != 0)
         GTEST_SKIP() << "a file system of its own cannot be mounted here";
