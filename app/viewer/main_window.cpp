@@ -14,10 +14,9 @@ namespace {
 
 /// At the end work in progress is waited for so long; reading a large DEM may take longer.
 constexpr auto kLeave = std::chrono::milliseconds(600);
-/// While the hand moves the camera and no new picture has come, the window is drawn so often: well
-/// above what a picture takes, because each time takes from the scene what it could be drawn with,
-/// and the picture would come in the middle of it.
-constexpr double kSame_s = 0.25;
+/// While the hand moves the camera and no new picture has come, the window is drawn so often; each
+/// time takes from the scene what it could be drawn with.
+constexpr double kSame_s = 0.08;
 
 }  // namespace
 
