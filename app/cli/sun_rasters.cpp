@@ -18,8 +18,10 @@
 namespace relevo::cli {
 namespace {
 
-constexpr double kProgram_mib = 60;  // of itself, its libraries and what they read and write by
-constexpr double kBlocks_mib = 256;  // of files, and what tiles and threads take besides (measured)
+// Measured: the program with its libraries; blocks of a file that are kept, and what tiles and
+// threads take besides; and how many tiles of all bands GDAL has at once while it writes.
+constexpr double kProgram_mib = 90, kBlocks_mib = 256, kTilesAtOnce = 20;
+constexpr double kTile = 512;  // posts a side
 
 }  // namespace
 
@@ -122,8 +124,9 @@ std::function<void(double)> RasterRun::done() {
     return [this](double of_call) {
         share_ += of_call * part_share_ / static_cast<double>(calls_);
         passed_s_ = std::chrono::duration<double>(Progress::Clock::now() - began_).count();
+        if (share_ == 0) ready_s_ = passed_s_;
         if (bar_) bar_->show(share_);
-        if (!writer_ && passed_s_ > kEnough_s && share_ < 1) throw Enough();
+        if (!writer_ && passed_s_ - ready_s_ > kEnough_s && share_ < 1) throw Enough();
     };
 }
 
@@ -179,13 +182,21 @@ void RasterRun::tell() const {
                                : static_cast<double>(sizeof(float)) *
                                          static_cast<double>(arguments_.dem.options.max_posts) +
                                      kBlocks_mib * kMiB;
+    // A result is written from what is kept of it.
+    const double tiles =
+        std::ceil(ground_.window.columns / kTile) * std::ceil(ground_.window.rows / kTile);
+    const double band = bytes_a_value_, tile = kTile * kTile * band * static_cast<double>(bands_);
+    const double writing = most * band + std::min(kBlocks_mib * kMiB, tiles * tile) +
+                           std::min(kTilesAtOnce, 3 * tiles + 2) * tile;
     fmt::print("posts               {:.0f}, in {} part{}\n", posts, ground_.parts.size(),
                ground_.parts.size() == 1 ? "" : "s");
     fmt::print("memory              some {:.0f} MiB, {:.0f} of them heights\n",
-               (heights + most * bytes_a_post_) / kMiB + kProgram_mib, heights / kMiB);
+               (heights + std::max(most * bytes_a_post_, writing)) / kMiB + kProgram_mib,
+               heights / kMiB);
     fmt::print("computing           some {}, as {:.3g} % of it took {:.2g} s on {} threads\n",
-               duration_text(passed_s_ / std::max(share_, 1e-9)), 100 * share_, passed_s_,
-               thread_count());
+               duration_text(double(ground_.parts.size()) * ready_s_ +
+                             (passed_s_ - ready_s_) / std::max(share_, 1e-9)),
+               100 * share_, passed_s_, thread_count());
     fmt::print(
         "result              {} band{} of {:.0f} MiB before compression, for which the "
         "folder of the result has to have room besides\n",

@@ -50,7 +50,7 @@ struct RasterArguments {
 class RasterRun {
   public:
     /// @param calls           of core's functions that each part takes
-    /// @param bytes_a_post    of memory, besides the DEM's heights
+    /// @param bytes_a_post    of memory while computing, besides the DEM's heights (measured)
     RasterRun(const RasterArguments& arguments, OutputFile& file, const RasterGround& ground,
               light::RasterType type, const std::vector<light::RasterBand>& bands,
               std::size_t calls, int bytes_a_post);
@@ -85,7 +85,8 @@ class RasterRun {
     std::optional<ProgressBar> bar_;
     std::size_t calls_, bands_;
     int bytes_a_post_, bytes_a_value_;
-    double share_ = 0, part_share_ = 0, passed_s_ = 0;
+    double share_ = 0, part_share_ = 0;
+    double passed_s_ = 0, ready_s_ = 0;  ///< until now, and until the work proper began
     Progress::Clock::time_point began_ = Progress::Clock::now();
 };
 

@@ -222,7 +222,7 @@ void run(const Arguments& arguments) {
     }
     RasterRun raster(arguments.raster, file, ground,
                      options.soft ? light::RasterType::Float : light::RasterType::Byte,
-                     bands_of(suns, timed, options.soft), suns.size(), options.soft ? 16 : 13);
+                     bands_of(suns, timed, options.soft), suns.size(), 8);
     raster.warn_of(
         [&] {
             std::vector<light::SunOverDem> all;

@@ -31,7 +31,7 @@ void run_sky_view(const Arguments& arguments) {
     OutputFile& file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
     RasterRun raster(arguments.raster, file, ground, light::RasterType::Float,
-                     {session::sky_view_band()}, 1, 20);
+                     {session::sky_view_band()}, 1, 22);
     light::SkyViewOptions options{.directions = arguments.directions,
                                   .refraction = arguments.raster.terrestrial_refraction,
                                   .level = arguments.level,

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "base/parallel_for.h"
 #include "base/units.h"
 #include "light/horizon.h"
 #include "light/sky.h"
@@ -17,17 +20,19 @@ namespace {
 
 constexpr int kSide = 24;  // posts that are looked from, each way
 constexpr double kDay_s = 86400;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A post that is looked from.
 struct Eye {
     int column, row;
     double height_m;
+    geo::Geodetic place;
 };
 
 /// What of the DEM a ray meets.
 struct View {
-    double tangent = -std::numeric_limits<double>::infinity();  // of its ground
-    double until_m = 0;                                         // where it ends
+    double tangent = -kInfinity;  // of its ground
+    double until_m = 0;           // where it ends
 };
 
 class Looking {
@@ -46,13 +51,20 @@ class Looking {
                       row = w.row + place(i / kSide, w.rows);
             const double height_m = all_ ? *all_->at(column, row)
                                          : *posts.view({column, row, 1, 1}, one).at(column, row);
-            if (!std::isnan(height_m)) eyes_.push_back({column, row, height_m});
+            if (!std::isnan(height_m))
+                eyes_.push_back({column, row, height_m, posts.grid().place(column, row)});
         }
-        touched_.resize(eyes_.size(), false);
+        least_m_.resize(eyes_.size(), kInfinity);
+        reach_m_.resize(eyes_.size(), -kInfinity);
     }
 
-    std::size_t count() const { return eyes_.size(); }
-    const Eye& eye(std::size_t i) const { return eyes_[i]; }
+    /// Calls `look` with each of them and its number, on several threads.
+    void each_eye(const std::function<void(std::size_t, const Eye&)>& look) const {
+        parallel_for(0, static_cast<int>(eyes_.size()), 8, [&](int first, int last) {
+            for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i)
+                look(i, eyes_[i]);
+        });
+    }
 
     /// @param way_a_metre  posts
     View look(const Eye& eye, const GridPair& way_a_metre) const {
@@ -77,25 +89,26 @@ class Looking {
         return view;
     }
 
-    /// Terrain beyond a view that stands over a tangent matters.
+    /// Terrain beyond a view that stands over a tangent matters. Of one eye, one call at a time.
     void consider(std::size_t i, const View& view, double tangent) {
         const double over_m = found_.highest_m - eyes_[i].height_m;
         const double needed_m = eyes_[i].height_m + view.until_m * tangent +
                                 curvature_ * view.until_m * view.until_m / 2;
         if (!(needed_m < found_.highest_m) || !(over_m > 0)) return;
-        if (std::none_of(touched_.begin(), touched_.end(), [](bool t) { return t; }))
-            found_.least_m = needed_m;
-        touched_[i] = true;
-        found_.least_m = std::min(found_.least_m, needed_m);
         const double reach_m =
             (std::sqrt(tangent * tangent + 2 * curvature_ * over_m) - tangent) / curvature_;
-        found_.needed_m = std::max(found_.needed_m, reach_m - view.until_m);
+        least_m_[i] = std::min(least_m_[i], needed_m);
+        reach_m_[i] = std::max(reach_m_[i], reach_m - view.until_m);
     }
 
     std::optional<Beyond> found() {
-        const auto count = std::count(touched_.begin(), touched_.end(), true);
-        if (count == 0) return std::nullopt;
-        found_.share = double(count) / double(eyes_.size());
+        const auto touched =
+            std::count_if(least_m_.begin(), least_m_.end(), [](double m) { return m < kInfinity; });
+        if (touched == 0) return std::nullopt;
+        found_.share = double(touched) / double(eyes_.size());
+        found_.least_m = *std::min_element(least_m_.begin(), least_m_.end());
+        found_.needed_m =
+            std::max(found_.needed_m, *std::max_element(reach_m_.begin(), reach_m_.end()));
         return found_;
     }
 
@@ -107,7 +120,7 @@ class Looking {
     std::vector<float> buffer_;
     std::optional<dem::Posts::View> all_;
     std::vector<Eye> eyes_;
-    std::vector<bool> touched_;
+    std::vector<double> least_m_, reach_m_;  // of each: that matters, and how far beyond the DEM
     Beyond found_;
 };
 
@@ -133,20 +146,22 @@ std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window&
                                      const std::optional<double>& highest_m) {
     const DemSky dem(posts, options);
     Looking looking(posts, part, dem.curvature(), highest_m);
+    std::vector<std::pair<SunSky, GridPair>> skies;
     for (const SunOverDem& sun : suns) {
         const SunSky sky(dem, sun);
         if (sky.is_night()) continue;
-        const std::optional<GridPair> way = way_of(sky, posts.grid());
-        if (!way) continue;
-        for (std::size_t i = 0; i < looking.count(); ++i) {
-            const Eye& eye = looking.eye(i);
+        if (const std::optional<GridPair> way = way_of(sky, posts.grid()))
+            skies.emplace_back(sky, *way);
+    }
+    looking.each_eye([&](std::size_t i, const Eye& eye) {
+        for (const auto& [sky, way] : skies) {
             const double seen_rad =
-                dem.apparent_rad(sky.elevation_rad(eye.column, eye.row), DemSky::kBetween);
+                dem.apparent_rad(sky.elevation_rad(eye.place), DemSky::kBetween);
             if (!(seen_rad > 0) || seen_rad > radians(80)) continue;
-            const View view = looking.look(eye, *way);
+            const View view = looking.look(eye, way);
             if (view.tangent < std::tan(seen_rad)) looking.consider(i, view, std::tan(seen_rad));
         }
-    }
+    });
     return looking.found();
 }
 
@@ -155,17 +170,18 @@ std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window&
                                      const std::optional<double>& highest_m) {
     const DemSky dem(posts, {.refraction = refraction});
     Looking looking(posts, part, dem.curvature(), highest_m);
-    for (const double azimuth : azimuth_rad) {
-        const std::optional<GridPair> way = way_of(SunSky(dem, azimuth), posts.grid());
-        if (!way) continue;
-        for (std::size_t i = 0; i < looking.count(); ++i) {
-            const Eye& eye = looking.eye(i);
-            const View view = looking.look(eye, *way);
-            const double dip =
-                -std::sqrt(2 * dem.curvature() * std::max(0.0, eye.height_m - posts.lowest_m()));
+    std::vector<GridPair> ways;
+    for (const double azimuth : azimuth_rad)
+        if (const std::optional<GridPair> way = way_of(SunSky(dem, azimuth), posts.grid()))
+            ways.push_back(*way);
+    looking.each_eye([&](std::size_t i, const Eye& eye) {
+        const double dip =
+            -std::sqrt(2 * dem.curvature() * std::max(0.0, eye.height_m - posts.lowest_m()));
+        for (const GridPair& way : ways) {
+            const View view = looking.look(eye, way);
             looking.consider(i, view, std::max(view.tangent, dip));
         }
-    }
+    });
     return looking.found();
 }
 

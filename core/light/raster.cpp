@@ -13,6 +13,7 @@
 #include <ogr_spatialref.h>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "base/text.h"
 #include "dem/gdal_support.h"
 #include "light/scratch_files.h"
@@ -63,8 +64,10 @@ void describe(GDALDataset& dataset, const dem::Grid& grid, RasterType type,
 CPLStringList creation_options(const std::vector<std::string>& given, GDALDataType type) {
     CPLStringList options;
     options.SetNameValue("COMPRESS", "DEFLATE");
+    options.SetNameValue("PREDICTOR", "YES");
     options.SetNameValue("OVERVIEW_RESAMPLING", type == GDT_Byte ? "NEAREST" : "AVERAGE");
     options.SetNameValue("BIGTIFF", "IF_SAFER");
+    options.SetNameValue("NUM_THREADS", std::to_string(thread_count()).c_str());
     for (const std::string& option : given) {
         const std::size_t equals = option.find('=');
         if (equals == std::string::npos || equals == 0)

@@ -37,8 +37,8 @@ struct ShadowOptions {
     /// Whose posts are wanted; without columns: all. Ground around it shades all the same, and the
     /// figures are those, to the bit, that they have among all.
     dem::Window part{};
-    /// Told now and then which share of the work has been done since it was told last, on the
-    /// thread that called. What it throws ends the work.
+    /// Told now and then which share of the work has been done since it was told last, by one
+    /// thread at a time; 0 where the work proper begins. What it throws ends the work.
     std::function<void(double)> done;
 };
 

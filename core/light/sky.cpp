@@ -35,10 +35,12 @@ float floor_under(float lowest_m, double relief_m, double curvature, bool soft) 
     return static_cast<float>(lowest_m - under_m);
 }
 
-/// The wider of the two spacings of posts.
-double grid_spacing_m(const dem::Grid& grid) {
-    const glm::dvec2 spacing_m = grid.post_spacing_m();
-    return std::max(spacing_m.x, spacing_m.y);
+std::array<geo::Geodetic, 9> marks_of(const dem::Grid& grid) {
+    std::array<geo::Geodetic, 9> marks;
+    for (int i = 0; i < 9; ++i)
+        marks[static_cast<std::size_t>(i)] =
+            grid.place((grid.columns() - 1) * (i % 3) / 2.0, (grid.rows() - 1) * (i / 3) / 2.0);
+    return marks;
 }
 
 glm::dvec2 moved(const dem::Grid& grid, const geo::Geodetic& from, double azimuth_rad,
@@ -194,7 +196,7 @@ void divide(const std::vector<SunSky>& suns, double tolerance_rad, const SweepWi
     if (!wide && !high) no_tile(suns.front().dem().grid());
     // Across that way across which the sun differs more; a small one across its length.
     const glm::dvec2 size_m =
-        suns.front().dem().grid().post_spacing_m() * glm::dvec2(window.columns, window.rows);
+        suns.front().dem().spacing_m() * glm::dvec2(window.columns, window.rows);
     const bool large = wide && high && (window.columns > kLarge || window.rows > kLarge);
     const bool by_columns = large ? error_rad(suns, halves(window, true)[0]) <=
                                         error_rad(suns, halves(window, false)[0])
@@ -226,6 +228,8 @@ PartHeights::PartHeights(const dem::Posts& posts, const SweepWindow& part) {
 
 DemSky::DemSky(const dem::Posts& posts, const ShadowOptions& options)
     : posts_(posts),
+      spacing_m_(posts.grid().post_spacing_m()),
+      marks_(marks_of(posts.grid())),
       frame_(posts.grid().center()),
       curvature_((1 - options.refraction) / geo::kEquatorialRadius_m),
       relief_m_(double{posts.highest_m()} - posts.lowest_m()),
@@ -298,7 +302,7 @@ void SunSky::find_way() {
     const glm::dvec2 middle((grid.columns() - 1) / 2.0, (grid.rows() - 1) / 2.0);
     const geo::Geodetic place = grid.place(middle.x, middle.y);
     const glm::dvec2 step =
-        moved(grid, place, at(place).azimuth_rad, 4 * grid_spacing_m(grid)) - middle;
+        moved(grid, place, at(place).azimuth_rad, 4 * dem_.widest_spacing_m()) - middle;
     along_columns_ = std::abs(step.y) < std::abs(step.x);
     from_first_ = (along_columns_ ? step.x : step.y) < 0;
 }
@@ -316,18 +320,15 @@ double SunSky::reach_m(double apparent_rad) const {
     const double risen_m =
         (std::sqrt(t * t + 2 * dem_.curvature() * dem_.relief_m()) - t) / dem_.curvature();
     const dem::Grid& grid = dem_.grid();
-    const glm::dvec2 side_m = grid.post_spacing_m() * glm::dvec2(grid.columns(), grid.rows());
-    return std::max(4 * grid_spacing_m(grid), std::min(risen_m, glm::length(side_m)));
+    const glm::dvec2 side_m = dem_.spacing_m() * glm::dvec2(grid.columns(), grid.rows());
+    return std::max(4 * dem_.widest_spacing_m(), std::min(risen_m, glm::length(side_m)));
 }
 
 bool SunSky::is_night() const {
-    const dem::Grid& grid = dem_.grid();
-    for (int i = 0; i < 9; ++i) {
-        const Local sun =
-            at((grid.columns() - 1) * (i % 3) / 2.0, (grid.rows() - 1) * (i / 3) / 2.0);
-        if (!(sun.elevation_rad < dem_.lowest_sun_rad() - kTwilight_rad)) return false;
-    }
-    return true;
+    const double night_rad = dem_.lowest_sun_rad() - kTwilight_rad;
+    return std::all_of(dem_.marks().begin(), dem_.marks().end(), [&](const geo::Geodetic& place) {
+        return at(place).elevation_rad < night_rad;
+    });
 }
 
 SweepSun SunSky::sun(const SunTile& tile, std::size_t level, double offset_rad) const {
@@ -353,8 +354,8 @@ std::optional<SunTile> SunSky::tile(const SweepWindow& window) const {
     if (!std::isfinite(place.lat_rad)) return std::nullopt;
     const Local sun = at(place);
     // A cubic through where the ray is before the window, and behind it for as far as that goes.
-    const glm::dvec2 size_m = grid.post_spacing_m() * glm::dvec2(window.columns, window.rows);
-    const double behind_m = std::max(4 * grid_spacing_m(grid), glm::length(size_m) / 2);
+    const glm::dvec2 size_m = dem_.spacing_m() * glm::dvec2(window.columns, window.rows);
+    const double behind_m = std::max(4 * dem_.widest_spacing_m(), glm::length(size_m) / 2);
     double far_m = std::max(reach_m(dem_.apparent_rad(sun.elevation_rad, 0)), behind_m);
     for (int tries = 0; tries < 8; ++tries, far_m /= 2) {
         const glm::dvec3 s = behind_m < far_m / 3
@@ -393,10 +394,10 @@ double SunSky::path_error_rad(const SunTile& tile, const glm::dvec2& post, const
     const int step = by_rows ? 1 : 0, across = 1 - step;
     const geo::Geodetic place = grid.place(post.x, post.y);
     const double apparent = dem_.apparent_rad(sun.elevation_rad, 0);
-    const double reach = reach_m(apparent), least_m = 2 * grid_spacing_m(grid);
+    const double reach = reach_m(apparent), least_m = 2 * dem_.widest_spacing_m();
     const double s0 = path.distance_m(post[step]);
     const double moved_by = post[across] - path.way(s0).column;
-    const double across_m = grid.post_spacing_m()[across];
+    const double across_m = dem_.spacing_m()[across];
     double worst = 0;
     for (const double share : {0.02, 0.2, 0.6, 1.0}) {
         // Nearer than some posts an angle is of no account, and PROJ's millimetre would be one.

@@ -48,6 +48,10 @@ class DemSky {
 
     const dem::Posts& posts() const { return posts_; }
     const dem::Grid& grid() const { return posts_.grid(); }
+    const glm::dvec2& spacing_m() const { return spacing_m_; }  ///< the grid's post_spacing_m()
+    double widest_spacing_m() const { return std::max(spacing_m_.x, spacing_m_.y); }
+    /// Where its corners, the middles of its sides and its own middle are.
+    const std::array<geo::Geodetic, 9>& marks() const { return marks_; }
     const geo::LocalFrame& frame() const { return frame_; }
     double curvature() const { return curvature_; }  ///< of lines of sight over the ground [1/m]
     double relief_m() const { return relief_m_; }
@@ -72,6 +76,8 @@ class DemSky {
 
   private:
     const dem::Posts& posts_;
+    glm::dvec2 spacing_m_;
+    std::array<geo::Geodetic, 9> marks_;
     geo::LocalFrame frame_;
     double curvature_, relief_m_;
     float floor_m_;
@@ -101,8 +107,9 @@ class SunSky {
     /// The sun is under the horizon of every post.
     bool is_night() const;
 
-    /// Of the sun without air at a post.
+    /// Of the sun without air at a post, or at a place.
     double elevation_rad(double column, double row) const { return at(column, row).elevation_rad; }
+    double elevation_rad(const geo::Geodetic& place) const { return at(place).elevation_rad; }
 
     /// Likewise towards it, local ENU, a unit vector.
     glm::dvec3 direction(double column, double row) const;

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -407,10 +408,11 @@ class FewDays {
     void light(SunHours& result, const std::function<void(double)>& done) const {
         std::optional<GroundForBeams> ground;
         if (irradiation_) ground.emplace(dem_, part_);
-        const std::vector<Work> works = all_works(result);
+        const std::vector<Work> works = shuffled(all_works(result));
         double all = 0;
         for (const Work& work : works)
             all += work.size();
+        if (done) done(0);
         Totals totals(part_, at_h_, result);
         std::mutex mutex;
         std::atomic<std::size_t> next = 0;
@@ -505,6 +507,19 @@ class FewDays {
                     works.push_back({all[i], window, part});
         }
         return works;
+    }
+
+    /// In an order in which whatever is done first is much like the rest, so that the time left is
+    /// known soon: low suns take longer than high ones. Sums do not hang on it.
+    static std::vector<Work> shuffled(const std::vector<Work>& works) {
+        constexpr double kGolden = 0.6180339887498949;
+        std::size_t stride = static_cast<std::size_t>(double(works.size()) * kGolden) | 1U;
+        while (std::gcd(stride, works.size()) > 1)
+            stride += 2;
+        std::vector<Work> mixed;
+        for (std::size_t i = 0; i < works.size(); ++i)
+            mixed.push_back(works[i * stride % works.size()]);
+        return mixed;
     }
 
     TileSun tile_sun(const Work& work, std::size_t k) const {
@@ -699,7 +714,7 @@ class ManyDays {
     std::vector<SweepWindow> blocks() const {
         constexpr double kBlock_m = 200e3;
         const dem::Grid& grid = dem_.grid();
-        const glm::dvec2 spacing_m = grid.post_spacing_m();
+        const glm::dvec2& spacing_m = dem_.spacing_m();
         const int columns = std::max(1, static_cast<int>(kBlock_m / spacing_m.x)),
                   rows = std::max(1, static_cast<int>(kBlock_m / spacing_m.y));
         std::vector<SweepWindow> blocks;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -527,9 +528,12 @@ class Plan {
                                            : std::numeric_limits<double>::infinity();
         const double from_m = sun_.distance_m(window.row);
         begin_ = window.row;
-        while (begin_ > 0 && sun_.distance_m(begin_) - from_m <= reach_m_ &&
-               !std::isnan(sun_.distance_m(begin_ - 1)))
+        double at_m = from_m;
+        while (begin_ > 0 && at_m - from_m <= reach_m_) {
+            at_m = sun_.distance_m(begin_ - 1);
+            if (std::isnan(at_m)) break;
             --begin_;
+        }
     }
 
     static constexpr double kMargin = 1.05;  // of a reach
@@ -1476,7 +1480,11 @@ Sweep::Blocks::Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const Sw
         }
     }
     end_row_ = row_;
-    if (!sweep.read_) leave_out(suns, earth_curvature);
+    // To find out what may be left out is work over all of the grid.
+    constexpr std::int64_t kLeastShare = 4;
+    const bool is_large =
+        kLeastShare * window.columns * window.rows >= std::int64_t{sweep.columns_} * sweep.rows_;
+    if (is_large && !sweep.read_) leave_out(suns, earth_curvature);
 }
 
 Sweep::Blocks::~Blocks() = default;

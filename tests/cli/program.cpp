@@ -62,6 +62,28 @@ Result relevo(const std::vector<std::string>& arguments,
                environment);
 }
 
+Measured measured(std::vector<std::string> arguments) {
+    arguments.insert(
+        arguments.begin(),
+        {"-c",
+         "import resource, subprocess, sys\n"
+         "status = subprocess.run(sys.argv[1:]).returncode\n"
+         "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
+         "print(used.ru_maxrss // 1024, used.ru_utime + used.ru_stime, file=sys.stderr)\n"
+         "sys.exit(status if status >= 0 else 128 - status)\n",
+         (build_dir() / "bin/relevo").string()});
+    Measured result{run("/usr/bin/env", [&] {
+        arguments.insert(arguments.begin(), "python3");
+        return arguments;
+    }())};
+    std::string& err = result.run.err;
+    const std::size_t line = err.rfind('\n', err.size() - 2) + 1;
+    result.peak_mib = std::atoi(err.c_str() + line);
+    result.processor_s = std::atof(err.c_str() + err.find(' ', line));
+    err.resize(line);
+    return result;
+}
+
 void expect_failure(const std::vector<std::string>& arguments, int status,
                     const std::string& message) {
     const Result result = relevo(arguments);

@@ -23,6 +23,14 @@ Result run(const std::filesystem::path& program, const std::vector<std::string>&
 Result relevo(const std::vector<std::string>& arguments,
               const std::vector<std::string>& environment = {});
 
+/// A run of `relevo`, and what it took.
+struct Measured {
+    Result run;
+    int peak_mib = 0;  ///< of memory
+    double processor_s = 0;
+};
+Measured measured(std::vector<std::string> arguments);
+
 /// Expects that a run of `relevo` fails with a status and exactly this message, and says nothing
 /// else.
 void expect_failure(const std::vector<std::string>& arguments, int status,

@@ -227,35 +227,6 @@ TEST(InfoVerb, SparseFilesAreReadWhereTheyStoreSomething) {
     EXPECT_NE(info.out.find("heights    321.0 to 321.0 m\n"), std::string::npos) << info.out;
 }
 
-/// `relevo`, and the most memory that it had.
-struct Measured {
-    Result run;
-    int peak_mib = 0;
-    double processor_s = 0;
-};
-
-Measured measured(std::vector<std::string> arguments) {
-    arguments.insert(
-        arguments.begin(),
-        {"-c",
-         "import resource, subprocess, sys\n"
-         "status = subprocess.run(sys.argv[1:]).returncode\n"
-         "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
-         "print(used.ru_maxrss // 1024, used.ru_utime + used.ru_stime, file=sys.stderr)\n"
-         "sys.exit(status if status >= 0 else 128 - status)\n",
-         (build_dir() / "bin/relevo").string()});
-    Measured result{run("/usr/bin/env", [&] {
-        arguments.insert(arguments.begin(), "python3");
-        return arguments;
-    }())};
-    std::string& err = result.run.err;
-    const std::size_t line = err.rfind('\n', err.size() - 2) + 1;
-    result.peak_mib = std::atoi(err.c_str() + line);
-    result.processor_s = std::atof(err.c_str() + err.find(' ', line));
-    err.resize(line);
-    return result;
-}
-
 TEST(DemOptions, MemoryHoldsOfDemsOfAnySize) {
     // 75 GiB of heights, of which the file stores some 25 MiB.
     Raster raster;

@@ -277,7 +277,7 @@ TEST(SunMemory, WhatABudgetIsMakesNoDifference) {
     const Result dry = relevo(
         {"sun", "sky-view", dems.front(), "--dry-run", "--memory", "1", "-o", out("dry.tif")});
     EXPECT_TRUE(dry.out.starts_with(
-        "posts               281101, in 77 parts\nmemory              some 317 MiB, 257 of "
+        "posts               281101, in 77 parts\nmemory              some 357 MiB, 257 of "
         "them heights\n"))
         << dry.out;
 }
@@ -337,6 +337,25 @@ TEST(SunRasters, ADryRunSaysWhatARunTakesAndWritesNothing) {
     EXPECT_FALSE(std::filesystem::exists(out("dry.tif")));
     for (const auto& entry : std::filesystem::directory_iterator(folder()))
         EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
+}
+
+TEST(SunRasters, TakeNoMoreMemoryThanADryRunTells) {
+    // Results of many bands, which take most where they are written, and such of few.
+    std::vector<std::string> many{"horizons", "--directions", "36"};
+    for (std::vector<std::string> arguments :
+         {questions()[0], questions()[3], questions()[4], many}) {
+        arguments.insert(arguments.begin(), "sun");
+        arguments.insert(arguments.end(), {bundled_dem(), "-o", out("memory.tif"), "--overwrite"});
+        const Measured taken = measured(arguments);
+        EXPECT_EQ(taken.run.status, 0) << taken.run.err;
+        arguments.push_back("--dry-run");
+        const Result dry = relevo(arguments);
+        const std::size_t at = dry.out.find("\nmemory              some ");
+        ASSERT_NE(at, std::string::npos) << dry.out;
+        const int told_mib = std::atoi(dry.out.c_str() + at + 26);
+        EXPECT_GE(told_mib, taken.peak_mib) << said(arguments);
+        EXPECT_LE(told_mib, 3 * taken.peak_mib) << said(arguments);
+    }
 }
 
 TEST(SunRasters, TellOfTerrainBeyondTheDemThatCouldMatter) {
