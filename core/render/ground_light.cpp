@@ -5,10 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <future>
 #include <limits>
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -177,16 +179,15 @@ struct DrawnPosts {
     double exaggeration = 0;
     int reduction = 1;  ///< of the given posts to one of these, each way
 
-    /// @returns whether they are others than before
-    bool make(const dem::Heightfield& given, double wanted, int wanted_reduction) {
-        if (posts && exaggeration == wanted && reduction == wanted_reduction) return false;
+    void make(const dem::Heightfield& given, double wanted, int wanted_reduction) {
+        if (posts && exaggeration == wanted && reduction == wanted_reduction) return;
         posts.reset();
         exaggeration = wanted;
         reduction = wanted_reduction;
         const Array2d<float>& h = given.height_m;
         if (reduction == 1 && exaggeration == 1 && given.reduction == 1) {
             posts.emplace(given);
-            return true;
+            return;
         }
         const int columns = h.width() / reduction, rows = h.height() / reduction;
         own.emplace(dem::Heightfield{
@@ -195,7 +196,6 @@ struct DrawnPosts {
             given.about});
         own->about.statistics = dem::statistics(own->height_m);
         posts.emplace(*own);
-        return true;
     }
 };
 
@@ -224,6 +224,33 @@ struct AirMade {
 
 }  // namespace
 
+struct SkyFound {
+    DrawnPosts ground;
+    Array2d<float> share;  ///< of the sky that they see; all of it on maps of the world
+};
+
+namespace {
+
+std::shared_ptr<const SkyFound> find_sky(const dem::Heightfield& field, double exaggeration) {
+    const auto found = std::make_shared<SkyFound>();
+    found->ground.make(field, exaggeration,
+                       reduction_to(field.height_m, GroundLight::kMostSkyPosts));
+    light::SkyViewOptions options;
+    options.directions = GroundLight::kSkyDirections;
+    options.of_open_slope = true;
+    const dem::Grid& grid = found->ground.posts->grid();
+    try {
+        found->share = light::sky_view(*found->ground.posts, options).share;
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::BadInput) throw;
+        log::info(fmt::format("render: the ground hides no sky: {}", error.what()));
+        found->share = {grid.columns(), grid.rows(), 1};
+    }
+    return found;
+}
+
+}  // namespace
+
 struct GroundLight::Impl {
     const dem::Heightfield& field;
     const geo::LocalFrame& frame;
@@ -236,7 +263,8 @@ struct GroundLight::Impl {
     };
     std::map<int, Level> levels;   // by reduction
     const Level* level = nullptr;  // of the textures
-    DrawnPosts sky_ground;
+    SkyAhead sky_ahead;
+    std::shared_ptr<const SkyFound> sky_found;  // what the texture has
     std::optional<SunMade> sun;
     double told_error_rad = 0;
 
@@ -245,10 +273,10 @@ struct GroundLight::Impl {
     Array2d<std::uint16_t> post_shares;  // value and coverage, a byte each
     std::optional<gl::Texture> margin_texture;
     Shares shares, sky;
-    bool has_sky = false;
     bool has_sun = true;  // one can be found over the DEM
 
-    Impl(const dem::Heightfield& f, const geo::LocalFrame& l) : field(f), frame(l) {}
+    Impl(const dem::Heightfield& f, const geo::LocalFrame& l, SkyAhead ahead)
+        : field(f), frame(l), sky_ahead(std::move(ahead)) {}
 
     /// Means are finer than the pixels, and few where pixels allow it.
     int reduction_for(double pixel_posts) const {
@@ -355,18 +383,6 @@ struct GroundLight::Impl {
         shares.upload("light_shares");
     }
 
-    /// The share of the sky that means of posts see; all of it on maps of the world.
-    Array2d<float> find_sky(const light::SkyViewOptions& options) {
-        const dem::Grid& grid = sky_ground.posts->grid();
-        try {
-            return light::sky_view(*sky_ground.posts, options).share;
-        } catch (const Error& error) {
-            if (error.code() != ErrorCode::BadInput) throw;
-            log::info(fmt::format("render: the ground hides no sky: {}", error.what()));
-            return {grid.columns(), grid.rows(), 1};
-        }
-    }
-
     /// Says once how far off the sun is where one does not hold for enough posts.
     void tell(double error_rad) {
         if (error_rad <= told_error_rad) return;
@@ -378,8 +394,14 @@ struct GroundLight::Impl {
     }
 };
 
-GroundLight::GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame)
-    : impl_(std::make_unique<Impl>(field, frame)) {}
+SkyAhead find_sky_ahead(const dem::Heightfield& field, double exaggeration) {
+    // Where the system gives no further thread it is found when it is waited for.
+    return std::async(std::launch::async | std::launch::deferred,
+                      [&field, exaggeration] { return find_sky(field, exaggeration); });
+}
+
+GroundLight::GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyAhead sky)
+    : impl_(std::make_unique<Impl>(field, frame, std::move(sky))) {}
 GroundLight::GroundLight(GroundLight&&) noexcept = default;
 GroundLight& GroundLight::operator=(GroundLight&&) noexcept = default;
 GroundLight::~GroundLight() = default;
@@ -402,14 +424,11 @@ void GroundLight::follow(const SunLight& light, double exaggeration, double pixe
 
 void GroundLight::look_up(double exaggeration) {
     Impl& my = *impl_;
-    if (!my.sky_ground.make(my.field, exaggeration,
-                            reduction_to(my.field.height_m, kMostSkyPosts)) &&
-        my.has_sky)
-        return;
-    light::SkyViewOptions options;
-    options.directions = kSkyDirections;
-    options.of_open_slope = true;
-    const Array2d<float> share = my.find_sky(options);
+    if (my.sky_found && my.sky_found->ground.exaggeration == exaggeration) return;
+    if (my.sky_ahead.valid()) my.sky_found = std::exchange(my.sky_ahead, {}).get();
+    if (!my.sky_found || my.sky_found->ground.exaggeration != exaggeration)
+        my.sky_found = find_sky(my.field, exaggeration);
+    const Array2d<float>& share = my.sky_found->share;
     my.sky.resize(share.width(), share.height());
     for (int row = 0; row < share.height(); ++row)
         for (int column = 0; column < share.width(); ++column) {
@@ -421,7 +440,6 @@ void GroundLight::look_up(double exaggeration) {
                              255};
         }
     my.sky.upload("light_sky");
-    my.has_sky = true;
 }
 
 const gl::Texture* GroundLight::texture(std::string_view name) const {
@@ -438,9 +456,10 @@ void GroundLight::describe(FrameBlock& block) const {
     const double given = my.field.reduction;
     const glm::dvec2 spacing_m = grid.post_spacing_m();
     const int reduction = my.level ? my.level->ground.reduction : 1;
+    const int sky_reduction = my.sky_found ? my.sky_found->ground.reduction : 1;
     const double exaggeration = my.level ? my.level->ground.exaggeration : 1;
     block.light_grid = {static_cast<float>(1 / (given * reduction)),
-                        static_cast<float>(1 / (given * my.sky_ground.reduction)),
+                        static_cast<float>(1 / (given * sky_reduction)),
                         my.by_columns ? 1.0F : 0.0F,
                         static_cast<float>(kMarginPosts * reduction *
                                            std::max(spacing_m.x, spacing_m.y) * exaggeration)};

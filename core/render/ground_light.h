@@ -1,5 +1,6 @@
 #pragma once
 
+#include <future>
 #include <memory>
 #include <string_view>
 
@@ -9,6 +10,12 @@
 #include "render/frame_block.h"
 
 namespace relevo::render {
+
+/// What ground leaves in sight of the sky, found beside other work: a driver's compiler, for one.
+struct SkyFound;
+using SkyAhead = std::shared_future<std::shared_ptr<const SkyFound>>;
+/// @param field  outlives what is found
+SkyAhead find_sky_ahead(const dem::Heightfield& field, double exaggeration);
 
 /// What shaders read of the light that comes to the ground past the ground around it, for every
 /// post, as textures over the whole DEM. shaders/lib/sun_share.glsl and shaders/lib/openness.glsl
@@ -29,7 +36,8 @@ class GroundLight {
   public:
     /// @param field  outlives this
     /// @param frame  the DEM's local frame; outlives this
-    GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame);
+    /// @param sky    of the same field; may be none, and of another exaggeration
+    GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyAhead sky = {});
     GroundLight(GroundLight&&) noexcept;
     GroundLight& operator=(GroundLight&&) noexcept;
     ~GroundLight();

@@ -128,6 +128,19 @@ std::vector<std::int16_t> normal_page(const dem::Pyramid& pyramid, int level, gl
     };
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
+    struct Column {
+        int at, to_west, to_east;
+        float u;
+    };
+    std::array<Column, kNormalPage_px> columns;
+    for (int x = 0; x < kNormalPage_px; ++x) {
+        const int at = std::clamp(first_node.x + x - 1, 0, last.x);
+        const auto post = [&](int column) { return pyramid.post(level, {column, 0}).x; };
+        columns[static_cast<std::size_t>(x)] = {at, post(at) - post(std::max(at - 1, 0)),
+                                                post(std::min(at + 1, last.x)) - post(at),
+                                                static_cast<float>(post(at) - first.x) * step.x};
+    }
+
     std::vector<std::int16_t> texels;
     texels.reserve(std::size_t{2} * kNormalPage_px * kNormalPage_px);
     for (int y = 0; y < kNormalPage_px; ++y) {
@@ -142,13 +155,7 @@ std::vector<std::int16_t> normal_page(const dem::Pyramid& pyramid, int level, gl
         const vec3 slope_v0 = p[3] + 2.0f * v * p[6];
         const vec3 slope_v1 = p[4] + 2.0f * v * p[7];
         const vec3 slope_v2 = p[5] + 2.0f * v * p[8];
-        for (int x = 0; x < kNormalPage_px; ++x) {
-            const int column = std::clamp(first_node.x + x - 1, 0, last.x);
-            const int column_post = pyramid.post(level, {column, 0}).x;
-            const int to_west = column_post - pyramid.post(level, {std::max(column - 1, 0), 0}).x;
-            const int to_east =
-                pyramid.post(level, {std::min(column + 1, last.x), 0}).x - column_post;
-            const float u = static_cast<float>(column_post - first.x) * step.x;
+        for (const auto& [column, to_west, to_east, u] : columns) {
             const glm::ivec2 at = glm::ivec2(column, row) - first_node + 2;
             const float h = block.height_m.at(at.x, at.y);
             const float west = to_west > 0 ? height(column - 1, row) : kNone;

@@ -119,13 +119,14 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       frame_(frame),
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),
-      light_(heightfield, frame),
+      light_(heightfield, frame, options.sky),
       drawn_m_(&heightfield.height_m),
       drawn_grid_(&heightfield.grid),
       reduction_(finer ? heightfield.reduction : 1),
       grid_vertices_(gl::Buffer::of<float>(grid_vertices(), "terrain grid")),
       grid_indices_(gl::Buffer::of<std::uint16_t>(grid_indices(), "terrain grid indices")),
       sides_(pyramid_) {
+    options_.sky = {};  // the light has it
     const glm::dvec2 spacing_m = grid_.post_spacing_m();
     normal_spacing_m_ = std::sqrt(spacing_m.x * spacing_m.y);
     normal_levels_ = std::max(1, pyramid_.levels() - kNormalPageLevels);

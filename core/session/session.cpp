@@ -5,11 +5,13 @@
 #include <cmath>
 #include <future>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/parallel_for.h"
 #include "base/units.h"
 #include "dem/files_of.h"
 #include "dem/load.h"
@@ -152,6 +154,7 @@ struct Session::Impl {
     // In the order in which each needs those above.
     std::optional<gl::Context> context;
     std::shared_ptr<const LoadedDem> loaded;
+    render::SkyAhead sky_ahead;  // of the first ground
     DrawnEffects drawn;
     std::optional<render::Ground> ground;
     std::optional<render::Terrain> terrain;
@@ -265,12 +268,26 @@ struct Session::Impl {
 
     void compile(DrawnEffects& drawing) {
         render::RendererOptions with_texts = renderer_options();
-        with_texts.stitched = options.stitched;
+        with_texts.stitched = [this](const std::vector<render::ProgramText>& texts) {
+            if (options.stitched) options.stitched(texts);
+            look_ahead(texts);
+        };
         drawing.renderer =
             std::make_unique<render::Renderer>(*context, drawing.effects->inputs(), with_texts);
         if (drawing.others)
             drawing.without = std::make_unique<render::Renderer>(*context, drawing.others->inputs(),
                                                                  renderer_options());
+    }
+
+    /// While the driver compiles the first programs, other processors find what these will read.
+    void look_ahead(const std::vector<render::ProgramText>& texts) {
+        if (terrain || sky_ahead.valid()) return;
+        const auto reads_sky = [](const render::ProgramText& text) {
+            return std::any_of(text.stitched.textures.begin(), text.stitched.textures.end(),
+                               [](const auto& unit) { return unit.resource == "light_sky"; });
+        };
+        if (thread_count() > 1 && std::any_of(texts.begin(), texts.end(), reads_sky))
+            sky_ahead = render::find_sky_ahead(loaded->to_draw(), scene.exaggeration);
     }
 
     void set_effects(const scene::Effects& asked) {
@@ -371,7 +388,8 @@ struct Session::Impl {
                 .max_array_layers = context->info().max_array_layers,
                 .pyramid = loaded->pyramid ? &*loaded->pyramid : nullptr,
                 .water = &loaded->drawn.water,
-                .filled = loaded->drawn.is_filled.empty() ? nullptr : &loaded->drawn.is_filled},
+                .filled = loaded->drawn.is_filled.empty() ? nullptr : &loaded->drawn.is_filled,
+                .sky = std::exchange(sky_ahead, {})},
             loaded->source.get());
         if (scene.overlay) {
             Overlay overlay = read_overlay(*scene.overlay, terrain->grid());

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "base/units.h"
 #include "sun/interpolate.h"
 
@@ -248,8 +249,12 @@ Refraction Refraction::integrated(const Atmosphere& atmosphere) {
     result.model_ = Model::Table;
     Table& apparent = result.of_apparent_;
     apparent.lowest_rad = -dip_rad;
-    for (int i = 0; i < kEntries; ++i)
-        apparent.refraction_rad.push_back(shells.refraction_rad(kPi / 2 - apparent.node_rad(i)));
+    apparent.refraction_rad.resize(kEntries);
+    parallel_for(0, kEntries, 32, [&](int first, int last) {
+        for (int i = first; i < last; ++i)
+            apparent.refraction_rad[static_cast<std::size_t>(i)] =
+                shells.refraction_rad(kPi / 2 - apparent.node_rad(i));
+    });
 
     Table& real = result.of_true_;
     real.lowest_rad = apparent.lowest_rad - apparent.refraction_rad.front();
