@@ -26,8 +26,8 @@ using Clock = std::chrono::steady_clock;
 /// What a frame may take while the hand moves [ms].
 constexpr double kSoon_ms = 30;
 /// Shares of the window's sides that frames are drawn at then, the largest that is soon enough.
-constexpr std::array<double, 6> kScales = {1, 0.8, 0.65, 0.5, 0.42, 0.34};
-constexpr double kLeastScale = 0.42, kLeastScaleOfSun = 0.34;
+constexpr std::array<double, 5> kScales = {1, 0.8, 0.65, 0.5, 0.34};
+constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
 /// A picture stays so long at most while the pages of all posts are made in place of those that
 /// stood in: coarser ones would take its place.
 constexpr auto kNewPages = std::chrono::seconds(2);
