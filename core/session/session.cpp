@@ -168,6 +168,11 @@ struct Session::Impl {
     sun::Position position;
     sun::Refraction air = sun::Refraction::none();
     render::GroundToShow to_show;
+    struct MovedPoints {
+        render::Displacement by;
+        std::vector<glm::dvec3> points;
+    };
+    std::optional<MovedPoints> moved;  // of `to_show`
     std::optional<scene::DefaultDay> day;
     std::optional<scene::Framing> framing;  // of the last view that left an angle open
     std::string moment_reason;
@@ -417,7 +422,10 @@ struct Session::Impl {
     void take_shape(bool other) {
         inputs.exaggeration = scene.exaggeration;
         inputs.exposure_ev = scene.exposure_ev;
-        if (other) to_show = render::ground_to_show(loaded->field, *ground, scene.exaggeration);
+        if (other) {
+            to_show = render::ground_to_show(loaded->field, *ground, scene.exaggeration);
+            moved.reset();
+        }
         day.emplace(ground->frame.origin(), ground->block_m <= 0);
     }
 
@@ -465,9 +473,17 @@ struct Session::Impl {
         inputs.camera = scene::make_camera(
             view, [this](const geo::Geodetic& at) { return loaded->height_m(at); }, ground->frame,
             points, static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration,
-            render::points_moved_to(to_show.points, *ground, scene.exaggeration,
-                                    drawn.renderer->displacement()));
+            moved_points());
         scene.view = view;
+    }
+
+    /// The ground's points where effects move them to: the same for every camera.
+    const std::vector<glm::dvec3>& moved_points() {
+        const render::Displacement displacement = drawn.renderer->displacement();
+        if (!moved || moved->by != displacement)
+            moved = {displacement, render::points_moved_to(to_show.points, *ground,
+                                                           scene.exaggeration, displacement)};
+        return moved->points;
     }
 
     /// The eye where the sun that is told of is seen from, as `relevo sun position` has it; none
@@ -577,6 +593,7 @@ void Session::show(const scene::Scene& scene, sun::Instant utc) {
 }
 
 void Session::resize(int width_px, int height_px) {
+    if (width_px == impl_->scene.width_px && height_px == impl_->scene.height_px) return;
     impl_->context->make_current();
     impl_->resize(width_px, height_px);
     impl_->look(impl_->scene.view);
