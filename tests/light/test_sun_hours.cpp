@@ -245,6 +245,21 @@ TEST(SunHours, ManyDaysAreAsLongAsTheirDays) {
     EXPECT_LE(quantile(minutes, 0.99), 10);
 }
 
+TEST(SunHours, TellHowMuchOfTheWorkIsDoneFromItsBeginningOn) {
+    const dem::Heightfield field = test::bundled("jacksboro.tif");
+    const dem::Posts posts(field);
+    std::vector<double> told;
+    SunHoursOptions options;
+    options.step_s = 3600;
+    options.done = [&](double share) { told.push_back(share); };
+    const Instant begin = utc("2026-11-01T05:00Z");
+    sun_hours(posts, begin, begin + 86400.0, options);
+    ASSERT_GT(told.size(), 2U);
+    EXPECT_EQ(told.front(), 0);  // windows and suns are there
+    EXPECT_EQ(std::count(told.begin(), told.end(), 0.0), 1);
+    EXPECT_NEAR(mean(told) * double(told.size()), 1, 1e-9);
+}
+
 TEST(SunHours, HolesHaveNone) {
     dem::Heightfield field = walled();
     field.height_m.at(20, 20) = std::numeric_limits<float>::quiet_NaN();
