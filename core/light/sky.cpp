@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x2.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include "base/error.h"
 #include "base/parallel_for.h"
@@ -187,10 +188,11 @@ std::array<SweepWindow, 2> halves(const SweepWindow& window, bool of_columns) {
     return halves;
 }
 
+/// @param most  no more windows are wanted
 void divide(const std::vector<SunSky>& suns, double tolerance_rad, const SweepWindow& window,
-            const SweepWindow& part, std::vector<SweepWindow>& windows) {
+            const SweepWindow& part, std::size_t most, std::vector<SweepWindow>& windows) {
     const SweepWindow wanted = common(window, part);
-    if (wanted.columns == 0 || wanted.rows == 0) return;
+    if (wanted.columns == 0 || wanted.rows == 0 || windows.size() >= most) return;
     if (error_rad(suns, window) <= tolerance_rad) return windows.push_back(window);
     const bool wide = window.columns > kLeastTile, high = window.rows > kLeastTile;
     if (!wide && !high) no_tile(suns.front().dem().grid());
@@ -202,7 +204,7 @@ void divide(const std::vector<SunSky>& suns, double tolerance_rad, const SweepWi
                                         error_rad(suns, halves(window, false)[0])
                                   : wide && (!high || size_m.x > size_m.y);
     for (const SweepWindow& half : halves(window, by_columns))
-        divide(suns, tolerance_rad, half, part, windows);
+        divide(suns, tolerance_rad, half, part, most, windows);
 }
 
 }  // namespace
@@ -331,11 +333,35 @@ bool SunSky::is_night() const {
     });
 }
 
+/// The path of a band, and tangents that are linear over it.
+SweepSun SunSky::fitted(const SunTile& tile,
+                        const std::function<double(const GridPair&)>& of) const {
+    const GridPair& p = tile.path.reference;
+    const glm::dvec2 size(tile.window.columns, tile.window.rows);
+    glm::dmat3 sums(0);  // least squares
+    glm::dvec3 found(0);
+    for (const GridPair& mark : tile.marks) {
+        const glm::dvec3 terms(1, (mark.column - p.column) / size.x, (mark.row - p.row) / size.y);
+        sums += glm::outerProduct(terms, terms);
+        found += terms * of(mark);
+    }
+    const glm::dvec3 fit = glm::inverse(sums) * found;
+    SweepSun sun = tile.path;
+    sun.tangent = fit.x;
+    sun.tangent_a_post = {fit.y / size.x, fit.z / size.y};
+    return sun;
+}
+
 SweepSun SunSky::sun(const SunTile& tile, std::size_t level, double offset_rad) const {
     const GridPair& p = tile.path.reference;
-    const auto tangent = [&](double column, double row) {
-        const double e = at(p.column + column, p.row + row).elevation_rad + offset_rad;
+    const auto tangent_at = [&](double column, double row) {
+        const double e = at(column, row).elevation_rad + offset_rad;
         return std::tan(std::min(dem_.apparent_rad(e, level), radians(89.99)));
+    };
+    if (!tile.marks.empty())
+        return fitted(tile, [&](const GridPair& at) { return tangent_at(at.column, at.row); });
+    const auto tangent = [&](double column, double row) {
+        return tangent_at(p.column + column, p.row + row);
     };
     const double across = std::max(0.5, tile.window.columns / 2.0);
     const double down = std::max(0.5, tile.window.rows / 2.0);
@@ -346,6 +372,32 @@ SweepSun SunSky::sun(const SunTile& tile, std::size_t level, double offset_rad) 
     return sun;
 }
 
+/// A cubic over the grid through where the ray at a post is after shares of a way.
+std::optional<SweepSun> SunSky::cubic(const glm::dvec2& middle, double far_m,
+                                      const glm::dvec3& s) const {
+    const dem::Grid& grid = dem_.grid();
+    const geo::Geodetic place = grid.place(middle.x, middle.y);
+    const double azimuth_rad = at(place).azimuth_rad;
+    glm::dmat3 powers;
+    for (int k = 0; k < 3; ++k)
+        powers[k] = {s[k], s[k] * s[k], s[k] * s[k] * s[k]};
+    const glm::dmat3 inverse = glm::inverse(powers);  // of columns (s, s^2, s^3)
+    glm::dmat3x2 there;
+    for (int k = 0; k < 3; ++k)
+        there[k] = moved(grid, place, azimuth_rad, s[k] * far_m) - middle;
+    const glm::dmat3x2 terms = there * inverse;
+    if (!std::isfinite(terms[0].x + terms[0].y + terms[1].x + terms[1].y + terms[2].x + terms[2].y))
+        return std::nullopt;
+    const auto pair = [](const glm::dvec2& v) { return GridPair{v.x, v.y}; };
+    SweepSun path;
+    path.columns_set = along_columns_;
+    path.reference = pair(middle);
+    path.towards = pair(terms[0] / far_m);
+    path.bend = pair(2.0 * terms[1] / (far_m * far_m));
+    path.twist = pair(6.0 * terms[2] / (far_m * far_m * far_m));
+    return path;
+}
+
 std::optional<SunTile> SunSky::tile(const SweepWindow& window) const {
     const dem::Grid& grid = dem_.grid();
     const glm::dvec2 middle(window.column + (window.columns - 1) / 2.0,
@@ -353,35 +405,192 @@ std::optional<SunTile> SunSky::tile(const SweepWindow& window) const {
     const geo::Geodetic place = grid.place(middle.x, middle.y);
     if (!std::isfinite(place.lat_rad)) return std::nullopt;
     const Local sun = at(place);
-    // A cubic through where the ray is before the window, and behind it for as far as that goes.
+    // Through where the ray is before the window, and behind it for as far as that goes.
     const glm::dvec2 size_m = dem_.spacing_m() * glm::dvec2(window.columns, window.rows);
     const double behind_m = std::max(4 * dem_.widest_spacing_m(), glm::length(size_m) / 2);
     double far_m = std::max(reach_m(dem_.apparent_rad(sun.elevation_rad, 0)), behind_m);
     for (int tries = 0; tries < 8; ++tries, far_m /= 2) {
-        const glm::dvec3 s = behind_m < far_m / 3
-                                 ? glm::dvec3(1 / 3.0, 2 / 3.0, 1)
-                                 : glm::dvec3(-std::min(1.0, behind_m / far_m), 0.5, 1);
-        glm::dmat3 powers;
-        for (int k = 0; k < 3; ++k)
-            powers[k] = {s[k], s[k] * s[k], s[k] * s[k] * s[k]};
-        const glm::dmat3 inverse = glm::inverse(powers);  // of columns (s, s^2, s^3)
-        glm::dmat3x2 there;
-        for (int k = 0; k < 3; ++k)
-            there[k] = moved(grid, place, sun.azimuth_rad, s[k] * far_m) - middle;
-        const glm::dmat3x2 terms = there * inverse;
-        if (!std::isfinite(terms[0].x + terms[0].y + terms[1].x + terms[1].y + terms[2].x +
-                           terms[2].y))
-            continue;
-        const auto pair = [](const glm::dvec2& v) { return GridPair{v.x, v.y}; };
-        SunTile tile{window, window, {}};
-        tile.path.columns_set = along_columns_;
-        tile.path.reference = pair(middle);
-        tile.path.towards = pair(terms[0] / far_m);
-        tile.path.bend = pair(2.0 * terms[1] / (far_m * far_m));
-        tile.path.twist = pair(6.0 * terms[2] / (far_m * far_m * far_m));
-        return tile;
+        const glm::dvec3 shares = behind_m < far_m / 3
+                                      ? glm::dvec3(1 / 3.0, 2 / 3.0, 1)
+                                      : glm::dvec3(-std::min(1.0, behind_m / far_m), 0.5, 1);
+        if (const std::optional<SweepSun> path = cubic(middle, far_m, shares))
+            return SunTile{window, window, *path};
     }
     return std::nullopt;
+}
+
+/// Towards the sun, posts for each metre.
+glm::dvec2 SunSky::step(const glm::dvec2& post) const {
+    const geo::Geodetic place = dem_.grid().place(post.x, post.y);
+    const double way_m = 4 * dem_.widest_spacing_m();
+    return (moved(dem_.grid(), place, at(place).azimuth_rad, way_m) - post) / way_m;
+}
+
+/// How far a way from a post stays in a window.
+static double way_in(const SweepWindow& w, const glm::dvec2& post, const glm::dvec2& a_metre) {
+    const glm::dvec2 first(w.column, w.row), last(w.column + w.columns - 1, w.row + w.rows - 1);
+    double way_m = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 2; ++k)
+        if (a_metre[k] != 0)
+            way_m = std::min(way_m, ((a_metre[k] > 0 ? last : first)[k] - post[k]) / a_metre[k]);
+    return way_m;
+}
+
+/// The ray through a post of a window: towards the sun for as far as ground shades the window, and
+/// to its end away from the sun.
+std::optional<SweepSun> SunSky::ray(const glm::dvec2& middle, const SweepWindow& window) const {
+    constexpr double kLonger = 1.1;  // rays are bent
+    const glm::dvec2 a_metre = step(middle);
+    if (!std::isfinite(a_metre.x + a_metre.y)) return std::nullopt;
+    const double more_m = 8 * dem_.widest_spacing_m();
+    const double reach = reach_m(dem_.apparent_rad(at(middle.x, middle.y).elevation_rad, 0));
+    const double before_m =
+        more_m + kLonger * std::min(way_in(window, middle, a_metre) + reach,
+                                    way_in(whole(dem_.grid()), middle, a_metre));
+    const double behind_m = more_m + kLonger * way_in(window, middle, -a_metre);
+    if (behind_m < before_m / 3) return cubic(middle, before_m, {1 / 3.0, 2 / 3.0, 1});
+    if (before_m < behind_m / 3) return cubic(middle, behind_m, {-1 / 3.0, -2 / 3.0, -1});
+    return cubic(middle, before_m, {-behind_m / before_m, 0.5, 1});
+}
+
+/// Divides a window into bands, each of which is divided further until its sun is one.
+class SunSky::BandMaker {
+  public:
+    BandMaker(const SunSky& sky, const SweepWindow& window, double tolerance_rad)
+        : sky_(sky), window_(window), tolerance_rad_(tolerance_rad) {
+        first_ = {window.column, window.row};
+        more_ = {window.columns - 1, window.rows - 1};
+        const glm::dvec2 middle = first_ + 0.5 * more_;
+        const glm::dvec2 a_metre = sky.step(middle);
+        falls_ = a_metre.x * a_metre.y > 0;
+    }
+
+    /// One band after the other, each as wide as the error of the last one lets it be.
+    std::optional<SunBands> make() {
+        constexpr double kSafe = 0.97, kWider = 1.5;
+        const double posts = std::max(1.0, more_[across()]);
+        double from = 0, width = 1;  // shares of the diagonal
+        std::optional<Firsts> begin, end;
+        for (int tries = 0; tries < kMostTries; ++tries) {
+            const int left = static_cast<int>(std::ceil((1 - from) / width - 1e-9));
+            const bool is_last = left <= 1;
+            const double to = is_last ? 1 : from + (1 - from) / left;
+            end.reset();
+            std::optional<SweepSun> ray;
+            if (!is_last) {
+                if (ray = sky_.ray(post(to), window_); ray) end = first_posts(*ray, window_);
+                if (!end) return std::nullopt;
+            }
+            std::optional<SunTile> tile =
+                this->tile((from + to) / 2, begin ? &*begin : nullptr, end ? &*end : nullptr);
+            if (!tile) return std::nullopt;
+            const double error_rad = tile->window.columns > 0 ? sky_.error_rad(*tile) : 0;
+            const double share = kSafe * tolerance_rad_ / std::max(error_rad, 1e-9);
+            if (error_rad > tolerance_rad_) {
+                width = (to - from) * share;
+                if (width * posts < kLeast) return std::nullopt;
+                continue;
+            }
+            bands_.tiles.push_back(std::move(*tile));
+            if (is_last) return std::move(bands_);
+            bands_.rays.push_back(*ray);
+            width = (to - from) * std::min(kWider, share);
+            from = to;
+            begin = std::move(end);
+        }
+        return std::nullopt;
+    }
+
+  private:
+    using Firsts = std::vector<int>;
+    static constexpr int kLeast = 6;  // posts across
+    static constexpr int kMostTries = 200;
+
+    int across() const { return sky_.along_columns_ ? 1 : 0; }
+
+    /// On the diagonal, or next to it: figures of floats are counted from there on, and must not
+    /// hang on where they begin.
+    glm::dvec2 post(double share) const {
+        glm::dvec2 shares(share);
+        if (falls_) shares[1 - across()] = 1 - share;
+        return glm::round(first_ + shares * more_);
+    }
+
+    /// With some more lines, so that a ray that turns back just beyond it is none.
+    SweepWindow longer() const {
+        constexpr int kMore = 64;
+        SweepWindow w = window_;
+        (across() == 0 ? w.row : w.column) -= kMore;
+        (across() == 0 ? w.rows : w.columns) += 2 * kMore;
+        return w;
+    }
+
+    /// One without columns where no post is between the rays.
+    std::optional<SunTile> tile(double share, const Firsts* begin, const Firsts* end) const {
+        const std::optional<SweepSun> path = sky_.ray(post(share), window_);
+        if (!path || !first_posts(*path, longer())) return std::nullopt;
+        const int a = across(), least = static_cast<int>(first_[a]),
+                  most = least + static_cast<int>(more_[a]) + 1;
+        const auto lines = static_cast<int>(more_[1 - a]) + 1;
+        const auto range = [&](int line) {
+            const auto i = static_cast<std::size_t>(line);
+            return std::pair(begin ? (*begin)[i] : least, end ? (*end)[i] : most);
+        };
+        int first_line = lines, last_line = -1, first = most, last = least;
+        for (int line = 0; line < lines; ++line) {
+            const auto [from, to] = range(line);
+            if (from >= to) continue;
+            first_line = std::min(first_line, line), last_line = line;
+            first = std::min(first, from), last = std::max(last, to - 1);
+        }
+        SunTile tile{{}, {}, *path};
+        if (last_line < 0) return tile;
+        const auto at = [&](double x, double line) {
+            line += first_[1 - a];
+            return a == 0 ? GridPair{x, line} : GridPair{line, x};
+        };
+        const GridPair corner = at(first, first_line);
+        const int columns = a == 0 ? last - first + 1 : last_line - first_line + 1,
+                  rows = a == 0 ? last_line - first_line + 1 : last - first + 1;
+        tile.window = {static_cast<int>(corner.column), static_cast<int>(corner.row), columns,
+                       rows};
+        // The sun of a small one is as a window's.
+        if (std::min(columns, rows) < kSmall) return tile;
+        for (const int line : {first_line, (first_line + last_line) / 2, last_line}) {
+            const auto [from, to] = range(line);
+            for (int i = 0; i < 3; ++i)
+                tile.marks.push_back(at(from + (to - 1 - from) * i / 2.0, line));
+        }
+        return tile;
+    }
+
+    static constexpr int kSmall = 16;  // posts
+
+    const SunSky& sky_;
+    SweepWindow window_;
+    double tolerance_rad_;
+    glm::dvec2 first_, more_;
+    bool falls_;  // the diagonal goes from the last line to the first
+    SunBands bands_;
+};
+
+std::optional<SunBands> SunSky::bands(const SweepWindow& window, double tolerance_rad) const {
+    return BandMaker(*this, window, tolerance_rad).make();
+}
+
+std::vector<Sweep::Blocks::Band> SunBands::over(const SweepWindow& part) const {
+    std::vector<Sweep::Blocks::Band> bands(tiles.size());
+    std::shared_ptr<const std::vector<int>> before;
+    for (std::size_t k = 0; k + 1 < bands.size(); ++k) {
+        std::vector<int> first = *first_posts(rays[k], part);
+        if (before)
+            for (std::size_t i = 0; i < first.size(); ++i)
+                first[i] = std::max(first[i], (*before)[i]);
+        bands[k].begin = before;
+        bands[k].end = before = std::make_shared<const std::vector<int>>(std::move(first));
+    }
+    bands.back().begin = before;
+    return bands;
 }
 
 /// The largest angle between the rays that shade a post and the tile's lines.
@@ -425,8 +634,12 @@ double SunSky::error_rad(const SunTile& tile) const {
         const std::size_t level = k == 0 ? first_level() : 1;
         const SweepSun model = sun(tile, level, 0);
         for (int i = 0; i < 9; ++i) {
-            const glm::dvec2 post(w.column + (w.columns - 1) * (i % 3) / 2.0,
-                                  w.row + (w.rows - 1) * (i / 3) / 2.0);
+            glm::dvec2 post(w.column + (w.columns - 1) * (i % 3) / 2.0,
+                            w.row + (w.rows - 1) * (i / 3) / 2.0);
+            if (!tile.marks.empty()) {
+                const GridPair& mark = tile.marks[static_cast<std::size_t>(i)];
+                post = {mark.column, mark.row};
+            }
             const Local local = at(post.x, post.y);
             const double tangent = model.tangent_at(post.x, post.y);
             const double seen =
@@ -442,7 +655,49 @@ double SunSky::error_rad(const SunTile& tile) const {
 std::vector<SweepWindow> divide(const std::vector<SunSky>& suns, const SweepWindow& window,
                                 const SweepWindow& part, double tolerance_rad) {
     std::vector<SweepWindow> windows;
-    divide(suns, tolerance_rad, window, part, windows);
+    divide(suns, tolerance_rad, window, part, std::numeric_limits<std::size_t>::max(), windows);
+    return windows;
+}
+
+static void divide_in_bands(std::span<const SunSky> suns, const SweepWindow& window,
+                            const SweepWindow& part, int depth,
+                            std::vector<BandedWindow>& windows) {
+    constexpr int kDeepest = 3;
+    const SweepWindow wanted = common(window, part);
+    if (wanted.columns == 0 || wanted.rows == 0) return;
+    const std::vector<SunSky> ends{suns.front(), suns.back()};
+    BandedWindow banded{window, {}};
+    for (const SunSky& sun : suns) {
+        std::optional<SunBands> bands = sun.bands(window, kSunTolerance_rad);
+        if (!bands) break;
+        banded.bands.push_back(std::move(*bands));
+    }
+    if (banded.bands.size() == suns.size()) return windows.push_back(std::move(banded));
+    const bool by_columns = suns.front().along_columns();
+    if (depth < kDeepest && (by_columns ? window.columns : window.rows) > kLarge) {
+        for (const SweepWindow& half : halves(window, by_columns))
+            divide_in_bands(suns, half, part, depth + 1, windows);
+        return;
+    }
+    for (const SweepWindow& each : divide(ends, window, part))
+        windows.push_back({each, {}});
+}
+
+std::vector<BandedWindow> divide_in_bands(std::span<const SunSky> suns, const SweepWindow& window,
+                                          const SweepWindow& part) {
+    // A few windows are swept nearly as fast as one, and where they are large much is left out.
+    constexpr std::size_t kFew = 8;
+    const std::vector<SunSky> ends{suns.front(), suns.back()};
+    std::vector<SweepWindow> few;
+    divide(ends, kSunTolerance_rad, window, window, kFew + 1, few);
+    std::vector<BandedWindow> windows;
+    if (few.size() > kFew) {
+        divide_in_bands(suns, window, part, 0, windows);
+        return windows;
+    }
+    for (const SweepWindow& each : few)
+        if (const SweepWindow wanted = common(each, part); wanted.columns > 0 && wanted.rows > 0)
+            windows.push_back({each, {}});
     return windows;
 }
 

@@ -37,6 +37,19 @@ struct SunTile {
     SweepWindow window;  ///< that the sun is made for
     SweepWindow part;    ///< of it, whose posts are wanted; they have the same figures in any part
     SweepSun path;       ///< its tangents are not set
+    /// Of a band: posts all over it, which its sun is fitted to; the window is around it. None: the
+    /// tile is all of its window.
+    std::vector<GridPair> marks{};
+};
+
+/// A window between rays of a sun: over each band of posts between two of them, side by side, the
+/// sun is one. What a sun over a grid in degrees differs by, it does across its rays.
+struct SunBands {
+    std::vector<SunTile> tiles;
+    std::vector<SweepSun> rays;  ///< after each band but the last
+
+    /// Them and their suns, as sweeps over a part of the window have them.
+    std::vector<Sweep::Blocks::Band> over(const SweepWindow& part) const;
 };
 
 /// What is the same of a DEM for all suns.
@@ -117,6 +130,10 @@ class SunSky {
     /// The ray through the middle of a window, as a cubic over the grid.
     std::optional<SunTile> tile(const SweepWindow& window) const;
 
+    /// A window in bands over each of which the sun is one; none where they would be too narrow.
+    /// Their rays go through that diagonal of it which all rays cross.
+    std::optional<SunBands> bands(const SweepWindow& window, double tolerance_rad) const;
+
     /// The tile's sun with the heights of a part of the disc.
     /// @param offset_rad  of that part over the centre
     SweepSun sun(const SunTile& tile, std::size_t level, double offset_rad) const;
@@ -133,7 +150,13 @@ class SunSky {
     };
     Local at(const geo::Geodetic& place) const;
     Local at(double column, double row) const { return at(dem_.grid().place(column, row)); }
+    class BandMaker;
     void find_way();
+    glm::dvec2 step(const glm::dvec2& post) const;
+    std::optional<SweepSun> cubic(const glm::dvec2& middle, double far_m,
+                                  const glm::dvec3& shares) const;
+    std::optional<SweepSun> ray(const glm::dvec2& middle, const SweepWindow& window) const;
+    SweepSun fitted(const SunTile& tile, const std::function<double(const GridPair&)>& of) const;
     double path_error_rad(const SunTile& tile, const glm::dvec2& post, const Local& sun) const;
 
     const DemSky& dem_;
@@ -153,6 +176,19 @@ constexpr double kSunTolerance_rad = radians(0.04);
 /// @throws Error (BadInput) where a grid is so coarse or so near to a pole that there are none
 std::vector<SweepWindow> divide(const std::vector<SunSky>& suns, const SweepWindow& window,
                                 const SweepWindow& part, double tolerance_rad = kSunTolerance_rad);
+
+/// A window over which each of some suns is one, or has bands.
+struct BandedWindow {
+    SweepWindow window;
+    std::vector<SunBands> bands;  ///< of each sun; none: all are one
+};
+
+/// Such windows of a window: few large ones.
+/// @param suns  one after the other in time, not long apart
+/// @param part  as divide() has it
+/// @throws Error as divide()
+std::vector<BandedWindow> divide_in_bands(std::span<const SunSky> suns, const SweepWindow& window,
+                                          const SweepWindow& part);
 
 /// Calls `body` with each of them, on several threads.
 void each_window(const std::vector<SweepWindow>& windows,

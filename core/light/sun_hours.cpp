@@ -408,7 +408,9 @@ class FewDays {
     void light(SunHours& result, const std::function<void(double)>& done) const {
         std::optional<GroundForBeams> ground;
         if (irradiation_) ground.emplace(dem_, part_);
-        const std::vector<Work> works = shuffled(all_works(result));
+        const std::vector<Series> all_of_them = all_series();
+        const Windows windows = all_windows(all_of_them);
+        const std::vector<Work> works = shuffled(all_works(all_of_them, windows, result));
         double all = 0;
         for (const Work& work : works)
             all += work.size();
@@ -440,7 +442,8 @@ class FewDays {
     /// Suns over a part of a window that is theirs.
     struct Work {
         Series series;
-        SweepWindow window, part;
+        const BandedWindow* window;
+        SweepWindow part;
 
         double size() const {
             return double(series.last - series.first + 1) * part.columns * part.rows;
@@ -450,9 +453,11 @@ class FewDays {
     /// One of the suns of a series over a tile.
     struct TileSun {
         std::size_t k;
+        std::size_t band;
         TileEdges edges;
         std::optional<SunBeam> beam;  // since the moment before
     };
+    using Windows = std::vector<std::vector<BandedWindow>>;  // of each series
 
     std::vector<Series> all_series() const {
         std::vector<Series> all;
@@ -489,22 +494,33 @@ class FewDays {
         return parts;
     }
 
-    std::vector<Work> all_works(SunHours& result) const {
-        const std::vector<Series> all = all_series();
-        std::vector<std::vector<SweepWindow>> windows(all.size());
+    Windows all_windows(const std::vector<Series>& all) const {
+        Windows windows(all.size());
         parallel_for(0, static_cast<int>(all.size()), 1, [&](int begin, int end) {
             for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
                 const auto& [first, last] = all[i];
-                windows[i] = divide({skies_[first], skies_[last]}, whole(dem_.grid()), part_);
+                windows[i] = divide_in_bands(std::span(skies_).subspan(first, last - first + 1),
+                                             whole(dem_.grid()), part_);
             }
         });
+        return windows;
+    }
+
+    std::vector<Work> all_works(const std::vector<Series>& all, const Windows& windows,
+                                SunHours& result) const {
         std::vector<Work> works;
         for (std::size_t i = 0; i < all.size(); ++i) {
-            result.windows = std::max(result.windows, static_cast<int>(windows[i].size()));
-            for (const SweepWindow& window : windows[i])
+            std::size_t tiles = 0;
+            for (const BandedWindow& window : windows[i]) {
+                std::size_t most = 1;
+                for (const SunBands& bands : window.bands)
+                    most = std::max(most, bands.tiles.size());
+                tiles += most;
                 for (const SweepWindow& part :
-                     parts_of(common(window, part_), skies_[all[i].first].along_columns()))
-                    works.push_back({all[i], window, part});
+                     parts_of(common(window.window, part_), skies_[all[i].first].along_columns()))
+                    works.push_back({all[i], &window, part});
+            }
+            result.windows = std::max(result.windows, static_cast<int>(tiles));
         }
         return works;
     }
@@ -522,10 +538,10 @@ class FewDays {
         return mixed;
     }
 
-    TileSun tile_sun(const Work& work, std::size_t k) const {
-        const SunTile tile = tile_of(skies_[k], work.window, work.part);
-        TileSun sun{k, TileEdges(skies_[k], tile, 0), std::nullopt};
-        if (irradiation_ && k > work.series.first) {
+    TileSun tile_sun(const Series& series, std::size_t k, const SunTile& tile,
+                     std::size_t band) const {
+        TileSun sun{k, band, TileEdges(skies_[k], tile, 0), std::nullopt};
+        if (irradiation_ && k > series.first) {
             const SunSky sky(dem_, moments_.middles[k - 1]);
             sun.beam.emplace(sky, tile, ClearSky(irradiation_->linke, moments_.distances_au[k - 1]),
                              at_h_[k] - at_h_[k - 1]);
@@ -533,45 +549,76 @@ class FewDays {
         return sun;
     }
 
+    /// The suns of a moment over a part: one, or one for each band.
+    Sweep::Blocks::Sun add_suns(const Work& work, std::size_t k, std::vector<TileSun>& suns) const {
+        Sweep::Blocks::Sun moment;
+        moment.all_posts = irradiation_ || k == 0 || k + 1 == skies_.size();
+        if (work.window->bands.empty()) {
+            const SunTile tile = tile_of(skies_[k], work.window->window, work.part);
+            suns.push_back(tile_sun(work.series, k, tile, 0));
+            moment.bands.push_back({suns.back().edges.suns()});
+            return moment;
+        }
+        const SunBands& bands = work.window->bands[k - work.series.first];
+        moment.bands = bands.over(work.part);
+        for (std::size_t band = 0; band < bands.tiles.size(); ++band) {
+            suns.push_back(tile_sun(work.series, k, bands.tiles[band], band));
+            moment.bands[band].suns = suns.back().edges.suns();
+        }
+        return moment;
+    }
+
+    PostLight light_of(const SweepWindow& window, bool along_columns,
+                       const std::optional<GroundForBeams>& ground) const {
+        PostLight posts(window, along_columns, spells_);
+        if (ground) posts.beams = ground->part(window, along_columns);
+        return posts;
+    }
+
     void light_part(const Work& work, const std::optional<GroundForBeams>& ground,
                     Totals& totals) const {
         std::vector<TileSun> suns;
         std::vector<Sweep::Blocks::Sun> sweeps;
-        for (std::size_t k = work.series.first; k <= work.series.last; ++k) {
-            suns.push_back(tile_sun(work, k));
-            sweeps.push_back(
-                {suns.back().edges.suns(), irradiation_ || k == 0 || k + 1 == skies_.size()});
-        }
-        const auto light_of = [&](const SweepWindow& window) {
-            const bool along_columns = skies_[work.series.first].along_columns();
-            PostLight posts(window, along_columns, spells_);
-            if (ground) posts.beams = ground->part(window, along_columns);
-            return posts;
-        };
-        if (Sweep::Blocks::go_together(sweeps)) {
-            Sweep::Blocks blocks(sweep_, sweeps, work.part, dem_.floor_m(), dem_.curvature());
-            while (const std::optional<SweepWindow> block = blocks.next()) {
-                PostLight posts = light_of(*block);
-                blocks.each_dark([&](const SweepRun& run) {
-                    for (TileValues* const each : {&posts.margin_m, &posts.began_m})
-                        if (spells_ || each == &posts.margin_m)
-                            std::fill_n(each->of(run), run.count, -1.0F);
+        for (std::size_t k = work.series.first; k <= work.series.last; ++k)
+            sweeps.push_back(add_suns(work, k, suns));
+        if (!Sweep::Blocks::go_together(sweeps))
+            return light_apart(work, suns, sweeps, ground, totals);
+        Sweep::Blocks blocks(sweep_, sweeps, work.part, dem_.floor_m(), dem_.curvature());
+        while (const std::optional<SweepWindow> block = blocks.next()) {
+            PostLight posts = light_of(*block, skies_[work.series.first].along_columns(), ground);
+            blocks.each_dark([&](const SweepRun& run) {
+                for (TileValues* const each : {&posts.margin_m, &posts.began_m})
+                    if (spells_ || each == &posts.margin_m)
+                        std::fill_n(each->of(run), run.count, -1.0F);
+            });
+            for (const TileSun& sun : suns)
+                add(work.series, sun, posts, [&](std::size_t i, const Sweep::Use& use) {
+                    blocks.each_edge(sun.k - work.series.first, sun.band, i, use);
                 });
-                for (const TileSun& sun : suns)
-                    add(work.series, sun, posts, [&](std::size_t i, const Sweep::Use& use) {
-                        blocks.each_edge(sun.k - work.series.first, i, use);
-                    });
-                finish(work.series, posts, totals);
-            }
-            return;
+            finish(work.series, posts, totals);
         }
-        PostLight posts = light_of(work.part);
+    }
+
+    /// Likewise suns that do not go over the grid alike.
+    void light_apart(const Work& work, const std::vector<TileSun>& suns,
+                     const std::vector<Sweep::Blocks::Sun>& sweeps,
+                     const std::optional<GroundForBeams>& ground, Totals& totals) const {
+        PostLight posts = light_of(work.part, skies_[work.series.first].along_columns(), ground);
         for (const TileSun& sun : suns) {
             posts.turn(skies_[sun.k].along_columns());
-            add(work.series, sun, posts, [&](std::size_t i, const Sweep::Use& use) {
-                sweep_.each_edge(sun.edges.suns()[i], work.part, use, Sweep::kMostLanes,
-                                 dem_.floor_m());
-            });
+            if (work.window->bands.empty()) {
+                add(work.series, sun, posts, [&](std::size_t i, const Sweep::Use& use) {
+                    sweep_.each_edge(sun.edges.suns()[i], work.part, use, Sweep::kMostLanes,
+                                     dem_.floor_m());
+                });
+                continue;
+            }
+            Sweep::Blocks::Sun alone;
+            alone.bands = {sweeps[sun.k - work.series.first].bands[sun.band]};
+            Sweep::Blocks blocks(sweep_, {alone}, work.part, dem_.floor_m(), dem_.curvature());
+            while (blocks.next())
+                add(work.series, sun, posts,
+                    [&](std::size_t i, const Sweep::Use& use) { blocks.each_edge(0, 0, i, use); });
         }
         finish(work.series, posts, totals);
     }

@@ -52,7 +52,9 @@ struct SunHours {
     double mean_hours = 0;
     double level_hours = 0;  ///< that it is over a level horizon in the middle of the DEM
     std::int64_t holes = 0;
-    int windows = 0;         ///< into which the DEM was divided, each with suns of its own
+    /// Windows, or bands of a sun, into which the DEM was divided at most, each with suns of its
+    /// own.
+    int windows = 0;
     std::string definition;  ///< a sentence, to be printed with results
 };
 

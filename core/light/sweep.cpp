@@ -405,7 +405,90 @@ struct Sheet {
     int columns, rows;
 };
 
-/// The rows that matter to a window, and all that is the same for their posts.
+/// The posts that a sweep is for.
+struct Wanted {
+    SweepWindow window;               // of the sheet
+    std::vector<ColumnRange> band{};  // of each row of that; none: all of them
+
+    bool is_band() const { return !band.empty(); }
+    ColumnRange at(int row) const {
+        if (!is_band()) return {window.column, window.column + window.columns};
+        return band[static_cast<std::size_t>(row - window.row)];
+    }
+};
+
+/// A ray from row to row, at a fraction of what SweepSun::distance_m() costs.
+class RayWalk {
+  public:
+    RayWalk(const SweepSun& ray, int row)
+        : ray_(ray), row_(row), distance_m_(ray.distance_m(row)), slope_(slope(distance_m_)) {}
+
+    /// To the next row, or to the one before; NaN from where it turns back on.
+    void step(int rows) {
+        row_ += rows;
+        const double guess_m = distance_m_ + rows / slope_;
+        slope_ = slope(guess_m);
+        const double at =
+            ((ray_.twist.row / 6 * guess_m + ray_.bend.row / 2) * guess_m + ray_.towards.row) *
+            guess_m;
+        distance_m_ = guess_m - (at - (row_ - ray_.reference.row)) / slope_;
+    }
+    double distance_m() const { return distance_m_; }
+    double column() const {
+        const double s = distance_m_;
+        return ray_.reference.column +
+               ((ray_.twist.column / 6 * s + ray_.bend.column / 2) * s + ray_.towards.column) * s;
+    }
+
+  private:
+    double slope(double s) const {
+        const double slope = (ray_.twist.row / 2 * s + ray_.bend.row) * s + ray_.towards.row;
+        return slope * ray_.towards.row > 0 ? slope : std::numeric_limits<double>::quiet_NaN();
+    }
+
+    SweepSun ray_;
+    int row_;
+    double distance_m_, slope_;
+};
+
+/// Where the ray through the reference is at rows of a sheet.
+struct RayRows {
+    int begin;
+    std::vector<double> distance_m, column;  // NaN from where it turns back on
+
+    RayRows(const SweepSun& ray, int first, int end) : begin(first) {
+        distance_m.resize(static_cast<std::size_t>(end - first));
+        column.resize(distance_m.size());
+        fill(ray, first, end);
+    }
+    /// Rows before those that are there, too.
+    void add_before(const SweepSun& ray, int first) {
+        if (first >= begin) return;
+        const auto more = static_cast<std::size_t>(begin - first);
+        distance_m.insert(distance_m.begin(), more, 0);
+        column.insert(column.begin(), more, 0);
+        fill(ray, first, std::exchange(begin, first));
+    }
+    double distance_at(int row) const { return distance_m[static_cast<std::size_t>(row - begin)]; }
+    double column_at(int row) const { return column[static_cast<std::size_t>(row - begin)]; }
+
+  private:
+    /// From whole numbers of rows on, so that bits do not hang on which rows are asked for.
+    void fill(const SweepSun& ray, int first, int end) {
+        constexpr int kRows = 64;
+        for (int from = first / kRows * kRows; from < end; from += kRows) {
+            RayWalk walk(ray, from);
+            for (int row = from; row < std::min(from + kRows, end); ++row, walk.step(1)) {
+                if (row < first) continue;
+                const auto at = static_cast<std::size_t>(row - begin);
+                distance_m[at] = walk.distance_m();
+                column[at] = walk.column();
+            }
+        }
+    }
+};
+
+/// The rows that matter to some posts, and all that is the same for their posts.
 class Plan {
   public:
     /// @param drop_m  what lines may fall by before they matter no more
@@ -413,8 +496,59 @@ class Plan {
         : sheet_(sheet), sun_(sun) {
         find_begin(window, drop_m);
         rows_.resize(static_cast<std::size_t>(window.row + window.rows - begin_));
-        fill(1);
-        fill(-1);
+        const auto ray = [&](int row, RowPlan& at) {
+            at.distance_m = sun_.distance_m(row);
+            at.shift = sun_.reference.column + sun_.way(at.distance_m).column;
+        };
+        fill(1, ray);
+        fill(-1, ray);
+    }
+    /// Of a band, rows [begin, end).
+    Plan(const Sheet& sheet, const SweepSun& sun, const RayRows& ray, int begin, int end)
+        : sheet_(sheet), sun_(sun), begin_(begin) {
+        rows_.reserve(static_cast<std::size_t>(end - begin));
+        const auto integral = [](double first, double second, double third, double s) {
+            return ((third / 24 * s + second / 6) * s + first / 2) * s * s;
+        };
+        const GridPair& more = sun.tangent_a_post;
+        for (int row = begin; row < end; ++row) {
+            const double s = ray.distance_at(row);
+            const double risen =
+                sun.tangent * s +
+                more.column * integral(sun.towards.column, sun.bend.column, sun.twist.column, s) +
+                more.row * integral(sun.towards.row, sun.bend.row, sun.twist.row, s);
+            rows_.push_back({s, ray.column_at(row), -risen, -s * more.column});
+        }
+    }
+    Plan(const Plan&) = delete;
+    Plan& operator=(const Plan&) = delete;
+
+    /// The first row from which shade can reach a band while lines are over the grid.
+    /// @param ray  at the band's rows; gets those from there on, too
+    static int begin_of_band(const Sheet& sheet, const SweepSun& sun, const Wanted& wanted,
+                             double drop_m, RayRows& ray) {
+        const SweepWindow& window = wanted.window;
+        double tangent = std::numeric_limits<double>::infinity();
+        double first = std::numeric_limits<double>::infinity(), last = -first;  // lines
+        for (int row = window.row; row < window.row + window.rows; ++row) {
+            const ColumnRange range = wanted.at(row);
+            if (range.begin >= range.end) continue;
+            const double shift = ray.column_at(row);
+            first = std::min(first, range.begin - shift - kBeside);
+            last = std::max(last, range.end - shift + kBeside);
+            tangent = std::min(
+                {tangent, sun.tangent_at(range.begin, row), sun.tangent_at(range.end - 1, row)});
+        }
+        constexpr int kRows = 64;
+        const double reach_m = reach(sun, tangent, drop_m), from_m = ray.distance_at(window.row);
+        int begin = window.row;
+        for (int row = window.row - 1; row >= 0; --row) {
+            if (row < ray.begin) ray.add_before(sun, std::max(0, row - kRows));
+            const double shift = ray.column_at(row);
+            if (!(ray.distance_at(row + 1) - from_m <= reach_m) || std::isnan(shift)) break;
+            if (shift + last > 0 && shift + first < sheet.columns) begin = row;
+        }
+        return begin;
     }
 
     int begin() const { return begin_; }
@@ -493,15 +627,16 @@ class Plan {
   private:
     /// The rows from that of the reference on, so that what is found does not hang on where a sweep
     /// begins. @param step  1: away from the sun, -1: towards it
-    void fill(int step) {
+    template <typename Ray>
+    void fill(int step, const Ray& ray) {
         const int first = static_cast<int>(sun_.reference.row);
         const int end = begin_ + static_cast<int>(rows_.size());
         RowPlan last;
         double before_m = 0, before_tangent = 0;
         for (int row = first; step > 0 ? row < end : row >= begin_; row += step) {
             RowPlan at;
-            const double s = at.distance_m = sun_.distance_m(row);
-            at.shift = sun_.reference.column + sun_.way(s).column;
+            ray(row, at);
+            const double s = at.distance_m;
             const double tangent = sun_.tangent_at(at.shift, row);
             if (row != first) {
                 const double step_m = before_m - s;
@@ -515,17 +650,24 @@ class Plan {
         }
     }
 
-    /// How far shade can reach over the window, and the first row from which it can.
+    /// How far shade can reach over posts for which the sun has such a tangent, or a higher one.
+    static double reach(const SweepSun& sun, double tangent, double drop_m) {
+        const GridPair& more = sun.tangent_a_post;
+        // Towards the sun it stands higher still, by so much with each metre.
+        const double a_metre = more.column * sun.towards.column + more.row * sun.towards.row;
+        const double sum = tangent + std::sqrt(tangent * tangent + 2 * a_metre * drop_m);
+        return a_metre >= 0 && sum > 0 ? kMargin * 2 * drop_m / sum
+                                       : std::numeric_limits<double>::infinity();
+    }
+
+    /// The first row from which shade can reach the window.
     void find_begin(const SweepWindow& window, double drop_m) {
         const GridPair& more = sun_.tangent_a_post;
         const int right = window.column + window.columns - 1, end = window.row + window.rows - 1;
-        const double tangent = sun_.tangent_at(more.column > 0 ? window.column : right,
-                                               more.row > 0 ? window.row : end);
-        // Towards the sun it stands higher still, by so much with each metre.
-        const double a_metre = more.column * sun_.towards.column + more.row * sun_.towards.row;
-        const double sum = tangent + std::sqrt(tangent * tangent + 2 * a_metre * drop_m);
-        reach_m_ = a_metre >= 0 && sum > 0 ? kMargin * 2 * drop_m / sum
-                                           : std::numeric_limits<double>::infinity();
+        reach_m_ = reach(sun_,
+                         sun_.tangent_at(more.column > 0 ? window.column : right,
+                                         more.row > 0 ? window.row : end),
+                         drop_m);
         const double from_m = sun_.distance_m(window.row);
         begin_ = window.row;
         double at_m = from_m;
@@ -537,6 +679,7 @@ class Plan {
     }
 
     static constexpr double kMargin = 1.05;  // of a reach
+    static constexpr double kBeside = 3;     // columns beside posts whose ground matters to them
 
     const Sheet& sheet_;
     const SweepSun& sun_;
@@ -545,53 +688,72 @@ class Plan {
     std::vector<RowPlan> rows_;
 };
 
-/// All that a sweep does, row by row, the same for all strips.
+/// Where posts and lines are on each row, the same for all strips.
 struct Steps {
     struct Row {
-        std::array<std::size_t, kMostLineSets + 1> lines{};  // where terms begin, and of the posts
-        std::size_t end = 0;
         int column = 0;      // of the post that belongs to line 0
         float between = 0;   // how far on towards the next line each post stands
-        double fallen = 0;   // line 0 from the row of the reference on
-        double ramp = 0;     // likewise, more for each line
         float far_part = 0;  // of posts, between the lines before and behind
         int far_set = 0;
         int first_line = 0, end_line = 0;  // which come over posts of the window that it shades
         int ground_column = 0;             // the first one that terms of line 0 have
-
-        std::size_t& posts() { return lines[kMostLineSets]; }
-        std::size_t posts() const { return lines[kMostLineSets]; }
     };
-    std::vector<Term> terms;
     std::vector<Row> rows;  // from `begin` on
     int begin = 0;
     int ground_columns = 0;  // that terms of a line have at most
     int first_row = 0;       // of the window: none before has terms of posts
     Nearness nearness;
 
-    /// All but terms.
-    Steps(const Plan& plan, const SweepWindow& window, const Nearness& of);
-    /// The terms of a row, or of all, unless they are there.
-    void add_terms(const Plan& plan, int row);
-    void add_all_terms(const Plan& plan);
+    Steps(const Plan& plan, const Wanted& wanted, const Nearness& of);
 
     const Row& row(int row) const { return rows[static_cast<std::size_t>(row - begin)]; }
-    /// How far line 0 has come from the row of the reference on, where tangents are 1.
-    double distance_m(int at) const { return row(at).fallen; }
+};
+
+/// The ground that lines and posts of rows meet, the same for all strips.
+class Terms {
+  public:
+    struct Row {
+        std::array<std::uint32_t, kMostLineSets + 1>
+            lines{};  // where those begin, and of the posts
+        std::uint32_t end = 0;
+
+        std::uint32_t& posts() { return lines[kMostLineSets]; }
+        std::uint32_t posts() const { return lines[kMostLineSets]; }
+    };
+
+    /// Rows [first, end) that have none yet.
+    void clear(int first, int end) {
+        all_.clear();
+        first_ = first;
+        rows_.assign(static_cast<std::size_t>(std::max(0, end - first)), {});
+    }
+    /// Makes those of a row, unless they are there.
+    void add(const Plan& plan, const Steps& steps, int row);
+
+    const Row& row(int row) const { return rows_[static_cast<std::size_t>(row - first_)]; }
+    const Term& operator[](std::size_t i) const { return all_[i]; }
+
+  private:
+    int first_ = 0;
+    std::vector<Row> rows_;
+    std::vector<Term> all_;
 };
 
 /// Which lines matter at each row to the posts of the window. Before a line comes over the grid
 /// nothing is under it, and behind the window nobody looks at it.
-void set_lines(const Plan& plan, const SweepWindow& window, Steps& steps) {
+void set_lines(const Plan& plan, const Wanted& wanted, Steps& steps) {
+    const SweepWindow& window = wanted.window;
     const auto over = [&](int row) {
         const int column = steps.row(row).column;
-        return std::pair(window.column - column, window.column + window.columns - column + 1);
+        const ColumnRange columns = wanted.at(row);
+        return std::pair(columns.begin - column, columns.end - column + 1);
     };
     const int last_row = window.row + window.rows - 1;
-    const bool is_monotonic = plan.is_monotonic();
+    const bool is_monotonic = plan.is_monotonic() && !wanted.is_band();
     std::pair<int, int> all{std::numeric_limits<int>::max(), std::numeric_limits<int>::min()};
     for (int row = window.row; row <= last_row; ++row)
-        all = {std::min(all.first, over(row).first), std::max(all.second, over(row).second)};
+        if (wanted.at(row).begin < wanted.at(row).end)
+            all = {std::min(all.first, over(row).first), std::max(all.second, over(row).second)};
     int reached = plan.begin();
     for (int row = plan.begin(); row <= last_row; ++row) {
         Steps::Row& step = steps.rows[static_cast<std::size_t>(row - steps.begin)];
@@ -621,14 +783,12 @@ void set_ground(const Plan& plan, Steps& steps) {
     }
 }
 
-Steps::Steps(const Plan& plan, const SweepWindow& window, const Nearness& of)
-    : begin(plan.begin()), first_row(window.row), nearness(of) {
+Steps::Steps(const Plan& plan, const Wanted& wanted, const Nearness& of)
+    : begin(plan.begin()), first_row(wanted.window.row), nearness(of) {
     rows.reserve(static_cast<std::size_t>(plan.end() - plan.begin()));
     for (int row = plan.begin(); row < plan.end(); ++row) {
         Row step;
         const RowPlan& here = plan.row(row);
-        step.fallen = here.fall;
-        step.ramp = here.ramp;
         step.column = static_cast<int>(std::ceil(here.shift - kOnLine));
         const double between = std::max(0.0, step.column - here.shift);
         step.between = static_cast<float>(between < kOnLine ? 0 : between);
@@ -637,36 +797,31 @@ Steps::Steps(const Plan& plan, const SweepWindow& window, const Nearness& of)
         step.far_part = at - static_cast<float>(step.far_set);
         rows.push_back(step);
     }
-    set_lines(plan, window, *this);
+    set_lines(plan, wanted, *this);
     set_ground(plan, *this);
 }
 
-void Steps::add_terms(const Plan& plan, int row) {
-    Row& step = rows[static_cast<std::size_t>(row - begin)];
-    if (step.end > 0) return;
+void Terms::add(const Plan& plan, const Steps& steps, int row) {
+    Row& of = rows_[static_cast<std::size_t>(row - first_)];
+    if (of.end > 0) return;
+    const auto made = [&] { return static_cast<std::uint32_t>(all_.size()); };
+    const Nearness& nearness = steps.nearness;
     const RowPlan& here = plan.row(row);
     for (std::size_t set = 0; set < kMostLineSets; ++set) {
-        step.lines[set] = terms.size();
+        of.lines[set] = made();
         if (set >= nearness.line_sets) continue;
         const double offset = double(set) / double(nearness.line_sets);
-        terms.push_back(plan.row_term(row, here.shift + offset, here));
-        if (row > plan.begin()) plan.add_column_terms(row, offset, here, terms);
+        all_.push_back(plan.row_term(row, here.shift + offset, here));
+        if (row > plan.begin()) plan.add_column_terms(row, offset, here, all_);
     }
-    step.posts() = terms.size();
-    const double between = std::max(0.0, step.column - here.shift);
+    of.posts() = made();
+    const double between = std::max(0.0, steps.row(row).column - here.shift);
     for (int at = row - 1;
-         row >= first_row && at >= std::max(row - nearness.near_rows, plan.begin()); --at) {
-        terms.push_back(plan.row_term(at, plan.row(at).shift + between, here));
-        plan.add_column_terms(at + 1, between, here, terms);
+         row >= steps.first_row && at >= std::max(row - nearness.near_rows, plan.begin()); --at) {
+        all_.push_back(plan.row_term(at, plan.row(at).shift + between, here));
+        plan.add_column_terms(at + 1, between, here, all_);
     }
-    step.end = terms.size();
-}
-
-void Steps::add_all_terms(const Plan& plan) {
-    terms.reserve(rows.size() * 2 *
-                  (nearness.line_sets + static_cast<std::size_t>(nearness.near_rows)));
-    for (int row = plan.begin(); row < plan.end(); ++row)
-        add_terms(plan, row);
+    of.end = made();
 }
 
 /// The last rows of ground under lines next to each other: those that posts look back over, and the
@@ -745,13 +900,13 @@ class GroundRows {
 /// Grounds of terms [begin, end), some at a time.
 /// @param use  takes the first term, grounds, and how many there are
 template <typename Use>
-void each_grounds(const Steps& steps, const GroundRows& rows, std::size_t begin, std::size_t end,
+void each_grounds(const Terms& terms, const GroundRows& rows, std::size_t begin, std::size_t end,
                   int line, const Use& use) {
     std::array<Ground, 16> grounds;  // of which the first `some` are set
     while (begin < end) {
         const std::size_t some = std::min(end - begin, grounds.size());
         for (std::size_t k = 0; k < some; ++k)
-            grounds[k] = rows.at(steps.terms[begin + k], line);
+            grounds[k] = rows.at(terms[begin + k], line);
         use(begin, grounds.data(), static_cast<int>(some));
         begin += some;
     }
@@ -771,19 +926,20 @@ class Strip {
 
     /// @param line   the first one
     /// @param width  how many whose posts it has, kMostWidth at most
-    Strip(const Sheet& sheet, const Steps& steps, const Kernel& kernel, int line, int width,
-          float lowest_m, float floor_m)
+    Strip(const Sheet& sheet, const Plan& plan, const Steps& steps, const Kernel& kernel, int line,
+          int width, float lowest_m, float floor_m)
         : sheet_(sheet),
+          plan_(plan),
           steps_(steps),
           kernel_(kernel),
           line_(line),
           width_(width),
           zero_m_(lowest_m < kInfinity ? kZero_m * std::floor(lowest_m / kZero_m) : 0),
           floor_m_(floor_m),
-          rows_(steps, line, width + 1, kKeptRows) {
-        for (Lines& lines : height_m_)
-            lines.fill(kNothing_m);
-    }
+          rows_(steps, line, width + 1, kKeptRows),
+          pitch_(in_vectors(width + 1) + Sweep::kMostLanes),
+          height_m_(static_cast<std::size_t>(pitch_) * kNearness.line_sets, kNothing_m),
+          edge_m_(static_cast<std::size_t>(in_vectors(width))) {}
 
     /// Where its ground is, from now on.
     Sheet& sheet() { return sheet_; }
@@ -806,7 +962,7 @@ class Strip {
                           .lines = count,
                           .line = column - step.column,
                           .between = step.between,
-                          .slope = fallen(step),
+                          .slope = fallen(row),
                           .base_m = -zero_m_,
                           .least_m = 0});
         });
@@ -814,7 +970,7 @@ class Strip {
 
     /// Lines go to the next row.
     /// @param over  columns of that row; others are not raised
-    void advance(int row, const ColumnRange& over = kAllColumns) {
+    void advance(int row, const Terms& terms, const ColumnRange& over = kAllColumns) {
         const Steps::Row& step = steps_.row(row);
         // A line is on the column of its post there, or on the one before it.
         const int first_line = std::max(step.first_line, over.begin - step.column),
@@ -823,9 +979,10 @@ class Strip {
                   to = std::min(line_ + width_ + 1, end_line) - line_;
         if (from >= to) return;
         const int first = from / Sweep::kMostLanes * Sweep::kMostLanes;
+        const Terms::Row& of = terms.row(row);
         for (std::size_t set = 0; set < kNearness.line_sets; ++set) {
-            float* const lines = height_m_[set].data() + first;
-            each_grounds(steps_, rows_, step.lines[set], step.lines[set + 1], line_ + first,
+            float* const lines = lines_of(set) + first;
+            each_grounds(terms, rows_, of.lines[set], of.lines[set + 1], line_ + first,
                          [&](std::size_t, const Ground* ground, int grounds) {
                              kernel_.raise({lines, lines, in_vectors(to - first), ground, grounds});
                          });
@@ -837,7 +994,7 @@ class Strip {
     /// @param first, end  of the columns that are wanted
     /// @param use         takes the first column, how many there are, and their edges
     template <typename Use>
-    void look(int row, int first, int end, const Use& use) {
+    void look(int row, const Terms& terms, int first, int end, const Use& use) {
         const Steps::Row& step = steps_.row(row);
         const int from = std::max(line_, first - step.column);
         const int to = std::min(line_ + width_, end - step.column);
@@ -848,14 +1005,15 @@ class Strip {
         if (row - kNearness.near_rows - 1 >= steps_.begin) {
             // The lines before and behind a post; the next one of the first set is one on.
             const auto set = static_cast<std::size_t>(step.far_set);
-            Ground far{height_m_[set].data() + (from - line_), nullptr, step.far_part};
-            far.q = set + 1 < kNearness.line_sets ? height_m_[set + 1].data() + (from - line_)
-                                                  : height_m_[0].data() + (from - line_) + 1;
+            Ground far{lines_of(set) + (from - line_), nullptr, step.far_part};
+            far.q = set + 1 < kNearness.line_sets ? lines_of(set + 1) + (from - line_)
+                                                  : lines_of(0) + (from - line_) + 1;
             if (far.part == 0) far.q = far.p;
             kernel_.raise({e, nullptr, posts, &far, 1});
             before = e;
         }
-        each_grounds(steps_, rows_, step.posts(), step.end, from,
+        const Terms::Row& of = terms.row(row);
+        each_grounds(terms, rows_, of.posts(), of.end, from,
                      [&](std::size_t, const Ground* ground, int grounds) {
                          kernel_.raise({e, before, posts, ground, grounds});
                          before = e;
@@ -866,7 +1024,7 @@ class Strip {
                         .lines = posts,
                         .line = from,
                         .between = step.between,
-                        .slope = fallen(step),
+                        .slope = fallen(row),
                         .base_m = zero_m_,
                         .least_m = floor_m_});
         use(step.column + from, to - from, e);
@@ -876,34 +1034,37 @@ class Strip {
     static constexpr float kZero_m = 256;  // of which heights have some taken away
     static constexpr double kBase_m = 2048;
 
-    Slope fallen(const Steps::Row& step) const {
-        return {static_cast<float>(step.fallen - base_m_), static_cast<float>(step.ramp)};
+    Slope fallen(int row) const {
+        const RowPlan& at = plan_.row(row);
+        return {static_cast<float>(at.fall - base_m_), static_cast<float>(at.ramp)};
+    }
+    float* lines_of(std::size_t set) {
+        return height_m_.data() + static_cast<std::ptrdiff_t>(set) * pitch_;
     }
 
     /// Takes another base where rays have fallen by so much.
     void rebase(int row) {
-        const double base_m = kBase_m * std::floor(steps_.row(row).fallen / kBase_m);
+        const double base_m = kBase_m * std::floor(plan_.row(row).fall / kBase_m);
         const auto more_m = static_cast<float>(base_m - base_m_);
         base_m_ = base_m;
         if (row == steps_.begin || more_m == 0) return;
-        for (Lines& lines : height_m_)
-            for (float& height : lines)
-                height -= more_m;
+        for (float& height : height_m_)
+            height -= more_m;
         for (int at = std::max(steps_.begin, row - rows_.kept() + 1); at < row; ++at)
             std::for_each_n(rows_.begin_of(at), rows_.width(), [=](float& h) { h -= more_m; });
     }
 
     Sheet sheet_;
+    const Plan& plan_;
     const Steps& steps_;
     const Kernel& kernel_;
     int line_, width_;
     float zero_m_, floor_m_;
     double base_m_ = 0;
     GroundRows rows_;
-    using Lines =
-        std::array<float, in_vectors(kStripLines + 1) + Sweep::kMostLanes>;  // the next, too
-    std::array<Lines, kNearness.line_sets> height_m_;
-    std::array<float, in_vectors(kStripLines)> edge_m_;
+    std::ptrdiff_t pitch_;         // from set to set, the next line, too
+    std::vector<float> height_m_;  // of each set's lines
+    std::vector<float> edge_m_;
 };
 
 /// Lines next to each other, each with a fan of rays over the ground behind it. Heights are less
@@ -915,13 +1076,14 @@ class FanStrip {
     static constexpr int kKeptRows = 16;
     static_assert(kKeptRows >= kNearness.near_rows + 3);
 
-    /// @param steps      for a tangent of 1 everywhere: what lines fall by is how far they go
+    /// @param plan       for a tangent of 1 everywhere: what lines fall by is how far they go
     /// @param line       the first one
     /// @param curvature  [1/m]
     /// @param least      the tangent under which no ray is looked at
-    FanStrip(const Sheet& sheet, const Steps& steps, const Kernel& kernel, double curvature,
-             int line, int width, double least)
+    FanStrip(const Sheet& sheet, const Plan& plan, const Steps& steps, const Kernel& kernel,
+             double curvature, int line, int width, double least)
         : sheet_(sheet),
+          plan_(plan),
           steps_(steps),
           kernel_(kernel),
           curvature_(curvature),
@@ -946,20 +1108,21 @@ class FanStrip {
     }
 
     /// The ground of the next row, and of the columns before it.
-    void advance(int row) {
+    void advance(int row, const Terms& terms) {
         const Steps::Row& step = steps_.row(row);
         const int from = std::max(line_, step.first_line) - line_,
                   to = std::min(line_ + width_ + 1, step.end_line) - line_;
         if (from >= to) return;
         const int first = from / Sweep::kMostLanes * Sweep::kMostLanes;
+        const Terms::Row& of = terms.row(row);
         for (std::size_t set = 0; set < kNearness.line_sets; ++set)
-            for (std::size_t k = step.lines[set]; k < step.lines[set + 1]; k += kFanPoints)
-                raise(set, step, k, std::min(step.lines[set + 1], k + kFanPoints), first,
-                      in_vectors(to - first));
+            for (std::size_t k = of.lines[set]; k < of.lines[set + 1]; k += kFanPoints)
+                raise(set, row, terms, k, std::min<std::size_t>(of.lines[set + 1], k + kFanPoints),
+                      first, in_vectors(to - first));
     }
 
     template <typename Use>
-    void look(int row, int first, int end, const Use& use) {
+    void look(int row, const Terms& terms, int first, int end, const Use& use) {
         const Steps::Row& step = steps_.row(row);
         const int from = std::max(line_, first - step.column);
         const int to = std::min(line_ + width_, end - step.column);
@@ -970,7 +1133,7 @@ class FanStrip {
         const int half = static_cast<int>(step.between * 2 * kNearness.line_sets + 1) / 2;
         const Fans& fans = fans_[static_cast<std::size_t>(half) % kNearness.line_sets];
         const int on = half / static_cast<int>(kNearness.line_sets) + from - line_;
-        const double s = steps_.distance_m(row);
+        const double s = distance_m(row);
         const double tilt = curvature_ * s;
         int ray = 0;
         while (ray < kRays && tangents_[static_cast<std::size_t>(ray)] - tilt < least_)
@@ -987,7 +1150,7 @@ class FanStrip {
                                 .sunk_m = static_cast<float>(curvature_ * s * s / 2),
                                 .tilt = static_cast<float>(tilt),
                                 .both = least_ == -std::numeric_limits<double>::infinity()});
-        look_near(step, from, to, ground_m, tangent.data());
+        look_near(terms, row, from, to, ground_m, tangent.data());
         use(step.column + from, to - from, tangent.data());
     }
 
@@ -998,13 +1161,16 @@ class FanStrip {
         std::array<float, kRays * kPitch> height_m, distance_m;
     };
 
-    void raise(std::size_t set, const Steps::Row& step, std::size_t begin, std::size_t end,
+    /// How far line 0 has come from the row of the reference on.
+    double distance_m(int row) const { return plan_.row(row).fall; }
+
+    void raise(std::size_t set, int row, const Terms& terms, std::size_t begin, std::size_t end,
                int first, int lines) {
         std::array<FanPoint, kFanPoints> points;
         std::array<float, kRays * kFanPoints> rises;
         for (std::size_t k = begin; k < end; ++k) {
-            const Term& term = steps_.terms[k];
-            const double s = step.fallen - term.distance;
+            const Term& term = terms[k];
+            const double s = distance_m(row) - term.distance;
             points[k - begin] = {rows_.at(term, line_ + first),
                                  static_cast<float>(curvature_ * s * s / 2), static_cast<float>(s)};
             for (std::size_t ray = 0; ray < kRays; ++ray)
@@ -1021,14 +1187,15 @@ class FanStrip {
                            static_cast<int>(end - begin));
     }
 
-    void look_near(const Steps::Row& step, int from, int to, const float* height_m,
+    void look_near(const Terms& terms, int row, int from, int to, const float* height_m,
                    float* tangent) const {
+        const Terms::Row& of = terms.row(row);
         each_grounds(
-            steps_, rows_, step.posts(), step.end, from,
+            terms, rows_, of.posts(), of.end, from,
             [&](std::size_t begin, const Ground* ground, int grounds) {
                 std::array<Slope, 16> slopes;
                 for (std::size_t k = 0; k < static_cast<std::size_t>(grounds); ++k) {
-                    const double d = steps_.terms[begin + k].distance;
+                    const double d = terms[begin + k].distance;
                     slopes[k] = {static_cast<float>(1 / d), static_cast<float>(curvature_ * d / 2)};
                 }
                 kernel_.look(
@@ -1037,6 +1204,7 @@ class FanStrip {
     }
 
     Sheet sheet_;
+    const Plan& plan_;
     const Steps& steps_;
     const Kernel& kernel_;
     double curvature_;
@@ -1051,10 +1219,13 @@ class FanStrip {
 struct Extent {
     int first_line = std::numeric_limits<int>::max(), end_line = std::numeric_limits<int>::min();
 
-    Extent(const Steps& steps, const SweepWindow& window) {
+    Extent(const Steps& steps, const Wanted& wanted) {
+        const SweepWindow& window = wanted.window;
         for (int row = window.row; row < window.row + window.rows; ++row) {
-            first_line = std::min(first_line, window.column - steps.row(row).column);
-            end_line = std::max(end_line, window.column + window.columns - steps.row(row).column);
+            const ColumnRange columns = wanted.at(row);
+            if (columns.begin >= columns.end) continue;
+            first_line = std::min(first_line, columns.begin - steps.row(row).column);
+            end_line = std::max(end_line, columns.end - steps.row(row).column);
         }
     }
 };
@@ -1251,6 +1422,23 @@ struct Sweep::View {
     }
 };
 
+std::optional<std::vector<int>> first_posts(const SweepSun& ray, const SweepWindow& window) {
+    const SweepSun by_rows = ray.along_columns() ? ray.transposed() : ray;
+    const SweepWindow w = ray.along_columns()
+                              ? SweepWindow{window.row, window.column, window.rows, window.columns}
+                              : window;
+    const RayRows rows(by_rows, w.row, w.row + w.rows);
+    std::vector<int> first;
+    first.reserve(static_cast<std::size_t>(w.rows));
+    for (int row = w.row; row < w.row + w.rows; ++row) {
+        const double column = rows.column_at(row);
+        if (std::isnan(column)) return std::nullopt;
+        first.push_back(static_cast<int>(
+            std::ceil(std::clamp(column, double(w.column), double(w.column) + w.columns))));
+    }
+    return first;
+}
+
 Sweep::View Sweep::view(const SweepSun& given, const SweepWindow& window) const {
     assert(window.column >= 0 && window.row >= 0 && window.columns > 0 && window.rows > 0 &&
            window.column + window.columns <= columns_ && window.row + window.rows <= rows_);
@@ -1303,10 +1491,14 @@ template <typename OneStrip, typename Make, typename Look>
 void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look& look) const {
     const SweepWindow& w = view.window;
     Sheet& sheet = view.sheet;
+    const Wanted wanted{w};
     const Plan plan(sheet, view.sun, w, drop_m);
-    Steps steps(plan, w, OneStrip::kNearness);
-    steps.add_all_terms(plan);
-    const Extent extent(steps, w);
+    const Steps steps(plan, wanted, OneStrip::kNearness);
+    Terms terms;
+    terms.clear(plan.begin(), plan.end());
+    for (int row = plan.begin(); row < plan.end(); ++row)
+        terms.add(plan, steps, row);
+    const Extent extent(steps, wanted);
     const int lines = extent.end_line - extent.first_line;
     const int width = width_of_strips(lines, OneStrip::kMostWidth);
     const int strips = (lines + width - 1) / width;
@@ -1328,7 +1520,7 @@ void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look
         std::vector<float> buffer;
         for (int k = begin; k < end; ++k) {
             const int line = extent.first_line + k * width;
-            auto strip = make(steps, line, width);
+            auto strip = make(plan, steps, line, width);
             for (int row = steps.begin; row < plan.end(); ++row) {
                 if (read_ && (row - steps.begin) % kReadRows == 0) {
                     const int first = std::max(plan.begin(), row - kRowsBefore),
@@ -1343,8 +1535,8 @@ void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look
                 strip->come_to(row);
                 strip->take(row);
                 if (const int at = row - OneStrip::kNearness.near_rows - 1; at >= steps.begin)
-                    strip->advance(at);
-                if (row >= w.row) look(*strip, row);
+                    strip->advance(at, terms);
+                if (row >= w.row) look(*strip, row, terms);
             }
         }
     });
@@ -1357,12 +1549,12 @@ void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Us
     const Kernel& kernel = widest_kernel(lanes);
     sweep_strips<Strip>(
         view, drop_m(floor_m),
-        [&](const Steps& steps, int line, int width) {
-            return std::make_unique<Strip>(view.sheet, steps, kernel, line, width, lowest_m_,
+        [&](const Plan& plan, const Steps& steps, int line, int width) {
+            return std::make_unique<Strip>(view.sheet, plan, steps, kernel, line, width, lowest_m_,
                                            floor_m);
         },
-        [&](Strip& strip, int row) {
-            strip.look(row, w.column, w.column + w.columns,
+        [&](Strip& strip, int row, const Terms& terms) {
+            strip.look(row, terms, w.column, w.column + w.columns,
                        [&](int column, int count, const float* edge_m) {
                            use(view.run(strip.sheet(), row, column, count, edge_m));
                        });
@@ -1384,12 +1576,12 @@ void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
                              : relief_m / reach_m - curvature * reach_m / 2;
     sweep_strips<FanStrip>(
         view, reach_m,
-        [&](const Steps& steps, int line, int width) {
-            return std::make_unique<FanStrip>(view.sheet, steps, kernel, curvature, line, width,
-                                              least);
+        [&](const Plan& plan, const Steps& steps, int line, int width) {
+            return std::make_unique<FanStrip>(view.sheet, plan, steps, kernel, curvature, line,
+                                              width, least);
         },
-        [&](FanStrip& strip, int row) {
-            strip.look(row, w.column, w.column + w.columns,
+        [&](FanStrip& strip, int row, const Terms& terms) {
+            strip.look(row, terms, w.column, w.column + w.columns,
                        [&](int column, int count, const float* tangent) {
                            use(view.run(strip.sheet(), row, column, count, tangent));
                        });
@@ -1400,35 +1592,73 @@ void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
 struct Sweep::Blocks::OneSun {
     View view;
     Plan plan;
-    Steps steps;
+    std::shared_ptr<const Steps> steps;
     std::vector<std::unique_ptr<Strip>> strips;
-    OneSun(const Sweep& sweep, const View& of, float floor_m)
+
+    OneSun(const Sweep& sweep, const View& of, const Wanted& wanted, float floor_m)
         : view(of),
           plan(view.sheet, view.sun, view.window, sweep.drop_m(floor_m)),
-          steps(plan, view.window, Strip::kNearness) {
-        const Extent extent(steps, view.window);
+          steps(std::make_shared<const Steps>(plan, wanted, Strip::kNearness)) {
+        make_strips(sweep, wanted, floor_m);
+    }
+    /// Of a band.
+    /// @param of_band  its steps, if another sun has made them; these begin with the same row
+    OneSun(const Sweep& sweep, const View& of, const Wanted& wanted, const RayRows& ray, int begin,
+           std::shared_ptr<const Steps> of_band, float floor_m)
+        : view(of),
+          plan(view.sheet, view.sun, ray, begin, wanted.window.row + wanted.window.rows),
+          steps(std::move(of_band)) {
+        if (!steps) steps = std::make_shared<const Steps>(plan, wanted, Strip::kNearness);
+        make_strips(sweep, wanted, floor_m);
+    }
+    OneSun(const OneSun&) = delete;
+    OneSun& operator=(const OneSun&) = delete;
+
+    /// Of rows [first, end), those that it goes over.
+    std::pair<int, int> rows(int first, int end) const {
+        return {std::max(first, plan.begin()), std::min(end, plan.end())};
+    }
+
+    /// A strip comes to a row.
+    void step(const Moment& moment, Strip& strip, int row, Terms& terms);
+
+  private:
+    void make_strips(const Sweep& sweep, const Wanted& wanted, float floor_m) {
+        const Extent extent(*steps, wanted);
         const int lines = extent.end_line - extent.first_line;
         const int count = (lines + Strip::kMostWidth - 1) / Strip::kMostWidth;
         const int width =
             std::min(in_vectors((lines + count - 1) / count + 1) - 1, Strip::kMostWidth);
         for (int line = extent.first_line; line < extent.end_line; line += width)
-            strips.push_back(std::make_unique<Strip>(view.sheet, steps, widest_kernel(kMostLanes),
-                                                     line, width, sweep.lowest_m_, floor_m));
+            strips.push_back(std::make_unique<Strip>(view.sheet, plan, *steps,
+                                                     widest_kernel(kMostLanes), line, width,
+                                                     sweep.lowest_m_, floor_m));
     }
-    OneSun(const OneSun&) = delete;
-    OneSun& operator=(const OneSun&) = delete;
+};
 
-    CellSheet cell_sheet(const ShadeCells& of) const {
-        return {of, view.along_columns, view.mirrored, view.sheet.rows};
+/// The suns of a band, where it has posts.
+struct Sweep::Blocks::OneBand {
+    Wanted wanted;
+    std::vector<std::unique_ptr<OneSun>> suns;
+};
+
+/// What the suns of a band meet at the rows of a block.
+struct Sweep::Blocks::BlockTerms {
+    Terms terms;
+    const Steps* of = nullptr;
+    int row = 0;
+
+    /// @param first, end  of the block
+    void come_to(const std::shared_ptr<const Steps>& steps, int first, int end) {
+        if (of == steps.get() && row == first) return;
+        of = steps.get(), row = first;
+        terms.clear(first - Strip::kNearness.near_rows - 1, end);
     }
-
-    /// A strip comes to a row.
-    void step(const Moment& moment, Strip& strip, int row);
 };
 
 /// The suns of a moment, and what of the ground matters to them.
 struct Sweep::Blocks::Moment {
-    std::vector<std::unique_ptr<OneSun>> suns;
+    std::vector<OneBand> bands;
     std::optional<CellSheet> cells;
     std::optional<ShadeRanges> ranges;  // none: everywhere
 
@@ -1440,15 +1670,15 @@ struct Sweep::Blocks::Moment {
     }
 };
 
-void Sweep::Blocks::OneSun::step(const Moment& moment, Strip& strip, int row) {
+void Sweep::Blocks::OneSun::step(const Moment& moment, Strip& strip, int row, Terms& terms) {
     strip.come_to(row);
     moment.each_range(ShadeRanges::kTake, row,
                       [&](const ColumnRange& range) { strip.take(row, range); });
     const int at = row - Strip::kNearness.near_rows - 1;
-    if (at < steps.begin) return;
+    if (at < plan.begin()) return;
     moment.each_range(ShadeRanges::kRaise, at, [&](const ColumnRange& range) {
-        steps.add_terms(plan, at);
-        strip.advance(at, range);
+        terms.add(plan, *steps, at);
+        strip.advance(at, terms, range);
     });
 }
 
@@ -1458,26 +1688,23 @@ bool Sweep::Blocks::go_together(const std::vector<Sun>& suns) {
                          (sun.along_columns() ? sun.towards.column : sun.towards.row) > 0);
     };
     for (const Sun& moment : suns)
-        for (const SweepSun& sun : moment.suns)
-            if (way(sun) != way(suns.front().suns.front())) return false;
+        for (const Band& band : moment.bands)
+            for (const SweepSun& sun : band.suns)
+                if (way(sun) != way(suns.front().bands.front().suns.front())) return false;
     return true;
 }
 
 Sweep::Blocks::Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const SweepWindow& window,
                       float floor_m, double earth_curvature)
-    : sweep_(sweep) {
+    : sweep_(sweep), terms_(std::make_unique<BlockTerms>()) {
     assert(!suns.empty() && go_together(suns));
+    view_ =
+        std::make_unique<View>(sweep.edge_view(suns.front().bands.front().suns.front(), window));
     row_ = std::numeric_limits<int>::max();
     for (const Sun& of : suns) {
         moments_.push_back(std::make_unique<Moment>());
-        for (const SweepSun& sun : of.suns) {
-            suns_.push_back(moments_.back()
-                                ->suns
-                                .emplace_back(std::make_unique<OneSun>(
-                                    sweep, sweep.edge_view(sun, window), floor_m))
-                                .get());
-            row_ = std::min(row_, suns_.back()->steps.begin);
-        }
+        for (const Band& band : of.bands)
+            add_band(band, window, floor_m, *moments_.back());
     }
     end_row_ = row_;
     // To find out what may be left out is work over all of the grid.
@@ -1489,15 +1716,68 @@ Sweep::Blocks::Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const Sw
 
 Sweep::Blocks::~Blocks() = default;
 
+/// The posts of a band on the rows of a sheet.
+/// @param w  the window there
+static Wanted wanted_of(const Sweep::Blocks::Band& band, const SweepWindow& w, bool mirrored) {
+    if (!band.begin && !band.end) return {w};
+    Wanted wanted{w};
+    int first = w.row + w.rows, end = w.row;
+    for (int row = w.row; row < w.row + w.rows; ++row) {
+        const auto line =
+            static_cast<std::size_t>(mirrored ? w.row + w.rows - 1 - row : row - w.row);
+        ColumnRange range{w.column, w.column + w.columns};
+        if (band.begin) range.begin = std::max(range.begin, (*band.begin)[line]);
+        if (band.end) range.end = std::min(range.end, (*band.end)[line]);
+        wanted.band.push_back(range);
+        if (range.begin >= range.end) continue;
+        first = std::min(first, row), end = row + 1;
+    }
+    if (first >= end) return {};
+    wanted.band.erase(wanted.band.begin() + (end - w.row), wanted.band.end());
+    wanted.band.erase(wanted.band.begin(), wanted.band.begin() + (first - w.row));
+    wanted.window.row = first, wanted.window.rows = end - first;
+    return wanted;
+}
+
+void Sweep::Blocks::add_band(const Band& band, const SweepWindow& window, float floor_m,
+                             Moment& moment) {
+    OneBand& to = moment.bands.emplace_back();
+    to.wanted = wanted_of(band, view_->window, view_->mirrored);
+    const SweepWindow& w = to.wanted.window;
+    if (w.rows == 0) return;
+    std::vector<View> views;
+    for (const SweepSun& sun : band.suns)
+        views.push_back(sweep_.edge_view(sun, window));
+    if (!to.wanted.is_band()) {
+        for (const View& view : views)
+            to.suns.push_back(std::make_unique<OneSun>(sweep_, view, to.wanted, floor_m));
+    } else {
+        RayRows ray(views.front().sun, w.row, w.row + w.rows);
+        int begin = w.row;
+        for (const View& view : views)
+            begin = std::min(begin, Plan::begin_of_band(view.sheet, view.sun, to.wanted,
+                                                        sweep_.drop_m(floor_m), ray));
+        for (const View& view : views)
+            to.suns.push_back(std::make_unique<OneSun>(
+                sweep_, view, to.wanted, ray, begin,
+                to.suns.empty() ? nullptr : to.suns.front()->steps, floor_m));
+    }
+    for (const auto& sun : to.suns) {
+        suns_.push_back(sun.get());
+        row_ = std::min(row_, sun->plan.begin());
+    }
+}
+
 void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvature) {
     std::vector<std::optional<ShadedCells>> shaded(suns.size());
     for (std::size_t k = 0; k < suns.size(); ++k) {
-        if (suns[k].all_posts) continue;
+        // What is known beforehand is so of one path over all of the grid.
+        if (suns[k].all_posts || suns[k].bands.size() > 1) continue;
         Moment& moment = *moments_[k];
-        const View& view = moment.suns.front()->view;
+        const OneBand& band = moment.bands.front();
         moment.cells.emplace(
-            CellSheet{sweep_.cells(), view.along_columns, view.mirrored, view.sheet.rows});
-        for (const auto& sun : moment.suns) {
+            CellSheet{sweep_.cells(), view_->along_columns, view_->mirrored, view_->sheet.rows});
+        for (const auto& sun : band.suns) {
             const ShadedCells found(*moment.cells, sun->view.sun, sun->plan.rows(),
                                     sun->plan.begin(),
                                     EarthAround{sweep_.lowest_m_, earth_curvature});
@@ -1519,24 +1799,26 @@ void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvatu
 
 /// Ground of rows for all suns, where it is not in memory.
 void Sweep::Blocks::read(int row, int end_row) {
-    Sheet sheet = suns_.front()->view.sheet;
+    Sheet sheet = view_->sheet;
     int column = sheet.columns, end_column = 0;
-    for (const auto& sun : suns_)
-        for (int at = std::max(row, sun->steps.begin); at < end_row; ++at) {
+    for (const auto& sun : suns_) {
+        const auto [first, end] = sun->rows(row, end_row);
+        for (int at = first; at < end; ++at) {
             column = std::min(column, sun->strips.front()->first_ground(at));
             end_column = std::max(end_column, sun->strips.back()->end_ground(at));
         }
+    }
     column = std::max(column, 0), end_column = std::min(end_column, sheet.columns);
     if (column >= end_column) return;
     sheet.stride = end_column - column;
-    suns_.front()->view.read(sweep_.read_, sheet, row, end_row, column, end_column, buffer_);
+    view_->read(sweep_.read_, sheet, row, end_row, column, end_column, buffer_);
     for (const auto& sun : suns_)
         for (const auto& strip : sun->strips)
             strip->sheet() = sheet;
 }
 
 std::optional<SweepWindow> Sweep::Blocks::next() {
-    const View& view = suns_.front()->view;
+    const View& view = *view_;
     const SweepWindow& w = view.window;
     const int end = w.row + w.rows;
     for (row_ = end_row_; row_ < end; row_ = end_row_) {
@@ -1548,25 +1830,36 @@ std::optional<SweepWindow> Sweep::Blocks::next() {
                                       : SweepWindow{w.column, line, w.columns, end_row_ - row_};
         }
         for (const auto& moment : moments_)
-            for (const auto& sun : moment->suns)
-                for (const auto& strip : sun->strips)
-                    for (int row = std::max(row_, sun->steps.begin); row < end_row_; ++row)
-                        sun->step(*moment, *strip, row);
+            for (const OneBand& band : moment->bands)
+                for (const auto& sun : band.suns) {
+                    terms_->come_to(sun->steps, row_, end_row_);
+                    const auto [first, last] = sun->rows(row_, end_row_);
+                    for (const auto& strip : sun->strips)
+                        for (int row = first; row < last; ++row)
+                            sun->step(*moment, *strip, row, terms_->terms);
+                }
     }
     return std::nullopt;
 }
 
-void Sweep::Blocks::each_edge(std::size_t index, std::size_t of_moment, const Use& use) {
+void Sweep::Blocks::each_edge(std::size_t index, std::size_t of_band, std::size_t of_sun,
+                              const Use& use) {
     const Moment& moment = *moments_[index];
-    OneSun& sun = *moment.suns[of_moment];
-    const SweepWindow& w = sun.view.window;
+    const OneBand& band = moment.bands[of_band];
+    if (band.suns.empty()) return;
+    OneSun& sun = *band.suns[of_sun];
+    Terms& terms = terms_->terms;
+    terms_->come_to(sun.steps, row_, end_row_);
+    const auto [first, end] = sun.rows(row_, end_row_);
     for (const auto& strip : sun.strips)
-        for (int row = row_; row < end_row_; ++row) {
-            sun.step(moment, *strip, row);
+        for (int row = first; row < end; ++row) {
+            sun.step(moment, *strip, row, terms);
+            if (row < band.wanted.window.row) continue;
+            const ColumnRange posts = band.wanted.at(row);
             moment.each_range(ShadeRanges::kLook, row, [&](const ColumnRange& range) {
-                sun.steps.add_terms(sun.plan, row);
-                strip->look(row, std::max(w.column, range.begin),
-                            std::min(w.column + w.columns, range.end),
+                terms.add(sun.plan, *sun.steps, row);
+                strip->look(row, terms, std::max(posts.begin, range.begin),
+                            std::min(posts.end, range.end),
                             [&](int column, int count, const float* edge_m) {
                                 use(sun.view.run(strip->sheet(), row, column, count, edge_m));
                             });
@@ -1577,7 +1870,7 @@ void Sweep::Blocks::each_edge(std::size_t index, std::size_t of_moment, const Us
 void Sweep::Blocks::each_dark(const Use& use) const {
     const Moment& moment = *moments_.front();
     if (!moment.ranges) return;
-    const View& view = moment.suns.front()->view;
+    const View& view = *view_;
     const SweepWindow& w = view.window;
     for (int row = row_; row < end_row_; ++row)
         moment.each_range(ShadeRanges::kDark, row, [&](const ColumnRange& range) {

@@ -66,6 +66,11 @@ struct SweepWindow {
     int column = 0, row = 0, columns = 0, rows = 0;
 };
 
+/// For each row of a window, or each of its columns where sweeps of the sun go along these, the
+/// first post that the ray through the reference does not leave behind; from the window's first one
+/// to the one after its last. None where that ray turns back there.
+std::optional<std::vector<int>> first_posts(const SweepSun& ray, const SweepWindow& window);
+
 /// Posts next to each other, as a sweep comes to them: along a row, or along a column.
 struct SweepRun {
     bool along_column;
@@ -170,12 +175,22 @@ class Sweep {
 
 /// The edges of several suns over a window, block by block: some rows (or columns) of it for one
 /// sun after the other, then the next ones, so that the ground and what is kept of its posts stays
-/// in the processor's cache. They are those of Sweep::each_edge(), to the bit. For one thread.
+/// in the processor's cache. Of a window they are those of Sweep::each_edge(), to the bit. A sun
+/// that differs across its rays, as over a grid in degrees, has bands of posts between rays, each
+/// with lines of its own. For one thread.
 class Sweep::Blocks {
   public:
-    /// A moment: one sun, or several of which each is taken for some posts.
-    struct Sun {
+    /// Posts between two rays, over which the sun is one: or several of which each is taken for
+    /// some posts.
+    struct Band {
         std::vector<SweepSun> suns;
+        /// Where its posts begin and end on each of the window's lines, as first_posts() has them;
+        /// none: where the window does. Both none: a window, over which lines are found otherwise.
+        std::shared_ptr<const std::vector<int>> begin = nullptr, end = nullptr;
+    };
+    /// A moment.
+    struct Sun {
+        std::vector<Band> bands;  ///< with each post of the window once
         /// Else those posts may be left out which are lit, or in the shade, by all that is known
         /// before they are looked at, now and at the moments before and after.
         bool all_posts = true;
@@ -196,20 +211,25 @@ class Sweep::Blocks {
 
     /// The next block of the window; none where all are done.
     std::optional<SweepWindow> next();
-    /// To be called once for each sun of each moment in each block; `use` as Sweep::each_edge() has
-    /// it, along columns or rows as the suns go.
-    void each_edge(std::size_t moment, std::size_t sun, const Use& use);
+    /// To be called once for each sun of each band of each moment in each block; `use` as
+    /// Sweep::each_edge() has it, along columns or rows as the suns go.
+    void each_edge(std::size_t moment, std::size_t band, std::size_t sun, const Use& use);
     /// Posts of a block that are in the shade at the first moment, others among them which are
     /// looked at then: what is left out else is lit. Runs have neither heights nor edges.
     void each_dark(const Use& use) const;
 
   private:
     struct OneSun;
+    struct OneBand;
+    struct BlockTerms;
     struct Moment;
+    void add_band(const Band& band, const SweepWindow& window, float floor_m, Moment& moment);
     void leave_out(const std::vector<Sun>& suns, double earth_curvature);
     void read(int row, int end_row);
 
     const Sweep& sweep_;
+    std::unique_ptr<View> view_;  // of the window
+    std::unique_ptr<BlockTerms> terms_;
     std::vector<std::unique_ptr<Moment>> moments_;
     std::vector<OneSun*> suns_;  // of all moments
     std::vector<float> buffer_;

@@ -391,7 +391,7 @@ struct Together {
         std::mutex mutex;
         std::vector<Sweep::Blocks::Sun> moments;
         for (const SweepSun& sun : suns)
-            moments.push_back({{sun}, all_posts});
+            moments.push_back({{{{sun}}}, all_posts});
         ASSERT_TRUE(Sweep::Blocks::go_together(moments));
         std::vector<std::vector<float>> found(suns.size(), std::vector<float>(posts(), kHole));
         std::vector<bool> dark(posts());
@@ -402,7 +402,7 @@ struct Together {
                     dark[index(run, i)] = true;
             });
             for (std::size_t k = 0; k < suns.size(); ++k)
-                blocks.each_edge(k, 0, [&](const SweepRun& run) {
+                blocks.each_edge(k, 0, 0, [&](const SweepRun& run) {
                     for (int i = 0; i < run.count; ++i)
                         found[k][index(run, i)] = run.found[i];
                 });
@@ -446,7 +446,7 @@ TEST(Sweep, BlocksHaveTheBitsOfEachSunAndLeaveOutWhatIsKnown) {
     Heights heights = test::bundled("jacksboro.tif").height_m;
     for (int row = 100; row < 120; ++row)
         heights.at(150, row) = kHole;
-    const SweepWindow whole{0, 0, heights.width(), heights.height()}, part{37, 101, 201, 99};
+    const SweepWindow whole{0, 0, heights.width(), heights.height()}, part{37, 101, 301, 199};
     for (const double azimuth_deg : {20.0, 100.0, 200.0, 290.0, 359.0})
         for (const double elevation_deg : {-1.2, 3.0, 12.0, 30.0, 60.0}) {
             std::vector<SweepSun> suns;
