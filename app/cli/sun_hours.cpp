@@ -154,7 +154,7 @@ void run(const Arguments& arguments) {
                                .sky_directions = 36};
     RasterRun raster(arguments.raster, file, ground, light::RasterType::Float,
                      bands_of(arguments.bands), 1,
-                     (options.spells ? 36 : 14) + (options.irradiation ? 32 : 0));
+                     (options.spells ? 44 : 22) + (options.irradiation ? 32 : 0));
     options.done = raster.done();
     raster.warn_of(
         [&] {

@@ -20,7 +20,7 @@ namespace {
 
 // Measured: the program with its libraries; blocks of a file that are kept, and what tiles and
 // threads take besides; and how many tiles of all bands GDAL has at once while it writes.
-constexpr double kProgram_mib = 90, kBlocks_mib = 256, kTilesAtOnce = 20;
+constexpr double kProgram_mib = 120, kBlocks_mib = 256, kTilesAtOnce = 20;
 constexpr double kTile = 512;  // posts a side
 
 }  // namespace

@@ -277,7 +277,7 @@ TEST(SunMemory, WhatABudgetIsMakesNoDifference) {
     const Result dry = relevo(
         {"sun", "sky-view", dems.front(), "--dry-run", "--memory", "1", "-o", out("dry.tif")});
     EXPECT_TRUE(dry.out.starts_with(
-        "posts               281101, in 77 parts\nmemory              some 357 MiB, 257 of "
+        "posts               281101, in 77 parts\nmemory              some 387 MiB, 257 of "
         "them heights\n"))
         << dry.out;
 }
