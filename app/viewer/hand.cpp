@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -29,8 +30,8 @@ void Hand::act(double passed_s, bool comparing, bool new_input) {
     const glm::vec2 mouse = window_.mouse();
     const Pose& pose = state_.document.pose;
     const Pose before = pose;
-    if (new_input && !ImGui::GetIO().WantCaptureMouse) {
-        press(mouse, comparing);
+    if (!ImGui::GetIO().WantCaptureMouse) {
+        if (new_input) press(mouse, comparing);
         scroll(mouse);
     }
     drag(mouse, passed_s);
@@ -57,10 +58,11 @@ bool Hand::glides() const {
     return std::abs(zoom_left_) > 1e-3 || length(glide_deg_a_s_) > 0.5;
 }
 
-/// By as much as was scrolled, which of a touchpad is any part of a notch.
+/// By as much as was scrolled since the last time, which of a touchpad is any part of a notch.
+/// ImGui drops with each of its frames what has not been taken by then.
 void Hand::scroll(glm::vec2 mouse) {
-    const ImGuiIO& io = ImGui::GetIO();
-    glm::vec2 by(io.MouseWheelH, io.MouseWheel);
+    ImGuiIO& io = ImGui::GetIO();
+    glm::vec2 by(std::exchange(io.MouseWheelH, 0.0f), std::exchange(io.MouseWheel, 0.0f));
     if (by == glm::vec2(0)) return;
     if (!io.KeyShift) {
         zoom_at_ = hold(mouse);

@@ -22,7 +22,7 @@ class Hand {
     void see(std::shared_ptr<const Picture> picture) { picture_ = std::move(picture); }
     /// Takes what has come since the last call.
     /// @param comparing  there is a line that can be dragged
-    /// @param new_input  ImGui has taken clicks and the wheel in since then
+    /// @param new_input  ImGui has taken clicks in since then
     void act(double passed_s, bool comparing, bool new_input);
     /// Moves that a key or a menu asks for. @returns whether it is one
     bool move(Command command, const Pose& home);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -78,6 +79,15 @@ class Viewer : public testing::Test {
         act({"key", "ctrl+s"});
         EXPECT_TRUE(wait([&] { return std::filesystem::exists(name); })) << program_->output();
         return nlohmann::json::parse(read_text(name, "test"));
+    }
+    /// The scene when its view has stopped gliding, which a slow machine may not show on the
+    /// screen.
+    nlohmann::json resting_scene() {
+        nlohmann::json before, now = scene();
+        do
+            before = std::exchange(now, scene());
+        while (before["camera"] != now["camera"]);
+        return now;
     }
     void drag(int button, int x, int y, int dx, int dy) {
         act({"mousemove", std::to_string(x), std::to_string(y)});
