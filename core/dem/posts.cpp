@@ -54,8 +54,12 @@ struct Posts::Impl {
     int block = kLeastBlock;
     Array2d<float> block_highest_m;
     std::unique_ptr<TileCache> tiles;
+    Array2d<float> thinned_m;  // of posts that are not in memory
 
     const Grid& grid() const { return field ? field->grid : source->grid(); }
+    int thinning() const {
+        return (std::max(grid().columns(), grid().rows()) + kThinned - 1) / kThinned;
+    }
     View view(const Window& window, std::vector<float>& buffer) const;
     void take(const Heightfield& in_memory);
     void take(const Source& on_demand, std::int64_t max_posts);
@@ -65,6 +69,8 @@ struct Posts::Impl {
     void for_blocks(const Window& slab, const Body& body);
     void find_highest(const View& view, const Window& slab);
     void go_through(std::int64_t slab_posts);
+    template <typename HeightAt>
+    void keep_thinned(const Window& slab, const HeightAt& height_at);
     void settle_holes();
 };
 
@@ -99,6 +105,17 @@ void Posts::Impl::find_highest(const View& view, const Window& slab) {
     });
 }
 
+/// Of a slab of posts, whose heights `height_at` tells.
+template <typename HeightAt>
+void Posts::Impl::keep_thinned(const Window& slab, const HeightAt& height_at) {
+    const int step = thinning();
+    const auto first = [&](int from) { return (from + step - 1) / step; };
+    const int end_row = first(slab.row + slab.rows), end = first(slab.column + slab.columns);
+    for (int row = first(slab.row); row < end_row; ++row)
+        for (int column = first(slab.column); column < end; ++column)
+            thinned_m.at(column, row) = height_at(column * step, row * step);
+}
+
 void Posts::Impl::settle_holes() {
     for (float& highest_m : block_highest_m)
         if (highest_m == kInfinity) highest_m = about.statistics.max_m;
@@ -129,6 +146,9 @@ void Posts::Impl::take(const Source& on_demand, std::int64_t max_posts) {
         block *= 2;
     block_highest_m = Array2d<float>(blocks_of(grid().columns(), block),
                                      blocks_of(grid().rows(), block), -kInfinity);
+    const int step = thinning();
+    thinned_m = Array2d<float>((grid().columns() - 1) / step + 1, (grid().rows() - 1) / step + 1,
+                               std::numeric_limits<float>::quiet_NaN());
     go_through(std::min(max_posts / 2, kMaxSlab));
     settle_holes();
     spare_blocks();
@@ -169,11 +189,14 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
                 for_blocks(slab, [&](float& highest_m, const Window&) {
                     highest_m = std::max(highest_m, height_m);
                 });
+                keep_thinned(slab, [&](int, int) { return blank.height_m; });
                 about.statistics +=
                     statistics(blank.height_m, std::int64_t{own_columns} * own_rows);
             } else {
                 const Array2d<float> height_m = source->read(slab, slab.columns, slab.rows);
-                find_highest({height_m.data(), height_m.width(), slab.column, slab.row}, slab);
+                const View read{height_m.data(), height_m.width(), slab.column, slab.row};
+                find_highest(read, slab);
+                keep_thinned(slab, [&](int c, int r) { return *read.at(c, r); });
                 if (collar_steps) collar_steps->add(height_m, {0, 0, slab.columns, slab.rows});
                 about.statistics += statistics(height_m, {0, 0, own_columns, own_rows});
             }
@@ -249,6 +272,19 @@ Posts::View Posts::view(const Window& window, std::vector<float>& buffer) const 
            window.column + window.columns <= grid().columns() &&
            window.row + window.rows <= grid().rows());
     return impl_->view(window, buffer);
+}
+
+int Posts::thinning() const {
+    return impl_->thinning();
+}
+
+float Posts::thinned_m(int column, int row) const {
+    const int step = thinning();
+    const auto nearest = [&](int post, int posts) {
+        return std::min((post + step / 2) / step, (posts - 1) / step);
+    };
+    const int c = nearest(column, grid().columns()), r = nearest(row, grid().rows());
+    return impl_->field ? impl_->field->height_m.at(c * step, r * step) : impl_->thinned_m.at(c, r);
 }
 
 double Posts::height_at(double column, double row) const {

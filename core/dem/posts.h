@@ -66,6 +66,13 @@ class Posts {
     /// @param buffer  where they are put unless memory holds them already; the view ends with it
     View view(const Window& window, std::vector<float>& buffer) const;
 
+    /// The height of a post near another one, as a look around from afar needs it: of every
+    /// thinning()-th post in each direction the nearest, which is always at hand.
+    float thinned_m(int column, int row) const;
+    /// Hangs on nothing but the grid: 1 for grids of up to kThinned posts a side.
+    int thinning() const;
+    static constexpr int kThinned = 512;
+
     /// As Heightfield::height_at().
     double height_at(double column, double row) const;
 

@@ -19,6 +19,7 @@ namespace relevo::light {
 namespace {
 
 constexpr int kSide = 24;  // posts that are looked from, each way
+constexpr int kNear = 32;  // posts away that every post is looked at, so that ridges close by count
 constexpr double kDay_s = 86400;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -43,14 +44,11 @@ class Looking {
         found_.highest_m =
             highest_m.value_or(std::min<double>(posts.highest_m(), kHighestTerrain_m));
         const SweepWindow w = window_of(part, posts.grid());
-        if (posts.in_memory())
-            all_ = posts.view({0, 0, posts.grid().columns(), posts.grid().rows()}, buffer_);
         std::vector<float> one;
         for (int i = 0; i < kSide * kSide; ++i) {
             const int column = w.column + place(i % kSide, w.columns),
                       row = w.row + place(i / kSide, w.rows);
-            const double height_m = all_ ? *all_->at(column, row)
-                                         : *posts.view({column, row, 1, 1}, one).at(column, row);
+            const double height_m = *posts.view({column, row, 1, 1}, one).at(column, row);
             if (!std::isnan(height_m))
                 eyes_.push_back({column, row, height_m, posts.grid().place(column, row)});
         }
@@ -66,24 +64,35 @@ class Looking {
         });
     }
 
+    /// The posts around an eye that are looked at one by one.
+    dem::Posts::View near(const Eye& eye, std::vector<float>& buffer) const {
+        const dem::Grid& grid = posts_.grid();
+        const int column = std::max(0, eye.column - kNear), row = std::max(0, eye.row - kNear);
+        return posts_.view({column, row, std::min(grid.columns(), eye.column + kNear + 1) - column,
+                            std::min(grid.rows(), eye.row + kNear + 1) - row},
+                           buffer);
+    }
+
+    /// @param near         as near() has it
     /// @param way_a_metre  posts
-    View look(const Eye& eye, const GridPair& way_a_metre) const {
+    View look(const Eye& eye, const dem::Posts::View& near, const GridPair& way_a_metre) const {
         View view;
         const double post_m = 1 / std::max(std::abs(way_a_metre.column), std::abs(way_a_metre.row));
         const dem::Grid& grid = posts_.grid();
         // Near ground is looked at post by post, far ground as far apart as a 64th of the way.
-        for (double s = post_m;; s += std::max(post_m, s / 64)) {
+        for (double s = post_m;;) {
             const auto column = static_cast<int>(std::lround(eye.column + s * way_a_metre.column)),
                        row = static_cast<int>(std::lround(eye.row + s * way_a_metre.row));
-            if (column < 0 || row < 0 || column >= grid.columns() || row >= grid.rows()) {
-                if (!all_) view.until_m = s;
-                break;
+            if (column < 0 || row < 0 || column >= grid.columns() || row >= grid.rows()) break;
+            const bool is_near =
+                std::max(std::abs(column - eye.column), std::abs(row - eye.row)) <= kNear;
+            const double height_m = is_near ? *near.at(column, row) : posts_.thinned_m(column, row);
+            if (!std::isnan(height_m)) {
+                view.until_m = s;
+                view.tangent =
+                    std::max(view.tangent, (height_m - eye.height_m) / s - curvature_ * s / 2);
             }
-            const double height_m = all_ ? *all_->at(column, row) : -1e9;
-            if (std::isnan(height_m)) continue;
-            view.until_m = s;
-            view.tangent =
-                std::max(view.tangent, (height_m - eye.height_m) / s - curvature_ * s / 2);
+            s += std::max(post_m * (is_near ? 1 : posts_.thinning()), s / 64);
         }
         view.until_m = std::max(view.until_m, post_m / 2);
         return view;
@@ -117,8 +126,6 @@ class Looking {
 
     const dem::Posts& posts_;
     double curvature_;
-    std::vector<float> buffer_;
-    std::optional<dem::Posts::View> all_;
     std::vector<Eye> eyes_;
     std::vector<double> least_m_, reach_m_;  // of each: that matters, and how far beyond the DEM
     Beyond found_;
@@ -154,11 +161,13 @@ std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window&
             skies.emplace_back(sky, *way);
     }
     looking.each_eye([&](std::size_t i, const Eye& eye) {
+        std::vector<float> buffer;
+        const dem::Posts::View near = looking.near(eye, buffer);
         for (const auto& [sky, way] : skies) {
             const double seen_rad =
                 dem.apparent_rad(sky.elevation_rad(eye.place), DemSky::kBetween);
             if (!(seen_rad > 0) || seen_rad > radians(80)) continue;
-            const View view = looking.look(eye, way);
+            const View view = looking.look(eye, near, way);
             if (view.tangent < std::tan(seen_rad)) looking.consider(i, view, std::tan(seen_rad));
         }
     });
@@ -175,10 +184,12 @@ std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window&
         if (const std::optional<GridPair> way = way_of(SunSky(dem, azimuth), posts.grid()))
             ways.push_back(*way);
     looking.each_eye([&](std::size_t i, const Eye& eye) {
+        std::vector<float> buffer;
+        const dem::Posts::View near = looking.near(eye, buffer);
         const double dip =
             -std::sqrt(2 * dem.curvature() * std::max(0.0, eye.height_m - posts.lowest_m()));
         for (const GridPair& way : ways) {
-            const View view = looking.look(eye, way);
+            const View view = looking.look(eye, near, way);
             looking.consider(i, view, std::max(view.tangent, dip));
         }
     });

@@ -27,8 +27,8 @@ inline constexpr const char *kHides = "hide sun that is taken to shine",
 /// Terrain that would hide a sun which the DEM's own ground leaves to shine.
 ///
 /// Some hundreds of posts, evenly over the part, look towards every sun over the posts nearest to
-/// their ray, to where the DEM ends or has only holes left. Of a DEM beyond memory its own ground
-/// is not looked at, so that more is told than need be.
+/// their ray, to where the DEM ends or has only holes left; beyond 32 posts over those that
+/// dem::Posts::thinned_m() has.
 /// @param part       as ShadowOptions::part
 /// @param highest_m  of the terrain beyond; none: the DEM's highest post, the Earth's at most
 /// @return none where no terrain of that height could matter

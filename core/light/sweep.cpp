@@ -181,6 +181,38 @@ template <typename V>
     }
 }
 
+/// Posts between the lines before and behind them: e[i] = p[i] + part * (q[i] - p[i]). A line below
+/// the floor counts as one that has met nothing, so that a post's edge does not hang on how far off
+/// ground is swept; a post beside such a line has nothing from either.
+struct Between {
+    float* e;
+    const float *p, *q;
+    float part;
+    int posts;  // filled up to whole vectors
+    int line;   // as Tilted has it, and the next ones
+    float between;
+    Slope slope;
+    float floor_m;
+};
+
+template <typename V>
+[[gnu::always_inline]] inline void mix_all(const Between& lines) {
+    const V nothing = V{} + kNothing_m;
+    V lane;
+    count(lane);
+    for (int i = 0; i < lines.posts; i += kWidthOf<V>) {
+        const V line = (static_cast<float>(lines.line + i) + lane) + lines.between;
+        const V least = lines.floor_m + (lines.slope.fall + lines.slope.ramp * line);
+        V a, b;
+        load(lines.p + i, a);
+        load(lines.q + i, b);
+        a = a >= least ? a : nothing;
+        b = b >= least ? b : nothing;
+        const V h = a + lines.part * (b - a);
+        store(h > nothing ? h : nothing, lines.e + i);
+    }
+}
+
 /// Ground before posts next to each other, as their own rays meet it.
 struct Sight {
     float* tangent;  // max(tangent, that of all ground)
@@ -351,34 +383,38 @@ struct Kernel {
     void (*raise)(const Lift& lift);
     void (*tilt)(const Tilted& row);
     void (*untilt)(const Tilted& row);
+    void (*mix)(const Between& lines);
     void (*look)(const Sight& sight);
     void (*raise_fans)(const FanLift& lift, int points);
     void (*look_over_fans)(const FanSight& sight);
 };
 
-#define RELEVO_SWEEP_KERNEL(lanes, ...)                                                \
-    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float;           \
-    __VA_ARGS__ void raise_##lanes(const Lift& lift) {                                 \
-        raise_all<Vector##lanes>(lift);                                                \
-    }                                                                                  \
-    __VA_ARGS__ void tilt_##lanes(const Tilted& row) {                                 \
-        tilt_all<Vector##lanes>(row);                                                  \
-    }                                                                                  \
-    __VA_ARGS__ void untilt_##lanes(const Tilted& row) {                               \
-        untilt_all<Vector##lanes>(row);                                                \
-    }                                                                                  \
-    __VA_ARGS__ void look_##lanes(const Sight& sight) {                                \
-        look_all<Vector##lanes>(sight);                                                \
-    }                                                                                  \
-    __VA_ARGS__ void raise_fans_##lanes(const FanLift& lift, int points) {             \
-        raise_all_fans<Vector##lanes>(lift, points);                                   \
-    }                                                                                  \
-    __VA_ARGS__ void look_over_fans_##lanes(const FanSight& sight) {                   \
-        look_over_all_fans<Vector##lanes>(sight);                                      \
-    }                                                                                  \
-    constexpr Kernel kKernel##lanes {                                                  \
-        raise_##lanes, tilt_##lanes, untilt_##lanes, look_##lanes, raise_fans_##lanes, \
-            look_over_fans_##lanes                                                     \
+#define RELEVO_SWEEP_KERNEL(lanes, ...)                                         \
+    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float;    \
+    __VA_ARGS__ void raise_##lanes(const Lift& lift) {                          \
+        raise_all<Vector##lanes>(lift);                                         \
+    }                                                                           \
+    __VA_ARGS__ void tilt_##lanes(const Tilted& row) {                          \
+        tilt_all<Vector##lanes>(row);                                           \
+    }                                                                           \
+    __VA_ARGS__ void untilt_##lanes(const Tilted& row) {                        \
+        untilt_all<Vector##lanes>(row);                                         \
+    }                                                                           \
+    __VA_ARGS__ void mix_##lanes(const Between& lines) {                        \
+        mix_all<Vector##lanes>(lines);                                          \
+    }                                                                           \
+    __VA_ARGS__ void look_##lanes(const Sight& sight) {                         \
+        look_all<Vector##lanes>(sight);                                         \
+    }                                                                           \
+    __VA_ARGS__ void raise_fans_##lanes(const FanLift& lift, int points) {      \
+        raise_all_fans<Vector##lanes>(lift, points);                            \
+    }                                                                           \
+    __VA_ARGS__ void look_over_fans_##lanes(const FanSight& sight) {            \
+        look_over_all_fans<Vector##lanes>(sight);                               \
+    }                                                                           \
+    constexpr Kernel kKernel##lanes {                                           \
+        raise_##lanes, tilt_##lanes, untilt_##lanes, mix_##lanes, look_##lanes, \
+            raise_fans_##lanes, look_over_fans_##lanes                          \
     }
 
 RELEVO_SWEEP_KERNEL(4);
@@ -1005,11 +1041,19 @@ class Strip {
         if (row - kNearness.near_rows - 1 >= steps_.begin) {
             // The lines before and behind a post; the next one of the first set is one on.
             const auto set = static_cast<std::size_t>(step.far_set);
-            Ground far{lines_of(set) + (from - line_), nullptr, step.far_part};
-            far.q = set + 1 < kNearness.line_sets ? lines_of(set + 1) + (from - line_)
-                                                  : lines_of(0) + (from - line_) + 1;
-            if (far.part == 0) far.q = far.p;
-            kernel_.raise({e, nullptr, posts, &far, 1});
+            const float* const p = lines_of(set) + (from - line_);
+            const float* q = set + 1 < kNearness.line_sets ? lines_of(set + 1) + (from - line_)
+                                                           : lines_of(0) + (from - line_) + 1;
+            if (step.far_part == 0) q = p;
+            kernel_.mix({.e = e,
+                         .p = p,
+                         .q = q,
+                         .part = step.far_part,
+                         .posts = posts,
+                         .line = from,
+                         .between = step.between,
+                         .slope = fallen(row),
+                         .floor_m = floor_m_ - zero_m_});
             before = e;
         }
         const Terms::Row& of = terms.row(row);

@@ -81,6 +81,17 @@ TEST(Posts, AreThoseOfTheFileHoweverLittleMemoryThereIs) {
     }
     EXPECT_TRUE(std::isnan(dem.few.height_at(700.01, 3)));
     EXPECT_TRUE(std::isnan(dem.few.height_at(3, -0.01)));
+
+    // Every second post, of which one is never farther away than the next.
+    ASSERT_EQ(dem.few.thinning(), 2);
+    for (int row = 0; row < 515; ++row)
+        for (int column = 0; column < 701; ++column) {
+            const float is = dem.few.thinned_m(column, row);
+            const float whole = dem.whole.thinned_m(column, row);
+            const float wanted = dem.field.height_m.at((column + 1) / 2 * 2, (row + 1) / 2 * 2);
+            ASSERT_TRUE(is == whole || (std::isnan(is) && std::isnan(whole)));
+            ASSERT_TRUE(is == wanted || (std::isnan(is) && std::isnan(wanted)));
+        }
 }
 
 TEST(Posts, NoPostOfABoxIsAboveItsBound) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/units.h"
+#include "dem/fixture.h"
 #include "light/beyond.h"
 #include "light/fields.h"
 #include "sun/zone.h"
@@ -52,6 +53,37 @@ TEST(TerrainBeyond, MattersNotWhereTheDemsOwnGroundHidesTheSun) {
     EXPECT_TRUE(terrain_beyond(posts, {0, 0, 201, 180}, {{0, radians(5), 0}}, {})) << "the north";
     // A sun that is down has nothing that hides it.
     EXPECT_FALSE(terrain_beyond(posts, {}, {sun_in_the_south(-3)}, {}));
+}
+
+TEST(TerrainBeyond, IsTheSameHoweverLittleMemoryThereIs) {
+    test::Raster raster;
+    raster.columns = 1400;
+    raster.rows = 1100;
+    raster.value = [](int column, int row, int) {
+        return 900 + 400 * std::sin(column * 0.031) * std::cos(row * 0.023) +
+               (std::abs(column - 2 * row) % 61 == 0 ? 150.0 : 0.0);
+    };
+    const std::vector<std::string> paths{test::write_raster(test::folder() / "beyond.tif", raster)};
+    const dem::Source source = dem::Source::open(paths);
+    const dem::Heightfield field = dem::load(source, std::int64_t{1} << 28);
+    const dem::Posts all(field), few(source, 1 << 16);
+    ASSERT_FALSE(few.in_memory());
+    for (const dem::Window& part : {dem::Window{}, dem::Window{600, 500, 90, 500}}) {
+        const auto at_sun = [&](const dem::Posts& posts) {
+            return terrain_beyond(posts, part, {sun_in_the_south(8)}, {});
+        };
+        const auto with = at_sun(all), without = at_sun(few);
+        ASSERT_TRUE(with && without);
+        EXPECT_EQ(without->text(kHides), with->text(kHides));
+        EXPECT_EQ(without->share, with->share);
+        // Most of these posts have ground of the DEM's own before the sun.
+        EXPECT_LT(with->share, 0.5);
+        const auto over = [&](const dem::Posts& posts) {
+            return terrain_beyond(posts, part, std::vector<double>{0.3, 2}, 0.13);
+        };
+        ASSERT_TRUE(over(all) && over(few));
+        EXPECT_EQ(over(few)->text(kStandsOver), over(all)->text(kStandsOver));
+    }
 }
 
 TEST(TerrainBeyond, StandsOverHorizons) {

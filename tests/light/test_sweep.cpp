@@ -363,6 +363,44 @@ TEST(Sweep, HoldsTheSameBitsForAnyWidthOfVectorsAndAnyWindow) {
     }
 }
 
+TEST(Sweep, RaysAlongTheBorderHaveTheSameBitsForAnyWindow) {
+    // Where a grid shows rays as bent, the line beside a post of the border may have met ground
+    // before it left the grid: too far off to shade a window, but not the whole grid. The line on
+    // the other side of the post has met the wall.
+    const Heights heights =
+        heights_of(403, 64, [](int column, int) { return column == 270 ? 3000 : 0; });
+    const Sweep sweep(heights.data(), heights.width(), heights.height(), heights.width());
+    const float floor_m = sweep.lowest_m() - 300;
+    const auto edge_of_window = [&](const SweepSun& sun, const SweepWindow& window) {
+        Heights edge(window.columns, window.rows);
+        sweep.each_edge(
+            sun, window,
+            [&](const SweepRun& run) {
+                for (int i = 0; i < run.count; ++i)
+                    edge.at((run.along_column ? run.line : run.first + i) - window.column,
+                            (run.along_column ? run.first + i : run.line) - window.row) =
+                        run.found[i];
+            },
+            Sweep::kMostLanes, floor_m);
+        return edge;
+    };
+    const SweepWindow whole{0, 0, heights.width(), heights.height()};
+    const SweepWindow part{300, 0, 90, heights.height()};
+    for (const auto& [reference, turn, bend] :
+         {std::array{386.0, 7e-7, 1.3e-9}, std::array{254.0, 1.6e-7, 4.8e-9},
+          std::array{378.0, -2e-6, 1.4e-9}, std::array{384.0, 1.9e-5, 1.8e-11}}) {
+        SweepSun sun = MapSun{270, 12, {75, 92}, 0.87 / 6371000}.over(heights);
+        sun.reference = {reference, 31};
+        sun.towards.row = turn;
+        sun.bend.row = bend;
+        const Heights all = edge_of_window(sun, whole), some = edge_of_window(sun, part);
+        for (int row = 0; row < part.rows; ++row)
+            for (int column = 0; column < part.columns; ++column)
+                ASSERT_EQ(some.at(column, row), all.at(part.column + column, row))
+                    << reference << ": " << column << " " << row;
+    }
+}
+
 constexpr double kCurvature = 0.87 / 6371000;
 
 /// Suns one after the other, block by block, against each by itself.
