@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -29,6 +31,16 @@ ImVec2 show(const gl::Texture& texture) {
 ImVec2 at_screen(ImVec2 corner, glm::dvec2 units, double px_a_unit) {
     return {corner.x + static_cast<float>(units.x * px_a_unit),
             corner.y + static_cast<float>(units.y * px_a_unit)};
+}
+
+/// Where the chosen point is in the window [px], from its upper left.
+std::optional<glm::vec2> chosen_in_window(const State& state, glm::vec2 size_px) {
+    geo::Geodetic place = *state.chosen;
+    place.height_m *= state.land.exaggeration;
+    const auto at = in_picture(camera_of(state.document.pose, state.land),
+                               state.land.frame->to_local(place), double{size_px.x} / size_px.y);
+    if (!at) return std::nullopt;
+    return glm::vec2((at->x + 1) / 2, (1 - at->y) / 2) * size_px;
 }
 
 }  // namespace
@@ -83,22 +95,45 @@ void ChartsPanel::year(State& state) {
     state.step = true;
 }
 
+void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
+    ImGui::SetNextWindowSizeConstraints({360 * unit, 220 * unit}, {size_px.x, size_px.y});
+    if (std::exchange(is_open_, true)) return;
+    if (extent_px_.x == 0) {
+        const float left = 400 * unit;
+        extent_px_ = {std::max(420 * unit, std::min(size_px.x - left - 10, 1100 * unit)),
+                      kHeight_units * unit};
+        at_px_ = {std::max(0.0f, size_px.x - 10 - extent_px_.x),
+                  size_px.y - 64 * unit - extent_px_.y};
+    }
+    if (const auto point = chosen_in_window(state, size_px)) {
+        const glm::vec2 from = *point - at_px_;
+        const bool is_under =
+            from.x > 0 && from.y > 0 && from.x < extent_px_.x && from.y < extent_px_.y;
+        if (is_under) {
+            // At the upper edge where there is more room, else at the lower one.
+            const float top = ImGui::GetFrameHeight() + 10;
+            at_px_.y = point->y - top > size_px.y - point->y ? top : size_px.y - extent_px_.y;
+        }
+    }
+    ImGui::SetNextWindowPos({at_px_.x, at_px_.y});
+    ImGui::SetNextWindowSize({extent_px_.x, extent_px_.y});
+}
+
 void ChartsPanel::draw(State& state, glm::vec2 size_px, double px_a_unit) {
     horizon_.take(state.point ? state.point->horizon : nullptr);
     year_.take(state.point ? state.point->year : nullptr);
     state.chart_px = {0, 0};
-    if (!state.settings.charts || !state.chosen) return;
-    const auto unit = static_cast<float>(px_a_unit);
-    const float left = 400 * unit;
-    const float width = std::max(420 * unit, std::min(size_px.x - left - 10, 1100 * unit));
-    ImGui::SetNextWindowPos({std::max(0.0f, size_px.x - 10 - width), size_px.y - 64 * unit},
-                            ImGuiCond_FirstUseEver, {0, 1});
-    ImGui::SetNextWindowSize({width, kHeight_units * unit}, ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSizeConstraints({360 * unit, 220 * unit}, {size_px.x, size_px.y});
+    if (!state.settings.charts || !state.chosen) {
+        is_open_ = false;
+        return;
+    }
+    place(state, size_px, static_cast<float>(px_a_unit));
     const bool open =
         ImGui::Begin("Horizon and year of the point", &state.settings.charts,
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoScrollbar |
                          ImGuiWindowFlags_NoScrollWithMouse);
+    at_px_ = {ImGui::GetWindowPos().x, ImGui::GetWindowPos().y};
+    if (open) extent_px_ = {ImGui::GetWindowSize().x, ImGui::GetWindowSize().y};
     if (open && ImGui::BeginTabBar("charts")) {
         const auto tab = [&](const char* name, bool is_there, const auto& draw_it) {
             if (!ImGui::BeginTabItem(name)) return;

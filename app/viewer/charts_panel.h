@@ -23,9 +23,13 @@ class ChartsPanel {
         void take(std::shared_ptr<const Chart> newer);
     };
 
+    /// Puts the panel where it opens: where it was, but beside the point.
+    void place(const State& state, glm::vec2 size_px, float unit);
     void horizon(State& state);
     void year(State& state);
 
+    bool is_open_ = false;
+    glm::vec2 at_px_{0}, extent_px_{0};  // where it was last; 0: nowhere yet
     Shown<HorizonPicture> horizon_;
     Shown<YearPicture> year_;
 };

@@ -182,6 +182,7 @@ void Hand::drag(glm::vec2 mouse, double passed_s) {
     if (!io.MouseDown[0] && !io.MouseDown[1] && !io.MouseDown[2]) {
         const bool click = distance(mouse, pressed_px_) < kClick_px;
         if (click && *dragging_ == Drag::Pan) clicked_ = ground_at(mouse);
+        if (clicked_ && std::isnan(drawn_height_m(*clicked_))) clicked_.reset();
         dragging_.reset();
         return;
     }
@@ -250,18 +251,25 @@ void Hand::hover(glm::vec2 mouse) {
     Cursor cursor;
     cursor.point_m = *point;
     cursor.place = state_.land.frame->to_geodetic(*point);
-    const double height_m = state_.land.height_m(cursor.place);
-    cursor.place.height_m =
-        std::isnan(height_m) ? cursor.place.height_m / state_.land.exaggeration : height_m;
-    slope_at(cursor);
+    cursor.place.height_m = drawn_height_m(*point);
+    if (!std::isnan(cursor.place.height_m)) slope_at(cursor);
     state_.cursor = cursor;
+}
+
+/// As navigation has it, with as much room as a coarse level's surface takes in the picture.
+double Hand::drawn_height_m(const glm::dvec3& point_m) const {
+    constexpr double kWithin_px = 8;
+    const double px_m = 2 * std::tan(picture_->camera.fov_y_rad / 2) / window_.size().y *
+                        distance(picture_->camera.eye_m, point_m);
+    return viewer::drawn_height_m(point_m, state_.land,
+                                  std::max(kWithin_px * px_m, state_.spacing_m / 4));
 }
 
 /// By central differences over a post spacing each way.
 void Hand::slope_at(Cursor& cursor) const {
     const double reach_m = state_.spacing_m;
     const geo::Axes axes = state_.land.axes(cursor.point_m);
-    const glm::dvec3 here_m = state_.land.frame->to_local(cursor.place);
+    const glm::dvec3 here_m = cursor.point_m;
     const auto height = [&](const glm::dvec3& by_m) {
         return state_.land.height_m(state_.land.frame->to_geodetic(here_m + by_m));
     };

@@ -57,6 +57,7 @@ class Hand {
     void glide(double passed_s);
     void fly_by_keys(double passed_s);
     void hover(glm::vec2 mouse);
+    double drawn_height_m(const glm::dvec3& point_m) const;
     void slope_at(Cursor& cursor) const;
 
     Window& window_;

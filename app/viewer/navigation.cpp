@@ -47,6 +47,12 @@ double Land::ground_under(const glm::dvec3& point_m) const {
     return height_m(frame->to_geodetic(point_m)) * exaggeration;
 }
 
+double drawn_height_m(const glm::dvec3& point_m, const Land& land, double within_m) {
+    const geo::Geodetic place = land.frame->to_geodetic(point_m);
+    const double height_m = land.height_m(place);
+    return place.height_m < height_m * land.exaggeration - within_m ? std::nan("") : height_m;
+}
+
 geo::Axes Land::axes(const glm::dvec3& point_m) const {
     const geo::Geodetic place = frame->to_geodetic(point_m);
     return frame->axes(place.lat_rad, place.lon_rad);

@@ -54,6 +54,10 @@ Pose orbit(const Pose& pose, const Land& land, const glm::dvec3& pivot_m, double
 /// Moves level, so that the ground that was grabbed comes to a place in the picture.
 Pose pan(const Pose& pose, const Land& land, const glm::dvec3& grabbed_m, glm::dvec2 to,
          double aspect);
+/// The DEM's height where a point of its surface is drawn [m], not exaggerated. NaN where the DEM
+/// has none, which may be drawn filled, and on what is cut off below its surface.
+/// @param within_m  how far below the ground's place its surface may be drawn, exaggerated
+double drawn_height_m(const glm::dvec3& point_m, const Land& land, double within_m);
 /// Nearer to a point, which stays where it is in the picture. @param factor  of the distance
 Pose zoom(const Pose& pose, const Land& land, const glm::dvec3& point_m, double factor);
 /// The factor of the distance that a wheel's turn means. @param notches  touchpads send parts of

@@ -46,8 +46,9 @@ void status_line(const State& state, bool is_drawing) {
     std::string text;
     if (state.cursor) {
         const Cursor& at = *state.cursor;
-        text = fmt::format("{}   {:.1f} m", coordinates_text(at.place, state.settings.coordinates),
-                           at.place.height_m);
+        text = coordinates_text(at.place, state.settings.coordinates) + "   " +
+               (std::isnan(at.place.height_m) ? "no height"
+                                              : fmt::format("{:.1f} m", at.place.height_m));
         if (!std::isnan(at.slope_deg)) text += fmt::format("   slope {:.1f}°", at.slope_deg);
         if (!std::isnan(at.slope_deg) && !std::isnan(at.aspect_deg))
             text += fmt::format(" to {:.0f}°", at.aspect_deg);

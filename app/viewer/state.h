@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,9 +23,10 @@ namespace relevo::viewer {
 /// The ground under the cursor.
 struct Cursor {
     glm::dvec3 point_m{0};  ///< in the local frame
-    geo::Geodetic place;    ///< height as the DEM has it
-    double slope_deg = 0;   ///< NaN beside holes and at the rim
-    double aspect_deg = 0;  ///< downhill, from true north; NaN where level
+    geo::Geodetic place;    ///< height as the DEM has it; NaN in holes and on the sides of a block
+    double slope_deg = std::numeric_limits<double>::quiet_NaN();  ///< NaN beside holes, too
+    /// Downhill, from true north; NaN where level.
+    double aspect_deg = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct State {

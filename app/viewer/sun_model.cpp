@@ -26,6 +26,7 @@ SunDay SunDay::of(sun::Date date, const sun::Zone& zone, const geo::Geodetic& pl
     SunDay day;
     day.date = date;
     day.events = sun::day_events(date, zone, place);
+    day.seasons = sun::seasons(date.year);
     constexpr double kStep_s = 600;
     const double length_s = day.events.span.length_s();
     for (double s = 0; s < length_s + kStep_s; s += kStep_s)

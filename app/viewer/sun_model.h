@@ -9,6 +9,7 @@
 #include "geo/geodetic.h"
 #include "sun/events.h"
 #include "sun/refraction.h"
+#include "sun/seasons.h"
 #include "sun/zone.h"
 
 namespace relevo::viewer {
@@ -25,6 +26,7 @@ struct SunDay {
     sun::Date date;
     std::vector<SunPoint> points;  ///< every ten minutes of the day, both ends included
     sun::Day events;
+    sun::Seasons seasons;  ///< of its year
 
     static SunDay of(sun::Date date, const sun::Zone& zone, const geo::Geodetic& place,
                      const sun::Refraction& air);

@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "base/units.h"
-#include "sun/seasons.h"
 #include "viewer/state.h"
 
 namespace relevo::viewer {
@@ -108,13 +107,13 @@ void jump(State& state, const char* name, std::optional<sun::Instant> to, const 
     ImGui::SameLine();
 }
 
-void jumps(State& state, sun::Date date) {
+void jumps(State& state) {
     const sun::Day& day = state.day.events;
     constexpr const char* kNone = "does not happen on this day";
     jump(state, "Sunrise", day.first(sun::EventKind::Sunrise), kNone);
     jump(state, "Noon", day.first(sun::EventKind::Transit), kNone);
     jump(state, "Sunset", day.first(sun::EventKind::Sunset), kNone);
-    const sun::Seasons seasons = sun::seasons(date.year);
+    const sun::Seasons& seasons = state.day.seasons;
     ImGui::NewLine();
     for (const sun::Instant of : {seasons.march_equinox, seasons.june_solstice,
                                   seasons.september_equinox, seasons.december_solstice}) {
@@ -177,7 +176,7 @@ void sun_panel(State& state) {
     state.sun_moves = state.sun_moves || ImGui::IsItemActive();
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
     ImGui::PopItemWidth();
-    jumps(state, now.date);
+    jumps(state);
     play(state);
 
     const sun::LocalTime local = state.document.zone.local(state.document.utc);

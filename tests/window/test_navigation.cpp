@@ -57,6 +57,17 @@ TEST_F(Navigation, APoseComesBackFromItsCameraAndItsView) {
     EXPECT_NEAR(pose_of(camera_of(pose_, land_), land_).heading_deg, 30, 1e-6);
 }
 
+TEST_F(Navigation, OnlyTheGroundHasAHeightWhereItIsDrawn) {
+    land_.exaggeration = 2;
+    EXPECT_EQ(drawn_height_m(at(46.0, 8.0, 1000), land_, 10), 500);
+    // Drawn coarsely, and on a wall below it.
+    EXPECT_EQ(drawn_height_m(at(46.0, 8.0, 991), land_, 10), 500);
+    EXPECT_EQ(drawn_height_m(at(46.0, 8.0, 1300), land_, 10), 500);
+    EXPECT_TRUE(std::isnan(drawn_height_m(at(46.0, 8.0, 989), land_, 10)));
+    land_.height_m = [](const geo::Geodetic&) { return std::nan(""); };
+    EXPECT_TRUE(std::isnan(drawn_height_m(at(46.0, 8.0, 1000), land_, 10)));
+}
+
 TEST_F(Navigation, PlacesInThePictureAreWhereTheirRaysGo) {
     for (const glm::dvec2 in : {glm::dvec2(0, 0), glm::dvec2(0.7, -0.4), glm::dvec2(-1, 1)}) {
         const glm::dvec3 point = pose_.eye_m + 1234.0 * ray(camera_of(pose_, land_), in, kAspect);

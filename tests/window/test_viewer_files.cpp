@@ -46,6 +46,32 @@ TEST_F(Viewer, AClickShowsThePointsHorizonAndYearForTheShownDate) {
     EXPECT_TRUE(wait([&] { return count_near(display_.screen(), kChart, kSun) == 0; }));
 }
 
+TEST_F(Viewer, ChartsOpenBesideTheirPointAndTheSidesOfABlockAreNoGround) {
+    constexpr glm::ivec3 kDay{0xe0, 0x7b, 0x12};
+    constexpr glm::ivec4 kAbove{410, 40, 850, 400}, kBelow{410, 480, 850, 300};
+    open({dem_, "--time", "2026-06-21T18:00:00Z", "--disable", "haze"});
+    const auto click = [&](const char* x, const char* y) {
+        act({"mousemove", x, y});
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        act({"click", "1"});
+    };
+    // The cut side in front, whose upper edge is where a post is.
+    click("600", "530");
+    ASSERT_TRUE(settles());
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    EXPECT_EQ(count_near(display_.screen(), kAbove, kDay), 0);
+    EXPECT_EQ(count_near(display_.screen(), kBelow, kDay), 0);
+    // Ground where the charts would open.
+    click("900", "500");
+    ASSERT_TRUE(wait([&] { return count_near(display_.screen(), kAbove, kDay) > 1000; }));
+    EXPECT_EQ(count_near(display_.screen(), kBelow, kDay), 0);
+    // Opened again they are where they were.
+    act({"key", "p"});
+    ASSERT_TRUE(wait([&] { return count_near(display_.screen(), kAbove, kDay) == 0; }));
+    act({"key", "p"});
+    EXPECT_TRUE(wait([&] { return count_near(display_.screen(), kAbove, kDay) > 1000; }));
+}
+
 TEST_F(Viewer, GoesToTheNextDemOfTheFolderAndRemembersWhatWasOpen) {
     std::filesystem::create_directories(folder_ / "maps");
     for (const char* name : {"a.tif", "c.tif"})
