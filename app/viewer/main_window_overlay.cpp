@@ -79,7 +79,7 @@ void MainWindow::lay_overlay() {
 }
 
 bool MainWindow::overlay_rests() const {
-    if (overlay_waits()) return false;
+    if (overlay_waits() || overlay_wanted().has_value() != asked_overlay_.has_value()) return false;
     return !asked_overlay_ ||
            (overlay_work_->is_done() && state_.overlay == overlay_work_->answer());
 }

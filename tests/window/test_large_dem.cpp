@@ -1,8 +1,13 @@
 // A DEM that takes long to read: what stands in for it, and what waits for all of its posts.
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
+#include <string>
 
 #include <glm/geometric.hpp>
 
+#include "cli/raster.h"
 #include "image/image.h"
 #include "session/session.h"
 #include "viewer/scene_thread.h"
@@ -88,6 +93,91 @@ TEST_F(Viewer, APictureOfALargeDemWaitsForAllOfIt) {
         {"-q", "capture", "--from", taken.string(), "-o", captured.string()});
     ASSERT_EQ(capture.status(120), 0) << capture.output();
     EXPECT_LE(test::difference(image::read(taken), image::read(captured), 1), 2e-4);
+}
+
+TEST_F(Viewer, AnOverlayOfALargeDemIsOfEveryPostAndWaitsForThem) {
+    const auto dem = folder_ / "large.tif";
+    make_large_dem(display_, dem);
+    start({dem.string(), "--only", "--time", "2026-12-21T20:30:00Z"});
+    ASSERT_TRUE(wait([&] { return program_->title().find("large") != std::string::npos; }))
+        << program_->output();
+    // "Direct sun at the moment", and its raster, before all posts are there.
+    ASSERT_TRUE(wait([&] {
+        return count_near(display_.screen(), {326, 332, 18, 18}, {49, 83, 123}, 8) > 100;
+    }));
+    act({"mousemove", "336",       "341",       "sleep", "0.1",   "click", "1",     "sleep",
+         "0.2",       "mousemove", "100",       "448",   "sleep", "0.1",   "click", "1",
+         "sleep",     "0.1",       "mousemove", "900",   "500",   "key",   "ctrl+e"});
+    const auto saved = folder_ / "relevo-1.tif";
+    ASSERT_TRUE(test::WindowedProgram::wait([&] { return std::filesystem::exists(saved); }, 120))
+        << program_->output();
+    const auto commanded = folder_ / "command.tif";
+    test::WindowedProgram shadow(display_, test::build_dir() / "bin/relevo",
+                                 {"-q", "sun", "shadow", dem.string(), "--time",
+                                  "2026-12-21T15:30:00-05:00", "-o", commanded.string()});
+    ASSERT_EQ(shadow.status(120), 0) << shadow.output();
+    EXPECT_TRUE(read_text(saved, "test") == read_text(commanded, "test"));
+}
+
+TEST_F(Viewer, ALargeDemWhoseRestIsDamagedIsSaidAndTheOneBeforeComesBack) {
+    std::filesystem::create_directories(folder_ / "maps");
+    const auto good = folder_ / "maps/a.tif", bad = folder_ / "maps/b.tif";
+    std::filesystem::copy_file(dem_, good);
+    make_large_dem(display_, bad);
+    std::uint64_t at = 0;
+    {
+        const auto file = test::opened(bad.string());
+        const char* const offset =
+            file->GetRasterBand(1)->GetMetadataItem("BLOCK_OFFSET_5_11", "TIFF");
+        ASSERT_TRUE(offset);
+        at = std::stoull(offset);
+    }
+    std::fstream(bad, std::ios::in | std::ios::out | std::ios::binary)
+        .seekp(static_cast<std::streamoff>(at))
+        .write(std::string(64, '\xff').data(), 64);
+    // Its means can be drawn, till the rest is read.
+    {
+        scene::Scene scene;
+        scene.dems = {bad.string()};
+        viewer::SceneThread thread(scene, "software", [] {});
+        thread.want({.width_px = 320, .height_px = 200});
+        ASSERT_TRUE(wait([&] {
+            thread.check();
+            return thread.opened() != nullptr;
+        }));
+        EXPECT_TRUE(thread.opened()->dem->stands_in);
+        std::string why;
+        ASSERT_TRUE(test::WindowedProgram::wait(
+            [&] {
+                try {
+                    thread.check();
+                } catch (const Error& error) {
+                    why = error.what();
+                }
+                return !why.empty();
+            },
+            120));
+        EXPECT_THAT(why, testing::HasSubstr("b.tif: its heights cannot be read"));
+    }
+    // The window goes back to the DEM before, with a message.
+    open({good.string(), "--only"});
+    const image::Image8 before = display_.screen();
+    act({"key", "ctrl+Next"});
+    const auto message = [&](const image::Image8& screen) {
+        return count_near(screen, {390, 30, 500, 70}, {255, 255, 255}, 30);
+    };
+    ASSERT_EQ(message(before), 0);
+    ASSERT_TRUE(wait([&] { return message(display_.screen()) > 500; }));
+    ASSERT_TRUE(settles());
+    EXPECT_THAT(program_->title(), testing::HasSubstr("a.tif"));
+    // The message and the panel's title are all that is new.
+    EXPECT_LT(test::difference(display_.screen(), before, 8), 0.08);
+    act({"key", "ctrl+q"});
+    EXPECT_EQ(program_->status(), 0);
+    // What the program was started for is its end.
+    start({bad.string(), "--only"});
+    EXPECT_NE(program_->status(120), 0);
+    EXPECT_THAT(program_->output(), testing::HasSubstr("b.tif"));
 }
 
 }  // namespace
