@@ -125,6 +125,52 @@ TEST(Frame, TheBlockIsThereFromOutsideAndNotFromWithin) {
     EXPECT_EQ(depths_of(scene, true), depths_of(scene, false));
 }
 
+TEST(Frame, TheBlockStandsInItsOwnShade) {
+    SKIP_WITHOUT_BLOCK;
+    FilesInUse files;
+    Session session(scene_of(bundled("jacksboro.tif"), {"block"}), {.device = "software"}, files);
+    session.draw();
+    const image::Image8 shaded = session.picture();
+    std::vector<float> depths;
+    session.read_depths(depths);
+    session.set("block.shade", "0");
+    session.draw();
+    const image::Image8 bare = session.picture();
+    const int width = shaded.width, height = shaded.height;
+    const auto left = [&](int x, int y) {  // of the picture's green
+        return static_cast<double>(shaded.row(y)[3 * x + 1]) / bare.row(y)[3 * x + 1];
+    };
+    // Dark at the block's foot and lighter with every step away from it, and none at the corners.
+    const int middle = width / 2;
+    int foot = height - 1;
+    const auto depth = [&](int x, int y) {
+        return depths[static_cast<std::size_t>((height - 1 - y) * width + x)];
+    };
+    while (std::isinf(depth(middle, foot)))
+        --foot;
+    ASSERT_LT(foot, height - 8);
+    EXPECT_LT(left(middle, foot + 2), 0.85);
+    for (int y = foot + 3; y < height; ++y)
+        EXPECT_GE(left(middle, y), left(middle, y - 1) - 0.01) << y;
+    for (const auto& [x, y] : {std::pair(2, 2),
+                               {width - 3, 2},
+                               {middle, 2},
+                               {2, height - 1},
+                               {middle, height - 1},
+                               {width - 3, height - 1}})
+        EXPECT_EQ(left(x, y), 1) << x << " " << y;
+    // The block itself has none of it, but for its edge, whose pixels are partly backdrop.
+    int changed = 0;
+    for (int y = 1; y < height - 1; ++y)
+        for (int x = 1; x < width - 1; ++x) {
+            const bool within = !std::isinf(depth(x, y)) && !std::isinf(depth(x - 1, y)) &&
+                                !std::isinf(depth(x + 1, y)) && !std::isinf(depth(x, y - 1)) &&
+                                !std::isinf(depth(x, y + 1));
+            changed += within && left(x, y) != 1;
+        }
+    EXPECT_EQ(changed, 0);
+}
+
 TEST(Frame, WallsMeetTheGroundSoThatNothingShowsBetween) {
     SKIP_WITHOUT_BLOCK;
     SKIP_WITHOUT_TEST_DATA(data);
