@@ -30,13 +30,13 @@ steeper DEMs the middle 400 x 400 posts cast the shadows). 0.5 of the light deci
 
 @BESIDE@
 
-**Penumbra**: the same pictures with a sun of its true width. True is the share of 64 points all over the disc from which the march reaches the post; counted are
+**Penumbra** of `shadows`: the same pictures with a sun of its true width. True is the share of 64 points all over the disc from which the march reaches the post; counted are
 posts that see some of them and not all, and the error is the drawn share less the true one.
 
 @PENUMBRA@
 
 What is left of `shadows`: towards most azimuths rays are met within a quarter of a post (`tests/light/test_sweep.cpp`); the disc is cut by a level line, and
-of a very low sun three sweeps do not tell all ridges apart that it grazes at once.
+of ridges that a low sun grazes at once three sweeps tell the limbs' and the centre's apart.
 Between posts it is linear where rays cut triangles, so that in pictures of 2 to 6 pixels a post, as those below, 97.5 to 99.8 % of cells are right.
 
 ## `vsm` in whole pictures
@@ -66,6 +66,7 @@ marched. `shadow_table --comparison FILE.png --elevations 3 --azimuths 225 data/
 
 
 SUNS = ["--elevations", "2,10,20", "--azimuths", "200"]
+PENUMBRA_SUNS = ["--elevations", "2,5", "--azimuths", "45,135,200,290"]
 
 
 def rows_of(printed):
@@ -91,21 +92,21 @@ def accuracy_beside(printed):
     return text
 
 
-def penumbra_beside(printed):
-    text = ("| DEM | sun | azimuth | posts | `shadows`: mean error, of its size | `vsm` |\n"
-            "|---|---|---|---|---|---|\n")
+def penumbra_of(printed):
+    text = "| DEM | sun | azimuth | posts | mean error | its size |\n|---|---|---|---|---|---|\n"
     for dem, suns in rows_of(printed).items():
         for (sun, azimuth), found in suns.items():
-            vsm = f"{found[1][1]}, {found[1][2]}" if 1 in found else ""
-            text += (f"| {dem.split(':')[0]} | {sun} | {azimuth} | {found[0][0]} | {found[0][1]}, {found[0][2]} | {vsm} |\n")
+            posts, mean, size = found[0][:3]
+            if int(posts) > 0:
+                text += f"| {dem.split(':')[0]} | {sun} | {azimuth} | {posts} | {mean} | {size} |\n"
     return text
 
 
-def run_beside(table, data, more):
+def run_beside(table, data, more, effects=("shadows", "vsm")):
     dems = [[ROOT / "data/dem/jacksboro.tif"], ["--part", "400", data / "dem/srtm_bigtujunga30m_utm11.tif"],
             ["--part", "400", data / "dem/missoula_valley.img"]]
     return "".join(subprocess.run([table, "--effect", effect, *more, *dem], check=True, capture_output=True, text=True).stdout
-                   for effect in ("shadows", "vsm") for dem in dems)
+                   for effect in effects for dem in dems)
 
 
 def main():
@@ -120,7 +121,7 @@ def main():
         at_posts, penumbra = (path.read_text() for path in arguments.beside)
     else:
         at_posts = run_beside(table, data, ["--at-posts", *SUNS])
-        penumbra = run_beside(table, data, ["--penumbra", *SUNS])
+        penumbra = run_beside(table, data, ["--penumbra", *PENUMBRA_SUNS], ["shadows"])
     if arguments.printed:
         tables = [path.read_text() for path in arguments.printed]
     else:
@@ -128,7 +129,7 @@ def main():
         runs = [[dem] for dem in dems] + [["--heights", "4", "--elevations", "20,30,40,60", dems[0]]]
         tables = [subprocess.run([table, "--effect", "vsm", *run], check=True, capture_output=True,
                                  text=True).stdout for run in runs]
-    text = HEAD.replace("@BESIDE@", accuracy_beside(at_posts)).replace("@PENUMBRA@", penumbra_beside(penumbra))
+    text = HEAD.replace("@BESIDE@", accuracy_beside(at_posts)).replace("@PENUMBRA@", penumbra_of(penumbra))
     for table in tables:
         title, _, rest = table.strip().partition("\n")
         text += f"\n## {title}\n{rest}\n"
