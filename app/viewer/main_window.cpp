@@ -173,6 +173,7 @@ void MainWindow::panels() {
         side_panel(state_, size(), unit());
         charts_.draw(state_, size(), unit());
     }
+    open_panel_.draw(size());
     status_line(state_, is_drawing());
     message_box(state_, size(), unit());
     if (sheet_) key_sheet();

@@ -13,6 +13,7 @@
 #include "viewer/discard.h"
 #include "viewer/file_watch.h"
 #include "viewer/hand.h"
+#include "viewer/open_panel.h"
 #include "viewer/overlay_panel.h"
 #include "viewer/state.h"
 #include "viewer/sun_overlay.h"
@@ -107,6 +108,7 @@ class MainWindow {
     void end_step();
     void move(Command command);
     void measure();
+    void follow_measure();
     void go_to(const Document& document);
     /// Of a document only what its effects are.
     static scene::Scene with_effects(const Document& document);
@@ -212,6 +214,7 @@ class MainWindow {
     std::string tried_;                        // the DEM that was to be opened last
     bool has_gone_back_ = false, has_failed_ = false;
     std::optional<std::future<std::vector<std::string>>> asked_files_;
+    OpenPanel open_panel_;  // where the desktop has no dialog
     FileWatch effect_files_, dem_files_;
     Clock::time_point watched_at_ = Clock::now();
     bool sun_moved_ = false;  // in the frame before

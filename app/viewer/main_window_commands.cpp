@@ -20,7 +20,9 @@ constexpr double kStep_s = 0.5;
 void MainWindow::take_hand(double passed_s) {
     hand_->act(passed_s, before_ != nullptr, std::exchange(input_is_new_, false));
     if (hand_->has_moved()) moved();
-    if (const auto point = hand_->take_click()) choose_point(*point);
+    const std::optional<glm::dvec3> clicked = hand_->take_click();
+    if (clicked && !std::exchange(state_.measuring, false)) choose_point(*clicked);
+    follow_measure();
 }
 
 void MainWindow::choose_point(const glm::dvec3& point_m) {
@@ -36,6 +38,7 @@ void MainWindow::choose_point(const glm::dvec3& point_m) {
 void MainWindow::keys() {
     for (const KeyPress& press : window_->take_keys()) {
         busy_frames_ = 3;
+        if (press.key == GLFW_KEY_ENTER) open_panel_.enter();
         if (const auto command = command_of(press))
             state_.commands.push_back(*command);
         else if (!press.control && press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9)
@@ -76,7 +79,8 @@ bool MainWindow::of_program(Command command) {
                 give_up_opening();
                 return true;
             }
-            sheet_ = false;
+            sheet_ = state_.measuring = false;
+            open_panel_.close();
             closes_menus_ = true;
             state_.message.clear();
             return true;
@@ -121,10 +125,10 @@ void MainWindow::of_scene(Command command) {
             return;
         case Command::Undo:
             end_step();
-            if (history_.can_undo()) go_to(history_.undo());
+            history_.can_undo() ? go_to(history_.undo()) : tell("there is nothing to undo");
             return;
         case Command::Redo:
-            if (history_.can_redo()) go_to(history_.redo());
+            history_.can_redo() ? go_to(history_.redo()) : tell("there is nothing to redo");
             return;
         default:
             move(command);
@@ -154,15 +158,19 @@ void MainWindow::move(Command command) {
 }
 
 void MainWindow::measure() {
-    if (!state_.cursor) return;
-    if (state_.measured.size() != 1) {
-        state_.measured = {state_.cursor->point_m};
-        state_.profile.reset();
-        return;
-    }
-    const geo::Geodetic from = state_.land.frame->to_geodetic(state_.measured[0]);
-    state_.measured.push_back(state_.cursor->point_m);
-    state_.profile = Profile::between(from, state_.cursor->place, state_.land);
+    if (!state_.cursor && !state_.measuring) return;
+    state_.measuring = !state_.measuring;
+    if (state_.measuring && state_.measured.empty()) state_.measured = {state_.cursor->point_m};
+    follow_measure();
+}
+
+void MainWindow::follow_measure() {
+    if (!state_.measuring || !state_.cursor) return;
+    const glm::dvec3 start_m = state_.measured.front();
+    if (state_.measured.size() == 2 && state_.measured[1] == state_.cursor->point_m) return;
+    state_.measured = {start_m, state_.cursor->point_m};
+    state_.profile = Profile::between(state_.land.frame->to_geodetic(start_m), state_.cursor->place,
+                                      state_.land);
 }
 
 void MainWindow::go_to(const Document& document) {
@@ -195,7 +203,10 @@ void MainWindow::keep_view() {
 }
 
 void MainWindow::go_to_view(std::size_t i) {
-    if (i >= state_.views.size()) return;
+    if (i >= state_.views.size()) {
+        tell(fmt::format("this DEM has no kept view {}; B keeps one", i + 1));
+        return;
+    }
     const SavedView& view = state_.views[i];
     end_step();
     hand_->rest();

@@ -65,8 +65,8 @@ scene::Scene MainWindow::whole() const {
 }
 
 void MainWindow::copy_command() {
-    window_->copy(capture_command(whole(), "picture.png"));
-    tell("the command that takes this picture" + overlay_note() + " is on the clipboard");
+    window_->copy(capture_command(whole(), free_picture_name()));
+    tell("the command that takes this picture is on the clipboard" + overlay_note());
 }
 
 bool MainWindow::is_answered() const {

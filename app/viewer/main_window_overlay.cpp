@@ -130,10 +130,8 @@ void MainWindow::watch_saving() {
         const std::string name = overlay_save_->result();
         const OverlayWanted& of = overlay_save_->wanted();
         saved_overlays_.push_back({of, absolute_names({name}).front(), name});
-        done(
-            fmt::format("{} has {} of every post, as relevo {} writes them; scenes and commands "
-                        "have it from now on",
-                        name, of.title, verb_of(of.raster.figure)));
+        done(fmt::format("{} has {}, as relevo {} writes it; scenes and commands have it, too",
+                         absolute_names({name}).front(), of.title, verb_of(of.raster.figure)));
     });
     overlay_save_.reset();
     state_.saving_progress.reset();
@@ -163,7 +161,7 @@ void MainWindow::put_overlay(scene::Scene& scene) const {
 std::string MainWindow::overlay_note() const {
     const bool is_missing =
         overlay_waits() || (asked_overlay_ && !asked_overlay_->file && !saved_overlay());
-    return is_missing ? ", without the overlay, which is in no file yet: Ctrl+E writes one" : "";
+    return is_missing ? ", without the overlay: it is in no file yet, Ctrl+E writes one" : "";
 }
 
 }  // namespace relevo::viewer

@@ -22,6 +22,7 @@ void MainWindow::open() {
     state_.chosen.reset();
     state_.point.reset();
     state_.measured.clear();
+    state_.measuring = false;
     state_.profile.reset();
     state_.cursor.reset();
     hand_->rest();
@@ -128,9 +129,11 @@ void MainWindow::start(std::shared_ptr<const Opened> opened) {
         shown->overlay.legend = *opened_->legend;
         state_.overlay = std::move(shown);
     }
+    // Another DEM is seen at the same hour of its own clocks.
+    const sun::CivilTime wall = document.zone.local(document.utc).wall;
     document.zone = sun::choose_zone(zone_, state_.centre).zone;
     document.pose = home_ = pose_of(opened_->camera, state_.land);
-    state_.set_utc(last_good_ ? document.utc : opened_->utc);
+    state_.set_utc(last_good_ ? document.zone.resolve(wall).utc : opened_->utc);
     history_.add(document);
     window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
     good_before_ = has_gone_back_ ? std::nullopt : last_good_;
@@ -209,6 +212,7 @@ void MainWindow::open_files() {
         files = asked_files_->get();
         asked_files_.reset();
     }
+    if (const std::optional<std::string> chosen = open_panel_.take()) files = {*chosen};
     if (!state_.files_to_open.empty()) files = std::exchange(state_.files_to_open, {});
     const std::optional<RecentDem> recent = std::exchange(state_.recent_to_open, std::nullopt);
     if (recent) files = recent->files;
@@ -241,10 +245,7 @@ void MainWindow::open_neighbour(int by) {
 
 void MainWindow::ask_for_dem() {
     if (!asked_files_) asked_files_ = ask_for_files();
-    if (!asked_files_)
-        state_.message =
-            "this desktop has no file dialog (zenity, kdialog); drop a DEM on the window, or "
-            "start relevo with its name";
+    if (!asked_files_) open_panel_.open(tried_);
 }
 
 void MainWindow::watch_files() {

@@ -33,7 +33,9 @@ double round_length(double length) {
 std::string length_text(double length_m) {
     if (length_m >= 10000) return fmt::format("{:.1f} km", length_m / 1000);
     if (length_m >= 1000) return fmt::format("{:.2f} km", length_m / 1000);
-    return fmt::format("{:.0f} m", length_m);
+    if (length_m >= 10) return fmt::format("{:.0f} m", length_m);
+    return length_m >= 1 ? fmt::format("{:.1f} m", length_m)
+                         : fmt::format("{:.3g} cm", 100 * length_m);
 }
 
 }  // namespace
@@ -161,7 +163,7 @@ void key_sheet() {
         {"Space", "let the time pass, and pause"},
         {"Click", "the ground's sun of the day, its horizon and year"},
         {"P", "horizon and year on and off"},
-        {"M", "measure from there to the cursor"},
+        {"M", "measure from there to the cursor, till M or a click"},
         {"C", "compare: the left stays as it is, the right follows; drag the line"},
         {"O", "sun hours of the day on the ground, and off"},
         {"F12", "take the picture"},

@@ -23,6 +23,17 @@ void take_away_panel(State& state) {
     button("Save scene", Command::SaveScene);
 }
 
+/// A panel that was moved out of the window comes back as far as to be got hold of.
+void keep_in_reach(glm::vec2 size_px) {
+    const ImVec2 at = ImGui::GetWindowPos(), extent = ImGui::GetWindowSize();
+    const float reach = 5 * ImGui::GetFrameHeight();
+    const ImVec2 kept{
+        std::clamp(at.x, reach - extent.x, std::max(0.0f, size_px.x - reach)),
+        std::clamp(at.y, ImGui::GetFrameHeight(),
+                   std::max(ImGui::GetFrameHeight(), size_px.y - 2 * ImGui::GetFrameHeight()))};
+    if (kept.x != at.x || kept.y != at.y) ImGui::SetWindowPos(kept);
+}
+
 }  // namespace
 
 void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
@@ -33,6 +44,7 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     ImGui::Begin("Relevo", nullptr,
                  ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
     constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
+    keep_in_reach(size_px);
     if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state);
     if (ImGui::CollapsingHeader("Overlay", kOpen)) overlay_panel(state);
     if (ImGui::CollapsingHeader("Point", kOpen)) point_panel(state);
@@ -69,7 +81,10 @@ void status_line(const State& state, bool is_drawing) {
 }
 
 void waiting_text(const State& state, bool has_failed, bool can_give_up) {
-    ImGui::SetNextWindowPos({20, 20 + ImGui::GetFrameHeight()});
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({size.x / 2, 20 + ImGui::GetFrameHeight()}, ImGuiCond_Always,
+                            {0.5f, 0});
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 20, size.y});
     ImGui::Begin("##opening", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize);
     if (has_failed)

@@ -41,6 +41,25 @@ light::LightOptions light_options(const PointWanted& wanted, const geo::Geodetic
     return options;
 }
 
+/// Days on which only the ground keeps the sun away.
+void add_dark_days(const light::Carpet& carpet, YearPicture& to) {
+    const auto count = carpet.days.size();
+    const auto is_dark = [&](std::size_t day) {
+        return carpet.days[day % count].lit_s == 0 && carpet.day_level_s[day % count] > 0;
+    };
+    std::size_t longest = 0;
+    for (std::size_t first = 0; first < count; ++first) {
+        to.dark_days += is_dark(first);
+        if (!is_dark(first) || is_dark(first + count - 1)) continue;
+        std::size_t end = first + 1;
+        while (end < first + count && is_dark(end))
+            ++end;
+        if (end - first <= longest) continue;
+        longest = end - first;
+        to.dark = {carpet.days[first].date, carpet.days[(end - 1) % count].date};
+    }
+}
+
 /// A point's light, and what it was made from: kept for the next day, size or year.
 class Worker {
   public:
@@ -57,7 +76,8 @@ class Worker {
 
     void add_day(PointLight& to) {
         const light::DirectLight& direct = light();
-        if (!day_ || day_->date != wanted_.date || day_zone_ != wanted_.zone.name()) {
+        const bool is_new = !day_ || day_->date != wanted_.date || day_zone_ != wanted_.zone.name();
+        if (is_new) {
             day_ = direct.day(wanted_.date, wanted_.zone);
             day_zone_ = wanted_.zone.name();
         }
@@ -68,6 +88,9 @@ class Worker {
         to.lit_s = day_->lit_s;
         to.not_known_s = day_->not_known_s;
         to.flat_s = day_->flat.day_length_s;
+        if (!tomorrow_ || tomorrow_->date != sun::add_days(wanted_.date, 1) || is_new)
+            tomorrow_ = direct.day(sun::add_days(wanted_.date, 1), wanted_.zone);
+        if (!tomorrow_->lit.empty()) to.tomorrow = tomorrow_->lit.front().begin.utc;
         for (const light::OpenSector& open :
              light::doubt_of(direct, {*day_}, profile(), std::nullopt).open)
             to.open_deg.emplace_back(degrees(open.from_azimuth_rad), degrees(open.to_azimuth_rad));
@@ -100,6 +123,7 @@ class Worker {
         picture->plot = chart.plot();
         picture->lit_s = carpet_->lit_s;
         picture->level_s = carpet_->level_s;
+        add_dark_days(*carpet_, *picture);
         return picture;
     }
 
@@ -122,7 +146,7 @@ class Worker {
     std::optional<light::TerrainHorizon> horizon_;  // of posts_
     std::optional<light::DirectLight> light_;       // of horizon_
     std::vector<light::HorizonPoint> profile_;
-    std::optional<light::LightDay> day_;
+    std::optional<light::LightDay> day_, tomorrow_;
     std::string day_zone_;
     std::optional<light::Carpet> carpet_;
 };

@@ -39,8 +39,28 @@ std::string light_words(const PointLight& point, sun::Instant now, const sun::Zo
     if (point.is_lit(now))
         return next ? "in the sun, till it leaves at " + clock_text(*next, zone)
                     : "in the sun, till the day ends";
-    return next ? "in shade, sun comes at " + clock_text(*next, zone)
-                : "in shade for the rest of the day";
+    if (next) return "in shade, sun comes at " + clock_text(*next, zone);
+    return (point.lit.empty() ? "no sun today" : "in shade till night") +
+           (point.tomorrow ? ", tomorrow from " + clock_text(*point.tomorrow, zone)
+                           : std::string(", nor tomorrow"));
+}
+
+/// Of a span, as its ends are shown.
+std::string span_text(const LitSpan& span) {
+    static const sun::Instant kAny = sun::Instant::from_utc({{2000, 1, 1}});
+    const auto minute = [](sun::Instant utc) { return std::floor((utc - kAny + 30) / 60); };
+    return fmt::format("  ({})", duration_text(60 * (minute(span.end) - minute(span.begin))));
+}
+
+/// "no sun at all on 30 days, 8 Dec to 6 Jan"
+std::string dark_text(const YearPicture& year) {
+    if (year.dark_days == 0 || !year.dark) return "sun on every day of the year";
+    const auto& [first, last] = *year.dark;
+    std::string text =
+        fmt::format("no sun at all on {} day{}", year.dark_days, year.dark_days == 1 ? "" : "s");
+    text += first == last ? ", " + day_label(first)
+                          : fmt::format(", {} to {}", day_label(first), day_label(last));
+    return text;
 }
 
 /// What the DEM leaves open.
@@ -63,20 +83,21 @@ void light_of(State& state, const PointLight& point) {
     ImGui::TextColored(colour_of(lit, state.settings.light_style), "%s",
                        light_words(point, state.document.utc, zone).c_str());
     for (const LitSpan& span : point.lit)
-        ImGui::Text("%s to %s  (%s)",
+        ImGui::Text("%s to %s%s",
                     span.from_midnight ? "midnight" : clock_text(span.begin, zone).c_str(),
                     span.to_midnight ? "midnight" : clock_text(span.end, zone).c_str(),
-                    duration_text(span.length_s()).c_str());
+                    point.lit.size() > 1 ? span_text(span).c_str() : "");
     const bool has_first = !point.lit.empty() && !point.lit.front().from_midnight;
     const bool has_last = !point.lit.empty() && !point.lit.back().to_midnight;
     if (has_first) go_to_edge(state, "First light", point.lit.front().begin);
     if (has_last) go_to_edge(state, "Last light", point.lit.back().end);
     if (has_first || has_last) ImGui::NewLine();
-    ImGui::Text("%s of sun, %s over a flat horizon", duration_text(point.lit_s).c_str(),
+    ImGui::Text("%s of sun, %s over a level horizon", duration_text(point.lit_s).c_str(),
                 duration_text(point.flat_s).c_str());
     if (point.year)
         ImGui::Text("%.0f h in %d, %.0f h over a level horizon", point.year->lit_s / 3600,
                     point.of.date.year, point.year->level_s / 3600);
+    if (point.year) ImGui::Text("%s", dark_text(*point.year).c_str());
     doubts(point);
 }
 

@@ -256,15 +256,13 @@ std::vector<std::string> absolute_names(std::vector<std::string> dems) {
     return dems;
 }
 
-std::string neighbour_in_folder(const std::string& dem, int by) {
+std::vector<std::string> dems_in(const fs::path& folder) {
     static constexpr std::array<std::string_view, 13> kEndings = {
         ".tif", ".tiff", ".asc", ".hgt", ".dem", ".dt0", ".dt1",
         ".dt2", ".img",  ".nc",  ".vrt", ".bil", ".flt"};
-    const fs::path here = fs::path(absolute_names({dem}).front());
-    std::vector<std::string> names{here.filename().string()};
+    std::vector<std::string> names;
     std::error_code ignored;
-    for (fs::directory_iterator it(here.parent_path(), ignored), end; it != end;
-         it.increment(ignored)) {
+    for (fs::directory_iterator it(folder, ignored), end; it != end; it.increment(ignored)) {
         if (ignored) break;
         const std::string ending = lower(it->path().extension().string());
         const bool is_dem = std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end() &&
@@ -272,7 +270,15 @@ std::string neighbour_in_folder(const std::string& dem, int by) {
         if (is_dem) names.push_back(it->path().filename().string());
     }
     std::sort(names.begin(), names.end());
-    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+}
+
+std::string neighbour_in_folder(const std::string& dem, int by) {
+    const fs::path here = fs::path(absolute_names({dem}).front());
+    std::vector<std::string> names = dems_in(here.parent_path());
+    const auto place = std::lower_bound(names.begin(), names.end(), here.filename().string());
+    if (place == names.end() || *place != here.filename().string())
+        names.insert(place, here.filename().string());
     if (names.size() < 2) return {};
     const auto at = std::find(names.begin(), names.end(), here.filename().string());
     const auto count = static_cast<std::ptrdiff_t>(names.size());

@@ -80,6 +80,9 @@ class Memory {
 /// what is no file, such as "/vsizip/a.zip/a.tif", stays.
 std::vector<std::string> absolute_names(std::vector<std::string> dems);
 
+/// The files of a folder whose names end as those of DEMs do, in order, without their folder.
+std::vector<std::string> dems_in(const std::filesystem::path& folder);
+
 /// The DEM before or after one in its folder, by name, at the end the first; none where there is no
 /// other.
 /// @param by  1 or -1

@@ -55,6 +55,7 @@ struct State {
     std::shared_ptr<const PointLight> point;  ///< what is known of it; null: nothing yet
     bool point_in_work = false;               ///< there is more to come
     std::vector<glm::dvec3> measured;         ///< ends of a measured line, up to two
+    bool measuring = false;                   ///< its second end follows the cursor
     std::optional<Profile> profile;           ///< of that line
 
     std::shared_ptr<const OverlayShown> overlay;  ///< that lies on the ground; null: none

@@ -50,9 +50,12 @@ void set_date(State& state, sun::Date date) {
 }
 
 void calendar(State& state, sun::Date date) {
+    // As wide for any date, so that what stands beside it stays where it is.
+    const float width = ImGui::CalcTextSize("30 September 2000").x + ImGui::GetFontSize();
     if (ImGui::Button(fmt::format("{} {} {}###date", date.day,
                                   kMonths[static_cast<std::size_t>(date.month - 1)], date.year)
-                          .c_str()))
+                          .c_str(),
+                      {width, 0}))
         ImGui::OpenPopup("calendar");
     if (!ImGui::BeginPopup("calendar")) return;
     int year = date.year, month = date.month - 1;

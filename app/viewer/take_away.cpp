@@ -35,6 +35,14 @@ std::string write_under_free_name(const std::string& ending,
     }
 }
 
+std::string free_picture_name() {
+    std::string name = "picture.png";
+    std::error_code ignored;
+    for (int n = 2; std::filesystem::exists(std::filesystem::symlink_status(name, ignored)); ++n)
+        name = fmt::format("picture-{}.png", n);
+    return name;
+}
+
 namespace {
 
 /// @returns its name

@@ -21,6 +21,8 @@ scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 
 std::string write_under_free_name(const std::string& ending,
                                   const std::function<void(OutputFile&)>& write);
 
+/// A name for a picture that the working folder does not have: "picture.png", "picture-2.png" ...
+std::string free_picture_name();
 /// Writes the scene into the working folder under a name that is free. @returns what to tell of it
 /// @throws Error as OutputFile; likewise below
 std::string save_scene(const scene::Scene& scene);

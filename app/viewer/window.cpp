@@ -342,7 +342,8 @@ void Window::draw(const std::function<void()>& panels) {
 
 std::vector<KeyPress> Window::take_keys() {
     std::vector<KeyPress> keys = std::exchange(impl_->keys, {});
-    if (ImGui::GetIO().WantTextInput) keys.clear();
+    if (ImGui::GetIO().WantTextInput)
+        std::erase_if(keys, [](const KeyPress& press) { return press.key != GLFW_KEY_ENTER; });
     return keys;
 }
 

@@ -26,6 +26,7 @@
 #include "viewer/settings.h"
 #include "viewer/state.h"
 #include "viewer/sun_model.h"
+#include "viewer/take_away.h"
 #include "window/display.h"
 
 namespace relevo::viewer {
@@ -265,6 +266,48 @@ TEST(PointWork, HasTheFiguresOfTheCommandLine) {
     }
 }
 
+TEST(PointWork, KnowsWhenTheSunComesBackAndTheDaysWithoutIt) {
+    // Ten posts south of the place a wall from edge to edge, 41 degrees high.
+    session::LoadedDem walled = *jacksboro();
+    const double spacing_m = walled.field.grid.post_spacing_m().y;
+    const auto height_m = static_cast<float>(walled.field.height_m.at(200, 100) +
+                                             10 * spacing_m * std::tan(radians(41.0)));
+    for (int column = 0; column < walled.field.grid.columns(); ++column)
+        walled.field.height_m.at(column, 110) = height_m;
+    PointWanted wanted;
+    wanted.dem = std::make_shared<const session::LoadedDem>(std::move(walled));
+    wanted.refraction = "standard";
+    wanted.place = wanted.dem->field.grid.place(200, 100);
+    wanted.date = {2026, 12, 21};
+    wanted.zone = sun::Zone::named("America/New_York");
+    wanted.chart_px = {640, 220};
+    PointWork work([] {});
+    const auto answer = [&] {
+        work.want(wanted);
+        while (!work.is_done())
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        return work.answer();
+    };
+    const auto winter = answer();
+    ASSERT_EQ(winter->error, "");
+    EXPECT_TRUE(winter->lit.empty());
+    EXPECT_FALSE(winter->tomorrow);
+    ASSERT_TRUE(winter->year && winter->year->dark);
+    const auto [first, last] = *winter->year->dark;
+    EXPECT_EQ(winter->year->dark_days, sun::days_between(first, {2027, last.month, last.day}) + 1);
+    // As long before the solstice as after it.
+    const int before = sun::days_between(first, {2026, 12, 21}),
+              after = sun::days_between({2025, 12, 21}, last);
+    EXPECT_GT(before, 30);
+    EXPECT_NEAR(before, after, 2);
+    wanted.date = last;
+    const auto end = answer();
+    EXPECT_TRUE(end->lit.empty());
+    ASSERT_TRUE(end->tomorrow);
+    wanted.date = sun::add_days(last, 1);
+    EXPECT_EQ(answer()->lit.front().begin, *end->tomorrow);
+}
+
 TEST(PointLight, MidnightIsNoEdgeOfTheLight) {
     PointLight light;
     const sun::Instant begin = sun::parse_time("2026-06-21T00:00Z").utc;
@@ -370,6 +413,17 @@ TEST(Scrolling, IsByAsMuchAsTheFingersMove) {
     EXPECT_NEAR(std::pow(zoom_of_scroll(0.1), 10), zoom_of_scroll(1), 1e-12);
     EXPECT_NEAR(1 - zoom_of_scroll(0.01), 0.01 * -std::log(zoom_of_scroll(1)), 1e-5);
     EXPECT_EQ(zoom_of_scroll(0), 1);
+}
+
+TEST(TakeAway, PicturesHaveNamesThatAreFree) {
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::current_path(test::scratch_dir("free_names"));
+    EXPECT_EQ(free_picture_name(), "picture.png");
+    std::ofstream("picture.png") << "";
+    EXPECT_EQ(free_picture_name(), "picture-2.png");
+    std::ofstream("picture-2.png") << "";
+    EXPECT_EQ(free_picture_name(), "picture-3.png");
+    std::filesystem::current_path(before);
 }
 
 TEST(Folder, HasNeighboursByName) {

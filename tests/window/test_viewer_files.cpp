@@ -72,6 +72,49 @@ TEST_F(Viewer, ChartsOpenBesideTheirPointAndTheSidesOfABlockAreNoGround) {
     EXPECT_TRUE(wait([&] { return count_near(display_.screen(), kAbove, kDay) > 1000; }));
 }
 
+TEST_F(Viewer, OpensADemByItsNameAtTheSameHourOfItsOwnClocks) {
+    // No file dialog of a desktop but the list of the window's own.
+    std::filesystem::create_directories(folder_ / "maps/west");
+    const std::filesystem::path data = test::source_dir() / "data/dem";
+    std::filesystem::copy_file(data / "jacksboro.tif", folder_ / "maps/a.tif");
+    std::filesystem::copy_file(data / "vancouver-island.tif", folder_ / "maps/west/b.tif");
+    open({(folder_ / "maps/a.tif").string(), "--only", "--time", "2026-06-21T15:00:00"});
+    EXPECT_EQ(scene()["time"]["at"], "2026-06-21T15:00:00-04:00");
+    ASSERT_TRUE(changes([&] { act({"key", "ctrl+o"}); }, 0.02));
+    act({"type", "--delay", "60", "west"});
+    act({"key", "Return"});
+    ASSERT_TRUE(settles());
+    act({"type", "--delay", "60", "b.tif"});
+    act({"key", "Return"});
+    ASSERT_TRUE(wait([&] { return program_->title().find("b.tif") != std::string::npos; }))
+        << program_->output();
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(scene()["time"]["at"], "2026-06-21T15:00:00-07:00");
+}
+
+TEST_F(Viewer, MeasuresFromThePointToTheCursor) {
+    constexpr glm::ivec3 kLine{255, 80, 60};
+    constexpr glm::ivec4 kAbove{780, 250, 90, 60}, kBelow{780, 360, 90, 60};
+    open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
+    const auto red = [&](glm::ivec4 area) { return count_near(display_.screen(), area, kLine); };
+    act({"key", "p", "mousemove", "700", "330"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    act({"click", "1"});
+    ASSERT_TRUE(wait([&] { return red({690, 320, 20, 20}) > 20; }));
+    ASSERT_EQ(red(kAbove) + red(kBelow), 0);
+    act({"key", "m", "mousemove", "950", "450"});
+    EXPECT_TRUE(wait([&] { return red(kBelow) > 50 && red(kAbove) == 0; }));
+    act({"mousemove", "950", "210"});
+    EXPECT_TRUE(wait([&] { return red(kAbove) > 50 && red(kBelow) == 0; }));
+    // From then on it stays, and a click is another point.
+    act({"key", "m", "mousemove", "950", "450"});
+    ASSERT_TRUE(settles());
+    EXPECT_GT(red(kAbove), 50);
+    EXPECT_EQ(red(kBelow), 0);
+    act({"click", "1"});
+    EXPECT_TRUE(wait([&] { return red(kAbove) == 0 && red({940, 440, 20, 20}) > 20; }));
+}
+
 TEST_F(Viewer, GoesToTheNextDemOfTheFolderAndRemembersWhatWasOpen) {
     std::filesystem::create_directories(folder_ / "maps");
     for (const char* name : {"a.tif", "c.tif"})
