@@ -32,7 +32,7 @@ class OpenPanel {
 
     bool is_open_ = false;
     bool is_written_to_ = false;  // the name takes the keyboard in the next frame
-    int visits_ = 0;  // of folders: each has a name of its own to be written
+    int visits_ = 0;              // of folders: each has a name of its own to be written
     std::filesystem::path folder_;
     std::vector<std::string> folders_, dems_;
     std::string name_;  // that is being written
