@@ -113,8 +113,11 @@ void param_row(State& state, const Param& param, bool on) {
     ImGui::PopID();
 }
 
-/// Why an effect that is on by default is not; empty: it is not for want of something.
+/// Why an effect is off that was not switched off; empty: it is not for want of something.
 std::string lack_of(const State& state, const effect::Effect& effect) {
+    const std::string off = effect.id() + " is off: ";
+    for (const std::string& notice : state.effects->selection.notices)
+        if (notice.starts_with(off)) return fmt::format("({})", notice.substr(off.size()));
     const effect::Switches& asked = state.document.scene.effects.switches;
     const bool is_off =
         std::find(asked.disable.begin(), asked.disable.end(), effect.id()) != asked.disable.end();
@@ -142,6 +145,7 @@ void effect_row(State& state, const effect::Effect& effect) {
     if (const std::string why = is_on ? "" : lack_of(state, effect); !why.empty()) {
         ImGui::SameLine();
         ImGui::TextDisabled("%s", why.c_str());
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", why.c_str());
     }
     if (open) {
         for (const Param& param : effect.params())

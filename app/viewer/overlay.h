@@ -16,6 +16,7 @@ namespace relevo::viewer {
 struct Profile {
     std::vector<float> heights_m;  ///< at even steps from end to end, NaN at holes
     double level_m = 0;            ///< along the ellipsoid
+    double azimuth_rad = 0;        ///< of the way, where it begins, from true north
     double surface_m = 0;          ///< over the ground, up and down, holes left out
     double up_m = 0, down_m = 0;   ///< together
     bool has_holes = false;
