@@ -114,6 +114,7 @@ class MainWindow {
     static scene::Scene with_effects(const Document& document);
     void keep_view();
     void go_to_view(std::size_t i);
+    void go_to_place(const std::string& text);
     /// What the hand has moved is a step of undo when it has come to rest.
     void step_at_rest();
 

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/text.h"
 #include "viewer/main_window.h"
 
 #define GLFW_INCLUDE_NONE
@@ -48,6 +49,8 @@ void MainWindow::keys() {
         if (!of_program(command) && is_open()) of_scene(command);
     if (state_.view_to_go_to && is_open()) go_to_view(*state_.view_to_go_to);
     state_.view_to_go_to.reset();
+    const std::string place = std::exchange(state_.place_to_go_to, {});
+    if (!place.empty() && is_open()) say_or_fail([&] { go_to_place(place); });
     if (std::exchange(state_.views_changed, false)) remember_views();
 }
 
@@ -212,6 +215,27 @@ void MainWindow::go_to_view(std::size_t i) {
     hand_->rest();
     state_.document.pose = pose_of(view, state_.land);
     state_.set_utc(view.utc);
+    moved();
+    state_.step = true;
+}
+
+void MainWindow::go_to_place(const std::string& text) {
+    std::string bare = text;  // maps write a space after the comma
+    std::erase(bare, ' ');
+    geo::Geodetic place = geo::parse_place(bare, "view").place;
+    place.height_m = state_.land.height_m(place);
+    if (std::isnan(place.height_m)) return tell("the DEM has no ground at " + printable(text));
+    end_step();
+    hand_->rest();
+    geo::Geodetic drawn = place;
+    drawn.height_m *= state_.land.exaggeration;
+    const glm::dvec3 point_m = state_.land.frame->to_local(drawn);
+    // Near enough for single posts to be seen.
+    constexpr double kPosts = 150;
+    Pose& pose = state_.document.pose;
+    pose = look_at(pose, state_.land, point_m,
+                   std::min(distance(pose.eye_m, point_m), kPosts * state_.spacing_m));
+    choose_point(point_m);
     moved();
     state_.step = true;
 }

@@ -123,12 +123,23 @@ void saved_views(State& state) {
     state.views_changed = true;
 }
 
+void go_to_place(State& state) {
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 12);
+    const bool enter = ImGui::InputTextWithHint("##place", "latitude, longitude", &state.place,
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::SameLine();
+    if (!ImGui::SmallButton("go there") && !enter) return;
+    state.place_to_go_to = state.place;
+    ImGui::CloseCurrentPopup();
+}
+
 void view_menu(State& state) {
     if (!ImGui::BeginMenu("View")) return;
     item(state, "The whole DEM", "Home", Command::Whole);
     item(state, "North up", "N", Command::NorthUp);
     item(state, "From above", "T", Command::FromAbove);
     item(state, "Walk at eye height", "G", Command::Walk);
+    go_to_place(state);
     ImGui::Separator();
     item(state, "Undo", "Ctrl+Z", Command::Undo);
     item(state, "Redo", "Ctrl+Y", Command::Redo);

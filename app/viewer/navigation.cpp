@@ -180,6 +180,15 @@ Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m) {
     return moved;
 }
 
+Pose look_at(const Pose& pose, const Land& land, const glm::dvec3& point_m, double distance_m) {
+    constexpr double kDown_deg = -20;
+    Pose there = pose;
+    there.eye_m = point_m;  // whose up and north count
+    there.pitch_deg = std::min(pose.pitch_deg, kDown_deg);
+    there.eye_m -= distance_m * camera_of(there, land).forward;
+    return above_ground(there, land);
+}
+
 Pose from_above(const Pose& pose, const Land& land, const glm::dvec3& point_m, double distance_m) {
     Pose above = pose;
     above.eye_m = point_m + land.axes(point_m).up * distance_m;

@@ -69,6 +69,9 @@ Pose look_around(const Pose& pose, double right_deg, double up_deg);
 Pose fly(const Pose& pose, const Land& land, const glm::dvec3& by_m);
 /// Walks: right and forward on the level, at eye height above the ground [m].
 Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m);
+/// Looks at a point from a distance, from the side that it looks from now; down at it at least by
+/// 20 degrees.
+Pose look_at(const Pose& pose, const Land& land, const glm::dvec3& point_m, double distance_m);
 /// Looks from above, north up, at a point from a distance.
 Pose from_above(const Pose& pose, const Land& land, const glm::dvec3& point_m, double distance_m);
 

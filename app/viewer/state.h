@@ -42,7 +42,7 @@ struct State {
 
     bool playing = false;
     double hours_a_second = 1;
-    std::string search;
+    std::string search, place;       ///< as they are being written
     bool compare_is_wanted = false;  ///< with the effects as they are when it is
 
     Settings settings;
@@ -70,6 +70,7 @@ struct State {
     std::vector<std::string> files_to_open;
     std::optional<RecentDem> recent_to_open;
     std::optional<std::size_t> view_to_go_to;  ///< of views
+    std::string place_to_go_to;                ///< "47.4395, 11.8935"; empty: none
     bool views_changed = false;
     glm::ivec2 chart_px{0};  ///< that drawings of the point have room in; 0: none is shown
     bool sun_moves = false;  ///< a widget of the sun is held

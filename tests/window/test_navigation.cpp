@@ -57,6 +57,19 @@ TEST_F(Navigation, APoseComesBackFromItsCameraAndItsView) {
     EXPECT_NEAR(pose_of(camera_of(pose_, land_), land_).heading_deg, 30, 1e-6);
 }
 
+TEST_F(Navigation, LooksAtAPointFromWhereItLooks) {
+    const glm::dvec3 point = at(46.05, 8.2, 500);
+    const Pose there = look_at(pose_, land_, point, 3000);
+    EXPECT_NEAR(distance(there.eye_m, point), 3000, 1e-6);
+    EXPECT_LT(length(seen(there, point)), 0.01);  // the Earth turns a little under the way
+    EXPECT_EQ(there.heading_deg, pose_.heading_deg);
+    EXPECT_EQ(there.pitch_deg, pose_.pitch_deg);
+    // Whoever looks at the horizon looks down at it.
+    pose_.pitch_deg = 5;
+    EXPECT_EQ(look_at(pose_, land_, point, 3000).pitch_deg, -20);
+    EXPECT_LT(length(seen(look_at(pose_, land_, point, 3000), point)), 0.01);
+}
+
 TEST_F(Navigation, OnlyTheGroundHasAHeightWhereItIsDrawn) {
     land_.exaggeration = 2;
     EXPECT_EQ(drawn_height_m(at(46.0, 8.0, 1000), land_, 10), 500);

@@ -58,6 +58,18 @@ TEST_F(Viewer, TurnsPansZoomsAndGoesHome) {
     EXPECT_EQ(camera()["eye"], panned["eye"]);
 }
 
+TEST_F(Viewer, GoesToAPlaceThatIsWritten) {
+    open({dem_, "--only"});
+    act({"mousemove", "70", "11", "click", "1"});
+    ASSERT_TRUE(settles());
+    act({"mousemove", "150", "125", "click", "1", "type", "--delay", "60", "36.3, -84.2"});
+    ASSERT_TRUE(changes([&] { act({"keydown", "Return", "sleep", "0.3", "keyup", "Return"}); }));
+    const auto camera = resting_scene()["camera"];
+    EXPECT_NEAR(camera["eye"][0].get<double>(), 36.3, 0.05);
+    EXPECT_NEAR(camera["eye"][1].get<double>(), -84.2, 0.05);
+    EXPECT_LT(camera["eye"][2].get<double>(), 6000);
+}
+
 TEST_F(Viewer, MovesTheSunByKeysAndLetsTheDayPass) {
     open({dem_, "--time", "2026-06-21T18:00:00Z"});
     ASSERT_TRUE(changes(
