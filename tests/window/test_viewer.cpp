@@ -11,6 +11,8 @@
 #include <glm/vec3.hpp>
 #include <unistd.h>
 
+#include "base/units.h"
+#include "geo/geodetic.h"
 #include "image/image.h"
 #include "window/viewer_fixture.h"
 
@@ -60,14 +62,22 @@ TEST_F(Viewer, TurnsPansZoomsAndGoesHome) {
 
 TEST_F(Viewer, GoesToAPlaceThatIsWritten) {
     open({dem_, "--only"});
-    act({"mousemove", "70", "11", "click", "1"});
-    ASSERT_TRUE(settles());
-    act({"mousemove", "150", "125", "click", "1", "type", "--delay", "60", "36.3, -84.2"});
+    const auto click = [&](const char* x, const char* y) {
+        act({"mousemove", x, y, "sleep", "0.3", "click", "1"});
+        ASSERT_TRUE(settles());
+    };
+    click("70", "11");
+    click("150", "125");
+    act({"type", "--delay", "60", "36.3, -84.2"});
     ASSERT_TRUE(changes([&] { act({"keydown", "Return", "sleep", "0.3", "keyup", "Return"}); }));
     const auto camera = resting_scene()["camera"];
-    EXPECT_NEAR(camera["eye"][0].get<double>(), 36.3, 0.05);
-    EXPECT_NEAR(camera["eye"][1].get<double>(), -84.2, 0.05);
-    EXPECT_LT(camera["eye"][2].get<double>(), 6000);
+    // 150 posts from it, back along where it looks.
+    const geo::Geodetic eye =
+        geo::geodetic_deg(camera["eye"][0].get<double>(), camera["eye"][1].get<double>(), 0);
+    const geo::Geodesic back = geo::geodesic(eye, geo::geodetic_deg(36.3, -84.2, 0));
+    EXPECT_NEAR(std::remainder(degrees(back.azimuth_rad) - camera["heading"].get<double>(), 360), 0,
+                0.1);
+    EXPECT_NEAR(std::hypot(back.distance_m, camera["eye"][2].get<double>() - 375), 150 * 80.5, 500);
 }
 
 TEST_F(Viewer, MovesTheSunByKeysAndLetsTheDayPass) {
