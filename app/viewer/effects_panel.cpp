@@ -29,12 +29,11 @@ bool is_wide(const shader::ParamRange& range) {
 /// @returns whether the value was changed
 bool widget(const Param& param, ParamValue& value) {
     const std::string unit = param.unit.empty() ? "" : " " + param.unit;
-    // Never with an exponent where digits do.
-    const bool is_long = std::any_of(value.begin(), value.end(), [](double x) {
-        return std::abs(x) >= 1000 && std::abs(x) < 1e7;
-    });
-    const std::string format = (is_long ? "%.0f" : "%.3g") + unit;
     const int components = shader::component_count(param.type);
+    // One number has no exponent where digits do.
+    const double size = std::abs(value[0]);
+    const bool is_long = components == 1 && size >= 1000 && size < 1e7;
+    const std::string format = (is_long ? "%.0f" : "%.3g") + unit;
     std::array<float, 4> v{};
     std::transform(value.begin(), value.end(), v.begin(),
                    [](double x) { return static_cast<float>(x); });
@@ -126,7 +125,6 @@ std::string lack_of(const State& state, const effect::Effect& effect) {
     for (const std::string& word : effect.manifest.default_where)
         if (std::find(state.ground_words->begin(), state.ground_words->end(), word) ==
             state.ground_words->end()) {
-            if (word == "marked_holes") return "(no holes are marked: --holes mark)";
             std::string words = word;
             std::replace(words.begin(), words.end(), '_', ' ');
             return fmt::format("(the DEM has no {})", words);

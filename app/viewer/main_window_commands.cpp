@@ -39,7 +39,7 @@ void MainWindow::choose_point(const glm::dvec3& point_m) {
 void MainWindow::keys() {
     for (const KeyPress& press : window_->take_keys()) {
         busy_frames_ = 3;
-        if (press.key == GLFW_KEY_ENTER) open_panel_.enter();
+        if (is_enter(press)) open_panel_.enter();
         if (const auto command = command_of(press))
             state_.commands.push_back(*command);
         else if (!press.control && press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9)

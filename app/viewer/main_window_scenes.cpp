@@ -12,6 +12,14 @@
 #include "viewer/main_window.h"
 
 namespace relevo::viewer {
+namespace {
+
+/// When the clocks of another zone show what those of one show now.
+sun::Instant same_hour(sun::Instant utc, const sun::Zone& from, const sun::Zone& to) {
+    return from.name() == to.name() ? utc : to.resolve(from.local(utc).wall).utc;
+}
+
+}  // namespace
 
 void MainWindow::open() {
     point_work_->forget();
@@ -129,11 +137,10 @@ void MainWindow::start(std::shared_ptr<const Opened> opened) {
         shown->overlay.legend = *opened_->legend;
         state_.overlay = std::move(shown);
     }
-    // Another DEM is seen at the same hour of its own clocks.
-    const sun::CivilTime wall = document.zone.local(document.utc).wall;
+    const sun::Zone zone_before = document.zone;
     document.zone = sun::choose_zone(zone_, state_.centre).zone;
     document.pose = home_ = pose_of(opened_->camera, state_.land);
-    state_.set_utc(last_good_ ? document.zone.resolve(wall).utc : opened_->utc);
+    state_.set_utc(last_good_ ? same_hour(document.utc, zone_before, document.zone) : opened_->utc);
     history_.add(document);
     window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
     good_before_ = has_gone_back_ ? std::nullopt : last_good_;

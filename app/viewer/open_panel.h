@@ -16,7 +16,6 @@ class OpenPanel {
     /// Shows the folder of a file. @param dem  empty: the working folder
     void open(const std::string& dem);
     void close() { is_open_ = false; }
-    bool is_open() const { return is_open_; }
     /// Opens what is written, or goes to that folder. ImGui misses keys that are let go within one
     /// of its frames.
     void enter();

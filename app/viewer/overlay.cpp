@@ -39,6 +39,42 @@ std::string length_text(double length_m) {
                          : fmt::format("{:.3g} cm", 100 * length_m);
 }
 
+/// Heights from left to right as they lie from the line's first end to its second, with what is
+/// under the cursor.
+void plot_profile(const Profile& profile, float low_m, float high_m) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const ImVec2 extent{ImGui::GetContentRegionAvail().x, 5 * ImGui::GetFontSize()};
+    ImGui::InvisibleButton("##profile", extent);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(at, {at.x + extent.x, at.y + extent.y},
+                       ImGui::GetColorU32(ImGuiCol_FrameBg));
+    const ImU32 ink = ImGui::GetColorU32(ImGuiCol_PlotLines);
+    const auto last = static_cast<float>(profile.heights_m.size() - 1);
+    const float scale = extent.y * 0.9f / std::max(high_m - low_m, 1e-3f);
+    const auto point = [&](std::size_t i) {
+        return ImVec2{at.x + extent.x * static_cast<float>(i) / last,
+                      at.y + extent.y * 0.95f - scale * (profile.heights_m[i] - low_m)};
+    };
+    for (std::size_t i = 1; i < profile.heights_m.size(); ++i)
+        if (!std::isnan(profile.heights_m[i - 1] + profile.heights_m[i]))
+            list.AddLine(point(i - 1), point(i), ink, 1.5f);
+    if (!ImGui::IsItemHovered()) return;
+    const float across = (ImGui::GetIO().MousePos.x - at.x) / extent.x;
+    const auto i = static_cast<std::size_t>(std::lround(std::clamp(across, 0.0f, 1.0f) * last));
+    const std::string there = length_text(profile.level_m * static_cast<double>(i) / last);
+    if (std::isnan(profile.heights_m[i])) {
+        ImGui::SetTooltip("after %s: no height", there.c_str());
+        return;
+    }
+    list.AddCircleFilled(point(i), 4, kLine);
+    ImGui::SetTooltip("after %s: %.1f m", there.c_str(), profile.heights_m[i]);
+}
+
+/// "440.6 m", or that there is none.
+std::string height_text(float height_m) {
+    return std::isnan(height_m) ? "no height" : fmt::format("{:.1f} m", height_m);
+}
+
 }  // namespace
 
 Profile Profile::between(const geo::Geodetic& from, const geo::Geodetic& to, const Land& land) {
@@ -85,46 +121,6 @@ void draw_measured(const std::vector<glm::dvec3>& points, const std::optional<Pr
     }
 }
 
-namespace {
-
-/// Heights from left to right as they lie from the line's first end to its second, with what is
-/// under the cursor.
-void plot_profile(const Profile& profile, float low_m, float high_m) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const ImVec2 extent{ImGui::GetContentRegionAvail().x, 5 * ImGui::GetFontSize()};
-    ImGui::InvisibleButton("##profile", extent);
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(at, {at.x + extent.x, at.y + extent.y},
-                       ImGui::GetColorU32(ImGuiCol_FrameBg));
-    const ImU32 ink = ImGui::GetColorU32(ImGuiCol_PlotLines);
-    const auto last = static_cast<float>(profile.heights_m.size() - 1);
-    const float scale = extent.y * 0.9f / std::max(high_m - low_m, 1e-3f);
-    const auto point = [&](std::size_t i) {
-        return ImVec2{at.x + extent.x * static_cast<float>(i) / last,
-                      at.y + extent.y * 0.95f - scale * (profile.heights_m[i] - low_m)};
-    };
-    for (std::size_t i = 1; i < profile.heights_m.size(); ++i)
-        if (!std::isnan(profile.heights_m[i - 1] + profile.heights_m[i]))
-            list.AddLine(point(i - 1), point(i), ink, 1.5f);
-    if (!ImGui::IsItemHovered()) return;
-    const float across = (ImGui::GetIO().MousePos.x - at.x) / extent.x;
-    const auto i = static_cast<std::size_t>(std::lround(std::clamp(across, 0.0f, 1.0f) * last));
-    const std::string there = length_text(profile.level_m * static_cast<double>(i) / last);
-    if (std::isnan(profile.heights_m[i])) {
-        ImGui::SetTooltip("after %s: no height", there.c_str());
-        return;
-    }
-    list.AddCircleFilled(point(i), 4, kLine);
-    ImGui::SetTooltip("after %s: %.1f m", there.c_str(), profile.heights_m[i]);
-}
-
-/// "440.6 m", or that there is none.
-std::string height_text(float height_m) {
-    return std::isnan(height_m) ? "no height" : fmt::format("{:.1f} m", height_m);
-}
-
-}  // namespace
-
 void profile_panel(const Profile& profile) {
     float low_m = std::numeric_limits<float>::infinity(), high_m = -low_m;
     for (const float height_m : profile.heights_m) {
@@ -138,8 +134,7 @@ void profile_panel(const Profile& profile) {
     plot_profile(profile, low_m, high_m);
     const std::string text = fmt::format(
         "{} at azimuth {:.0f}°, from {} to {}; {} over the ground{}, {:.0f} m up and {:.0f} m "
-        "down, "
-        "between {:.0f} and {:.0f} m",
+        "down, between {:.0f} and {:.0f} m",
         length_text(profile.level_m), std::fmod(degrees(profile.azimuth_rad) + 360, 360),
         height_text(profile.heights_m.front()), height_text(profile.heights_m.back()),
         length_text(profile.surface_m), profile.has_holes ? " without holes" : "", profile.up_m,

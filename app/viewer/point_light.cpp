@@ -41,22 +41,19 @@ light::LightOptions light_options(const PointWanted& wanted, const geo::Geodetic
     return options;
 }
 
-/// Days on which only the ground keeps the sun away.
 void add_dark_days(const light::Carpet& carpet, YearPicture& to) {
-    const auto count = carpet.days.size();
-    const auto is_dark = [&](std::size_t day) {
-        return carpet.days[day % count].lit_s == 0 && carpet.day_level_s[day % count] > 0;
+    const auto count = static_cast<int>(carpet.days.size());
+    const auto day = [&](int i) -> const light::LightDay& {
+        return carpet.days[static_cast<std::size_t>(i % count)];
     };
-    std::size_t longest = 0;
-    for (std::size_t first = 0; first < count; ++first) {
-        to.dark_days += is_dark(first);
-        if (!is_dark(first) || is_dark(first + count - 1)) continue;
-        std::size_t end = first + 1;
-        while (end < first + count && is_dark(end))
-            ++end;
-        if (end - first <= longest) continue;
-        longest = end - first;
-        to.dark = {carpet.days[first].date, carpet.days[(end - 1) % count].date};
+    int row = 0;
+    // Twice, so that a row goes on over the end of the year.
+    for (int i = 0; i < 2 * count; ++i) {
+        row = day(i).lit_s == 0 ? std::min(row + 1, count) : 0;
+        if (i < count) to.dark_days += row > 0;
+        if (row <= to.dark_row) continue;
+        to.dark_row = row;
+        to.dark = {day(i + 1 - row + count).date, day(i).date};
     }
 }
 
@@ -88,12 +85,18 @@ class Worker {
         to.lit_s = day_->lit_s;
         to.not_known_s = day_->not_known_s;
         to.flat_s = day_->flat.day_length_s;
-        if (!tomorrow_ || tomorrow_->date != sun::add_days(wanted_.date, 1) || is_new)
-            tomorrow_ = direct.day(sun::add_days(wanted_.date, 1), wanted_.zone);
-        if (!tomorrow_->lit.empty()) to.tomorrow = tomorrow_->lit.front().begin.utc;
+        add_tomorrow(to, is_new);
         for (const light::OpenSector& open :
              light::doubt_of(direct, {*day_}, profile(), std::nullopt).open)
             to.open_deg.emplace_back(degrees(open.from_azimuth_rad), degrees(open.to_azimuth_rad));
+    }
+
+    void add_tomorrow(PointLight& to, bool is_new) {
+        const sun::Date date = sun::add_days(wanted_.date, 1);
+        to.tomorrow_is_known = date.year <= sun::kLastYear;
+        if (!to.tomorrow_is_known) return;
+        if (is_new || !tomorrow_) tomorrow_ = light().day(date, wanted_.zone);
+        if (!tomorrow_->lit.empty()) to.tomorrow = tomorrow_->lit.front().begin.utc;
     }
 
     std::shared_ptr<const HorizonPicture> horizon_picture() {

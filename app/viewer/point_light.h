@@ -41,10 +41,9 @@ struct YearPicture {
     image::Image8 picture;
     chart::Rect plot;  ///< in units
     double lit_s = 0, level_s = 0;
-    int dark_days = 0;  ///< on which the sun stands over a level horizon, and never shines here
-    /// The longest of them in a row, first and last; where the year's first and last days are
-    /// among them, these are one row.
-    std::optional<std::pair<sun::Date, sun::Date>> dark;
+    int dark_days = 0;  ///< on which the sun never shines here, for ground or polar night
+    int dark_row = 0;  ///< most of them one after the other; the year's last goes on with its first
+    std::pair<sun::Date, sun::Date> dark;  ///< their first and last day, if there are any
 };
 
 /// A stretch of a day with sun. Where it shines at midnight the day begins or ends, not the light.
@@ -58,8 +57,9 @@ struct PointLight {
     std::vector<LitSpan> lit;
     double lit_s = 0, flat_s = 0;  ///< of that day, here and over a flat horizon
     double not_known_s = 0;        ///< of lit_s, for holes of the DEM
-    std::optional<sun::Instant>
-        tomorrow;  ///< the first light of the day after; none: there is none
+    /// The first light of the day after; none: there is none. Not looked for after the last year.
+    std::optional<sun::Instant> tomorrow;
+    bool tomorrow_is_known = false;
     /// Where the DEM ends too near to be sure: azimuths [deg], from and to.
     std::vector<glm::dvec2> open_deg;
     std::shared_ptr<const HorizonPicture> horizon;  ///< null: not yet, or not wanted

@@ -40,9 +40,12 @@ std::string light_words(const PointLight& point, sun::Instant now, const sun::Zo
         return next ? "in the sun, till it leaves at " + clock_text(*next, zone)
                     : "in the sun, till the day ends";
     if (next) return "in shade, sun comes at " + clock_text(*next, zone);
-    return (point.lit.empty() ? "no sun today" : "in shade till night") +
-           (point.tomorrow ? ", tomorrow from " + clock_text(*point.tomorrow, zone)
-                           : std::string(", nor tomorrow"));
+    std::string text = point.lit.empty() ? "no sun today" : "no more sun today";
+    if (point.tomorrow)
+        text += ", tomorrow from " + clock_text(*point.tomorrow, zone);
+    else if (point.tomorrow_is_known)
+        text += ", nor tomorrow";
+    return text;
 }
 
 /// Of a span, as its ends are shown.
@@ -52,15 +55,15 @@ std::string span_text(const LitSpan& span) {
     return fmt::format("  ({})", duration_text(60 * (minute(span.end) - minute(span.begin))));
 }
 
-/// "no sun at all on 30 days, 8 Dec to 6 Jan"
+/// "no sun at all on 34 days, 30 of them from 8 Dec to 6 Jan"
 std::string dark_text(const YearPicture& year) {
-    if (year.dark_days == 0 || !year.dark) return "sun on every day of the year";
-    const auto& [first, last] = *year.dark;
+    if (year.dark_days == 0) return "sun on every day of the year";
     std::string text =
         fmt::format("no sun at all on {} day{}", year.dark_days, year.dark_days == 1 ? "" : "s");
-    text += first == last ? ", " + day_label(first)
-                          : fmt::format(", {} to {}", day_label(first), day_label(last));
-    return text;
+    if (year.dark_row < year.dark_days) text += fmt::format(", {} of them", year.dark_row);
+    const auto& [first, last] = year.dark;
+    return text + (first == last ? ", " + day_label(first)
+                                 : fmt::format(", {} to {}", day_label(first), day_label(last)));
 }
 
 /// What the DEM leaves open.

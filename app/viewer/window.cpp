@@ -239,6 +239,10 @@ struct Window::Impl {
     }
 };
 
+bool is_enter(const KeyPress& press) {
+    return press.key == GLFW_KEY_ENTER || press.key == GLFW_KEY_KP_ENTER;
+}
+
 Window::Window(const std::string& title) : impl_(std::make_unique<Impl>(title)) {}
 Window::~Window() = default;
 
@@ -343,7 +347,7 @@ void Window::draw(const std::function<void()>& panels) {
 std::vector<KeyPress> Window::take_keys() {
     std::vector<KeyPress> keys = std::exchange(impl_->keys, {});
     if (ImGui::GetIO().WantTextInput)
-        std::erase_if(keys, [](const KeyPress& press) { return press.key != GLFW_KEY_ENTER; });
+        std::erase_if(keys, [](const KeyPress& press) { return !is_enter(press); });
     return keys;
 }
 

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "dem/load.h"
+#include "light/fields.h"
 #include "session/session.h"
 #include "sun/position.h"
 #include "sun/seasons.h"
@@ -292,9 +293,11 @@ TEST(PointWork, KnowsWhenTheSunComesBackAndTheDaysWithoutIt) {
     ASSERT_EQ(winter->error, "");
     EXPECT_TRUE(winter->lit.empty());
     EXPECT_FALSE(winter->tomorrow);
-    ASSERT_TRUE(winter->year && winter->year->dark);
-    const auto [first, last] = *winter->year->dark;
-    EXPECT_EQ(winter->year->dark_days, sun::days_between(first, {2027, last.month, last.day}) + 1);
+    ASSERT_TRUE(winter->year);
+    const auto [first, last] = winter->year->dark;
+    EXPECT_TRUE(winter->tomorrow_is_known);
+    EXPECT_EQ(winter->year->dark_row, sun::days_between(first, {2027, last.month, last.day}) + 1);
+    EXPECT_EQ(winter->year->dark_days, winter->year->dark_row);
     // As long before the solstice as after it.
     const int before = sun::days_between(first, {2026, 12, 21}),
               after = sun::days_between({2025, 12, 21}, last);
@@ -306,6 +309,34 @@ TEST(PointWork, KnowsWhenTheSunComesBackAndTheDaysWithoutIt) {
     ASSERT_TRUE(end->tomorrow);
     wanted.date = sun::add_days(last, 1);
     EXPECT_EQ(answer()->lit.front().begin, *end->tomorrow);
+    // After the last day for which the sun is computed nothing is known.
+    wanted.date = {2100, 12, 31};
+    EXPECT_EQ(answer()->error, "");
+    EXPECT_FALSE(answer()->tomorrow_is_known);
+}
+
+TEST(PointWork, PolarNightIsDaysWithoutSun) {
+    const auto plain = std::make_shared<const session::LoadedDem>(
+        session::LoadedDem{nullptr, test::field_of(60, 60, {20, 0.001, 0, 75, 0, -0.001},
+                                                   "EPSG:4326", [](int, int) { return 100.0; })});
+    PointWanted wanted;
+    wanted.dem = plain;
+    wanted.refraction = "standard";
+    wanted.place = plain->field.grid.place(30, 30);
+    wanted.date = {2026, 6, 21};
+    wanted.zone = sun::Zone::named("UTC");
+    wanted.chart_px = {640, 220};
+    PointWork work([] {});
+    work.want(wanted);
+    while (!work.is_done())
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ASSERT_EQ(work.answer()->error, "");
+    // From the first days of November to the first ones of February.
+    const YearPicture& year = *work.answer()->year;
+    EXPECT_NEAR(year.dark_days, 92, 5);
+    EXPECT_EQ(year.dark_row, year.dark_days);
+    EXPECT_EQ(year.dark.first.month, 11);
+    EXPECT_EQ(year.dark.second.month, 2);
 }
 
 TEST(PointLight, MidnightIsNoEdgeOfTheLight) {
