@@ -40,7 +40,7 @@ std::optional<glm::vec2> chosen_in_window(const State& state, glm::vec2 size_px)
     const auto at = in_picture(camera_of(state.document.pose, state.land),
                                state.land.frame->to_local(place), double{size_px.x} / size_px.y);
     if (!at) return std::nullopt;
-    return glm::vec2((at->x + 1) / 2, (1 - at->y) / 2) * size_px;
+    return in_window(*at, size_px);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ constexpr float kClick_px = 4;  // that a click may move by
 /// The last turn of the wheel and the last pull of the hand die away so fast [1/s].
 constexpr double kZoomRate = 14, kGlideRate = 7;
 constexpr float kPanANotch_px = 60;
+constexpr double kAhead_deg = -10;  // as a walker looks
 
 }  // namespace
 
@@ -90,33 +91,40 @@ void Hand::glide(double passed_s) {
     }
 }
 
-bool Hand::move(Command command, const Pose& home) {
+bool Hand::move(Command command, const Whole& whole) {
     Pose& pose = state_.document.pose;
     const glm::dvec3 middle = hold(0.5f * window_.size());
     stop_gliding();
     switch (command) {
         case Command::Whole:
-            pose = home;
+            pose = whole.home;
             return true;
         case Command::NorthUp:
             pose = orbit(pose, state_.land, middle, pose.heading_deg, 0);
             pose.heading_deg = 0;
             return true;
-        case Command::FromAbove:
-            pose = from_above(pose, state_.land, middle, distance(pose.eye_m, middle));
+        case Command::FromAbove: {
+            // Whoever sees about all of the DEM goes on seeing all of it.
+            const double away_m = distance(pose.eye_m, middle);
+            const bool sees_all = away_m > 0.5 * distance(whole.above.eye_m, middle);
+            pose = sees_all ? whole.above : from_above(pose, state_.land, middle, away_m);
             return true;
+        }
         case Command::Walk:
             walking_ = !walking_;
-            if (walking_) pose = walk(pose, state_.land, {0, 0});
+            if (walking_) {
+                // Whoever saw the ground from above does not look at his feet.
+                pose.pitch_deg = std::max(pose.pitch_deg, kAhead_deg);
+                pose = walk(pose, state_.land, {0, 0});
+            }
             return true;
         default:
             return false;
     }
 }
 
-/// From the window's pixels to -1 to 1.
 glm::dvec2 Hand::in_view(glm::vec2 at_px) const {
-    return {2 * at_px.x / window_.size().x - 1, 1 - 2 * at_px.y / window_.size().y};
+    return viewer::in_view(at_px, window_.size());
 }
 
 /// The ground of the picture that is shown.

@@ -12,6 +12,11 @@
 
 namespace relevo::viewer {
 
+/// Views of the whole DEM.
+struct Whole {
+    Pose home, above;
+};
+
 /// What mouse, wheel and held keys do to the camera, the sun and the line of a comparison.
 class Hand {
   public:
@@ -25,7 +30,8 @@ class Hand {
     /// @param new_input  ImGui has taken clicks in since then
     void act(double passed_s, bool comparing, bool new_input);
     /// Moves that a key or a menu asks for. @returns whether it is one
-    bool move(Command command, const Pose& home);
+    /// @param whole  the whole DEM, and all of it from above
+    bool move(Command command, const Whole& whole);
     /// Lets go, and lets nothing glide on.
     void rest();
 
@@ -35,6 +41,7 @@ class Hand {
     bool is_busy() const { return dragging_ || is_moving(); }
     /// Whether the last act() moved the camera.
     bool has_moved() const { return has_moved_; }
+    bool is_walking() const { return walking_; }
     /// Ground that was clicked since the last call.
     std::optional<glm::dvec3> take_click() { return std::exchange(clicked_, std::nullopt); }
 

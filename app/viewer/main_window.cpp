@@ -148,8 +148,7 @@ void MainWindow::pass_time(double passed_s) {
 }
 
 double MainWindow::unit() const {
-    constexpr double kUsual_px = 16;
-    return window_->scale() * state_.settings.text_px / kUsual_px;
+    return window_->scale() * state_.settings.text_px / kUsualText_px;
 }
 
 void MainWindow::panels() {

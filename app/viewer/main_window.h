@@ -73,6 +73,10 @@ class MainWindow {
     void compare();
     void stop_comparing();
     void want_size();
+    /// Beside the panels as they are.
+    Pose pose_in(const scene::View& view) const;
+    Whole whole_views() const;
+    scene::Insets insets() const;
     void read_thread();
     void watch_comparison();
     /// To what was open before, once: it may be gone as well.
@@ -205,7 +209,8 @@ class MainWindow {
     LegendPicture legend_;
     bool saves_when_whole_ = false;
     History history_;
-    Pose home_;
+    scene::View home_view_;     // of the DEM when it was opened first
+    bool reads_again_ = false;  // the same DEM, which was written meanwhile
     std::shared_ptr<const Picture> picture_;
     std::unique_ptr<SceneThread> before_;  // of a comparison
     std::shared_ptr<const Picture> picture_before_;

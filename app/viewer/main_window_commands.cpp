@@ -39,7 +39,6 @@ void MainWindow::choose_point(const glm::dvec3& point_m) {
 void MainWindow::keys() {
     for (const KeyPress& press : window_->take_keys()) {
         busy_frames_ = 3;
-        if (is_enter(press)) open_panel_.enter();
         if (const auto command = command_of(press))
             state_.commands.push_back(*command);
         else if (!press.control && press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9)
@@ -154,8 +153,12 @@ void MainWindow::move(Command command) {
         by(-kDay_s);
     else if (command == Command::DayLater)
         by(kDay_s);
-    else if (!hand_->move(command, home_))
+    else if (!hand_->move(command, whole_views()))
         return;
+    if (command == Command::Walk)
+        tell(hand_->is_walking()
+                 ? "walking at eye height: W A S D, faster with Shift; G flies again"
+                 : "flying: W A S D, Q down and E up, faster with Shift");
     moved();
     state_.step = true;
 }

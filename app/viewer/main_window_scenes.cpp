@@ -64,7 +64,32 @@ void MainWindow::want_size() {
     Wanted wanted;
     wanted.width_px = size.x;
     wanted.height_px = size.y;
+    wanted.insets = insets();
     scene_->want(wanted);
+}
+
+Pose MainWindow::pose_in(const scene::View& view) const {
+    const double aspect = static_cast<double>(size().x) / size().y;
+    return pose_of(opened_->camera(view, aspect, insets()), state_.land);
+}
+
+Whole MainWindow::whole_views() const {
+    scene::View above;
+    above.orbit = {.azimuth_deg = 180, .elevation_deg = 90};
+    above.fov_y_rad = state_.document.pose.fov_y_rad;
+    Whole whole{pose_in(home_view_), pose_in(above)};
+    // Upright at its own place, where down is not quite what it is in the DEM's middle.
+    whole.above = from_above(whole.above, state_.land, whole.above.eye_m, 0);
+    return whole;
+}
+
+scene::Insets MainWindow::insets() const {
+    if (!state_.settings.panels) return {};
+    const auto text_px = static_cast<float>(unit() * kUsualText_px);
+    scene::Insets insets = side_panel_insets(state_, size(), unit());
+    insets.top = 1.5 * text_px / size().y;     // the menu
+    insets.bottom = 2.0 * text_px / size().y;  // the line of the cursor
+    return insets;
 }
 
 void MainWindow::read_thread() {
@@ -118,7 +143,10 @@ void MainWindow::go_back(std::string why) {
     has_failed_ = has_gone_back_;
     if (has_failed_) return;
     has_gone_back_ = true;
-    state_.document.scene = *last_good_;
+    // The DEM that was read again is seen from where it was, when it is whole again.
+    const scene::Scene tried = std::exchange(state_.document.scene, *last_good_);
+    reads_again_ = reads_again_ && tried.dems == last_good_->dems;
+    if (reads_again_) state_.document.scene.view = tried.view;
     open();
 }
 
@@ -139,7 +167,8 @@ void MainWindow::start(std::shared_ptr<const Opened> opened) {
     }
     const sun::Zone zone_before = document.zone;
     document.zone = sun::choose_zone(zone_, state_.centre).zone;
-    document.pose = home_ = pose_of(opened_->camera, state_.land);
+    if (!std::exchange(reads_again_, false)) home_view_ = scene.view;
+    document.pose = pose_in(scene.view);
     state_.set_utc(last_good_ ? same_hour(document.utc, zone_before, document.zone) : opened_->utc);
     history_.add(document);
     window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
@@ -178,9 +207,8 @@ void MainWindow::take_all_posts(std::shared_ptr<const Opened> opened) {
     Document& document = state_.document;
     const bool is_as_opened = !history_.can_undo() && !history_.differs(document);
     stand_on_ground();
-    home_ = pose_of(opened_->camera, state_.land);
     if (is_as_opened) {
-        document.pose = home_;
+        document.pose = pose_in(opened_->scene.view);
         if (document.utc == before->utc) document.utc = opened_->utc;
         history_ = {};
         history_.add(document);
@@ -225,6 +253,7 @@ void MainWindow::open_files() {
     if (recent) files = recent->files;
     if (files.empty() || !last_good_) return;
     tried_ = files.front();
+    reads_again_ = false;
     scene::Scene& scene = state_.document.scene;
     scene.dems = std::move(files);
     scene.view = {};
@@ -265,6 +294,7 @@ void MainWindow::watch_files() {
     if (dem_files_.changed() && dem_files_.all_there()) {
         if (is_open()) state_.document.scene.view = view_of(state_.document.pose, state_.land);
         has_gone_back_ = has_failed_ = false;
+        reads_again_ = true;
         tell("the DEM was written again, and read again");
         open();
     }

@@ -101,6 +101,14 @@ std::optional<glm::dvec2> in_picture(const scene::Camera& camera, const glm::dve
                       dot(to, camera.up) / (depth * tan_y));
 }
 
+glm::vec2 in_window(glm::dvec2 at, glm::vec2 size_px) {
+    return glm::vec2((at.x + 1) / 2, (1 - at.y) / 2) * size_px;
+}
+
+glm::dvec2 in_view(glm::vec2 at_px, glm::vec2 size_px) {
+    return {2 * at_px.x / size_px.x - 1, 1 - 2 * at_px.y / size_px.y};
+}
+
 Pose orbit(const Pose& pose, const Land& land, const glm::dvec3& pivot_m, double right_deg,
            double up_deg) {
     const scene::Camera camera = camera_of(pose, land);

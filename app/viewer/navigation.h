@@ -48,6 +48,10 @@ glm::dvec3 ray(const scene::Camera& camera, glm::dvec2 at, double aspect);
 std::optional<glm::dvec2> in_picture(const scene::Camera& camera, const glm::dvec3& point_m,
                                      double aspect);
 
+/// From -1 to 1 to the window's pixels, from its upper left, and back.
+glm::vec2 in_window(glm::dvec2 at, glm::vec2 size_px);
+glm::dvec2 in_view(glm::vec2 at_px, glm::vec2 size_px);
+
 /// Turns about a point of the ground, which stays where it is in the picture.
 Pose orbit(const Pose& pose, const Land& land, const glm::dvec3& pivot_m, double right_deg,
            double up_deg);

@@ -54,7 +54,7 @@ void OpenPanel::choose(const fs::path& file) {
 }
 
 void OpenPanel::enter() {
-    if (!is_open_ || name_.empty()) return;
+    if (name_.empty()) return;
     std::error_code ignored;
     const fs::path named = folder_ / name_;  // or what is absolute
     fs::is_directory(named, ignored) ? go_to(named) : choose(named);
@@ -80,10 +80,11 @@ void OpenPanel::draw(glm::vec2 size_px) {
         if (std::exchange(is_written_to_, false)) ImGui::SetKeyboardFocusHere();
         ImGui::SetNextItemWidth(-4 * line);
         ImGui::PushID(visits_);
-        ImGui::InputText("##name", &name_);
+        const bool is_done =
+            ImGui::InputText("##name", &name_, ImGuiInputTextFlags_EnterReturnsTrue);
         ImGui::PopID();
         ImGui::SameLine();
-        if (ImGui::Button("Open", {-1, 0})) enter();
+        if (ImGui::Button("Open", {-1, 0}) || is_done) enter();
         if (ImGui::BeginChild("files", {0, 0}, /*border=*/true)) list();
         ImGui::EndChild();
     }

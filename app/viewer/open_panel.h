@@ -16,9 +16,6 @@ class OpenPanel {
     /// Shows the folder of a file. @param dem  empty: the working folder
     void open(const std::string& dem);
     void close() { is_open_ = false; }
-    /// Opens what is written, or goes to that folder. ImGui misses keys that are let go within one
-    /// of its frames.
-    void enter();
     /// Nothing where it is closed. @param size_px  of the window
     void draw(glm::vec2 size_px);
     /// What was chosen since the last call.
@@ -28,6 +25,8 @@ class OpenPanel {
     void go_to(const std::filesystem::path& folder);
     void choose(const std::filesystem::path& file);
     void list();
+    /// Opens what is written, or goes to that folder.
+    void enter();
 
     bool is_open_ = false;
     bool is_written_to_ = false;  // the name takes the keyboard in the next frame

@@ -18,11 +18,6 @@ namespace {
 constexpr ImU32 kLine = IM_COL32(255, 80, 60, 255);
 constexpr ImU32 kInk = IM_COL32(255, 255, 255, 235), kShade = IM_COL32(0, 0, 0, 150);
 
-ImVec2 at_window(glm::dvec2 at, glm::vec2 size_px) {
-    return {static_cast<float>((at.x + 1) / 2) * size_px.x,
-            static_cast<float>((1 - at.y) / 2) * size_px.y};
-}
-
 /// 1, 2 or 5 times a power of ten, no larger.
 double round_length(double length) {
     const double power = std::pow(10, std::floor(std::log10(length)));
@@ -111,7 +106,8 @@ void draw_measured(const std::vector<glm::dvec3>& points, const std::optional<Pr
     for (const glm::dvec3& point : points) {
         const auto at = in_picture(picture.camera, point, aspect);
         if (!at) return;
-        const ImVec2 px = at_window(*at, size_px);
+        const glm::vec2 in_px = in_window(*at, size_px);
+        const ImVec2 px(in_px.x, in_px.y);
         if (before) list.AddLine(*before, px, kLine, 2);
         list.AddCircleFilled(px, 5, kLine);
         list.AddCircle(px, 6, IM_COL32_WHITE, 0, 1.5f);

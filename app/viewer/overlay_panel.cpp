@@ -99,7 +99,7 @@ void overlay_panel(State& state) {
 
 std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& place) {
     const double value = overlay.value_at(place);
-    if (std::isnan(value)) return {};
+    if (std::isnan(value)) return overlay.raster ? "no figure of the overlay here" : "";
     switch (overlay.of.raster.figure) {
         case session::SunFigure::Shadow:
             return value > 0 ? "in the sun" : "in shade";

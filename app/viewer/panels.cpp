@@ -10,7 +10,7 @@
 namespace relevo::viewer {
 namespace {
 
-constexpr float kPanel_px = 360;
+constexpr float kPanel_px = 360, kBeside_px = 10;
 
 void take_away_panel(State& state) {
     const auto button = [&](const char* name, Command command) {
@@ -39,12 +39,14 @@ void keep_in_reach(glm::vec2 size_px) {
 void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     const auto width = static_cast<float>(kPanel_px * px_a_unit);
     const float top = 10 + ImGui::GetFrameHeight();
-    ImGui::SetNextWindowPos({10, top}, ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowPos({kBeside_px, top}, ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSizeConstraints({width, 60}, {width, size_px.y - top - 50});
     ImGui::Begin("Relevo", nullptr,
                  ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize);
     constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
     keep_in_reach(size_px);
+    const float left = ImGui::GetWindowPos().x;
+    state.side_panel_px = {left, ImGui::IsWindowCollapsed() ? left : left + width};
     if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state);
     if (ImGui::CollapsingHeader("Overlay", kOpen)) overlay_panel(state);
     if (ImGui::CollapsingHeader("Point", kOpen)) point_panel(state);
@@ -52,6 +54,18 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state);
     if (ImGui::CollapsingHeader("Take it away", kOpen)) take_away_panel(state);
     ImGui::End();
+}
+
+scene::Insets side_panel_insets(const State& state, glm::vec2 size_px, double px_a_unit) {
+    const auto width = static_cast<float>(kPanel_px * px_a_unit);
+    const glm::vec2 sides = state.side_panel_px.value_or(glm::vec2(kBeside_px, kBeside_px + width));
+    if (sides.x == sides.y) return {};
+    scene::Insets insets;
+    if (sides.x + sides.y < size_px.x)
+        insets.left = std::max(0.0f, (sides.y + kBeside_px) / size_px.x);
+    else
+        insets.right = std::max(0.0f, 1 - (sides.x - kBeside_px) / size_px.x);
+    return std::max(insets.left, insets.right) > 0.5 ? scene::Insets() : insets;
 }
 
 void status_line(const State& state, bool is_drawing) {

@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "gl/texture.h"
 #include "session/active_effects.h"
+#include "viewer/navigation.h"
 
 namespace relevo::viewer {
 namespace {
@@ -47,6 +48,13 @@ std::string text_of(const std::exception& error) {
 
 }  // namespace
 
+scene::Camera Opened::camera(const scene::View& view, double aspect,
+                             const scene::Insets& insets) const {
+    return scene::make_camera(
+        view, [this](const geo::Geodetic& at) { return dem->height_m(at); }, ground.frame, outline,
+        aspect, scene.exaggeration, insets);
+}
+
 struct SceneThread::Impl {
     scene::Scene scene;
     std::string device;
@@ -72,6 +80,7 @@ struct SceneThread::Impl {
     bool awaits_pages = false;  // of a picture at rest
     Clock::duration pause{};    // before it is drawn again: as long as it took
     std::unique_ptr<session::Session> session;
+    scene::View view;  // while none is wanted
     glm::dvec3 shadows_eye_m{0};
     double ms_a_pixel = 0;
     Clock::time_point shadows_at;
@@ -95,6 +104,7 @@ struct SceneThread::Impl {
             changed.wait(lock, [&] { return ends || has_new_wants; });
             session->resize(wanted.width_px, wanted.height_px);
             opened = as_opened();
+            view = whole_view();
         } catch (...) {
             const std::lock_guard lock(mutex);
             failure = std::current_exception();
@@ -104,11 +114,20 @@ struct SceneThread::Impl {
         session.reset();
     }
 
+    /// The opened scene's, as its camera stands beside the panels. Under the lock.
+    scene::View whole_view() const {
+        const scene::Scene& given = opened->scene;
+        if (given.view.eye) return given.view;
+        const double aspect = static_cast<double>(wanted.width_px) / wanted.height_px;
+        const Land land{&opened->ground.frame, given.exaggeration, {}};
+        return view_of(pose_of(opened->camera(given.view, aspect, wanted.insets), land), land);
+    }
+
     std::shared_ptr<const Opened> as_opened() const {
         std::optional<chart::Legend> legend;
         if (session->scene().overlay) legend = session->legends().front();
         return std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
-                                               session->camera(), session->moment(),
+                                               session->outline(), session->moment(),
                                                std::move(legend)});
     }
 
@@ -139,6 +158,7 @@ struct SceneThread::Impl {
         auto anew = as_opened();
         const std::lock_guard lock(mutex);
         opened = std::move(anew);
+        view = whole_view();
     }
 
     void draw_until_end() {
@@ -224,7 +244,7 @@ struct SceneThread::Impl {
     bool draw(const Wanted& now, std::uint64_t answers) {
         const auto began = Clock::now();
         const double scale = scale_for(now);
-        if (now.view) session->look(*now.view);
+        session->look(now.view ? *now.view : view);
         if (now.utc && *now.utc != session->moment()) {
             session->set_moment(*now.utc);
             shadows_lag = !session->effects().loaded.modules.empty();  // core's never do

@@ -21,16 +21,20 @@ struct Wanted {
     std::optional<scene::View> view;  ///< none: the scene's
     std::optional<sun::Instant> utc;  ///< likewise
     int width_px = 1, height_px = 1;  ///< of the window
+    scene::Insets insets;             ///< of its panels, for the scene's view
     bool moving = false;              ///< the hand moves the camera: rather soon than sharp
     bool sun_moving = false;          ///< likewise the sun: shadows may lag behind
 };
 
 /// A scene as it was opened.
 struct Opened {
+    /// A view of it without an eye of its own stands so that all is seen beside the panels.
+    scene::Camera camera(const scene::View& view, double aspect, const scene::Insets& insets) const;
+
     std::shared_ptr<const session::LoadedDem> dem;
     render::Ground ground;
-    scene::Scene scene;
-    scene::Camera camera;
+    scene::Scene scene;  ///< whose orbit has both angles
+    scene::Outline outline;
     sun::Instant utc;
     std::optional<chart::Legend> legend;  ///< of the scene's overlay
 };

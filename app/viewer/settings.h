@@ -17,18 +17,18 @@ enum class Coordinates { Utm, Mgrs, Degrees };
 /// "47.41700 N 11.43708 E", "32N 683473 E 5255234 N", "32TPT8347355234".
 std::string coordinates_text(const geo::Geodetic& place, Coordinates coordinates);
 
+inline constexpr int kLeastText_px = 11, kUsualText_px = 16, kMostText_px = 32;
+
 /// How the window looks.
 struct Settings {
     bool light_style = false;
-    int text_px = 16;  ///< kLeastText_px to kMostText_px
+    int text_px = kUsualText_px;  ///< kLeastText_px to kMostText_px
     Coordinates coordinates = Coordinates::Utm;
     bool panels = true;  ///< all of them
     bool charts = true;  ///< the chosen point's horizon and year
 
     bool operator==(const Settings&) const = default;
 };
-
-inline constexpr int kLeastText_px = 11, kMostText_px = 32;
 
 /// A camera and a moment, by a name.
 struct SavedView {

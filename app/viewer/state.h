@@ -72,6 +72,8 @@ struct State {
     std::optional<std::size_t> view_to_go_to;  ///< of views
     std::string place_to_go_to;                ///< "47.4395, 11.8935"; empty: none
     bool views_changed = false;
+    /// Where the side panel lies, from left to right [px]; none: not drawn yet.
+    std::optional<glm::vec2> side_panel_px;
     glm::ivec2 chart_px{0};  ///< that drawings of the point have room in; 0: none is shown
     bool sun_moves = false;  ///< a widget of the sun is held
     bool step = false;       ///< a change is done, for undo
@@ -100,6 +102,8 @@ void menu_bar(State& state);
 /// @param size_px    of the window; likewise below
 /// @param px_a_unit  of what is made for usual letters; likewise
 void side_panel(State& state, glm::vec2 size_px, double px_a_unit);
+/// What it covers where it stands at a side of the window; none where it covers most of it.
+scene::Insets side_panel_insets(const State& state, glm::vec2 size_px, double px_a_unit);
 /// The ground under the cursor, at the lower edge.
 void status_line(const State& state, bool is_drawing);
 /// While no scene is open.

@@ -21,8 +21,8 @@ std::optional<ImVec2> at_window(const Picture& picture, glm::vec2 size_px,
     const auto at = in_picture(picture.camera, picture.camera.eye_m + kFar_m * direction,
                                static_cast<double>(size_px.x) / size_px.y);
     if (!at || std::abs(at->x) > 4 || std::abs(at->y) > 4) return std::nullopt;
-    return ImVec2(static_cast<float>((at->x + 1) / 2) * size_px.x,
-                  static_cast<float>((1 - at->y) / 2) * size_px.y);
+    const glm::vec2 px = in_window(*at, size_px);
+    return ImVec2(px.x, px.y);
 }
 
 /// Whether there is sky at a place of the window.

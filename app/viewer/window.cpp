@@ -125,6 +125,9 @@ struct Window::Impl {
     std::set<char32_t> letters;  // that panels show besides the usual ones
     std::vector<KeyPress> keys;
     std::set<int> held;  // pressed without Ctrl, whichever of the two is let go first
+    /// Since the last frame. ImGui looks at keys once a frame: one that has been let go by then
+    /// was none to it.
+    std::vector<int> tapped;
     std::vector<std::string> dropped;
     bool has_input = false;  // clicks, keys or turns of the wheel
 
@@ -174,6 +177,7 @@ struct Window::Impl {
                 const bool control = (mods & GLFW_MOD_CONTROL) != 0;
                 if (action == GLFW_PRESS && !control) self.held.insert(code);
                 if (action == GLFW_RELEASE) self.held.erase(code);
+                if (action == GLFW_PRESS) self.tapped.push_back(code);
                 const int key = letter_of(code, scancode);
                 if (action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key)))
                     self.keys.push_back({key, control, (mods & GLFW_MOD_SHIFT) != 0});
@@ -238,10 +242,6 @@ struct Window::Impl {
         before.target->copy_to_window(size.x, size.y, line);
     }
 };
-
-bool is_enter(const KeyPress& press) {
-    return press.key == GLFW_KEY_ENTER || press.key == GLFW_KEY_KP_ENTER;
-}
 
 Window::Window(const std::string& title) : impl_(std::make_unique<Impl>(title)) {}
 Window::~Window() = default;
@@ -330,7 +330,13 @@ void Window::set_line(float share) {
 void Window::draw(const std::function<void()>& panels) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    ImGuiIO& io = ImGui::GetIO();
+    const std::vector<int> tapped = std::exchange(impl_->tapped, {});
+    for (const int key : tapped)
+        if (key >= 0) io.KeysDown[key] = true;
     ImGui::NewFrame();
+    for (const int key : tapped)
+        if (key >= 0) io.KeysDown[key] = glfwGetKey(impl_->handle, key) == GLFW_PRESS;
     panels();
     const glm::ivec2 size = size_px();
     if (impl_->before.target) {
@@ -346,8 +352,7 @@ void Window::draw(const std::function<void()>& panels) {
 
 std::vector<KeyPress> Window::take_keys() {
     std::vector<KeyPress> keys = std::exchange(impl_->keys, {});
-    if (ImGui::GetIO().WantTextInput)
-        std::erase_if(keys, [](const KeyPress& press) { return !is_enter(press); });
+    if (ImGui::GetIO().WantTextInput) keys.clear();
     return keys;
 }
 

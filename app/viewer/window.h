@@ -19,8 +19,6 @@ struct KeyPress {
     int key = 0;  ///< GLFW_KEY_...
     bool control = false, shift = false;
 };
-/// Of the letters or of the numbers.
-bool is_enter(const KeyPress& press);
 
 /// A window with panels in it, on the display there is.
 class Window {

@@ -20,27 +20,44 @@ glm::dvec3 upright(const glm::dvec3& forward, const glm::dvec3& up, const glm::d
     return normalize(across);
 }
 
+/// The part of a picture that ground is fitted into, of each direction the tangents of its sides.
+struct Room {
+    double left = 0, right = 0, bottom = 0, top = 0;
+
+    /// @param share  of what the insets leave, about its middle
+    static Room of(double fov_y_rad, double aspect, const Insets& insets, double share) {
+        const double tan_y = std::tan(fov_y_rad / 2), tan_x = tan_y * aspect;
+        const double x = insets.left - insets.right, y = insets.bottom - insets.top;
+        const double width = share * (1 - insets.left - insets.right);
+        const double height = share * (1 - insets.bottom - insets.top);
+        return {tan_x * (x - width), tan_x * (x + width), tan_y * (y - height),
+                tan_y * (y + height)};
+    }
+};
+
 /// Where a camera stands that looks along a direction: `a` to the right and `b` up from the axis
 /// through the origin, and a distance back along it [m].
 struct Fit {
     double a = 0, b = 0, distance_m = 0;
 
-    /// Whether the camera has all of these points in its picture.
-    bool shows(const Camera& camera, std::span<const glm::dvec3> points, double aspect) const {
-        const double tan_y = std::tan(camera.fov_y_rad / 2);
+    /// Whether the camera has all of these points in a part of its picture.
+    bool shows(const Camera& camera, std::span<const glm::dvec3> points, const Room& room) const {
         const glm::dvec3 right = cross(camera.forward, camera.up);
         return std::all_of(points.begin(), points.end(), [&](const glm::dvec3& point) {
             const double depth = distance_m + dot(point, camera.forward);
-            return std::abs(dot(point, right) - a) <= depth * tan_y * aspect &&
-                   std::abs(dot(point, camera.up) - b) <= depth * tan_y;
+            const double x = dot(point, right) - a, y = dot(point, camera.up) - b;
+            return x >= depth * room.left && x <= depth * room.right && y >= depth * room.bottom &&
+                   y <= depth * room.top;
         });
     }
 };
 
 /// Where a camera stands along an axis of its picture so that the points reach as far to one side
-/// of the middle as to the other, between two places from which all are seen.
+/// of a place in it as to the other, between two places from which all are seen.
+/// @param place  tangent of its direction
 double centred(std::span<const glm::dvec3> points, const glm::dvec3& axis,
-               const glm::dvec3& to_camera, double distance_m, double low, double high) {
+               const glm::dvec3& to_camera, double distance_m, double place, double low,
+               double high) {
     constexpr int kHalvings = 40;
     for (int i = 0; i < kHalvings; ++i) {
         const double middle = 0.5 * (low + high);
@@ -50,45 +67,44 @@ double centred(std::span<const glm::dvec3> points, const glm::dvec3& axis,
             least = std::min(least, at);
             most = std::max(most, at);
         }
-        (least + most > 0 ? low : high) = middle;
+        (least + most > 2 * place ? low : high) = middle;
     }
     return 0.5 * (low + high);
 }
 
-/// The nearest place from which all points are within kFill of the picture's sides.
-Fit fit_to(const Camera& camera, std::span<const glm::dvec3> points, double aspect) {
+/// The nearest place from which all points are in a part of the picture.
+Fit fit_to(const Camera& camera, std::span<const glm::dvec3> points, const Room& room) {
     const glm::dvec3 to_camera = -camera.forward;
     const glm::dvec3 right = cross(camera.forward, camera.up);
 
     // Each point asks for a wedge: with the camera at target + d to_camera + a right + b up, the
-    // point is inside while |x - a| <= (d - z) tan. The middle of the extremes of x + z tan and x -
-    // z tan gives a, the larger of the two spreads gives d: the tightest view, no iteration.
-    const double tan_y = std::tan(camera.fov_y_rad / 2) * kFill;
-    const double tan_x = tan_y * aspect;
+    // point is inside while (d - z) left <= x - a <= (d - z) right. The least a that x + z right
+    // leaves and the largest that x + z left does meet at the distance: the larger of both
+    // directions' is the tightest view, no iteration.
     struct Spread {
         double highest = -1e300, lowest = 1e300;
     } horizontal, vertical;
     double nearest = -1e300;
     for (const glm::dvec3& point : points) {
         const double x = dot(point, right), y = dot(point, camera.up), z = dot(point, to_camera);
-        horizontal.highest = std::max(horizontal.highest, x + z * tan_x);
-        horizontal.lowest = std::min(horizontal.lowest, x - z * tan_x);
-        vertical.highest = std::max(vertical.highest, y + z * tan_y);
-        vertical.lowest = std::min(vertical.lowest, y - z * tan_y);
+        horizontal.highest = std::max(horizontal.highest, x + z * room.right);
+        horizontal.lowest = std::min(horizontal.lowest, x + z * room.left);
+        vertical.highest = std::max(vertical.highest, y + z * room.top);
+        vertical.lowest = std::min(vertical.lowest, y + z * room.bottom);
         nearest = std::max(nearest, z);
     }
     Fit fit;
-    fit.distance_m = std::max((horizontal.highest - horizontal.lowest) / (2 * tan_x),
-                              (vertical.highest - vertical.lowest) / (2 * tan_y));
+    fit.distance_m = std::max((horizontal.highest - horizontal.lowest) / (room.right - room.left),
+                              (vertical.highest - vertical.lowest) / (room.top - room.bottom));
     fit.distance_m = std::max(fit.distance_m, nearest + 1);
     // That is the nearest place from which all is seen, but where one direction has room to spare
     // the ground need not lie in its middle: shift it there, as seen.
-    fit.a = centred(points, right, to_camera, fit.distance_m,
-                    horizontal.highest - fit.distance_m * tan_x,
-                    horizontal.lowest + fit.distance_m * tan_x);
-    fit.b = centred(points, camera.up, to_camera, fit.distance_m,
-                    vertical.highest - fit.distance_m * tan_y,
-                    vertical.lowest + fit.distance_m * tan_y);
+    fit.a = centred(points, right, to_camera, fit.distance_m, 0.5 * (room.left + room.right),
+                    horizontal.highest - fit.distance_m * room.right,
+                    horizontal.lowest - fit.distance_m * room.left);
+    fit.b = centred(points, camera.up, to_camera, fit.distance_m, 0.5 * (room.bottom + room.top),
+                    vertical.highest - fit.distance_m * room.top,
+                    vertical.lowest - fit.distance_m * room.bottom);
     return fit;
 }
 
@@ -100,7 +116,7 @@ double fov_y_of_focal_length(double focal_length_mm, double aspect) {
 }
 
 Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,
-                    double aspect, std::span<const glm::dvec3> also) {
+                    double aspect, std::span<const glm::dvec3> also, const Insets& insets) {
     const double azimuth = radians(orbit.azimuth_deg.value());
     const double elevation = radians(orbit.elevation_deg.value());
     const glm::dvec3 to_camera{std::sin(azimuth) * std::cos(elevation),
@@ -113,11 +129,12 @@ Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, doub
     double middle = 0;  // depth of the ground's middle
     for (const glm::dvec3& point : points)
         middle += dot(point, to_camera) / static_cast<double>(points.size());
-    Fit fit = fit_to(camera, points, aspect);
-    if (!fit.shows(camera, also, aspect)) {
+    const Room room = Room::of(fov_y_rad, aspect, insets, kFill);
+    Fit fit = fit_to(camera, points, room);
+    if (!fit.shows(camera, also, Room::of(fov_y_rad, aspect, insets, 1))) {
         std::vector<glm::dvec3> all(points.begin(), points.end());
         all.insert(all.end(), also.begin(), also.end());
-        fit = fit_to(camera, all, aspect);
+        fit = fit_to(camera, all, room);
     }
     // Zooming moves towards the ground's middle.
     camera.eye_m = cross(camera.forward, camera.up) * fit.a + camera.up * fit.b +

@@ -25,6 +25,12 @@ inline constexpr double kDefaultFov_deg = 40;
 /// zoom 1.
 inline constexpr double kFill = 0.95;
 
+/// What is covered along the sides of a picture, by a window's panels for instance: shares of its
+/// width and height, opposite sides together below 1.
+struct Insets {
+    double left = 0, right = 0, bottom = 0, top = 0;
+};
+
 /// A camera that circles a target.
 struct Orbit {
     /// Where the camera stands as seen from the target, from true north; none: where relief stands
@@ -44,8 +50,10 @@ double fov_y_of_focal_length(double focal_length_mm, double aspect);
 /// @param points   ground to show, in the local frame [m], at least one
 /// @param aspect   width / height of the picture
 /// @param also     has to be in the picture too; where it is, the camera stands as without it
+/// @param insets   all of this beside them
 Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, double fov_y_rad,
-                    double aspect, std::span<const glm::dvec3> also = {});
+                    double aspect, std::span<const glm::dvec3> also = {},
+                    const Insets& insets = {});
 
 /// Stands at `eye_m` and looks along a compass heading.
 /// @param axes         east, north and up at the eye

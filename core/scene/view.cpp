@@ -100,14 +100,15 @@ View parse_view(std::string_view text) {
 }
 
 Camera make_camera(const View& view, const GroundHeight& ground_height_m,
-                   const geo::LocalFrame& frame, std::span<const glm::dvec3> points, double aspect,
-                   double exaggeration, std::span<const glm::dvec3> also) {
+                   const geo::LocalFrame& frame, const Outline& outline, double aspect,
+                   double exaggeration, const Insets& insets) {
     const double fov_y_rad = view.fov_y_rad > 0 ? view.fov_y_rad
                              : view.focal_length_mm > 0
                                  ? fov_y_of_focal_length(view.focal_length_mm, aspect)
                                  : radians(kDefaultFov_deg);
     if (!view.eye) {
-        Camera camera = orbit_camera(view.orbit, points, fov_y_rad, aspect, also);
+        Camera camera =
+            orbit_camera(view.orbit, outline.points, fov_y_rad, aspect, outline.also, insets);
         // Zoomed in, the camera may come to stand inside a mountain: then it stands on it.
         const geo::Geodetic place = frame.to_geodetic(camera.eye_m);
         const double ground_m = ground_height_m(place) * exaggeration;

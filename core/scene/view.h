@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "geo/geodetic.h"
 #include "scene/camera.h"
@@ -50,14 +51,18 @@ inline constexpr double kEyeHeight_m = 1.7;
 /// The DEM's height at a place [m]; NaN where it has no ground.
 using GroundHeight = std::function<double(const geo::Geodetic& place)>;
 
+/// Ground that an orbit has to show, in the DEM's local frame [m]: orbit_camera()'s points.
+struct Outline {
+    std::vector<glm::dvec3> points, also;
+};
+
 /// The camera of a view of a DEM.
 /// @param frame   the DEM's local frame
-/// @param points  ground that an orbit has to show, in that frame
-/// @param also    as orbit_camera()'s
 /// @param aspect  width / height of the picture
+/// @param insets  as orbit_camera()'s
 /// @throws Error (BadInput) for a standpoint above the ground where the DEM has none
 Camera make_camera(const View& view, const GroundHeight& ground_height_m,
-                   const geo::LocalFrame& frame, std::span<const glm::dvec3> points, double aspect,
-                   double exaggeration, std::span<const glm::dvec3> also = {});
+                   const geo::LocalFrame& frame, const Outline& outline, double aspect,
+                   double exaggeration, const Insets& insets = {});
 
 }  // namespace relevo::scene

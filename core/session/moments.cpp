@@ -81,7 +81,7 @@ sun::Instant Moments::usual_moment(const scene::Scene& scene) {
         render::ground_to_show(heights->field, ground, scene.exaggeration);
     const scene::Camera camera = scene::make_camera(
         settled_view(scene), [&](const geo::Geodetic& at) { return heights->height_m(at); },
-        ground.frame, to_show.points, static_cast<double>(scene.width_px) / scene.height_px,
+        ground.frame, {to_show.points, {}}, static_cast<double>(scene.width_px) / scene.height_px,
         scene.exaggeration);
     return day.moment(scene::side_of_deg(camera)).utc;
 }

@@ -465,16 +465,20 @@ struct Session::Impl {
             framing = scene::frame_ground(view.orbit, to_show.net, *day);
             view.orbit = framing->orbit;
         }
-        std::vector<glm::dvec3> points = to_show.points;
-        if (drawn.renderer->shows_block()) {
-            const auto base = render::block_below(to_show.rim, *ground, scene.exaggeration);
-            points.insert(points.end(), base.begin(), base.end());
-        }
         inputs.camera = scene::make_camera(
             view, [this](const geo::Geodetic& at) { return loaded->height_m(at); }, ground->frame,
-            points, static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration,
-            moved_points());
+            view.eye ? scene::Outline() : outline(),
+            static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration);
         scene.view = view;
+    }
+
+    scene::Outline outline() {
+        scene::Outline outline{to_show.points, moved_points()};
+        if (drawn.renderer->shows_block()) {
+            const auto base = render::block_below(to_show.rim, *ground, scene.exaggeration);
+            outline.points.insert(outline.points.end(), base.begin(), base.end());
+        }
+        return outline;
     }
 
     /// The ground's points where effects move them to: the same for every camera.
@@ -679,6 +683,10 @@ const render::SunLight& Session::sun_light() const {
 
 const scene::Camera& Session::camera() const {
     return impl_->inputs.camera;
+}
+
+scene::Outline Session::outline() const {
+    return impl_->outline();
 }
 
 const std::shared_ptr<const LoadedDem>& Session::dem() const {

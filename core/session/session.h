@@ -168,6 +168,8 @@ class Session {
     const render::SunLight& sun_light() const;
 
     const scene::Camera& camera() const;
+    /// What orbits fit into the picture, as it is now.
+    scene::Outline outline() const;
     /// Its DEM, which may outlive it.
     const std::shared_ptr<const LoadedDem>& dem() const;
     /// The DEM's ground; its local frame is the camera's.

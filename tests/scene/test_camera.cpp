@@ -54,6 +54,24 @@ TEST(OrbitCamera, FillsNineteenTwentiethsOfTheWidthOrTheHeight) {
     }
 }
 
+TEST(OrbitCamera, FillsWhatIsNotCovered) {
+    const Insets insets{.left = 0.3, .right = 0.05, .bottom = 0.1, .top = 0.02};
+    for (const double aspect : {0.6, 1.25, 3.0}) {
+        const Camera camera = orbit_camera({205, 30, 1}, kGround, radians(40), aspect, {}, insets);
+        glm::dvec2 least(1e300), most(-1e300);
+        for (const glm::dvec3& point : kGround) {
+            least = min(least, seen(camera, point, aspect));
+            most = max(most, seen(camera, point, aspect));
+        }
+        const glm::dvec2 room(1 - insets.left - insets.right, 1 - insets.bottom - insets.top);
+        const glm::dvec2 filled = 0.5 * (most - least) / room;
+        EXPECT_NEAR(std::max(filled.x, filled.y), kFill, 1e-3) << aspect;
+        // In the middle of it both ways.
+        EXPECT_NEAR(0.5 * (least.x + most.x), insets.left - insets.right, 2e-3) << aspect;
+        EXPECT_NEAR(0.5 * (least.y + most.y), insets.bottom - insets.top, 2e-3) << aspect;
+    }
+}
+
 TEST(OrbitCamera, FromStraightAboveNorthIsUpWhenItStandsSouth) {
     const Camera camera = orbit_camera({180, 90, 1}, kGround, radians(40), 1.25);
     EXPECT_NEAR(camera.up.y, 1, 1e-9);

@@ -16,7 +16,7 @@ double ground_m(const geo::Geodetic& place) {
 Camera camera_of(const View& view, double exaggeration) {
     const geo::LocalFrame frame(geo::geodetic_deg(46, 8, 0));
     const std::vector<glm::dvec3> points{{-1000, -1000, 0}, {1000, 1000, 0}};
-    return make_camera(view, ground_m, frame, points, 1.25, exaggeration);
+    return make_camera(view, ground_m, frame, {points, {}}, 1.25, exaggeration);
 }
 
 geo::Geodetic eye_of(const View& view, double exaggeration) {

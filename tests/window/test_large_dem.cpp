@@ -10,6 +10,7 @@
 #include "cli/raster.h"
 #include "image/image.h"
 #include "session/session.h"
+#include "viewer/navigation.h"
 #include "viewer/scene_thread.h"
 #include "window/viewer_fixture.h"
 
@@ -72,7 +73,11 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
     session::Session session(scene, {.device = "software"}, files);
     EXPECT_FALSE(session.dem()->stands_in);  // captures wait
     EXPECT_EQ(session.moment(), whole->utc);
-    EXPECT_LT(distance(session.camera().eye_m, whole->camera.eye_m), 1e-6);
+    const scene::Camera camera = whole->camera(whole->scene.view, 320.0 / 200, {});
+    EXPECT_LT(distance(session.camera().eye_m, camera.eye_m), 1e-6);
+    // As the window draws it, upright at its eye.
+    const viewer::Land land{&session.ground().frame, 1, {}};
+    session.look(view_of(pose_of(camera, land), land));
     session.draw();
     EXPECT_LE(test::difference(image_of(*picture), session.picture(), 1), 2e-4);
 }

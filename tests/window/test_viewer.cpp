@@ -60,6 +60,61 @@ TEST_F(Viewer, TurnsPansZoomsAndGoesHome) {
     EXPECT_EQ(camera()["eye"], panned["eye"]);
 }
 
+/// Where a picture has edges: from the leftmost to the rightmost [px], from the uppermost to the
+/// lowest. The backdrop of a block and its shadow have none.
+glm::ivec4 edges_of(const image::Image8& picture) {
+    glm::ivec4 box(picture.width, 0, picture.height, 0);
+    const auto green = [&](int x, int y) {
+        return static_cast<int>(
+            picture
+                .values[static_cast<std::size_t>((y * picture.width + x) * picture.channels + 1)]);
+    };
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 1; x < picture.width; ++x)
+            if (std::abs(green(x, y) - green(x - 1, y)) > 16)
+                box = {std::min(box[0], x), std::max(box[1], x), std::min(box[2], y),
+                       std::max(box[3], y)};
+    return box;
+}
+
+TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
+    open({dem_});
+    const auto taken = [&](int number) {
+        act({"key", "F12"});
+        const auto name = folder_ / fmt::format("relevo-{}.png", number);
+        EXPECT_TRUE(wait([&] { return std::filesystem::exists(name); }));
+        return edges_of(image::read(name));
+    };
+    // The panel ends 380 px from the left, the menu begins the ground's room 24 px from the top.
+    const auto fills_the_room = [](const glm::ivec4& box) {
+        EXPECT_GE(box[0], 375);
+        EXPECT_LE(box[1], 1275);
+        EXPECT_GE(box[2], 20);
+        EXPECT_LE(box[3], 780);
+        const double wide = (box[1] - box[0]) / 900.0, high = (box[3] - box[2]) / 744.0;
+        EXPECT_NEAR(std::max(wide, high), 0.95, 0.02) << wide << " " << high;
+    };
+    fills_the_room(taken(1));
+    ASSERT_TRUE(changes([&] { act({"key", "t"}); }));
+    EXPECT_EQ(scene()["camera"]["pitch"], -90);
+    fills_the_room(taken(2));
+    // Of the whole window where there are none.
+    ASSERT_TRUE(changes([&] { act({"key", "Tab"}); }));
+    ASSERT_TRUE(changes([&] { act({"key", "Home"}); }));
+    const glm::ivec4 alone = taken(3);
+    EXPECT_NEAR(alone[0] + alone[1], 1280, 15);
+    EXPECT_NEAR(std::max((alone[1] - alone[0]) / 1280.0, (alone[3] - alone[2]) / 800.0), 0.95,
+                0.02);
+    // From near by, from above is of what is in the middle.
+    act({"click", "--repeat", "8", "--delay", "60", "4"});
+    ASSERT_TRUE(changes([&] { act({"key", "t"}); }));
+    EXPECT_EQ(scene()["camera"]["pitch"], -90);
+    EXPECT_LT(scene()["camera"]["eye"][2], 20000);
+    // And a walk begins with a look ahead.
+    ASSERT_TRUE(changes([&] { act({"key", "g"}); }));
+    EXPECT_EQ(scene()["camera"]["pitch"], -10);
+}
+
 TEST_F(Viewer, GoesToAPlaceThatIsWritten) {
     open({dem_, "--only"});
     const auto click = [&](const char* x, const char* y) {
@@ -69,7 +124,8 @@ TEST_F(Viewer, GoesToAPlaceThatIsWritten) {
     click("70", "11");
     click("150", "125");
     act({"type", "--delay", "60", "36.3, -84.2"});
-    ASSERT_TRUE(changes([&] { act({"keydown", "Return", "sleep", "0.3", "keyup", "Return"}); }));
+    // However soon the key is let go.
+    ASSERT_TRUE(changes([&] { act({"key", "Return"}); }));
     const auto camera = resting_scene()["camera"];
     // 150 posts from it, back along where it looks.
     const geo::Geodetic eye =
@@ -198,8 +254,10 @@ TEST_F(Viewer, ReadsTheDemAgainWhenItIsWrittenAndStandsItsLoss) {
     const auto dem = folder_ / "mine.tif";
     std::filesystem::copy_file(dem_, dem);
     open({dem.string(), "--only"});
+    const nlohmann::json home = scene();
     act({"key", "Tab"});
-    ASSERT_TRUE(settles());
+    ASSERT_TRUE(changes([&] { drag(3, 800, 400, 150, 60); }));
+    const nlohmann::json turned = resting_scene();
     const image::Image8 whole = display_.screen();
     // No DEM any more: it says so, and waits.
     ASSERT_TRUE(changes([&] { std::ofstream(dem) << "no DEM"; }, 0.001));
@@ -208,6 +266,14 @@ TEST_F(Viewer, ReadsTheDemAgainWhenItIsWrittenAndStandsItsLoss) {
     std::filesystem::copy_file(dem_, dem, std::filesystem::copy_options::overwrite_existing);
     EXPECT_TRUE(wait(
         [&] { return test::difference(display_.screen(), whole) < 0.02; }));  // but for the message
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(scene()["camera"]["heading"], turned["camera"]["heading"]);
+    // And the whole of it is what it was.
+    act({"key", "Tab"});
+    ASSERT_TRUE(changes([&] { act({"key", "Home"}); }));
+    EXPECT_EQ(scene()["camera"]["eye"], home["camera"]["eye"]);
+    act({"key", "ctrl+z", "key", "Tab"});
+    ASSERT_TRUE(wait([&] { return test::difference(display_.screen(), whole) < 0.02; }));
     std::filesystem::remove(dem);
     std::this_thread::sleep_for(std::chrono::seconds(3));
     EXPECT_TRUE(program_->is_running());

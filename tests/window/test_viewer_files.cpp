@@ -56,13 +56,13 @@ TEST_F(Viewer, ChartsOpenBesideTheirPointAndTheSidesOfABlockAreNoGround) {
         act({"click", "1"});
     };
     // The cut side in front, whose upper edge is where a post is.
-    click("600", "530");
+    click("700", "490");
     ASSERT_TRUE(settles());
     std::this_thread::sleep_for(std::chrono::seconds(2));
     EXPECT_EQ(count_near(display_.screen(), kAbove, kDay), 0);
     EXPECT_EQ(count_near(display_.screen(), kBelow, kDay), 0);
     // Ground where the charts would open.
-    click("900", "500");
+    click("1150", "510");
     ASSERT_TRUE(wait([&] { return count_near(display_.screen(), kAbove, kDay) > 1000; }));
     EXPECT_EQ(count_near(display_.screen(), kBelow, kDay), 0);
     // Opened again they are where they were.
@@ -94,25 +94,25 @@ TEST_F(Viewer, OpensADemByItsNameAtTheSameHourOfItsOwnClocks) {
 
 TEST_F(Viewer, MeasuresFromThePointToTheCursor) {
     constexpr glm::ivec3 kLine{255, 80, 60};
-    constexpr glm::ivec4 kAbove{780, 250, 90, 60}, kBelow{780, 360, 90, 60};
+    constexpr glm::ivec4 kAbove{820, 260, 90, 50}, kBelow{820, 350, 90, 50};
     open({dem_, "--only", "--time", "2026-06-21T18:00:00Z"});
     const auto red = [&](glm::ivec4 area) { return count_near(display_.screen(), area, kLine); };
-    act({"key", "p", "mousemove", "700", "330"});
+    act({"key", "p", "mousemove", "760", "330"});
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     act({"click", "1"});
-    ASSERT_TRUE(wait([&] { return red({690, 320, 20, 20}) > 20; }));
+    ASSERT_TRUE(wait([&] { return red({750, 320, 20, 20}) > 20; }));
     ASSERT_EQ(red(kAbove) + red(kBelow), 0);
-    act({"key", "m", "mousemove", "950", "450"});
+    act({"key", "m", "mousemove", "950", "440"});
     EXPECT_TRUE(wait([&] { return red(kBelow) > 50 && red(kAbove) == 0; }));
-    act({"mousemove", "950", "210"});
+    act({"mousemove", "950", "250"});
     EXPECT_TRUE(wait([&] { return red(kAbove) > 50 && red(kBelow) == 0; }));
     // From then on it stays, and a click is another point.
-    act({"key", "m", "mousemove", "950", "450"});
+    act({"key", "m", "mousemove", "950", "440"});
     ASSERT_TRUE(settles());
     EXPECT_GT(red(kAbove), 50);
     EXPECT_EQ(red(kBelow), 0);
     act({"click", "1"});
-    EXPECT_TRUE(wait([&] { return red(kAbove) == 0 && red({940, 440, 20, 20}) > 20; }));
+    EXPECT_TRUE(wait([&] { return red(kAbove) == 0 && red({940, 430, 20, 20}) > 20; }));
 }
 
 TEST_F(Viewer, GoesToTheNextDemOfTheFolderAndRemembersWhatWasOpen) {
