@@ -194,27 +194,29 @@ void Hand::drag(glm::vec2 mouse, double passed_s) {
         dragging_.reset();
         return;
     }
+    // Held still it moves nothing, not even by what sums are rounded by: the picture comes to rest.
+    const bool is_still = mouse == last_px_;
     const glm::dvec2 by = glm::dvec2(mouse - last_px_) / static_cast<double>(window_.size().y);
     last_px_ = mouse;
     Pose& pose = state_.document.pose;
     switch (*dragging_) {
         case Drag::Pan:
-            if (distance(mouse, pressed_px_) >= kClick_px)
+            if (!is_still && distance(mouse, pressed_px_) >= kClick_px)
                 pose = pan(pose, state_.land, held_, in_view(mouse), aspect());
             break;
         case Drag::Orbit: {
             const glm::dvec2 turn{-by.x * 200, by.y * 120};
-            pose = orbit(pose, state_.land, held_, turn.x, turn.y);
+            if (!is_still) pose = orbit(pose, state_.land, held_, turn.x, turn.y);
             if (passed_s > 0) glide_deg_a_s_ = 0.5 * glide_deg_a_s_ + 0.5 * turn / passed_s;
             break;
         }
         case Drag::Look:
+            if (is_still) break;
             pose =
                 look_around(pose, -by.x * degrees(pose.fov_y_rad), by.y * degrees(pose.fov_y_rad));
             break;
         case Drag::Sun:
             drag_sun(mouse);
-            state_.sun_moves = true;
             break;
         case Drag::Line:
             window_.set_line(std::clamp(mouse.x / window_.size().x, 0.02f, 0.98f));
@@ -224,7 +226,10 @@ void Hand::drag(glm::vec2 mouse, double passed_s) {
 
 void Hand::drag_sun(glm::vec2 mouse) {
     if (!picture_) return;
-    if (const auto utc = moment_at(state_, *picture_, window_.size(), mouse)) state_.set_utc(*utc);
+    const auto utc = moment_at(state_, *picture_, window_.size(), mouse);
+    if (!utc || *utc == state_.document.utc) return;
+    state_.set_utc(*utc);
+    state_.sun_moves = true;
 }
 
 void Hand::fly_by_keys(double passed_s) {

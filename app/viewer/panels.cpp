@@ -23,6 +23,15 @@ void take_away_panel(State& state) {
     button("Save scene", Command::SaveScene);
 }
 
+/// What is below it does not move while a point is worked out, nor from one point to the next.
+void roomy_point_panel(State& state) {
+    const float top = ImGui::GetCursorPosY();
+    point_panel(state);
+    const float used = ImGui::GetCursorPosY() - top;
+    state.point_room_px = state.chosen ? std::max(state.point_room_px, used) : 0;
+    ImGui::SetCursorPosY(top + std::max(state.point_room_px, used));
+}
+
 /// A panel that was moved out of the window comes back as far as to be got hold of.
 void keep_in_reach(glm::vec2 size_px) {
     const ImVec2 at = ImGui::GetWindowPos(), extent = ImGui::GetWindowSize();
@@ -49,7 +58,7 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     state.side_panel_px = {left, ImGui::IsWindowCollapsed() ? left : left + width};
     if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state);
     if (ImGui::CollapsingHeader("Overlay", kOpen)) overlay_panel(state);
-    if (ImGui::CollapsingHeader("Point", kOpen)) point_panel(state);
+    if (ImGui::CollapsingHeader("Point", kOpen)) roomy_point_panel(state);
     if (state.profile && ImGui::CollapsingHeader("Profile", kOpen)) profile_panel(*state.profile);
     if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state);
     if (ImGui::CollapsingHeader("Take it away", kOpen)) take_away_panel(state);

@@ -32,6 +32,9 @@ constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
 /// A picture stays so long at most while the pages of all posts are made in place of those that
 /// stood in: coarser ones would take its place.
 constexpr auto kNewPages = std::chrono::seconds(2);
+/// At rest a picture with some pages takes the place of one with fewer so often, at most.
+constexpr auto kMorePages = std::chrono::milliseconds(400);
+constexpr auto kLookAgain = std::chrono::milliseconds(10);
 /// Shadows are this old at most while the sun is dragged.
 constexpr auto kShadowsAge = std::chrono::milliseconds(350);
 
@@ -78,7 +81,6 @@ struct SceneThread::Impl {
     // The thread's own.
     bool reads_rest = false;    // where others stand in for all posts
     bool awaits_pages = false;  // of a picture at rest
-    Clock::duration pause{};    // before it is drawn again: as long as it took
     std::unique_ptr<session::Session> session;
     scene::View view;  // while none is wanted
     glm::dvec3 shadows_eye_m{0};
@@ -168,10 +170,12 @@ struct SceneThread::Impl {
             const auto is_asked = [&] {
                 return ends || has_new_wants || effects || !values.empty() || drape || all_posts;
             };
-            // Drawing the same again at once would take from the pages that it waits for.
-            if (awaits_pages)
-                changed.wait_for(lock, pause, is_asked);
-            else if (sharp) {
+            // Drawing it again before would take from the pages that it waits for.
+            const auto drawn_at = Clock::now();
+            while (awaits_pages && !is_asked() && session->is_loading() &&
+                   Clock::now() - drawn_at < kMorePages)
+                changed.wait_for(lock, kLookAgain, is_asked);
+            if (!awaits_pages && sharp) {
                 rests = !is_asked();
                 changed.wait(lock, is_asked);
             }
@@ -258,7 +262,6 @@ struct SceneThread::Impl {
         session->keep_native(keep);
         const bool whole = session->draw_what_is_there();
         awaits_pages = !whole && !now.moving && !now.sun_moving;
-        pause = Clock::now() - began;
         if (!keep) {
             shadows_at = Clock::now();
             shadows_eye_m = session->camera().eye_m;

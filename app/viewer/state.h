@@ -74,9 +74,10 @@ struct State {
     bool views_changed = false;
     /// Where the side panel lies, from left to right [px]; none: not drawn yet.
     std::optional<glm::vec2> side_panel_px;
-    glm::ivec2 chart_px{0};  ///< that drawings of the point have room in; 0: none is shown
-    bool sun_moves = false;  ///< a widget of the sun is held
-    bool step = false;       ///< a change is done, for undo
+    float point_room_px = 0;  ///< that the point's lines have had
+    glm::ivec2 chart_px{0};   ///< that drawings of the point have room in; 0: none is shown
+    bool sun_moves = false;   ///< a widget of the sun is held
+    bool step = false;        ///< a change is done, for undo
     std::optional<scene::Effects> asked_effects;
     std::optional<scene::Effects> new_effects;  ///< for the thread that draws
     std::vector<std::pair<std::string, std::string>> new_values;

@@ -137,6 +137,10 @@ bool PageCache::request(std::span<const TileKey> keys) {
     return impl_->request(keys);
 }
 
+bool PageCache::is_making() const {
+    return impl_ && impl_->maker && impl_->maker->is_at_work();
+}
+
 int PageCache::slot(const TileKey& key) const {
     return impl_->slot(key);
 }

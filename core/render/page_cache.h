@@ -48,6 +48,8 @@ class PageCache {
     /// those that are missing made, in this order, on threads of its own.
     /// @throws what PageLayer::make threw
     bool request(std::span<const TileKey> keys);
+    /// Whether more of them are being made than request() would take now.
+    bool is_making() const;
 
     /// The slot of a page that is there; -1 for none.
     int slot(const TileKey& key) const;

@@ -50,6 +50,11 @@ std::vector<MadePage> PageMaker::take() {
     return std::exchange(made_, {});
 }
 
+bool PageMaker::is_at_work() const {
+    const std::lock_guard lock(mutex_);
+    return !wanted_.empty() || in_work_.size() > made_.size();
+}
+
 void PageMaker::run() {
     std::unique_lock lock(mutex_);
     while (true) {

@@ -37,12 +37,14 @@ class PageMaker {
     void want(std::vector<TileKey> keys);
     /// What has been made since the last call. @throws what `make` threw
     std::vector<MadePage> take();
+    /// Whether there is more to come than take() would give now.
+    bool is_at_work() const;
 
   private:
     void run();
 
     std::function<MadePage(const TileKey&)> make_;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::vector<TileKey> wanted_, in_work_;
     std::vector<MadePage> made_;

@@ -92,6 +92,8 @@ class Terrain {
                                      bool afresh = false);
     /// Whether the last picture had all its pages; so it is always where it waits for them.
     bool is_complete() const { return complete_; }
+    /// Whether pages are still being made beside for it.
+    bool is_making_pages() const { return heights_.is_making() || surface_.is_making(); }
 
     /// Draws with the program and framebuffer that are bound, and its textures. Positions are
     /// handed to the program relative to `origin_m`. A selection holds until the next one is made,

@@ -634,6 +634,10 @@ bool Session::draw_what_is_there() {
     return impl_->terrain->is_complete();
 }
 
+bool Session::is_loading() const {
+    return impl_->terrain->is_making_pages();
+}
+
 void Session::draw_alone() {
     impl_->context->make_current();
     impl_->drawn.renderer->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs);

@@ -145,6 +145,8 @@ class Session {
     /// Draws a frame at once: what is not loaded yet is coarser, and being loaded.
     /// @returns whether all was there; if not, the next frame has more
     bool draw_what_is_there();
+    /// Whether the next frame would have more of it if one waited.
+    bool is_loading() const;
     /// Draws none of a comparison's other half, and waits for the device.
     void draw_alone();
 

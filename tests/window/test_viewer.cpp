@@ -115,6 +115,20 @@ TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
     EXPECT_EQ(scene()["camera"]["pitch"], -10);
 }
 
+TEST_F(Viewer, IsSharpWhileTheHandHoldsStill) {
+    open({dem_, "--time", "2026-06-21T20:00:00Z"});
+    for (const auto& [x, y] : {std::pair{60, 30}, {-85, 11}, {37, -23}, {101, 17}}) {
+        act({"mousemove", "850", "400", "sleep", "0.3", "mousedown", "3"});
+        act({"mousemove", std::to_string(850 + x / 2), std::to_string(400 + y / 2), "sleep", "0.1",
+             "mousemove", std::to_string(850 + x), std::to_string(400 + y)});
+        ASSERT_TRUE(settles());
+        const image::Image8 held = display_.screen();
+        act({"mouseup", "3"});
+        ASSERT_TRUE(settles());
+        EXPECT_LT(test::difference(display_.screen(), held), 1e-4) << x << " " << y;
+    }
+}
+
 TEST_F(Viewer, GoesToAPlaceThatIsWritten) {
     open({dem_, "--only"});
     const auto click = [&](const char* x, const char* y) {
