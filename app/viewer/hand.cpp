@@ -91,13 +91,13 @@ void Hand::glide(double passed_s) {
     }
 }
 
-bool Hand::move(Command command, const Whole& whole) {
+bool Hand::move(Command command, const std::function<Whole()>& whole) {
     Pose& pose = state_.document.pose;
     const glm::dvec3 middle = hold(0.5f * window_.size());
     stop_gliding();
     switch (command) {
         case Command::Whole:
-            pose = whole.home;
+            pose = whole().home;
             return true;
         case Command::NorthUp:
             pose = orbit(pose, state_.land, middle, pose.heading_deg, 0);
@@ -106,8 +106,9 @@ bool Hand::move(Command command, const Whole& whole) {
         case Command::FromAbove: {
             // Whoever sees about all of the DEM goes on seeing all of it.
             const double away_m = distance(pose.eye_m, middle);
-            const bool sees_all = away_m > 0.5 * distance(whole.above.eye_m, middle);
-            pose = sees_all ? whole.above : from_above(pose, state_.land, middle, away_m);
+            const Pose all = whole().above;
+            const bool sees_all = away_m > 0.5 * distance(all.eye_m, middle);
+            pose = sees_all ? all : from_above(pose, state_.land, middle, away_m);
             return true;
         }
         case Command::Walk:

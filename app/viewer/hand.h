@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -12,7 +13,7 @@
 
 namespace relevo::viewer {
 
-/// Views of the whole DEM.
+/// The whole DEM, from its side and from above.
 struct Whole {
     Pose home, above;
 };
@@ -30,8 +31,8 @@ class Hand {
     /// @param new_input  ImGui has taken clicks in since then
     void act(double passed_s, bool comparing, bool new_input);
     /// Moves that a key or a menu asks for. @returns whether it is one
-    /// @param whole  the whole DEM, and all of it from above
-    bool move(Command command, const Whole& whole);
+    /// @param whole  asked where it is to be seen
+    bool move(Command command, const std::function<Whole()>& whole);
     /// Lets go, and lets nothing glide on.
     void rest();
 

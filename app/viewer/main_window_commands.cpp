@@ -153,7 +153,7 @@ void MainWindow::move(Command command) {
         by(-kDay_s);
     else if (command == Command::DayLater)
         by(kDay_s);
-    else if (!hand_->move(command, whole_views()))
+    else if (!hand_->move(command, [this] { return whole_views(); }))
         return;
     if (command == Command::Walk)
         tell(hand_->is_walking()

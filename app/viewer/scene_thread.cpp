@@ -82,7 +82,6 @@ struct SceneThread::Impl {
     bool reads_rest = false;    // where others stand in for all posts
     bool awaits_pages = false;  // of a picture at rest
     std::unique_ptr<session::Session> session;
-    scene::View view;  // while none is wanted
     glm::dvec3 shadows_eye_m{0};
     double ms_a_pixel = 0;
     Clock::time_point shadows_at;
@@ -106,7 +105,7 @@ struct SceneThread::Impl {
             changed.wait(lock, [&] { return ends || has_new_wants; });
             session->resize(wanted.width_px, wanted.height_px);
             opened = as_opened();
-            view = whole_view();
+            look_beside_panels(*opened, wanted.insets);
         } catch (...) {
             const std::lock_guard lock(mutex);
             failure = std::current_exception();
@@ -116,13 +115,13 @@ struct SceneThread::Impl {
         session.reset();
     }
 
-    /// The opened scene's, as its camera stands beside the panels. Under the lock.
-    scene::View whole_view() const {
-        const scene::Scene& given = opened->scene;
-        if (given.view.eye) return given.view;
-        const double aspect = static_cast<double>(wanted.width_px) / wanted.height_px;
-        const Land land{&opened->ground.frame, given.exaggeration, {}};
-        return view_of(pose_of(opened->camera(given.view, aspect, wanted.insets), land), land);
+    /// At the whole of the scene, while the window has not said from where.
+    void look_beside_panels(const Opened& of, const scene::Insets& insets) {
+        const scene::Scene& now = of.scene;
+        if (now.view.eye) return;
+        const double aspect = static_cast<double>(now.width_px) / now.height_px;
+        const Land land{&of.ground.frame, now.exaggeration, {}};
+        session->look(view_of(pose_of(of.camera(now.view, aspect, insets), land), land));
     }
 
     std::shared_ptr<const Opened> as_opened() const {
@@ -159,8 +158,8 @@ struct SceneThread::Impl {
         new_pages_at = Clock::now();
         auto anew = as_opened();
         const std::lock_guard lock(mutex);
+        look_beside_panels(*anew, wanted.insets);
         opened = std::move(anew);
-        view = whole_view();
     }
 
     void draw_until_end() {
@@ -248,7 +247,7 @@ struct SceneThread::Impl {
     bool draw(const Wanted& now, std::uint64_t answers) {
         const auto began = Clock::now();
         const double scale = scale_for(now);
-        session->look(now.view ? *now.view : view);
+        if (now.view) session->look(*now.view);
         if (now.utc && *now.utc != session->moment()) {
             session->set_moment(*now.utc);
             shadows_lag = !session->effects().loaded.modules.empty();  // core's never do

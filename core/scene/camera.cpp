@@ -1,6 +1,7 @@
 #include "scene/camera.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
@@ -129,6 +130,7 @@ Camera orbit_camera(const Orbit& orbit, std::span<const glm::dvec3> points, doub
     double middle = 0;  // depth of the ground's middle
     for (const glm::dvec3& point : points)
         middle += dot(point, to_camera) / static_cast<double>(points.size());
+    assert(insets.left + insets.right < 1 && insets.bottom + insets.top < 1);
     const Room room = Room::of(fov_y_rad, aspect, insets, kFill);
     Fit fit = fit_to(camera, points, room);
     if (!fit.shows(camera, also, Room::of(fov_y_rad, aspect, insets, 1))) {

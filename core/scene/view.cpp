@@ -118,18 +118,25 @@ Camera make_camera(const View& view, const GroundHeight& ground_height_m,
     }
     const glm::dvec3 eye_m = position_of(*view.eye, "--eye", ground_height_m, frame, exaggeration);
     const geo::Geodetic place = frame.to_geodetic(eye_m);
-    const double ground_m = ground_height_m(place) * exaggeration;
-    if (place.height_m < ground_m)
-        log::warning(fmt::format(
-            "--eye: it is {:.0f} m below the ground, which is at {:.0f} m there; a height "
-            "with the suffix agl counts from the ground",
-            ground_m - place.height_m, ground_m / exaggeration));
     const geo::Axes axes = frame.axes(place.lat_rad, place.lon_rad);
     if (view.look_at)
         return look_at_camera(
             eye_m, position_of(*view.look_at, "--look-at", ground_height_m, frame, exaggeration),
             axes.up, fov_y_rad);
     return heading_camera(eye_m, axes, view.heading_deg, view.pitch_deg, fov_y_rad);
+}
+
+void warn_of_eye_below_ground(const View& view, const GroundHeight& ground_height_m,
+                              const geo::LocalFrame& frame, double exaggeration) {
+    if (!view.eye) return;
+    const geo::Geodetic place =
+        frame.to_geodetic(position_of(*view.eye, "--eye", ground_height_m, frame, exaggeration));
+    const double ground_m = ground_height_m(place) * exaggeration;
+    if (place.height_m < ground_m)
+        log::warning(fmt::format(
+            "--eye: it is {:.0f} m below the ground, which is at {:.0f} m there; a height "
+            "with the suffix agl counts from the ground",
+            ground_m - place.height_m, ground_m / exaggeration));
 }
 
 }  // namespace relevo::scene

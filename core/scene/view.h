@@ -65,4 +65,9 @@ Camera make_camera(const View& view, const GroundHeight& ground_height_m,
                    const geo::LocalFrame& frame, const Outline& outline, double aspect,
                    double exaggeration, const Insets& insets = {});
 
+/// Logs a warning where the eye of a view stands below the ground.
+/// @throws Error (BadInput) as make_camera()
+void warn_of_eye_below_ground(const View& view, const GroundHeight& ground_height_m,
+                              const geo::LocalFrame& frame, double exaggeration);
+
 }  // namespace relevo::scene

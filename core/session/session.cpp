@@ -199,6 +199,7 @@ struct Session::Impl {
         if (timed && !time) time = parse_over(scene.moment, *loaded->source, loaded->field);
         upload();
         look(scene.view);
+        warn_of_eye();
         set_moment(time ? time->utc : default_moment());
     }
 
@@ -381,6 +382,7 @@ struct Session::Impl {
         scene.moment = next.moment;
         set_moment(instant);
         look(next.view);
+        warn_of_eye();
     }
 
     void upload() {
@@ -466,10 +468,18 @@ struct Session::Impl {
             view.orbit = framing->orbit;
         }
         inputs.camera = scene::make_camera(
-            view, [this](const geo::Geodetic& at) { return loaded->height_m(at); }, ground->frame,
-            view.eye ? scene::Outline() : outline(),
+            view, height_m(), ground->frame, view.eye ? scene::Outline() : outline(),
             static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration);
         scene.view = view;
+    }
+
+    /// Of a scene that is given; where a user moves the eye, they see where it is.
+    void warn_of_eye() const {
+        scene::warn_of_eye_below_ground(scene.view, height_m(), ground->frame, scene.exaggeration);
+    }
+
+    scene::GroundHeight height_m() const {
+        return [this](const geo::Geodetic& at) { return loaded->height_m(at); };
     }
 
     scene::Outline outline() {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/log.h"
 #include "base/units.h"
 #include "session/session.h"
 #include "session/words.h"
@@ -205,6 +206,30 @@ TEST(Session, TellsOfTheSunAsItsEyeSeesIt) {
     scene.view.eye = scene::Standpoint{geo::geodetic_deg(36.05, -84.05, 3000), false};
     session.look(scene.view);
     EXPECT_EQ(session.place_text(), "36.05000 N 84.05000 W (the eye)");
+}
+
+TEST(Session, SaysOnceThatAnEyeIsBelowTheGround) {
+    std::vector<std::string> said;
+    log::set_sink([&](log::Level level, std::string_view text) {
+        if (level == log::Level::Warning) said.emplace_back(text);
+    });
+    FilesInUse files;
+    scene::Scene scene = bundled_scene();
+    scene.view.eye = scene::Standpoint{geo::geodetic_deg(36.3, -84.2, 10), false};
+    Session session(scene, {.device = "software"}, files);
+    for (int frame = 0; frame < 3; ++frame) {
+        session.look(scene.view);
+        session.draw();
+    }
+    EXPECT_EQ(said.size(), 1u);
+    // Another scene's eye is spoken of, too.
+    session.show(scene, session.moment());
+    log::set_sink({});
+    ASSERT_EQ(said.size(), 2u);
+    for (const std::string& text : said)
+        EXPECT_TRUE(text.starts_with("--eye: it is ") &&
+                    text.find(" below the ground") != text.npos)
+            << text;
 }
 
 TEST(Words, NeedTheDemWhereItsPlaceMatters) {

@@ -95,9 +95,23 @@ TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
         EXPECT_NEAR(std::max(wide, high), 0.95, 0.02) << wide << " " << high;
     };
     fills_the_room(taken(1));
+    const nlohmann::json first = scene();
     ASSERT_TRUE(changes([&] { act({"key", "t"}); }));
     EXPECT_EQ(scene()["camera"]["pitch"], -90);
     fills_the_room(taken(2));
+    // What is asked for in a window lower than its menu is somewhere, too.
+    const std::string id = window_id();
+    const auto resize = [&](const char* width, const char* height) {
+        act({"windowsize", id, width, height, "sleep", "0.5"});
+    };
+    resize("300", "30");
+    act({"key", "Home", "sleep", "0.5"});
+    EXPECT_TRUE(scene()["camera"]["eye"][2].is_number());
+    act({"key", "t", "sleep", "0.5"});
+    EXPECT_TRUE(scene()["camera"]["eye"][2].is_number());
+    resize("1280", "800");
+    act({"key", "Home", "sleep", "0.5"});
+    EXPECT_EQ(resting_scene()["camera"]["eye"], first["camera"]["eye"]);
     // Of the whole window where there are none.
     ASSERT_TRUE(changes([&] { act({"key", "Tab"}); }));
     ASSERT_TRUE(changes([&] { act({"key", "Home"}); }));
@@ -360,9 +374,7 @@ TEST_F(Viewer, EndsWithItsWindowAndRestsWhenNothingChanges) {
 TEST_F(Viewer, StandsWhateverIsDoneToIt) {
     paint("radiance.r += 0.1;");
     open({dem_, "--plugin-path", plugins_.string()});
-    const std::string window =
-        display_.act({"search", "--onlyvisible", "--pid", std::to_string(program_->process())});
-    const std::string id = window.substr(0, window.find('\n'));
+    const std::string id = window_id();
     const auto memory_mib = [&] {
         std::ifstream status(fmt::format("/proc/{}/statm", program_->process()));
         double pages = 0, resident = 0;

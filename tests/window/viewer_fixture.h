@@ -47,6 +47,12 @@ class Viewer : public testing::Test {
         return test::WindowedProgram::wait(holds);
     }
     void act(const std::vector<std::string>& arguments) const { display_.act(arguments); }
+    /// As xdotool has it.
+    std::string window_id() const {
+        const std::string windows =
+            display_.act({"search", "--onlyvisible", "--pid", std::to_string(program_->process())});
+        return windows.substr(0, windows.find('\n'));
+    }
     /// Waits until the screen shows something, and the same for a while.
     bool settles() {
         image::Image8 before = display_.screen();
