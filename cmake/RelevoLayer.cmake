@@ -21,24 +21,35 @@ function(relevo_layer name)
     target_link_libraries(relevo_${name} PUBLIC ${LAYER_DEPENDS} ${LAYER_PUBLIC_LINKS})
 endfunction()
 
-# relevo_test(<layer> [REFERENCES] SOURCES ... [DEPENDS <layers>...] [LINKS ...])
+# relevo_test(<layer> [REFERENCES] [SUITES] SOURCES ... [DEPENDS <layers>...] [LINKS ...])
 #
-# One GoogleTest program for a layer. ctest has an entry for each case, "<layer>.<suite>.<case>"; they are found when
-# ctest starts, so that a build runs nothing of what it has built. Tests that do no sums of their own are compiled
-# without optimisation in the presets of developers, which takes half the time; REFERENCES are those that compute
-# what they compare with.
+# One GoogleTest program for a layer. ctest has an entry for each case, "<layer>.<suite>.<case>", or with SUITES for each
+# suite, "<layer>.<suite>"; they are found when ctest starts, so that a build runs nothing of what it has built. Tests that
+# do no sums of their own are compiled without optimisation in the presets of developers, which takes half the time;
+# REFERENCES are those that compute what they compare with.
 include(GoogleTest)
 function(relevo_test name)
-    cmake_parse_arguments(TEST "REFERENCES" "" "SOURCES;DEPENDS;LINKS" ${ARGN})
+    cmake_parse_arguments(TEST "REFERENCES;SUITES" "" "SOURCES;DEPENDS;LINKS" ${ARGN})
     add_executable(test_${name} ${TEST_SOURCES})
     target_compile_options(test_${name} PRIVATE
         $<$<CONFIG:Dev,Asan,Tsan>:$<IF:$<BOOL:${TEST_REFERENCES}>,-O2,-O0>>)
     list(TRANSFORM TEST_DEPENDS PREPEND relevo::)
     target_link_libraries(test_${name} PRIVATE relevo_options relevo_test_support ${TEST_DEPENDS}
         ${TEST_LINKS} GTest::gmock GTest::gtest)
-    gtest_discover_tests(test_${name} TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_MODE PRE_TEST
-        DISCOVERY_TIMEOUT 60
-        PROPERTIES TIMEOUT 600)
+    if(TEST_SUITES)
+        file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_${name}_suites.cmake @ONLY CONTENT
+"set(layer @name@)
+set(program \"@CMAKE_RUNTIME_OUTPUT_DIRECTORY@/test_@name@\")
+set(folder \"@CMAKE_CURRENT_BINARY_DIR@\")
+include(\"@CMAKE_SOURCE_DIR@/cmake/TestSuites.cmake\")
+")
+        set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES
+            ${CMAKE_CURRENT_BINARY_DIR}/test_${name}_suites.cmake)
+    else()
+        gtest_discover_tests(test_${name} TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_MODE PRE_TEST
+            DISCOVERY_TIMEOUT 60
+            PROPERTIES TIMEOUT 600)
+    endif()
 endfunction()
 
 # relevo_module(<plugin id> SOURCES ... [LINKS ...])

@@ -180,7 +180,6 @@ struct Session::Impl {
 
     Impl(scene::Scene given, Options o, FilesInUse& files)
         : scene(std::move(given)), options(std::move(o)) {
-        dem::add_all(scene.dems, files);
         if (scene.overlay) add_files(*scene.overlay, files);
         std::optional<sun::ParsedTime> time;
         const bool timed = !scene.moment.time.empty();
@@ -191,6 +190,7 @@ struct Session::Impl {
         open_device(files);
         // Which effects are on may depend on the ground.
         loaded = loading.get();
+        dem::add_all(scene.dems, files);
         take_ground(drawn);
         const auto began = Clock::now();
         compile(drawn);
