@@ -18,10 +18,6 @@ constexpr std::size_t kMostWindows = 4096;
 constexpr double kLooser = 4;
 constexpr double kLoosest_rad = radians(12);
 
-/// How far on from the chord's root to the other line's: what makes the mean share right at 2 and 5
-/// degrees on three DEMs (docs/accuracy-shadows.md).
-constexpr float kAhead = 0.35F;
-
 struct Division {
     std::vector<SweepWindow> windows;
     double error_rad = 0;
@@ -66,20 +62,12 @@ class Kept {
 };
 
 /// Lower limbs' margins such that the line between them and the upper limb's passes 0 where the
-/// margins do. Ridges one behind the other make them bend: of two limbs alone a sun 2 degrees high
-/// would seem smaller by an eighth of its disc, by straight lines to its centre by a twelfth. As an
-/// edge of shadow is the highest of many lines, margins are nowhere below such a straight line, nor
-/// above the other one's continuation: the root lies between theirs.
+/// horizon cuts the disc.
 /// @param lower_m  is changed
 void straighten(const float* upper_m, const float* middle_m, float* lower_m, int count) {
     for (int i = 0; i < count; ++i) {
-        const float u = upper_m[i], m = middle_m[i], l = lower_m[i];
-        // From the centre to where the horizon is, in radii.
-        const float up = std::max(u - m, 1e-6F), down = std::max(m - l, 1e-6F);
-        const float chord = -m / (m > 0 ? down : up);
-        const float other = std::max(-m / (m > 0 ? up : down), -1.0F);
-        const float at = chord + kAhead * (std::min(other, chord) - chord);
-        const float height = std::min(std::max(0.5F - 0.5F * at, 1e-4F), 1.0F);
+        const float u = upper_m[i], l = lower_m[i];
+        const float height = height_of_disc(u, middle_m[i], l);
         lower_m[i] = u > 0 && l < 0 ? u - u / height : l;
     }
 }

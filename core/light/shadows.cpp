@@ -8,41 +8,53 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "light/margins.h"
 #include "light/sky.h"
 #include "light/sweep.h"
 
 namespace relevo::light {
 namespace {
 
+/// Of the disc; NaN in holes.
+float share_of_sun(float upper_m, float middle_m, float lower_m) {
+    if (std::isnan(upper_m)) return upper_m;
+    if (lower_m >= 0) return 1;
+    if (upper_m <= 0) return 0;
+    return static_cast<float>(share_of_disc(double{height_of_disc(upper_m, middle_m, lower_m)}));
+}
+
 /// @param of  what `lit` has the posts of
 void light_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double radius_rad,
                 Array2d<float>& lit, const SweepWindow& of) {
     const bool soft = radius_rad > 0;
-    TileValues values(tile.part, 0), upper(soft ? tile.part : SweepWindow{}, 0),
+    const SweepWindow kept = soft ? tile.part : SweepWindow{};
+    TileValues values(tile.part, 0), upper(kept, 0), middle(kept, 0),
         scratch(sky.levels() > 1 ? tile.part : SweepWindow{}, 0);
-    for (TileValues* const each : {&values, &upper, &scratch})
+    for (TileValues* const each : {&values, &upper, &middle, &scratch})
         each->turn(tile.path.along_columns());
-    each_edge(sky, sweep, tile, radius_rad, scratch, [&](const SweepRun& run) {
-        if (soft) std::copy_n(run.found, run.count, upper.of(run));
-        float* const out = values.of(run);
-        for (int i = 0; i < run.count; ++i) {
-            const float h = run.height_m[i], centre = h >= run.found[i] ? 1 : 0;
-            out[i] = std::isnan(h) ? h : centre;
-        }
-    });
-    if (soft)
-        each_edge(sky, sweep, tile, -radius_rad, scratch, [&](const SweepRun& run) {
-            const float* const edge = upper.of(run);
-            float* const out = values.of(run);
-            for (int i = 0; i < run.count; ++i) {
-                const float h = run.height_m[i];
-                if (h > edge[i] && h < run.found[i])
-                    out[i] = static_cast<float>(
-                        share_of_disc((double{h} - edge[i]) / (double{run.found[i]} - edge[i])));
-                else if (h <= edge[i])
-                    out[i] = h >= run.found[i] ? 1 : 0;
-            }
+    const auto each_post = [&](double offset_rad, TileValues& to, const auto& figure) {
+        each_edge(sky, sweep, tile, offset_rad, scratch, [&](const SweepRun& run) {
+            float* const out = to.of(run);
+            for (int i = 0; i < run.count; ++i)
+                out[i] = figure(run.height_m[i], run.found[i]);
         });
+    };
+    if (!soft) {
+        each_post(0, values, [](float height_m, float edge_m) -> float {
+            if (std::isnan(height_m)) return height_m;
+            return height_m >= edge_m ? 1 : 0;
+        });
+    } else {
+        const auto margin = [](float height_m, float edge_m) { return height_m - edge_m; };
+        each_post(radius_rad, upper, margin);
+        each_post(0, middle, margin);
+        each_edge(sky, sweep, tile, -radius_rad, scratch, [&](const SweepRun& run) {
+            const float *const upper_m = upper.of(run), *const middle_m = middle.of(run);
+            float* const out = values.of(run);
+            for (int i = 0; i < run.count; ++i)
+                out[i] = share_of_sun(upper_m[i], middle_m[i], run.height_m[i] - run.found[i]);
+        });
+    }
     values.put(lit, of);
 }
 

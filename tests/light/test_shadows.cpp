@@ -175,6 +175,59 @@ TEST(Shadows, SoftnessIsTheShareOfTheDiscOverTheWall) {
     EXPECT_EQ(soft.lit.at(150, 50), 1);
 }
 
+/// The share of points all over the disc that stand over a post's exact horizon.
+double true_share(const TerrainHorizon& horizon, sun::Instant utc) {
+    constexpr int kPoints = 64;
+    const sun::Position at = sun::position(utc, horizon.place());
+    const double elevation_rad =
+        sun::Refraction::standard(horizon.place()).apparent_rad(at.elevation_rad);
+    int seen = 0;
+    for (int k = 0; k < kPoints; ++k) {
+        const double out_rad = at.semidiameter_rad * std::sqrt((k + 0.5) / kPoints);
+        const double turn_rad = 2.399963229728653 * k;  // the golden angle
+        const double azimuth_rad =
+            at.azimuth_rad + out_rad * std::sin(turn_rad) / std::cos(elevation_rad);
+        seen += elevation_rad + out_rad * std::cos(turn_rad) >= horizon.elevation_rad(azimuth_rad);
+    }
+    return seen / double{kPoints};
+}
+
+TEST(Shadows, SoftnessIsTheShareOfTheDiscOverRealRidges) {
+    const dem::Heightfield field = test::bundled("jacksboro.tif");
+    const dem::Posts posts(field);
+    const geo::Geodetic middle = posts.grid().center();
+    ShadowOptions options = with_air();
+    options.soft = true;
+    std::mt19937 lot(20260101);
+    for (const double elevation_deg : {2.0, 5.0})
+        for (const bool morning : {true, false}) {
+            const sun::Instant utc = moment_of(middle, {2026, 3, 20}, elevation_deg, morning);
+            const Shadows soft =
+                shadows(posts, SunOverDem::of(sun::position(utc, middle)), options);
+            std::vector<glm::ivec2> partly;
+            for (int row = 0; row < soft.lit.height(); ++row)
+                for (int column = 0; column < soft.lit.width(); ++column)
+                    if (soft.lit.at(column, row) > 0 && soft.lit.at(column, row) < 1)
+                        partly.emplace_back(column, row);
+            ASSERT_GT(partly.size(), 300U);
+            std::shuffle(partly.begin(), partly.end(), lot);
+            partly.resize(300);
+            double off = 0, size = 0;
+            for (const glm::ivec2& post : partly) {
+                const TerrainHorizon horizon(posts, posts.grid().place(post.x, post.y));
+                const double by = soft.lit.at(post.x, post.y) - true_share(horizon, utc);
+                off += by / 300;
+                size += std::abs(by) / 300;
+            }
+            fmt::print(
+                "[ accuracy ] jacksboro, share of the disc in half shade, sun at {} degrees, {}: "
+                "off by {:+.3f} in the mean, {:.3f} in size (limits 0.05, 0.1)\n",
+                elevation_deg, morning ? "morning" : "afternoon", off, size);
+            EXPECT_LE(std::abs(off), 0.05);
+            EXPECT_LE(size, 0.1);
+        }
+}
+
 TEST(Shadows, ShareOfDiscIsThatOfACircle) {
     EXPECT_EQ(share_of_disc(-0.1), 0);
     EXPECT_EQ(share_of_disc(0), 0);
