@@ -351,7 +351,8 @@ TEST_F(Output, OfTwoAtOnceOneIsThereAndWhole) {
 TEST_F(Output, OfAProgramThatASignalEndsIsNotThere) {
     const std::filesystem::path fifo = scratch_dir("cli_output_fifo") / "scene";
     ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
-    for (const std::string& refused : {std::string("nothing"), std::string("unnamed")})
+    for (const std::string& refused : {std::string("nothing"), std::string("unnamed")}) {
+        std::chrono::milliseconds lives = 0ms;
         for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
             // Only one who is killed without a word leaves what has a name.
             if (number == SIGKILL && refused == "unnamed") continue;
@@ -363,13 +364,14 @@ TEST_F(Output, OfAProgramThatASignalEndsIsNotThere) {
             // It opens when the program opens it, which is after the others.
             const int scene = open(fifo.c_str(), O_RDONLY | O_CLOEXEC);
             EXPECT_EQ(names().size(), refused == "unnamed" ? 2U : 0U);
-            std::this_thread::sleep_for(100ms * number);
+            std::this_thread::sleep_for(lives += 100ms);
             kill(child, number);
             const int status = status_of(child);
             EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == number) << number;
             close(scene);
             EXPECT_TRUE(names().empty()) << names().front();
         }
+    }
 }
 
 TEST_F(Output, OfAProgramThatIsKilledAtAnyMomentIsWholeOrNotThere) {
