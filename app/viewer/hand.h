@@ -31,7 +31,7 @@ class Hand {
     /// @param new_input  ImGui has taken clicks in since then
     void act(double passed_s, bool comparing, bool new_input);
     /// Moves that a key or a menu asks for. @returns whether it is one
-    /// @param whole  asked where it is to be seen
+    /// @param whole  finds the whole DEM; called for moves that show it alone
     bool move(Command command, const std::function<Whole()>& whole);
     /// Lets go, and lets nothing glide on.
     void rest();

@@ -89,6 +89,7 @@ scene::Insets MainWindow::insets() const {
     scene::Insets insets = side_panel_insets(state_, size(), unit());
     insets.top = 1.5 * text_px / size().y;     // the menu
     insets.bottom = 2.0 * text_px / size().y;  // the line of the cursor
+    // In a window about as low as these there is no room beside them.
     if (insets.top + insets.bottom > 0.5) insets.top = insets.bottom = 0;
     return insets;
 }

@@ -188,9 +188,9 @@ struct Session::Impl {
         auto loading = std::async(std::launch::async | std::launch::deferred,
                                   [this] { return options.dem ? options.dem : load_own(); });
         open_device(files);
-        // Which effects are on may depend on the ground.
         loaded = loading.get();
         dem::add_all(scene.dems, files);
+        // Which effects are on may depend on the ground.
         take_ground(drawn);
         const auto began = Clock::now();
         compile(drawn);
