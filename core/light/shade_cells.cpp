@@ -85,63 +85,98 @@ ShadeCells::Cell cell_of(const float* height_m, int columns, int rows, std::ptrd
     return cell;
 }
 
+/// How rays go over rows of posts: at least and at most aside from each to the next, and down.
+struct Steepness {
+    double least_aside = kInfinity, most_aside = -kInfinity, least_fall_m = kInfinity;
+
+    /// @param plan  rows next to each other, over columns of the sheet
+    Steepness(const CellSheet& sheet, std::span<const RowPlan> plan) {
+        if (plan.size() < 2) least_aside = most_aside = 0;
+        for (std::size_t k = 1; k < plan.size(); ++k) {
+            const RowPlan &a = plan[k - 1], &b = plan[k];
+            const double aside = b.shift - a.shift;
+            least_aside = std::min(least_aside, aside);
+            most_aside = std::max(most_aside, aside);
+            for (const int column : {0, sheet.columns()}) {
+                const double line = sheet.first_column(column) - a.shift;
+                least_fall_m = std::min(least_fall_m, b.fall - a.fall + (b.ramp - a.ramp) * line);
+            }
+        }
+    }
+
+    /// Ground goes down so steeply somewhere that it may shade what is behind it.
+    /// @param away, before, after  how far at most: to the next row, and to the column before and
+    ///     after
+    bool may_shade(double away_m, double before_m, double after_m) const {
+        return !(away_m + std::max(down_m(least_aside, before_m, after_m),
+                                   down_m(most_aside, before_m, after_m)) <
+                 least_fall_m - kSlack_m / kPosts);
+    }
+
+  private:
+    static double down_m(double aside, double before_m, double after_m) {
+        if (aside == 0) return 0;
+        return aside > 0 ? aside * after_m : -aside * before_m;
+    }
+};
+
 /// What rays have fallen by over a row of cells.
 class RowOfRays {
   public:
-    RowOfRays(const CellSheet& sheet, std::span<const RowPlan> plan, int begin, int row) {
-        const int end = begin + static_cast<int>(plan.size());
-        const int first = std::clamp(sheet.first_row(row) - 1, begin, end - 1),
-                  last = std::clamp(sheet.end_row(row), begin, end - 1);
-        ends_[0] = plan[static_cast<std::size_t>(first - begin)];
-        ends_[1] = plan[static_cast<std::size_t>(last - begin)];
-        for (int at = first + 1; at <= last; ++at) {
-            const RowPlan &a = plan[static_cast<std::size_t>(at - 1 - begin)],
-                          &b = plan[static_cast<std::size_t>(at - begin)];
-            const double aside = b.shift - a.shift;
-            least_aside_ = at == first + 1 ? aside : std::min(least_aside_, aside);
-            most_aside_ = at == first + 1 ? aside : std::max(most_aside_, aside);
-            for (const double line : {0.0 - a.shift, sheet.columns() * kPosts - a.shift}) {
-                const double fall = b.fall - a.fall + (b.ramp - a.ramp) * line;
-                least_fall_m_ = std::min(least_fall_m_, fall);
-            }
+    RowOfRays(const CellSheet& sheet, std::span<const RowPlan> plan, int begin, int row)
+        : rows_(rows_of(sheet, plan, begin, row)), steepness_(sheet, rows_) {
+        const double to_left = std::max(aside(), 0.0) + kSlack_posts,
+                     to_right = std::max(-aside(), 0.0) + kSlack_posts;
+        from_ = {-static_cast<int>(std::ceil(to_left / kPosts)),
+                 static_cast<int>(std::floor(to_right / kPosts)) + 2};
+        for (std::size_t k = 0; k < 2; ++k) {
+            const RowPlan& end = k == 0 ? rows_.front() : rows_.back();
+            // With a post on either side.
+            const double across = end.ramp * (kPosts + 2);
+            const double first = end.fall + end.ramp * (sheet.first_column(0) - 1 - end.shift);
+            least_m_[k] = first + std::min(across, 0.0) - kSlack_m;
+            most_m_[k] = first + std::max(across, 0.0) + kSlack_m;
+            more_m_[k] = end.ramp * kPosts;
         }
     }
 
     /// Ground goes down more steeply somewhere.
     bool is_source(const CellSheet& sheet, const ShadeCells::Cell& cell) const {
-        const double down =
-            std::max(sheet.down_m(cell, least_aside_), sheet.down_m(cell, most_aside_));
-        return !(down < least_fall_m_ - kSlack_m / kPosts);
+        const CellSheet::Down down = sheet.down_m(cell.down_m);
+        return steepness_.may_shade(down.away, down.before, down.after);
     }
 
     /// Of rays over a column of cells, from the row of the reference on.
-    double least_fall_m(int column) const { return fall_m(column, false) - kSlack_m; }
-    double most_fall_m(int column) const { return fall_m(column, true) + kSlack_m; }
+    double least_fall_m(int column) const {
+        return std::min(least_m_[0] + more_m_[0] * column, least_m_[1] + more_m_[1] * column);
+    }
+    double most_fall_m(int column) const {
+        return std::max(most_m_[0] + more_m_[0] * column, most_m_[1] + more_m_[1] * column);
+    }
 
     /// Columns that lines go aside by, over the row.
-    double aside() const { return ends_[1].shift - ends_[0].shift; }
+    double aside() const { return rows_.back().shift - rows_.front().shift; }
 
     /// Columns of cells whose lines come over one while they go over the row.
     ColumnRange from(int column, int columns) const {
-        const double low = column * kPosts - std::max(aside(), 0.0) - kSlack_posts,
-                     high = (column + 1) * kPosts - std::min(aside(), 0.0) + kSlack_posts;
-        return {std::max(0, static_cast<int>(std::floor(low / kPosts))),
-                std::min(columns, static_cast<int>(std::floor(high / kPosts)) + 1)};
+        return {std::max(0, column + from_.begin), std::min(columns, column + from_.end)};
     }
 
   private:
-    double fall_m(int column, bool most) const {
-        double found = most ? -kInfinity : kInfinity;
-        for (const RowPlan& end : ends_)
-            for (const double at : {column * kPosts - 1.0, (column + 1) * kPosts + 1.0}) {
-                const double fall = end.fall + end.ramp * (at - end.shift);
-                found = most ? std::max(found, fall) : std::min(found, fall);
-            }
-        return found;
+    /// Those of a row of cells, and one on either side.
+    static std::span<const RowPlan> rows_of(const CellSheet& sheet, std::span<const RowPlan> plan,
+                                            int begin, int row) {
+        const int last_row = static_cast<int>(plan.size()) - 1;
+        const int first = std::clamp(sheet.first_row(row) - 1 - begin, 0, last_row),
+                  last = std::clamp(sheet.end_row(row) - begin, 0, last_row);
+        return plan.subspan(static_cast<std::size_t>(first),
+                            static_cast<std::size_t>(last - first + 1));
     }
 
-    RowPlan ends_[2];
-    double least_aside_ = 0, most_aside_ = 0, least_fall_m_ = kInfinity;
+    std::span<const RowPlan> rows_;
+    Steepness steepness_;
+    ColumnRange from_;
+    double least_m_[2], most_m_[2], more_m_[2];  // over the first row, and over the last one
 };
 
 /// Flags and those so many columns beside.
@@ -166,7 +201,8 @@ void fill_gaps(unsigned char* flags, int columns) {
     }
 }
 
-std::vector<ColumnRange> ranges_of(const Flags& flags) {
+/// @param flags  of columns of cells
+std::vector<ColumnRange> ranges_of(const CellSheet& sheet, std::span<const unsigned char> flags) {
     constexpr int kFar = 1 << 28;
     const int columns = static_cast<int>(flags.size());
     std::vector<ColumnRange> ranges;
@@ -175,8 +211,8 @@ std::vector<ColumnRange> ranges_of(const Flags& flags) {
         const int first = column;
         while (column + 1 < columns && flags[static_cast<std::size_t>(column) + 1])
             ++column;
-        ranges.push_back({first == 0 ? -kFar : first * kPosts,
-                          column + 1 == columns ? kFar : (column + 1) * kPosts});
+        ranges.push_back({first == 0 ? -kFar : sheet.first_column(first),
+                          column + 1 == columns ? kFar : sheet.first_column(column + 1)});
     }
     return ranges;
 }
@@ -198,6 +234,10 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
                        static_cast<std::size_t>(column)] =
                     cell_of(height_m, columns, rows, stride, column * kPosts, row * kPosts);
     });
+    std::fill(std::begin(steepest_m_), std::end(steepest_m_), -kInfinity);
+    for (const Cell& cell : cells_)
+        for (std::size_t k = 0; k < std::size(steepest_m_); ++k)
+            steepest_m_[k] = std::max(steepest_m_[k], cell.down_m[k]);
 }
 
 namespace {
@@ -207,19 +247,28 @@ struct EarthEdge {
     double least_m = -kInfinity, most_m = -kInfinity;
 
     EarthEdge(const CellSheet& sheet, const SweepSun& sun, int column, int row,
-              const std::optional<EarthAround>& earth) {
-        if (!earth) return;
+              const EarthAround& earth) {
         double least = kInfinity, most = -kInfinity;
         for (const double y : {sheet.first_row(row) - 1.0, sheet.end_row(row) + 1.0})
-            for (const double x : {column * kPosts - 1.0, (column + 1) * kPosts + 1.0}) {
+            for (const double x :
+                 {sheet.first_column(column) - 1.0, sheet.first_column(column + 1) + 1.0}) {
                 least = std::min(least, sun.tangent_at(x, y));
                 most = std::max(most, sun.tangent_at(x, y));
             }
         const auto edge_m = [&](double tangent) {
-            return earth->lowest_m + tangent * tangent / (2 * earth->curvature);
+            return earth.lowest_m + tangent * tangent / (2 * earth.curvature);
         };
         if (most < 0) least_m = edge_m(most) - kSlack_m;
         if (least < 0) most_m = edge_m(least) + kSlack_m;
+    }
+
+    /// Whether it makes any over some cell of a sheet.
+    static bool is_any(const CellSheet& sheet, const SweepSun& sun) {
+        for (const double y : {-1.0, sheet.lines + 1.0})
+            for (const int column : {0, sheet.columns()})
+                if (sun.tangent_at(sheet.first_column(column) + (column == 0 ? -1 : 1), y) < 0)
+                    return true;
+        return false;
     }
 };
 
@@ -235,6 +284,7 @@ class Carried {
           over_(most_) {}
 
     /// The states of a row of cells, lines coming from the one before it.
+    /// @param earth  none: it hides nothing
     void go_over(const CellSheet& sheet, const SweepSun& sun, int row, const RowOfRays& rays,
                  const std::optional<EarthAround>& earth, const unsigned char* sources,
                  unsigned char* states) {
@@ -258,21 +308,23 @@ class Carried {
                 most = std::max(most, over_[at]);
                 least = std::min(least, least_[at]);
             }
-            const bool at_border = column == 0 || column + 1 == columns;
-            if (at_border) least = -kInfinity;  // others come in from outside
-            const EarthEdge edge(sheet, sun, column, row, earth);
-            const bool may_shade = most > cell.lowest_m + rays.least_fall_m(column);
-            const bool is_dark =
-                least > cell.highest_m + rays.most_fall_m(column) || edge.least_m > cell.highest_m;
-            const bool is_lit = !may_shade && cell.lowest_m > edge.most_m;
+            const bool at_end = column == 0 || column + 1 == columns;
+            if (at_end) least = -kInfinity;  // others come in from outside
+            const double least_fall_m = rays.least_fall_m(column);
+            const bool may_shade = most > cell.lowest_m + least_fall_m;
+            bool is_dark = least > cell.highest_m + rays.most_fall_m(column), is_lit = !may_shade;
+            if (earth) {
+                const EarthEdge edge(sheet, sun, column, row, *earth);
+                is_dark = is_dark || edge.least_m > cell.highest_m;
+                is_lit = is_lit && cell.lowest_m > edge.most_m;
+            }
             states[i] = is_dark  ? ShadedCells::kDark
                         : is_lit ? ShadedCells::kLit
                                  : ShadedCells::kMixed;
             next_[i] = may_shade ? most : -kInfinity;
             next_least_[i] = least;
-            if (narrow && !at_border)
-                next_least_[i] =
-                    std::max(least, sheet.ridge_m(cell, after) + rays.least_fall_m(column));
+            if (narrow && !at_end)
+                next_least_[i] = std::max(least, sheet.ridge_m(cell, after) + least_fall_m);
         }
         most_.swap(next_);
         least_.swap(next_least_);
@@ -285,17 +337,20 @@ class Carried {
 }  // namespace
 
 ShadedCells::ShadedCells(const CellSheet& sheet, const SweepSun& sun, std::span<const RowPlan> plan,
-                         int begin, const std::optional<EarthAround>& earth) {
-    const int columns = sheet.columns();
-    const auto width = static_cast<std::size_t>(columns);
+                         int begin, std::optional<EarthAround> earth) {
+    const auto width = static_cast<std::size_t>(sheet.columns());
     sources.resize(width * static_cast<std::size_t>(sheet.rows()), 0);
     states.resize(sources.size(), kLit);
+    if (earth && !EarthEdge::is_any(sheet, sun)) earth.reset();
+    const CellSheet::Down steepest = sheet.down_m(sheet.cells.steepest_m());
+    if (!earth && !Steepness(sheet, plan).may_shade(steepest.away, steepest.before, steepest.after))
+        return;
     Carried carried(width);
     const int last = sheet.row_of(begin + static_cast<int>(plan.size()) - 1);
     for (int row = sheet.row_of(begin); row <= last; ++row) {
         const RowOfRays rays(sheet, plan, begin, row);
         unsigned char* const of_row = sources.data() + static_cast<std::size_t>(row) * width;
-        for (int column = 0; column < columns; ++column)
+        for (int column = 0; column < sheet.columns(); ++column)
             of_row[column] = rays.is_source(sheet, sheet.at(column, row));
         carried.go_over(sheet, sun, row, rays, earth, of_row,
                         states.data() + static_cast<std::size_t>(row) * width);
@@ -343,6 +398,7 @@ ShadeRanges shade_ranges(const CellSheet& sheet, const ShadedCells* before, cons
     }
     // A line beside the grid is as high as the ground that it has left, be that how far off it may.
     for (const int column : {0, columns - 1}) {
+        if (!sheet.is_border(column)) continue;
         bool is_looked_at = false;
         for (int row = rows - 1; row >= 0; --row) {
             is_looked_at = is_looked_at || row_of(look, row)[column];
@@ -359,9 +415,8 @@ ShadeRanges shade_ranges(const CellSheet& sheet, const ShadedCells* before, cons
         for (const auto of :
              {ShadeRanges::kLook, ShadeRanges::kRaise, ShadeRanges::kTake, ShadeRanges::kDark}) {
             const Flags& flags = *std::array{&look, &raise, &take, &dark}[of];
-            const auto from =
-                flags.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(row) * width);
-            found.ranges[of].push_back(ranges_of(Flags(from, from + columns)));
+            found.ranges[of].push_back(ranges_of(
+                sheet, std::span(flags).subspan(static_cast<std::size_t>(row) * width, width)));
         }
     return found;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -17,6 +18,11 @@ struct RowPlan {
     double shift = 0;       // column of line 0
     double fall = 0;        // of line 0, from the row of the reference on
     double ramp = 0;        // likewise, more for each line
+};
+
+/// Columns [begin, end) of a sheet.
+struct ColumnRange {
+    int begin, end;
 };
 
 /// What is known of the ground of squares of kPosts posts a side.
@@ -44,15 +50,13 @@ class ShadeCells {
         return cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                       static_cast<std::size_t>(column)];
     }
+    /// Of all cells, what Cell::down_m is of one.
+    const float (&steepest_m() const)[4] { return steepest_m_; }
 
   private:
     int columns_, rows_;
     std::vector<Cell> cells_;
-};
-
-/// Columns [begin, end) of a sheet.
-struct ColumnRange {
-    int begin, end;
+    float steepest_m_[4];
 };
 
 /// What a sweep has to look at, for each row of cells of a sheet.
@@ -71,10 +75,27 @@ struct ShadeRanges {
 struct CellSheet {
     const ShadeCells& cells;
     bool along_columns, mirrored;
-    int lines;  ///< of the sheet: rows of posts
+    int lines;               ///< of the sheet: rows of posts
+    ColumnRange some{0, 0};  ///< columns of cells that it has
 
-    int columns() const { return along_columns ? cells.rows() : cells.columns(); }
+    /// @param posts  columns of the sheet that are looked at; it has all cells with any of them
+    CellSheet(const ShadeCells& all, bool turned, bool in_a_mirror, int rows_of_posts,
+              const ColumnRange& posts)
+        : cells(all), along_columns(turned), mirrored(in_a_mirror), lines(rows_of_posts) {
+        const int columns = all_columns();
+        some.begin = std::clamp(posts.begin / ShadeCells::kPosts, 0, columns - 1);
+        some.end = std::clamp((posts.end - 1) / ShadeCells::kPosts + 1, some.begin + 1, columns);
+    }
+
+    int all_columns() const { return along_columns ? cells.rows() : cells.columns(); }
+    int columns() const { return some.end - some.begin; }
     int rows() const { return along_columns ? cells.columns() : cells.rows(); }
+    /// Of the sheet, where a column of cells begins; it need not end in as many posts.
+    int first_column(int column) const { return (some.begin + column) * ShadeCells::kPosts; }
+    /// A column at which the grid ends.
+    bool is_border(int column) const {
+        return some.begin + column == 0 || some.begin + column + 1 == all_columns();
+    }
     /// The row of cells that a row of the sheet is in.
     int row_of(int row) const {
         const int r = (mirrored ? lines - 1 - row : row) / ShadeCells::kPosts;
@@ -88,18 +109,22 @@ struct CellSheet {
     int end_row(int row) const { return row + 1 < rows() ? first_row(row + 1) : lines; }
     const ShadeCells::Cell& at(int column, int row) const {
         const int r = mirrored ? rows() - 1 - row : row;
-        return along_columns ? cells.at(r, column) : cells.at(column, r);
+        const int c = some.begin + column;
+        return along_columns ? cells.at(r, c) : cells.at(c, r);
     }
     /// So high is all ground of some row at least, here and on one side.
     float ridge_m(const ShadeCells::Cell& cell, bool after) const {
         return (along_columns ? cell.column_ridge_m : cell.row_ridge_m)[after];
     }
-    /// Goes down at most, away from the sun, by a step of one row and so many columns.
-    double down_m(const ShadeCells::Cell& cell, double columns) const {
-        const int away = (along_columns ? 2 : 0) + mirrored, across = along_columns ? 0 : 2;
-        if (columns == 0) return cell.down_m[away];
-        return cell.down_m[away] +
-               (columns > 0 ? columns * cell.down_m[across] : -columns * cell.down_m[across + 1]);
+    /// How far ground goes down at most: to the next row, away from the sun, and to the column
+    /// before and after.
+    struct Down {
+        float away, before, after;
+    };
+    /// @param down_m  as a cell has it
+    Down down_m(const float (&down_m)[4]) const {
+        const int along = along_columns ? 2 : 0, across = 2 - along;
+        return {down_m[along + mirrored], down_m[across + 1], down_m[across]};
     }
 };
 
@@ -119,7 +144,7 @@ struct ShadedCells {
     /// @param plan   rows of the sheet from `begin` on
     /// @param earth  none: it hides nothing
     ShadedCells(const CellSheet& sheet, const SweepSun& sun, std::span<const RowPlan> plan,
-                int begin, const std::optional<EarthAround>& earth);
+                int begin, std::optional<EarthAround> earth);
     /// What is known where this sun is taken for some posts and another one for others.
     void join(const ShadedCells& other);
     /// So much is not known that all may be looked at.

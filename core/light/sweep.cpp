@@ -1638,6 +1638,7 @@ struct Sweep::Blocks::OneSun {
     Plan plan;
     std::shared_ptr<const Steps> steps;
     std::vector<std::unique_ptr<Strip>> strips;
+    ColumnRange ground{0, 0};  // columns that its lines go over
 
     OneSun(const Sweep& sweep, const View& of, const Wanted& wanted, float floor_m)
         : view(of),
@@ -1669,6 +1670,10 @@ struct Sweep::Blocks::OneSun {
   private:
     void make_strips(const Sweep& sweep, const Wanted& wanted, float floor_m) {
         const Extent extent(*steps, wanted);
+        constexpr int kBeside = 3;  // columns beside lines whose ground matters to posts
+        const auto [least, most] = plan.columns(plan.begin(), plan.end());
+        ground = {static_cast<int>(std::floor(least)) + extent.first_line - kBeside,
+                  static_cast<int>(std::ceil(most)) + extent.end_line + kBeside};
         const int lines = extent.end_line - extent.first_line;
         const int count = (lines + Strip::kMostWidth - 1) / Strip::kMostWidth;
         const int width =
@@ -1751,11 +1756,7 @@ Sweep::Blocks::Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const Sw
             add_band(band, window, floor_m, *moments_.back());
     }
     end_row_ = row_;
-    // To find out what may be left out is work over all of the grid.
-    constexpr std::int64_t kLeastShare = 4;
-    const bool is_large =
-        kLeastShare * window.columns * window.rows >= std::int64_t{sweep.columns_} * sweep.rows_;
-    if (is_large && !sweep.read_) leave_out(suns, earth_curvature);
+    if (!sweep.read_) leave_out(suns, earth_curvature);
 }
 
 Sweep::Blocks::~Blocks() = default;
@@ -1814,13 +1815,16 @@ void Sweep::Blocks::add_band(const Band& band, const SweepWindow& window, float 
 
 void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvature) {
     std::vector<std::optional<ShadedCells>> shaded(suns.size());
+    ColumnRange ground{kAllColumns.end, kAllColumns.begin};
+    for (const OneSun* const sun : suns_)
+        ground = {std::min(ground.begin, sun->ground.begin), std::max(ground.end, sun->ground.end)};
     for (std::size_t k = 0; k < suns.size(); ++k) {
         // What is known beforehand is so of one path over all of the grid.
         if (suns[k].all_posts || suns[k].bands.size() > 1) continue;
         Moment& moment = *moments_[k];
         const OneBand& band = moment.bands.front();
-        moment.cells.emplace(
-            CellSheet{sweep_.cells(), view_->along_columns, view_->mirrored, view_->sheet.rows});
+        moment.cells.emplace(sweep_.cells(), view_->along_columns, view_->mirrored,
+                             view_->sheet.rows, ground);
         for (const auto& sun : band.suns) {
             const ShadedCells found(*moment.cells, sun->view.sun, sun->plan.rows(),
                                     sun->plan.begin(),
