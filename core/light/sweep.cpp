@@ -14,26 +14,27 @@
 #include "base/parallel_for.h"
 #include "base/units.h"
 #include "light/shade_cells.h"
+#include "light/sweep_kernels.h"
 
 namespace relevo::light {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-constexpr float kNothing_m = -kInfinity;  // where nothing shades
-
 /// How a sweep looks at ground.
 struct Nearness {
     int near_rows;          // whose ground a post's own ray is followed over
     std::size_t line_sets;  // lines from post to post
+    int kept_rows;          // whose ground is kept, a power of two: those and three more
+    bool distances;         // how far off ground is matters
 };
 constexpr std::size_t kMostLineSets = 2;
-constexpr Nearness kOfEdges{4, 2};
-constexpr Nearness kOfHorizons{8, 1};  // a row near costs less than a fan of rays
-constexpr double kSteepest = 1e4;      // tangent: 0.006 degrees from the zenith
-constexpr double kOnLine = 1e-6;       // of a post: a ray that meets a row there meets the post
-constexpr int kStripLines = 1023;      // which a thread sweeps together: its rows stay in the cache
-constexpr int kFanLines = 63;          // likewise, where each line has a fan
+constexpr Nearness kOfEdges{4, 2, 8, false};
+constexpr Nearness kOfHorizons{8, 1, 16, true};  // a row near costs less than a fan of rays
+constexpr double kSteepest = 1e4;                // tangent: 0.006 degrees from the zenith
+constexpr double kOnLine = 1e-6;   // of a post: a ray that meets a row there meets the post
+constexpr int kStripLines = 1023;  // which a thread sweeps together: its rows stay in the cache
+constexpr int kFanLines = 63;      // likewise, where each line has a fan
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr ColumnRange kAllColumns{-(1 << 28), 1 << 28};
 
@@ -42,396 +43,14 @@ constexpr int in_vectors(int count) {
     return (count + Sweep::kMostLanes - 1) / Sweep::kMostLanes * Sweep::kMostLanes;
 }
 
-/// Of all lines, how far they have come down: fall + ramp * line.
-struct Slope {
-    float fall = 0, ramp = 0;
-};
-
-/// Ground under rays: at the i-th line it is p[i] + part * (q[i] - p[i]) high, where p is of a row
-/// and a column, and q of the next ones, or of one of them.
-struct Term {
-    int row, column;
-    int next_row, next_column;  // 0 or 1 on
-    float part;
-    double distance;  // fallen from there on, which is the way where tangents are 1
-    int begin, end;   // lines that have such ground
-};
-
-/// The same from some line on.
-struct Ground {
-    const float *p = nullptr, *q = nullptr;
-    float part = 0;
-};
-
-/// Loads that cross lines of the cache are what a sweep waits for: what is used twice is loaded
-/// once, whatever the compiler thinks of it.
-#if defined(__x86_64__)
-#define RELEVO_IN_REGISTER(v) asm("" : "+x"(v))
-#else
-#define RELEVO_IN_REGISTER(v)
-#endif
-
-/// Vectors come and go by reference: how a wide one is returned hangs on the processor.
-template <typename V>
-[[gnu::always_inline]] inline void load(const float* from, V& v) {
-    std::memcpy(&v, from, sizeof v);
+/// The whole numbers beside one, which are near enough to 0 to be ints.
+constexpr int floor_of(double x) {
+    const int whole = static_cast<int>(x);
+    return whole - (whole > x);
 }
-
-template <typename V>
-[[gnu::always_inline]] inline void store(const V& v, float* to) {
-    std::memcpy(to, &v, sizeof v);
-}
-
-template <typename V>
-constexpr int kWidthOf = static_cast<int>(sizeof(V) / sizeof(float));
-
-/// 0, 1, 2 ...
-template <typename V>
-[[gnu::always_inline]] inline void count(V& lane) {
-    for (int k = 0; k < kWidthOf<V>; ++k)
-        lane[k] = static_cast<float>(k);
-}
-
-/// Whole vectors of lines that rise to their ground: e[i] = max(before[i], all ground). NaN, a
-/// hole, changes nothing.
-struct Lift {
-    float* e;
-    const float* before;  // or null: of ground alone
-    int lines;
-    const Ground* ground;
-    int grounds;
-};
-
-/// kVectors vectors of lines, from the i-th on. Multiplications and additions are not contracted
-/// (CMakeLists.txt), so that the bits are the same for every V.
-template <typename V, int kVectors>
-[[gnu::always_inline]] inline void raise_some(const Lift& lift, int i) {
-    V height[kVectors];
-#pragma GCC unroll 8
-    for (int k = 0; k < kVectors; ++k)
-        if (lift.before)
-            load(lift.before + i + k * kWidthOf<V>, height[k]);
-        else
-            height[k] = V{} + kNothing_m;
-    for (const Ground* g = lift.ground; g < lift.ground + lift.grounds; ++g)
-#pragma GCC unroll 8
-        for (int k = 0; k < kVectors; ++k) {
-            V a, b;
-            load(g->p + i + k * kWidthOf<V>, a);
-            load(g->q + i + k * kWidthOf<V>, b);
-            RELEVO_IN_REGISTER(a);
-            const V h = a + g->part * (b - a);
-            height[k] = h > height[k] ? h : height[k];
-        }
-#pragma GCC unroll 8
-    for (int k = 0; k < kVectors; ++k)
-        store(height[k], lift.e + i + k * kWidthOf<V>);
-}
-
-template <typename V>
-[[gnu::always_inline]] inline void raise_all(const Lift& lift) {
-    int i = 0;
-    for (; i + 4 * kWidthOf<V> <= lift.lines; i += 4 * kWidthOf<V>)
-        raise_some<V, 4>(lift, i);
-    for (; i < lift.lines; i += kWidthOf<V>)
-        raise_some<V, 1>(lift, i);
-}
-
-/// A row of ground or of edges, from some line on: numbers that change with what rays have fallen
-/// by there, which is slope.fall + slope.ramp * (line + between).
-struct Tilted {
-    const float* from;
-    float* to;
-    int lines;      // any number to tilt, whole vectors to take that away again
-    int line;       // the first one
-    float between;  // how far on towards the next line each post stands
-    Slope slope;
-    float base_m, least_m;  // added, and the least result
-};
-
-/// What rays have fallen by is added, so that rays over it are level.
-template <typename V>
-[[gnu::always_inline]] inline void tilt_all(const Tilted& row) {
-    V lane;
-    count(lane);
-    int i = 0;
-    for (; i + kWidthOf<V> <= row.lines; i += kWidthOf<V>) {
-        const V line = (static_cast<float>(row.line + i) + lane) + row.between;
-        V h;
-        load(row.from + i, h);
-        store((h + row.base_m) + (row.slope.fall + row.slope.ramp * line), row.to + i);
-    }
-    for (; i < row.lines; ++i)
-        row.to[i] =
-            (row.from[i] + row.base_m) +
-            (row.slope.fall + row.slope.ramp * (static_cast<float>(row.line + i) + row.between));
-}
-
-/// And taken away.
-template <typename V>
-[[gnu::always_inline]] inline void untilt_all(const Tilted& row) {
-    V lane;
-    count(lane);
-    for (int i = 0; i < row.lines; i += kWidthOf<V>) {
-        const V line = (static_cast<float>(row.line + i) + lane) + row.between;
-        V h;
-        load(row.from + i, h);
-        h = (h - (row.slope.fall + row.slope.ramp * line)) + row.base_m;
-        store(h > row.least_m ? h : V{} + row.least_m, row.to + i);
-    }
-}
-
-/// Posts between the lines before and behind them: e[i] = p[i] + part * (q[i] - p[i]). A line below
-/// the floor counts as one that has met nothing, so that a post's edge does not hang on how far off
-/// ground is swept; a post beside such a line has nothing from either.
-struct Between {
-    float* e;
-    const float *p, *q;
-    float part;
-    int posts;  // filled up to whole vectors
-    int line;   // as Tilted has it, and the next ones
-    float between;
-    Slope slope;
-    float floor_m;
-};
-
-template <typename V>
-[[gnu::always_inline]] inline void mix_all(const Between& lines) {
-    const V nothing = V{} + kNothing_m;
-    V lane;
-    count(lane);
-    for (int i = 0; i < lines.posts; i += kWidthOf<V>) {
-        const V line = (static_cast<float>(lines.line + i) + lane) + lines.between;
-        const V least = lines.floor_m + (lines.slope.fall + lines.slope.ramp * line);
-        V a, b;
-        load(lines.p + i, a);
-        load(lines.q + i, b);
-        a = a >= least ? a : nothing;
-        b = b >= least ? b : nothing;
-        const V h = a + lines.part * (b - a);
-        store(h > nothing ? h : nothing, lines.e + i);
-    }
-}
-
-/// Ground before posts next to each other, as their own rays meet it.
-struct Sight {
-    float* tangent;  // max(tangent, that of all ground)
-    const float* height_m;
-    int posts;
-    const Ground* ground;
-    const Slope* slopes;  // 1 / distance, and what the ground has sunk by there
-    int grounds;
-};
-
-/// kVectors vectors of posts, likewise.
-template <typename V, int kVectors>
-[[gnu::always_inline]] inline void look_some(const Sight& sight, int i) {
-    V height[kVectors], tangent[kVectors];
-#pragma GCC unroll 8
-    for (int k = 0; k < kVectors; ++k) {
-        load(sight.height_m + i + k * kWidthOf<V>, height[k]);
-        load(sight.tangent + i + k * kWidthOf<V>, tangent[k]);
-    }
-    for (int j = 0; j < sight.grounds; ++j) {
-        const Ground& g = sight.ground[j];
-        const Slope& slope = sight.slopes[j];
-#pragma GCC unroll 8
-        for (int k = 0; k < kVectors; ++k) {
-            V a, b;
-            load(g.p + i + k * kWidthOf<V>, a);
-            load(g.q + i + k * kWidthOf<V>, b);
-            RELEVO_IN_REGISTER(a);
-            const V t = ((a + g.part * (b - a)) - height[k]) * slope.fall - slope.ramp;
-            tangent[k] = t > tangent[k] ? t : tangent[k];
-        }
-    }
-#pragma GCC unroll 8
-    for (int k = 0; k < kVectors; ++k)
-        store(tangent[k], sight.tangent + i + k * kWidthOf<V>);
-}
-
-template <typename V>
-[[gnu::always_inline]] inline void look_all(const Sight& sight) {
-    int i = 0;
-    for (; i + 4 * kWidthOf<V> <= sight.posts; i += 4 * kWidthOf<V>)
-        look_some<V, 4>(sight, i);
-    for (; i < sight.posts; i += kWidthOf<V>)
-        look_some<V, 1>(sight, i);
-}
-
-// --- Fans
-
-/// Tangents of rays, some degrees apart, that every line carries over its ground: for each the
-/// post that holds it up, whose distance and height are known. Between two of them a horizon is
-/// seen over that post's neighbours, from where their difference is of second order.
-constexpr std::array kFanDegrees{-4.0, -2.5, -1.3, -0.3, 0.7,  1.7,  2.9,  4.2,  5.6,  7.1,
-                                 8.7,  10.4, 12.2, 14.1, 16.1, 18.2, 20.5, 23.0, 25.7, 28.6,
-                                 31.8, 35.2, 38.8, 42.6, 46.8, 51.4, 57.0, 64.0, 73.0};
-constexpr int kRays = kFanDegrees.size();
-constexpr int kFanPoints = 4;  // of the ground that a fan is laid over at once
-
-/// A post of ground under each line, less what that has sunk by below the tangent plane.
-struct FanPoint {
-    Ground ground;
-    float sunk_m, distance_m;  // away from the sun
-};
-
-/// Whole vectors of lines, whose fans are raised to points of ground.
-struct FanLift {
-    float *height_m, *distance_m;  // of the first ray's; those of the next begin `pitch` on
-    std::ptrdiff_t pitch;
-    int lines;
-    const float* tangents;  // kRays
-    const FanPoint* points;
-    const float* rises;  // for each ray those of the points: tangent * distance
-};
-
-template <typename V, int kPoints>
-[[gnu::always_inline]] inline void raise_fans_over(const FanLift& lift) {
-    for (int i = 0; i < lift.lines; i += kWidthOf<V>) {
-        V over[kPoints];
-#pragma GCC unroll 8
-        for (int j = 0; j < kPoints; ++j) {
-            const FanPoint& point = lift.points[j];
-            V a, b;
-            load(point.ground.p + i, a);
-            load(point.ground.q + i, b);
-            over[j] = (a + point.ground.part * (b - a)) - point.sunk_m;
-        }
-        for (int k = 0; k < kRays; ++k) {
-            float* const to_height = lift.height_m + k * lift.pitch + i;
-            float* const to_distance = lift.distance_m + k * lift.pitch + i;
-            V height, distance;
-            load(to_height, height);
-            load(to_distance, distance);
-            V most = height + lift.tangents[k] * distance;
-#pragma GCC unroll 8
-            for (int j = 0; j < kPoints; ++j) {
-                const V here = over[j] + lift.rises[k * kFanPoints + j];
-                const auto higher = here > most;
-                height = higher ? over[j] : height;
-                distance = higher ? V{} + lift.points[j].distance_m : distance;
-                if (j + 1 < kPoints) most = higher ? here : most;
-            }
-            store(height, to_height);
-            store(distance, to_distance);
-        }
-    }
-}
-
-/// @param points  1 to kFanPoints
-template <typename V>
-[[gnu::always_inline]] inline void raise_all_fans(const FanLift& lift, int points) {
-    switch (points) {
-        case 1:
-            return raise_fans_over<V, 1>(lift);
-        case 2:
-            return raise_fans_over<V, 2>(lift);
-        case 3:
-            return raise_fans_over<V, 3>(lift);
-        default:
-            return raise_fans_over<V, 4>(lift);
-    }
-}
-
-/// Posts next to each other behind fans, one for each.
-struct FanSight {
-    float* tangent;
-    const float* ground_m;
-    const float *height_m, *distance_m;  // as in FanLift
-    std::ptrdiff_t pitch;
-    int posts;
-    int first_ray;  // that is looked at
-    const float* tangents;
-    float from_m, sunk_m, tilt;  // how far off the posts are, and the plane there
-    bool both;                   // what holds the next steeper ray up is looked over, too
-};
-
-/// The tangent over what holds the steepest ray up that passes over a post, or minus infinity.
-template <typename V>
-[[gnu::always_inline]] inline void look_over_all_fans(const FanSight& sight) {
-    for (int i = 0; i < sight.posts; i += kWidthOf<V>) {
-        V eye;
-        load(sight.ground_m + i, eye);
-        eye -= sight.sunk_m;
-        V rise = V{} + kNothing_m, way = V{} + 1, next_rise = rise, next_way = way;
-        auto over_last = eye == eye;  // not of holes
-        for (int k = sight.first_ray; k < kRays; ++k) {
-            V up, along;
-            load(sight.height_m + k * sight.pitch + i, up);
-            load(sight.distance_m + k * sight.pitch + i, along);
-            up -= eye;
-            along = sight.from_m - along;
-            const auto over = up > sight.tangents[k] * along;
-            next_rise = over_last ? up : next_rise;
-            next_way = over_last ? along : next_way;
-            rise = over ? up : rise;
-            way = over ? along : way;
-            over_last = over;
-        }
-        V tangent = rise / way;
-        if (sight.both) {
-            const V next = next_rise / next_way;
-            tangent = next > tangent ? next : tangent;
-        }
-        store(tangent - sight.tilt, sight.tangent + i);
-    }
-}
-
-/// All of them by vectors of some width.
-struct Kernel {
-    void (*raise)(const Lift& lift);
-    void (*tilt)(const Tilted& row);
-    void (*untilt)(const Tilted& row);
-    void (*mix)(const Between& lines);
-    void (*look)(const Sight& sight);
-    void (*raise_fans)(const FanLift& lift, int points);
-    void (*look_over_fans)(const FanSight& sight);
-};
-
-#define RELEVO_SWEEP_KERNEL(lanes, ...)                                         \
-    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float;    \
-    __VA_ARGS__ void raise_##lanes(const Lift& lift) {                          \
-        raise_all<Vector##lanes>(lift);                                         \
-    }                                                                           \
-    __VA_ARGS__ void tilt_##lanes(const Tilted& row) {                          \
-        tilt_all<Vector##lanes>(row);                                           \
-    }                                                                           \
-    __VA_ARGS__ void untilt_##lanes(const Tilted& row) {                        \
-        untilt_all<Vector##lanes>(row);                                         \
-    }                                                                           \
-    __VA_ARGS__ void mix_##lanes(const Between& lines) {                        \
-        mix_all<Vector##lanes>(lines);                                          \
-    }                                                                           \
-    __VA_ARGS__ void look_##lanes(const Sight& sight) {                         \
-        look_all<Vector##lanes>(sight);                                         \
-    }                                                                           \
-    __VA_ARGS__ void raise_fans_##lanes(const FanLift& lift, int points) {      \
-        raise_all_fans<Vector##lanes>(lift, points);                            \
-    }                                                                           \
-    __VA_ARGS__ void look_over_fans_##lanes(const FanSight& sight) {            \
-        look_over_all_fans<Vector##lanes>(sight);                               \
-    }                                                                           \
-    constexpr Kernel kKernel##lanes {                                           \
-        raise_##lanes, tilt_##lanes, untilt_##lanes, mix_##lanes, look_##lanes, \
-            raise_fans_##lanes, look_over_fans_##lanes                          \
-    }
-
-RELEVO_SWEEP_KERNEL(4);
-#if defined(__x86_64__)
-RELEVO_SWEEP_KERNEL(8, [[gnu::target("avx2")]]);
-RELEVO_SWEEP_KERNEL(16, [[gnu::target("avx512f")]]);
-#endif
-#undef RELEVO_SWEEP_KERNEL
-
-/// With the widest vectors that this processor has and that are allowed.
-const Kernel& widest_kernel(int lanes) {
-#if defined(__x86_64__)
-    if (lanes >= 16 && __builtin_cpu_supports("avx512f")) return kKernel16;
-    if (lanes >= 8 && __builtin_cpu_supports("avx2")) return kKernel8;
-#endif
-    assert(lanes >= 4);
-    return kKernel4;
+constexpr int ceil_of(double x) {
+    const int whole = static_cast<int>(x);
+    return whole + (whole < x);
 }
 
 /// A grid as the sweep goes over it: `row` 0 is the one nearest to the sun.
@@ -622,44 +241,6 @@ class Plan {
         return range;
     }
 
-    /// The ground of a row, for rays that are at `shift` there, and fall from there to `to`.
-    Term row_term(int at, double shift, const RowPlan& to) const {
-        double whole = std::floor(shift);
-        double part = shift - whole;
-        if (part > 1 - kOnLine) {
-            whole += 1;
-            part = 0;
-        } else if (part < kOnLine) {
-            part = 0;
-        }
-        const int column = static_cast<int>(whole);
-        const int beside = part > 0;  // at a post, what is beside it plays no part
-        return {at,
-                column,
-                0,
-                beside,
-                static_cast<float>(part),
-                to.fall - row(at).fall,
-                -column,
-                sheet_.columns - column - beside};
-    }
-
-    /// Appends the ground of all columns that such rays cross between row `at - 1` and row `at`.
-    /// @param offset  of the rays from the lines, columns
-    template <typename Terms>
-    void add_column_terms(int at, double offset, const RowPlan& to, Terms& terms) const {
-        const RowPlan &a = row(at - 1), &b = row(at);
-        const double from = a.shift + offset, until = b.shift + offset;
-        const double low = std::min(from, until) + kOnLine, high = std::max(from, until) - kOnLine;
-        for (double column = std::ceil(low); column <= high; ++column) {
-            const double part = (column - from) / (until - from);
-            const int at_column = static_cast<int>(column);
-            terms.push_back({at - 1, at_column, 1, 0, static_cast<float>(part),
-                             to.fall - (a.fall + part * (b.fall - a.fall)), -at_column,
-                             sheet_.columns - at_column});
-        }
-    }
-
   private:
     /// The rows from that of the reference on, so that what is found does not hang on where a sweep
     /// begins. @param step  1: away from the sun, -1: towards it
@@ -743,36 +324,59 @@ struct Steps {
     Steps(const Plan& plan, const Wanted& wanted, const Nearness& of);
 
     const Row& row(int row) const { return rows[static_cast<std::size_t>(row - begin)]; }
+
+    /// Of the rows of ground that so many lines need.
+    int width(int lines) const { return in_vectors(lines + ground_columns); }
+    int pitch(int lines) const { return width(lines) + Sweep::kMostLanes; }
+    /// Where a row of ground has what is under line 0 of a strip, and it has column 0 there.
+    int origin(int row, int pitch) const {
+        return (row & (nearness.kept_rows - 1)) * pitch - this->row(row).ground_column;
+    }
 };
 
-/// The ground that lines and posts of rows meet, the same for all strips.
+/// The ground that lines and posts of rows meet, the same for all strips of one width.
 class Terms {
   public:
+    /// Those of lines begin with their sets' first ones, and then come those of posts.
     struct Row {
-        std::array<std::uint32_t, kMostLineSets + 1>
-            lines{};  // where those begin, and of the posts
-        std::uint32_t end = 0;
+        std::array<std::uint32_t, kMostLineSets + 2> begins{};
 
-        std::uint32_t& posts() { return lines[kMostLineSets]; }
-        std::uint32_t posts() const { return lines[kMostLineSets]; }
+        std::uint32_t end() const { return begins.back(); }
     };
 
     /// Rows [first, end) that have none yet.
-    void clear(int first, int end) {
-        all_.clear();
+    /// @param pitch  of the rows of ground in a strip
+    void clear(int first, int end, int pitch) {
+        grounds_.clear();
+        distances_.clear();
         first_ = first;
+        pitch_ = pitch;
         rows_.assign(static_cast<std::size_t>(std::max(0, end - first)), {});
     }
     /// Makes those of a row, unless they are there.
     void add(const Plan& plan, const Steps& steps, int row);
 
-    const Row& row(int row) const { return rows_[static_cast<std::size_t>(row - first_)]; }
-    const Term& operator[](std::size_t i) const { return all_[i]; }
+    /// Those of the lines of a set, at a row.
+    std::span<const Ground> of_lines(std::size_t set, int row) const { return part(set, row); }
+    std::span<const Ground> of_posts(int row) const { return part(kMostLineSets, row); }
+    /// For each of them, what rays have fallen by from there on, which is the way where tangents
+    /// are 1.
+    const double* distances(std::span<const Ground> of) const {
+        return distances_.data() + (of.data() - grounds_.data());
+    }
 
   private:
-    int first_ = 0;
+    class Maker;
+
+    std::span<const Ground> part(std::size_t k, int row) const {
+        const Row& of = rows_[static_cast<std::size_t>(row - first_)];
+        return std::span(grounds_).subspan(of.begins[k], of.begins[k + 1] - of.begins[k]);
+    }
+
+    int first_ = 0, pitch_ = 0;
     std::vector<Row> rows_;
-    std::vector<Term> all_;
+    std::vector<Ground> grounds_;
+    std::vector<double> distances_;
 };
 
 /// Which lines matter at each row to the posts of the window. Before a line comes over the grid
@@ -800,8 +404,7 @@ void set_lines(const Plan& plan, const Wanted& wanted, Steps& steps) {
         const auto near = over(next), far = over(std::max(next, reached));
         // Lines that have ground there, or a few more.
         const auto [least, most] = plan.columns(std::max(row - 1, plan.begin()), row + 1);
-        const int on_first = -static_cast<int>(std::ceil(most)) - 1,
-                  on_end = plan.width() - static_cast<int>(std::floor(least));
+        const int on_first = -ceil_of(most) - 1, on_end = plan.width() - floor_of(least);
         step.first_line = std::max(std::min(near.first, far.first), on_first);
         step.end_line = std::min(std::max(near.second, far.second), on_end);
     }
@@ -813,8 +416,8 @@ void set_ground(const Plan& plan, Steps& steps) {
         const auto [least, most] =
             plan.columns(std::max(plan.begin(), row - 1), std::min(plan.end(), row + 2));
         Steps::Row& step = steps.rows[static_cast<std::size_t>(row - steps.begin)];
-        step.ground_column = static_cast<int>(std::floor(least)) - 1;
-        const int end = static_cast<int>(std::ceil(most)) + 3;
+        step.ground_column = floor_of(least) - 1;
+        const int end = ceil_of(most) + 3;
         steps.ground_columns = std::max(steps.ground_columns, end - step.ground_column);
     }
 }
@@ -825,7 +428,7 @@ Steps::Steps(const Plan& plan, const Wanted& wanted, const Nearness& of)
     for (int row = plan.begin(); row < plan.end(); ++row) {
         Row step;
         const RowPlan& here = plan.row(row);
-        step.column = static_cast<int>(std::ceil(here.shift - kOnLine));
+        step.column = ceil_of(here.shift - kOnLine);
         const double between = std::max(0.0, step.column - here.shift);
         step.between = static_cast<float>(between < kOnLine ? 0 : between);
         const float at = step.between * static_cast<float>(nearness.line_sets);
@@ -837,47 +440,88 @@ Steps::Steps(const Plan& plan, const Wanted& wanted, const Nearness& of)
     set_ground(plan, *this);
 }
 
+/// Of rays that all fall from there to one row.
+class Terms::Maker {
+  public:
+    Maker(Terms& terms, const Plan& plan, const Steps& steps, const RowPlan& to)
+        : terms_(terms), plan_(plan), steps_(steps), to_(to) {}
+
+    /// The ground of a row, for rays that are at `shift` there.
+    void add_row(int row, double shift) {
+        int column = floor_of(shift);
+        double part = shift - column;
+        if (part > 1 - kOnLine) {
+            column += 1;
+            part = 0;
+        } else if (part < kOnLine) {
+            part = 0;
+        }
+        const int at = origin(row) + column;  // at a post, what is beside it plays no part
+        terms_.grounds_.push_back({at, at + (part > 0), static_cast<float>(part)});
+        if (steps_.nearness.distances) terms_.distances_.push_back(to_.fall - plan_.row(row).fall);
+    }
+
+    /// The ground of all columns that such rays cross between row `row - 1` and row `row`.
+    /// @param offset  of the rays from the lines, columns
+    void add_columns(int row, double offset) {
+        const RowPlan &a = plan_.row(row - 1), &b = plan_.row(row);
+        const double from = a.shift + offset, until = b.shift + offset;
+        const double low = std::min(from, until) + kOnLine, high = std::max(from, until) - kOnLine;
+        const int first = ceil_of(low);
+        if (first > high) return;
+        const int before = origin(row - 1), here = origin(row);
+        for (int column = first; column <= high; ++column) {
+            const double part = (column - from) / (until - from);
+            terms_.grounds_.push_back({before + column, here + column, static_cast<float>(part)});
+            if (steps_.nearness.distances)
+                terms_.distances_.push_back(to_.fall - (a.fall + part * (b.fall - a.fall)));
+        }
+    }
+
+  private:
+    int origin(int row) const { return steps_.origin(row, terms_.pitch_); }
+
+    Terms& terms_;
+    const Plan& plan_;
+    const Steps& steps_;
+    const RowPlan& to_;
+};
+
 void Terms::add(const Plan& plan, const Steps& steps, int row) {
     Row& of = rows_[static_cast<std::size_t>(row - first_)];
-    if (of.end > 0) return;
-    const auto made = [&] { return static_cast<std::uint32_t>(all_.size()); };
+    if (of.end() > 0) return;
     const Nearness& nearness = steps.nearness;
     const RowPlan& here = plan.row(row);
+    Maker maker(*this, plan, steps, here);
     for (std::size_t set = 0; set < kMostLineSets; ++set) {
-        of.lines[set] = made();
+        of.begins[set] = static_cast<std::uint32_t>(grounds_.size());
         if (set >= nearness.line_sets) continue;
         const double offset = double(set) / double(nearness.line_sets);
-        all_.push_back(plan.row_term(row, here.shift + offset, here));
-        if (row > plan.begin()) plan.add_column_terms(row, offset, here, all_);
+        maker.add_row(row, here.shift + offset);
+        if (row > plan.begin()) maker.add_columns(row, offset);
     }
-    of.posts() = made();
+    of.begins[kMostLineSets] = static_cast<std::uint32_t>(grounds_.size());
     const double between = std::max(0.0, steps.row(row).column - here.shift);
-    for (int at = row - 1;
-         row >= steps.first_row && at >= std::max(row - nearness.near_rows, plan.begin()); --at) {
-        all_.push_back(plan.row_term(at, plan.row(at).shift + between, here));
-        plan.add_column_terms(at + 1, between, here, all_);
+    const int first =
+        row >= steps.first_row ? std::max(row - nearness.near_rows, plan.begin()) : row;
+    for (int at = row - 1; at >= first; --at) {
+        maker.add_row(at, plan.row(at).shift + between);
+        maker.add_columns(at + 1, between);
     }
-    of.end = made();
+    of.begins[kMostLineSets + 1] = static_cast<std::uint32_t>(grounds_.size());
 }
 
 /// The last rows of ground under lines next to each other: those that posts look back over, and the
 /// two at which lines are meanwhile. Beside the grid there are holes.
 class GroundRows {
   public:
-    /// @param lines  how many, in vectors
-    /// @param kept   a power of two
-    GroundRows(const Steps& steps, int line, int lines, int kept)
+    /// @param lines  how many
+    GroundRows(const Steps& steps, int line, int lines)
         : steps_(steps),
           line_(line),
-          kept_(kept),
-          width_(width_of(steps, lines)),
-          pitch_(width_ + Sweep::kMostLanes),
-          height_m_(static_cast<std::size_t>(pitch_ * kept), kNaN) {}
-
-    /// Of ground that lines next to each other need.
-    static int width_of(const Steps& steps, int lines) {
-        return in_vectors(lines + steps.ground_columns);
-    }
+          width_(steps.width(lines)),
+          pitch_(steps.pitch(lines)),
+          height_m_(static_cast<std::size_t>(pitch_ * kept()), kNaN) {}
 
     /// @param sheet   that has the row where it looks for it
     /// @param wanted  columns; what is kept of others is of no use
@@ -889,7 +533,7 @@ class GroundRows {
         if (first >= end) return;
         const int from = std::max(0, first), to = std::min(sheet.columns, end);
         float* const out = begin_of(row) + (first - first_of(row));
-        bool& is_empty = empty_[static_cast<std::size_t>(row & (kept_ - 1))];
+        bool& is_empty = empty_[static_cast<std::size_t>(row & (kept() - 1))];
         if (from >= to) {
             if (end - first < width_ || !std::exchange(is_empty, true))
                 std::fill_n(out, end - first, kNaN);
@@ -901,52 +545,27 @@ class GroundRows {
         std::fill_n(out + (to - first), end - to, kNaN);
     }
 
-    /// A row is the next one from now on.
-    void come_to(int row) {
-        columns_[static_cast<std::size_t>(row & (kept_ - 1))] =
-            begin_of(row) - steps_.row(row).ground_column - line_;
-    }
-
+    /// What terms are over, from a line on.
+    const float* from(int line) const { return height_m_.data() + (line - line_); }
     /// @param line  of the first post that is looked at
     const float* at(int row, int column, int line) const {
-        return columns_[static_cast<std::size_t>(row & (kept_ - 1))] + column + line;
-    }
-    Ground at(const Term& term, int line) const {
-        return {at(term.row, term.column, line),
-                at(term.row + term.next_row, term.column + term.next_column, line), term.part};
+        return from(line) + steps_.origin(row, pitch_) + column;
     }
 
     /// What a row begins with, for changes to all of it.
-    float* begin_of(int row) { return height_m_.data() + (row & (kept_ - 1)) * pitch_; }
+    float* begin_of(int row) { return height_m_.data() + (row & (kept() - 1)) * pitch_; }
     int first_of(int row) const { return steps_.row(row).ground_column + line_; }
     int width() const { return width_; }
 
-    int kept() const { return kept_; }
+    int kept() const { return steps_.nearness.kept_rows; }
 
   private:
     const Steps& steps_;
-    int line_, kept_;
-    int width_;
-    std::ptrdiff_t pitch_;
+    int line_;
+    int width_, pitch_;
     std::array<bool, 16> empty_{};
-    std::array<const float*, 16> columns_{};  // where column 0 of each row would be
     std::vector<float> height_m_;
 };
-
-/// Grounds of terms [begin, end), some at a time.
-/// @param use  takes the first term, grounds, and how many there are
-template <typename Use>
-void each_grounds(const Terms& terms, const GroundRows& rows, std::size_t begin, std::size_t end,
-                  int line, const Use& use) {
-    std::array<Ground, 16> grounds;  // of which the first `some` are set
-    while (begin < end) {
-        const std::size_t some = std::min(end - begin, grounds.size());
-        for (std::size_t k = 0; k < some; ++k)
-            grounds[k] = rows.at(terms[begin + k], line);
-        use(begin, grounds.data(), static_cast<int>(some));
-        begin += some;
-    }
-}
 
 /// Lines next to each other, from the sun to the end of the window.
 ///
@@ -957,13 +576,12 @@ class Strip {
   public:
     static constexpr int kMostWidth = kStripLines;
     static constexpr Nearness kNearness = kOfEdges;
-    static constexpr int kKeptRows = 8;
-    static_assert(kKeptRows >= kNearness.near_rows + 3);
+    static_assert(kNearness.kept_rows >= kNearness.near_rows + 3);
 
     /// @param line   the first one
     /// @param width  how many whose posts it has, kMostWidth at most
-    Strip(const Sheet& sheet, const Plan& plan, const Steps& steps, const Kernel& kernel, int line,
-          int width, float lowest_m, float floor_m)
+    Strip(const Sheet& sheet, const Plan& plan, const Steps& steps, const SweepKernel& kernel,
+          int line, int width, float lowest_m, float floor_m)
         : sheet_(sheet),
           plan_(plan),
           steps_(steps),
@@ -972,7 +590,7 @@ class Strip {
           width_(width),
           zero_m_(lowest_m < kInfinity ? kZero_m * std::floor(lowest_m / kZero_m) : 0),
           floor_m_(floor_m),
-          rows_(steps, line, width + 1, kKeptRows),
+          rows_(steps, line, width + 1),
           pitch_(in_vectors(width + 1) + Sweep::kMostLanes),
           height_m_(static_cast<std::size_t>(pitch_) * kNearness.line_sets, kNothing_m),
           edge_m_(static_cast<std::size_t>(in_vectors(width))) {}
@@ -984,10 +602,7 @@ class Strip {
     int end_ground(int row) const { return rows_.first_of(row) + rows_.width(); }
 
     /// A row is the next one from now on.
-    void come_to(int row) {
-        rebase(row);
-        rows_.come_to(row);
-    }
+    void come_to(int row) { rebase(row); }
 
     /// The ground of the row that it has come to.
     void take(int row, const ColumnRange& wanted = kAllColumns) {
@@ -999,8 +614,7 @@ class Strip {
                           .line = column - step.column,
                           .between = step.between,
                           .slope = fallen(row),
-                          .base_m = -zero_m_,
-                          .least_m = 0});
+                          .base_m = -zero_m_});
         });
     }
 
@@ -1015,13 +629,13 @@ class Strip {
                   to = std::min(line_ + width_ + 1, end_line) - line_;
         if (from >= to) return;
         const int first = from / Sweep::kMostLanes * Sweep::kMostLanes;
-        const Terms::Row& of = terms.row(row);
         for (std::size_t set = 0; set < kNearness.line_sets; ++set) {
-            float* const lines = lines_of(set) + first;
-            each_grounds(terms, rows_, of.lines[set], of.lines[set + 1], line_ + first,
-                         [&](std::size_t, const Ground* ground, int grounds) {
-                             kernel_.raise({lines, lines, in_vectors(to - first), ground, grounds});
-                         });
+            const std::span<const Ground> ground = terms.of_lines(set, row);
+            kernel_.raise({.height_m = lines_of(set) + first,
+                           .lines = in_vectors(to - first),
+                           .rows = rows_.from(line_ + first),
+                           .ground = ground.data(),
+                           .grounds = static_cast<int>(ground.size())});
         }
     }
 
@@ -1035,43 +649,30 @@ class Strip {
         const int from = std::max(line_, first - step.column);
         const int to = std::min(line_ + width_, end - step.column);
         if (from >= to) return;
-        const int posts = in_vectors(to - from);
-        float* const e = edge_m_.data();
-        const float* before = nullptr;
-        if (row - kNearness.near_rows - 1 >= steps_.begin) {
-            // The lines before and behind a post; the next one of the first set is one on.
-            const auto set = static_cast<std::size_t>(step.far_set);
-            const float* const p = lines_of(set) + (from - line_);
-            const float* q = set + 1 < kNearness.line_sets ? lines_of(set + 1) + (from - line_)
-                                                           : lines_of(0) + (from - line_) + 1;
-            if (step.far_part == 0) q = p;
-            kernel_.mix({.e = e,
-                         .p = p,
-                         .q = q,
-                         .part = step.far_part,
-                         .posts = posts,
-                         .line = from,
-                         .between = step.between,
-                         .slope = fallen(row),
-                         .floor_m = floor_m_ - zero_m_});
-            before = e;
-        }
-        const Terms::Row& of = terms.row(row);
-        each_grounds(terms, rows_, of.posts(), of.end, from,
-                     [&](std::size_t, const Ground* ground, int grounds) {
-                         kernel_.raise({e, before, posts, ground, grounds});
-                         before = e;
-                     });
-        if (!before) std::fill_n(e, posts, kNothing_m);
-        kernel_.untilt({.from = e,
-                        .to = e,
-                        .lines = posts,
+        const std::span<const Ground> ground = terms.of_posts(row);
+        EdgeSight sight{.edge_m = edge_m_.data(),
+                        .posts = in_vectors(to - from),
+                        .before_m = nullptr,
+                        .behind_m = nullptr,
+                        .part = step.far_part,
                         .line = from,
                         .between = step.between,
                         .slope = fallen(row),
                         .base_m = zero_m_,
-                        .least_m = floor_m_});
-        use(step.column + from, to - from, e);
+                        .floor_m = floor_m_,
+                        .rows = rows_.from(from),
+                        .ground = ground.data(),
+                        .grounds = static_cast<int>(ground.size())};
+        if (row - kNearness.near_rows - 1 >= steps_.begin) {
+            // The next line of the last set is the first one's, one on.
+            const auto set = static_cast<std::size_t>(step.far_set);
+            sight.before_m = sight.behind_m = lines_of(set) + (from - line_);
+            if (step.far_part != 0)
+                sight.behind_m = set + 1 < kNearness.line_sets ? lines_of(set + 1) + (from - line_)
+                                                               : lines_of(0) + (from - line_) + 1;
+        }
+        kernel_.look_for_edges(sight);
+        use(step.column + from, to - from, sight.edge_m);
     }
 
   private:
@@ -1088,7 +689,9 @@ class Strip {
 
     /// Takes another base where rays have fallen by so much.
     void rebase(int row) {
-        const double base_m = kBase_m * std::floor(plan_.row(row).fall / kBase_m);
+        const double fallen_m = plan_.row(row).fall;
+        if (fallen_m >= base_m_ && fallen_m < base_m_ + kBase_m) return;
+        const double base_m = kBase_m * std::floor(fallen_m / kBase_m);
         const auto more_m = static_cast<float>(base_m - base_m_);
         base_m_ = base_m;
         if (row == steps_.begin || more_m == 0) return;
@@ -1101,7 +704,7 @@ class Strip {
     Sheet sheet_;
     const Plan& plan_;
     const Steps& steps_;
-    const Kernel& kernel_;
+    const SweepKernel& kernel_;
     int line_, width_;
     float zero_m_, floor_m_;
     double base_m_ = 0;
@@ -1117,14 +720,13 @@ class FanStrip {
   public:
     static constexpr int kMostWidth = kFanLines;
     static constexpr Nearness kNearness = kOfHorizons;
-    static constexpr int kKeptRows = 16;
-    static_assert(kKeptRows >= kNearness.near_rows + 3);
+    static_assert(kNearness.kept_rows >= kNearness.near_rows + 3);
 
     /// @param plan       for a tangent of 1 everywhere: what lines fall by is how far they go
     /// @param line       the first one
     /// @param curvature  [1/m]
     /// @param least      the tangent under which no ray is looked at
-    FanStrip(const Sheet& sheet, const Plan& plan, const Steps& steps, const Kernel& kernel,
+    FanStrip(const Sheet& sheet, const Plan& plan, const Steps& steps, const SweepKernel& kernel,
              double curvature, int line, int width, double least)
         : sheet_(sheet),
           plan_(plan),
@@ -1134,7 +736,7 @@ class FanStrip {
           line_(line),
           width_(width),
           least_(least),
-          rows_(steps, line, width + 1, kKeptRows) {
+          rows_(steps, line, width + 1) {
         for (std::size_t k = 0; k < tangents_.size(); ++k)
             tangents_[k] = static_cast<float>(std::tan(kFanDegrees[k] * kPi / 180));
         for (Fans& fans : fans_) {
@@ -1144,7 +746,7 @@ class FanStrip {
     }
 
     Sheet& sheet() { return sheet_; }
-    void come_to(int row) { rows_.come_to(row); }
+    void come_to(int) {}
     void take(int row) {
         rows_.take(sheet_, row, kAllColumns, [](const float* from, int count, float* to, int) {
             std::copy_n(from, count, to);
@@ -1158,11 +760,13 @@ class FanStrip {
                   to = std::min(line_ + width_ + 1, step.end_line) - line_;
         if (from >= to) return;
         const int first = from / Sweep::kMostLanes * Sweep::kMostLanes;
-        const Terms::Row& of = terms.row(row);
-        for (std::size_t set = 0; set < kNearness.line_sets; ++set)
-            for (std::size_t k = of.lines[set]; k < of.lines[set + 1]; k += kFanPoints)
-                raise(set, row, terms, k, std::min<std::size_t>(of.lines[set + 1], k + kFanPoints),
+        for (std::size_t set = 0; set < kNearness.line_sets; ++set) {
+            const std::span<const Ground> ground = terms.of_lines(set, row);
+            for (std::size_t k = 0; k < ground.size(); k += kFanPoints)
+                raise(set, row, terms,
+                      ground.subspan(k, std::min<std::size_t>(kFanPoints, ground.size() - k)),
                       first, in_vectors(to - first));
+        }
     }
 
     template <typename Use>
@@ -1208,49 +812,47 @@ class FanStrip {
     /// How far line 0 has come from the row of the reference on.
     double distance_m(int row) const { return plan_.row(row).fall; }
 
-    void raise(std::size_t set, int row, const Terms& terms, std::size_t begin, std::size_t end,
+    void raise(std::size_t set, int row, const Terms& terms, std::span<const Ground> ground,
                int first, int lines) {
         std::array<FanPoint, kFanPoints> points;
         std::array<float, kRays * kFanPoints> rises;
-        for (std::size_t k = begin; k < end; ++k) {
-            const Term& term = terms[k];
-            const double s = distance_m(row) - term.distance;
-            points[k - begin] = {rows_.at(term, line_ + first),
-                                 static_cast<float>(curvature_ * s * s / 2), static_cast<float>(s)};
+        for (std::size_t k = 0; k < ground.size(); ++k) {
+            const double s = distance_m(row) - terms.distances(ground)[k];
+            points[k] = {ground[k], static_cast<float>(curvature_ * s * s / 2),
+                         static_cast<float>(s)};
             for (std::size_t ray = 0; ray < kRays; ++ray)
-                rises[ray * kFanPoints + (k - begin)] =
-                    tangents_[ray] * points[k - begin].distance_m;
+                rises[ray * kFanPoints + k] = tangents_[ray] * points[k].distance_m;
         }
         kernel_.raise_fans({.height_m = fans_[set].height_m.data() + first,
                             .distance_m = fans_[set].distance_m.data() + first,
                             .pitch = kPitch,
                             .lines = lines,
                             .tangents = tangents_.data(),
+                            .rows = rows_.from(line_ + first),
                             .points = points.data(),
                             .rises = rises.data()},
-                           static_cast<int>(end - begin));
+                           static_cast<int>(ground.size()));
     }
 
     void look_near(const Terms& terms, int row, int from, int to, const float* height_m,
                    float* tangent) const {
-        const Terms::Row& of = terms.row(row);
-        each_grounds(
-            terms, rows_, of.posts(), of.end, from,
-            [&](std::size_t begin, const Ground* ground, int grounds) {
-                std::array<Slope, 16> slopes;
-                for (std::size_t k = 0; k < static_cast<std::size_t>(grounds); ++k) {
-                    const double d = terms[begin + k].distance;
-                    slopes[k] = {static_cast<float>(1 / d), static_cast<float>(curvature_ * d / 2)};
-                }
-                kernel_.look(
-                    {tangent, height_m, in_vectors(to - from), ground, slopes.data(), grounds});
-            });
+        const std::span<const Ground> all = terms.of_posts(row);
+        std::array<Slope, 16> slopes;
+        for (std::size_t first = 0; first < all.size(); first += slopes.size()) {
+            const auto ground = all.subspan(first, std::min(slopes.size(), all.size() - first));
+            for (std::size_t k = 0; k < ground.size(); ++k) {
+                const double d = terms.distances(ground)[k];
+                slopes[k] = {static_cast<float>(1 / d), static_cast<float>(curvature_ * d / 2)};
+            }
+            kernel_.look({tangent, height_m, in_vectors(to - from), rows_.from(from), ground.data(),
+                          slopes.data(), static_cast<int>(ground.size())});
+        }
     }
 
     Sheet sheet_;
     const Plan& plan_;
     const Steps& steps_;
-    const Kernel& kernel_;
+    const SweepKernel& kernel_;
     double curvature_;
     int line_, width_;
     double least_;
@@ -1280,6 +882,7 @@ constexpr int kBlockRows = 16;  // of Sweep::Blocks
 constexpr int kReadRows = 256, kRowsBefore = 2;
 
 constexpr int kTransposeBlock = 4;  // posts a side
+using Vector4 [[gnu::vector_size(kTransposeBlock * sizeof(float))]] = float;
 
 /// Four rows of four numbers.
 [[gnu::always_inline]] inline void transpose_block(const float* from, std::ptrdiff_t from_stride,
@@ -1538,16 +1141,16 @@ void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look
     const Wanted wanted{w};
     const Plan plan(sheet, view.sun, w, drop_m);
     const Steps steps(plan, wanted, OneStrip::kNearness);
-    Terms terms;
-    terms.clear(plan.begin(), plan.end());
-    for (int row = plan.begin(); row < plan.end(); ++row)
-        terms.add(plan, steps, row);
     const Extent extent(steps, wanted);
     const int lines = extent.end_line - extent.first_line;
     const int width = width_of_strips(lines, OneStrip::kMostWidth);
     const int strips = (lines + width - 1) / width;
+    Terms terms;
+    terms.clear(plan.begin(), plan.end(), steps.pitch(width + 1));
+    for (int row = plan.begin(); row < plan.end(); ++row)
+        terms.add(plan, steps, row);
     // Ground that is read has room for a strip's, and for how far that goes aside over the rows.
-    const int ground = GroundRows::width_of(steps, width + 1);
+    const int ground = steps.width(width + 1);
     const auto columns_from = [&](int row) {
         return plan.columns(std::max(plan.begin(), row - kRowsBefore),
                             std::min(row + kReadRows + 1, plan.end()));
@@ -1590,7 +1193,7 @@ void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Us
                       float floor_m) const {
     View view = edge_view(given, window);
     const SweepWindow& w = view.window;
-    const Kernel& kernel = widest_kernel(lanes);
+    const SweepKernel& kernel = widest_sweep_kernel(lanes);
     sweep_strips<Strip>(
         view, drop_m(floor_m),
         [&](const Plan& plan, const Steps& steps, int line, int width) {
@@ -1611,7 +1214,7 @@ void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
     view.sun.tangent = 1;
     view.sun.tangent_a_post = {};
     const SweepWindow& w = view.window;
-    const Kernel& kernel = widest_kernel(lanes);
+    const SweepKernel& kernel = widest_sweep_kernel(lanes);
     // Of ground that is farther off some windows see more than others, but never higher than so.
     const double relief_m = std::max(0.0, double{highest_m_} - lowest_m_);
     const double across_m = reach_m * std::hypot(way.towards.column, way.towards.row);
@@ -1638,6 +1241,7 @@ struct Sweep::Blocks::OneSun {
     Plan plan;
     std::shared_ptr<const Steps> steps;
     std::vector<std::unique_ptr<Strip>> strips;
+    int pitch = 0;             // of their rows of ground
     ColumnRange ground{0, 0};  // columns that its lines go over
 
     OneSun(const Sweep& sweep, const View& of, const Wanted& wanted, float floor_m)
@@ -1678,9 +1282,10 @@ struct Sweep::Blocks::OneSun {
         const int count = (lines + Strip::kMostWidth - 1) / Strip::kMostWidth;
         const int width =
             std::min(in_vectors((lines + count - 1) / count + 1) - 1, Strip::kMostWidth);
+        pitch = steps->pitch(width + 1);
         for (int line = extent.first_line; line < extent.end_line; line += width)
             strips.push_back(std::make_unique<Strip>(view.sheet, plan, *steps,
-                                                     widest_kernel(kMostLanes), line, width,
+                                                     widest_sweep_kernel(kMostLanes), line, width,
                                                      sweep.lowest_m_, floor_m));
     }
 };
@@ -1698,10 +1303,10 @@ struct Sweep::Blocks::BlockTerms {
     int row = 0;
 
     /// @param first, end  of the block
-    void come_to(const std::shared_ptr<const Steps>& steps, int first, int end) {
-        if (of == steps.get() && row == first) return;
-        of = steps.get(), row = first;
-        terms.clear(first - Strip::kNearness.near_rows - 1, end);
+    void come_to(const OneSun& sun, int first, int end) {
+        if (of == sun.steps.get() && row == first) return;
+        of = sun.steps.get(), row = first;
+        terms.clear(first - Strip::kNearness.near_rows - 1, end, sun.pitch);
     }
 };
 
@@ -1880,7 +1485,7 @@ std::optional<SweepWindow> Sweep::Blocks::next() {
         for (const auto& moment : moments_)
             for (const OneBand& band : moment->bands)
                 for (const auto& sun : band.suns) {
-                    terms_->come_to(sun->steps, row_, end_row_);
+                    terms_->come_to(*sun, row_, end_row_);
                     const auto [first, last] = sun->rows(row_, end_row_);
                     for (const auto& strip : sun->strips)
                         for (int row = first; row < last; ++row)
@@ -1897,7 +1502,7 @@ void Sweep::Blocks::each_edge(std::size_t index, std::size_t of_band, std::size_
     if (band.suns.empty()) return;
     OneSun& sun = *band.suns[of_sun];
     Terms& terms = terms_->terms;
-    terms_->come_to(sun.steps, row_, end_row_);
+    terms_->come_to(sun, row_, end_row_);
     const auto [first, end] = sun.rows(row_, end_row_);
     for (const auto& strip : sun.strips)
         for (int row = first; row < end; ++row) {

@@ -1,0 +1,293 @@
+#include "light/sweep_kernels.h"
+
+#include <cassert>
+#include <cstring>
+
+namespace relevo::light {
+namespace {
+
+/// Loads that cross lines of the cache are what a sweep waits for: what is used twice is loaded
+/// once, whatever the compiler thinks of it.
+#if defined(__x86_64__)
+#define RELEVO_IN_REGISTER(v) asm("" : "+x"(v))
+#else
+#define RELEVO_IN_REGISTER(v)
+#endif
+
+/// Vectors come and go by reference: how a wide one is returned hangs on the processor.
+template <typename V>
+[[gnu::always_inline]] inline void load(const float* from, V& v) {
+    std::memcpy(&v, from, sizeof v);
+}
+
+template <typename V>
+[[gnu::always_inline]] inline void store(const V& v, float* to) {
+    std::memcpy(to, &v, sizeof v);
+}
+
+template <typename V>
+constexpr int kWidthOf = static_cast<int>(sizeof(V) / sizeof(float));
+
+/// 0, 1, 2 ...
+template <typename V>
+[[gnu::always_inline]] inline void count(V& lane) {
+    for (int k = 0; k < kWidthOf<V>; ++k)
+        lane[k] = static_cast<float>(k);
+}
+
+/// kVectors vectors of lines, from the i-th on. Multiplications and additions are not contracted
+/// (CMakeLists.txt), so that the bits are the same for every V.
+template <typename V, int kVectors>
+[[gnu::always_inline]] inline void rise(const float* rows, const Ground* ground, int grounds, int i,
+                                        V (&height)[kVectors]) {
+    for (const Ground* g = ground; g < ground + grounds; ++g) {
+        const float *const p = rows + g->p + i, *const q = rows + g->q + i;
+#pragma GCC unroll 8
+        for (int k = 0; k < kVectors; ++k) {
+            V a, b;
+            load(p + k * kWidthOf<V>, a);
+            load(q + k * kWidthOf<V>, b);
+            RELEVO_IN_REGISTER(a);
+            const V h = a + g->part * (b - a);
+            height[k] = h > height[k] ? h : height[k];
+        }
+    }
+}
+
+template <typename V, int kVectors>
+[[gnu::always_inline]] inline void raise_some(const Lift& lift, int i) {
+    V height[kVectors];
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k)
+        load(lift.height_m + i + k * kWidthOf<V>, height[k]);
+    rise(lift.rows, lift.ground, lift.grounds, i, height);
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k)
+        store(height[k], lift.height_m + i + k * kWidthOf<V>);
+}
+
+template <typename V>
+[[gnu::always_inline]] inline void raise_all(const Lift& lift) {
+    int i = 0;
+    for (; i + 4 * kWidthOf<V> <= lift.lines; i += 4 * kWidthOf<V>)
+        raise_some<V, 4>(lift, i);
+    for (; i < lift.lines; i += kWidthOf<V>)
+        raise_some<V, 1>(lift, i);
+}
+
+template <typename V>
+[[gnu::always_inline]] inline void tilt_all(const Tilted& row) {
+    V lane;
+    count(lane);
+    int i = 0;
+    for (; i + kWidthOf<V> <= row.lines; i += kWidthOf<V>) {
+        const V line = (static_cast<float>(row.line + i) + lane) + row.between;
+        V h;
+        load(row.from + i, h);
+        store((h + row.base_m) + (row.slope.fall + row.slope.ramp * line), row.to + i);
+    }
+    for (; i < row.lines; ++i)
+        row.to[i] =
+            (row.from[i] + row.base_m) +
+            (row.slope.fall + row.slope.ramp * (static_cast<float>(row.line + i) + row.between));
+}
+
+template <typename V, int kVectors>
+[[gnu::always_inline]] inline void look_for_some_edges(const EdgeSight& sight, const V& lane,
+                                                       int i) {
+    const V nothing = V{} + kNothing_m;
+    const float floor_m = sight.floor_m - sight.base_m;
+    V fallen[kVectors], height[kVectors];
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k) {
+        const int at = i + k * kWidthOf<V>;
+        const V line = (static_cast<float>(sight.line + at) + lane) + sight.between;
+        fallen[k] = sight.slope.fall + sight.slope.ramp * line;
+        height[k] = nothing;
+        if (!sight.before_m) continue;
+        const V least = floor_m + fallen[k];
+        V a, b;
+        load(sight.before_m + at, a);
+        load(sight.behind_m + at, b);
+        a = a >= least ? a : nothing;
+        b = b >= least ? b : nothing;
+        const V h = a + sight.part * (b - a);
+        height[k] = h > nothing ? h : nothing;
+    }
+    rise(sight.rows, sight.ground, sight.grounds, i, height);
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k) {
+        const V edge = (height[k] - fallen[k]) + sight.base_m;
+        store(edge > sight.floor_m ? edge : V{} + sight.floor_m,
+              sight.edge_m + i + k * kWidthOf<V>);
+    }
+}
+
+template <typename V>
+[[gnu::always_inline]] inline void look_for_all_edges(const EdgeSight& sight) {
+    V lane;
+    count(lane);
+    int i = 0;
+    for (; i + 4 * kWidthOf<V> <= sight.posts; i += 4 * kWidthOf<V>)
+        look_for_some_edges<V, 4>(sight, lane, i);
+    for (; i < sight.posts; i += kWidthOf<V>)
+        look_for_some_edges<V, 1>(sight, lane, i);
+}
+
+/// kVectors vectors of posts, likewise.
+template <typename V, int kVectors>
+[[gnu::always_inline]] inline void look_some(const Sight& sight, int i) {
+    V height[kVectors], tangent[kVectors];
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k) {
+        load(sight.height_m + i + k * kWidthOf<V>, height[k]);
+        load(sight.tangent + i + k * kWidthOf<V>, tangent[k]);
+    }
+    for (int j = 0; j < sight.grounds; ++j) {
+        const Ground& g = sight.ground[j];
+        const Slope& slope = sight.slopes[j];
+#pragma GCC unroll 8
+        for (int k = 0; k < kVectors; ++k) {
+            V a, b;
+            load(sight.rows + g.p + i + k * kWidthOf<V>, a);
+            load(sight.rows + g.q + i + k * kWidthOf<V>, b);
+            RELEVO_IN_REGISTER(a);
+            const V t = ((a + g.part * (b - a)) - height[k]) * slope.fall - slope.ramp;
+            tangent[k] = t > tangent[k] ? t : tangent[k];
+        }
+    }
+#pragma GCC unroll 8
+    for (int k = 0; k < kVectors; ++k)
+        store(tangent[k], sight.tangent + i + k * kWidthOf<V>);
+}
+
+template <typename V>
+[[gnu::always_inline]] inline void look_all(const Sight& sight) {
+    int i = 0;
+    for (; i + 4 * kWidthOf<V> <= sight.posts; i += 4 * kWidthOf<V>)
+        look_some<V, 4>(sight, i);
+    for (; i < sight.posts; i += kWidthOf<V>)
+        look_some<V, 1>(sight, i);
+}
+
+template <typename V, int kPoints>
+[[gnu::always_inline]] inline void raise_fans_over(const FanLift& lift) {
+    for (int i = 0; i < lift.lines; i += kWidthOf<V>) {
+        V over[kPoints];
+#pragma GCC unroll 8
+        for (int j = 0; j < kPoints; ++j) {
+            const FanPoint& point = lift.points[j];
+            V a, b;
+            load(lift.rows + point.ground.p + i, a);
+            load(lift.rows + point.ground.q + i, b);
+            over[j] = (a + point.ground.part * (b - a)) - point.sunk_m;
+        }
+        for (int k = 0; k < kRays; ++k) {
+            float* const to_height = lift.height_m + k * lift.pitch + i;
+            float* const to_distance = lift.distance_m + k * lift.pitch + i;
+            V height, distance;
+            load(to_height, height);
+            load(to_distance, distance);
+            V most = height + lift.tangents[k] * distance;
+#pragma GCC unroll 8
+            for (int j = 0; j < kPoints; ++j) {
+                const V here = over[j] + lift.rises[k * kFanPoints + j];
+                const auto higher = here > most;
+                height = higher ? over[j] : height;
+                distance = higher ? V{} + lift.points[j].distance_m : distance;
+                if (j + 1 < kPoints) most = higher ? here : most;
+            }
+            store(height, to_height);
+            store(distance, to_distance);
+        }
+    }
+}
+
+template <typename V>
+[[gnu::always_inline]] inline void raise_all_fans(const FanLift& lift, int points) {
+    switch (points) {
+        case 1:
+            return raise_fans_over<V, 1>(lift);
+        case 2:
+            return raise_fans_over<V, 2>(lift);
+        case 3:
+            return raise_fans_over<V, 3>(lift);
+        default:
+            return raise_fans_over<V, 4>(lift);
+    }
+}
+
+template <typename V>
+[[gnu::always_inline]] inline void look_over_all_fans(const FanSight& sight) {
+    for (int i = 0; i < sight.posts; i += kWidthOf<V>) {
+        V eye;
+        load(sight.ground_m + i, eye);
+        eye -= sight.sunk_m;
+        V rise = V{} + kNothing_m, way = V{} + 1, next_rise = rise, next_way = way;
+        auto over_last = eye == eye;  // not of holes
+        for (int k = sight.first_ray; k < kRays; ++k) {
+            V up, along;
+            load(sight.height_m + k * sight.pitch + i, up);
+            load(sight.distance_m + k * sight.pitch + i, along);
+            up -= eye;
+            along = sight.from_m - along;
+            const auto over = up > sight.tangents[k] * along;
+            next_rise = over_last ? up : next_rise;
+            next_way = over_last ? along : next_way;
+            rise = over ? up : rise;
+            way = over ? along : way;
+            over_last = over;
+        }
+        V tangent = rise / way;
+        if (sight.both) {
+            const V next = next_rise / next_way;
+            tangent = next > tangent ? next : tangent;
+        }
+        store(tangent - sight.tilt, sight.tangent + i);
+    }
+}
+
+#define RELEVO_SWEEP_KERNEL(lanes, ...)                                                        \
+    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float;                   \
+    __VA_ARGS__ void raise_##lanes(const Lift& lift) {                                         \
+        raise_all<Vector##lanes>(lift);                                                        \
+    }                                                                                          \
+    __VA_ARGS__ void tilt_##lanes(const Tilted& row) {                                         \
+        tilt_all<Vector##lanes>(row);                                                          \
+    }                                                                                          \
+    __VA_ARGS__ void look_for_edges_##lanes(const EdgeSight& sight) {                          \
+        look_for_all_edges<Vector##lanes>(sight);                                              \
+    }                                                                                          \
+    __VA_ARGS__ void look_##lanes(const Sight& sight) {                                        \
+        look_all<Vector##lanes>(sight);                                                        \
+    }                                                                                          \
+    __VA_ARGS__ void raise_fans_##lanes(const FanLift& lift, int points) {                     \
+        raise_all_fans<Vector##lanes>(lift, points);                                           \
+    }                                                                                          \
+    __VA_ARGS__ void look_over_fans_##lanes(const FanSight& sight) {                           \
+        look_over_all_fans<Vector##lanes>(sight);                                              \
+    }                                                                                          \
+    constexpr SweepKernel kKernel##lanes {                                                     \
+        raise_##lanes, tilt_##lanes, look_for_edges_##lanes, look_##lanes, raise_fans_##lanes, \
+            look_over_fans_##lanes                                                             \
+    }
+
+RELEVO_SWEEP_KERNEL(4);
+#if defined(__x86_64__)
+RELEVO_SWEEP_KERNEL(8, [[gnu::target("avx2")]]);
+RELEVO_SWEEP_KERNEL(16, [[gnu::target("avx512f")]]);
+#endif
+#undef RELEVO_SWEEP_KERNEL
+
+}  // namespace
+
+const SweepKernel& widest_sweep_kernel(int lanes) {
+#if defined(__x86_64__)
+    if (lanes >= 16 && __builtin_cpu_supports("avx512f")) return kKernel16;
+    if (lanes >= 8 && __builtin_cpu_supports("avx2")) return kKernel8;
+#endif
+    assert(lanes >= 4);
+    return kKernel4;
+}
+
+}  // namespace relevo::light
