@@ -22,7 +22,7 @@ struct RowPlan {
 
 /// Columns [begin, end) of a sheet.
 struct ColumnRange {
-    int begin, end;
+    int begin = 0, end = 0;
 };
 
 /// What is known of the ground of squares of kPosts posts a side.

@@ -33,7 +33,7 @@ constexpr Nearness kOfEdges{4, 2, 8, false};
 constexpr Nearness kOfHorizons{8, 1, 16, true};  // a row near costs less than a fan of rays
 constexpr double kSteepest = 1e4;                // tangent: 0.006 degrees from the zenith
 constexpr double kOnLine = 1e-6;   // of a post: a ray that meets a row there meets the post
-constexpr int kStripLines = 1023;  // which a thread sweeps together: its rows stay in the cache
+constexpr int kStripLines = 2047;  // which a thread sweeps together: its rows stay in the cache
 constexpr int kFanLines = 63;      // likewise, where each line has a fan
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr ColumnRange kAllColumns{-(1 << 28), 1 << 28};
@@ -528,21 +528,29 @@ class GroundRows {
     /// @param copy    puts so many heights from one place into another, the first on that column
     template <typename Copy>
     void take(const Sheet& sheet, int row, const ColumnRange& wanted, const Copy& copy) {
-        const int first = std::max(first_of(row), wanted.begin),
-                  end = std::min(first_of(row) + width_, wanted.end);
+        const int column = first_of(row);
+        const int first = std::max(0, wanted.begin - column),
+                  end = std::min(width_, wanted.end - column);
         if (first >= end) return;
-        const int from = std::max(0, first), to = std::min(sheet.columns, end);
-        float* const out = begin_of(row) + (first - first_of(row));
-        bool& is_empty = empty_[static_cast<std::size_t>(row & (kept() - 1))];
-        if (from >= to) {
-            if (end - first < width_ || !std::exchange(is_empty, true))
-                std::fill_n(out, end - first, kNaN);
-            return;
-        }
-        is_empty = false;
-        std::fill_n(out, from - first, kNaN);
-        copy(sheet.first + row * sheet.stride + from, to - from, out + (from - first), from);
-        std::fill_n(out + (to - first), end - to, kNaN);
+        float* const out = begin_of(row);
+        const int from = std::clamp(-column, first, end),
+                  to = std::clamp(sheet.columns - column, from, end);
+        // What lies beside the grid: most of it is a hole already.
+        ColumnRange& ground = ground_[static_cast<std::size_t>(row & (kept() - 1))];
+        const auto clear = [&](int begin, int last) {
+            begin = std::max(begin, ground.begin), last = std::min(last, ground.end);
+            if (begin < last) std::fill(out + begin, out + last, kNaN);
+        };
+        clear(first, from);
+        clear(to, end);
+        if (first <= ground.begin) ground.begin = std::max(ground.begin, from);
+        if (end >= ground.end) ground.end = std::min(ground.end, to);
+        if (from >= to) return;
+        ground = ground.begin < ground.end
+                     ? ColumnRange{std::min(ground.begin, from), std::max(ground.end, to)}
+                     : ColumnRange{from, to};
+        copy(sheet.first + row * sheet.stride + column + from, to - from, out + from,
+             column + from);
     }
 
     /// What terms are over, from a line on.
@@ -563,7 +571,7 @@ class GroundRows {
     const Steps& steps_;
     int line_;
     int width_, pitch_;
-    std::array<bool, 16> empty_{};
+    std::array<ColumnRange, 16> ground_{};  // of each row that is kept, where there may be any
     std::vector<float> height_m_;
 };
 
@@ -876,7 +884,7 @@ struct Extent {
     }
 };
 
-constexpr int kBlockRows = 16;  // of Sweep::Blocks
+constexpr int kBlockRows = 32;  // of Sweep::Blocks
 
 /// Rows that ground is read for together, and those before them.
 constexpr int kReadRows = 256, kRowsBefore = 2;
