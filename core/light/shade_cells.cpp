@@ -17,73 +17,153 @@ constexpr double kSlack_posts = 2;  // as far as posts look beside them for line
 
 using Flags = std::vector<unsigned char>;
 
-/// The highest of some lines of posts, by its lowest post; minus infinity where none is whole.
-/// @param step, count, next  from post to post of a line, how many, and from line to line
-float ridge_of(const float* first, std::ptrdiff_t step, int count, std::ptrdiff_t next, int lines) {
-    float ridge_m = -kInfinity;
-    for (int line = 0; line < lines; ++line) {
-        float least = kInfinity;
+/// A hole is as low as can be.
+float or_lowest(float height_m) {
+    return height_m == height_m ? height_m : -kInfinity;
+}
+
+/// What is known of the columns of some rows of posts, which are those of a row of cells. Loops go
+/// over columns, so that processors do many at once.
+class CellRow {
+  public:
+    CellRow(const float* height_m, int columns, int rows, std::ptrdiff_t stride, int first_row)
+        : height_m_(height_m),
+          columns_(columns),
+          rows_(rows),
+          stride_(stride),
+          first_row_(first_row) {
+        for (auto* const each : {&lowest_m_, &ridge_m_[0], &ridge_m_[1]})
+            each->assign(static_cast<std::size_t>(columns), kInfinity);
+        for (auto* const each : {&highest_m_, &down_m_[0], &down_m_[1], &down_m_[2], &down_m_[3]})
+            each->assign(static_cast<std::size_t>(columns), -kInfinity);
+        const int end = std::min(rows, first_row + kPosts + 1);
+        for (int row = std::max(0, first_row - 1); row < end; ++row)
+            add(row, row + 1 < end);
+        find_column_ridges();
+        find_row_ridges();
+    }
+
+    ShadeCells::Cell cell(int first_column) const {
+        const int from = std::max(0, first_column - 1),
+                  end = std::min(columns_, first_column + kPosts + 1);
+        const auto of = [&](const std::vector<float>& figures, int last, bool highest) {
+            float found = highest ? -kInfinity : kInfinity;
+            for (int column = from; column < last; ++column) {
+                const float figure = figures[static_cast<std::size_t>(column)];
+                found = highest ? std::max(found, figure) : std::min(found, figure);
+            }
+            return found;
+        };
+        ShadeCells::Cell cell{of(lowest_m_, end, false),
+                              of(highest_m_, end, true),
+                              {of(down_m_[0], end, true), of(down_m_[1], end, true),
+                               of(down_m_[2], end - 1, true), of(down_m_[3], end - 1, true)},
+                              {-kInfinity, -kInfinity},
+                              {-kInfinity, -kInfinity}};
+        if (cell.lowest_m == -kInfinity)
+            std::fill(std::begin(cell.down_m), std::end(cell.down_m), kInfinity);
+        if (first_column + kPosts > columns_ || first_row_ + kPosts > rows_) return cell;
+        const int k = first_column / kPosts;
+        for (const int after : {0, 1}) {
+            if (has_ridges(first_row_, after, rows_))
+                cell.column_ridge_m[after] = *std::max_element(
+                    ridge_m_[static_cast<std::size_t>(after)].begin() + first_column,
+                    ridge_m_[static_cast<std::size_t>(after)].begin() + first_column + kPosts);
+            if (has_ridges(first_column, after, columns_))
+                cell.row_ridge_m[after] =
+                    row_ridge_m_[static_cast<std::size_t>(after)][static_cast<std::size_t>(k)];
+        }
+        return cell;
+    }
+
+  private:
+    static constexpr int kRidge = 2 * kPosts + 2;  // posts along which one is looked for
+
+    /// Where the posts of a ridge begin along a row, or a column, of a cell that begins there.
+    static int begin_of_ridge(int first, int after) { return first - (after == 0 ? kPosts : 2); }
+    static bool has_ridges(int first, int after, int posts) {
+        const int begin = begin_of_ridge(first, after);
+        return begin >= 0 && begin + kRidge <= posts;
+    }
+    const float* row(int at) const { return height_m_ + at * stride_; }
+
+    /// Posts of a row, and how far it is down to the next one.
+    void add(int at, bool has_next) {
+        const float* const here = row(at);
+        float *const low = lowest_m_.data(), *const high = highest_m_.data();
+        for (int i = 0; i < columns_; ++i) {
+            const float least = or_lowest(here[i]);
+            low[i] = least < low[i] ? least : low[i];
+            high[i] = here[i] > high[i] ? here[i] : high[i];
+        }
+        add_down(here, here + 1, columns_ - 1, 2);
+        if (has_next) add_down(here, row(at + 1), columns_, 0);
+    }
+    void add_down(const float* from, const float* to, int count, std::size_t k) {
+        float *const down = down_m_[k].data(), *const up = down_m_[k + 1].data();
         for (int i = 0; i < count; ++i) {
-            const float h = first[line * next + i * step];
-            least = h >= least ? least : h;  // a hole stays
-            if (h != h) least = -kInfinity;
+            const float by = from[i] - to[i];
+            down[i] = by > down[i] ? by : down[i];
+            up[i] = -by > up[i] ? -by : up[i];
         }
-        ridge_m = std::max(ridge_m, least);
     }
-    return ridge_m;
-}
 
-/// Rows and columns of a cell and of the ones beside, as far as those are whole.
-void find_ridges(const float* height_m, int columns, int rows, std::ptrdiff_t stride, int column,
-                 int row, ShadeCells::Cell& cell) {
-    if (column + kPosts > columns || row + kPosts > rows) return;
-    for (const int after : {0, 1}) {
-        const int first = column - (after == 0 ? kPosts : 2),
-                  first_row = row - (after == 0 ? kPosts : 2);
-        constexpr int kCount = 2 * kPosts + 2;
-        if (first >= 0 && first + kCount <= columns)
-            cell.row_ridge_m[after] =
-                ridge_of(height_m + row * stride + first, 1, kCount, stride, kPosts);
-        if (first_row >= 0 && first_row + kCount <= rows)
-            cell.column_ridge_m[after] =
-                ridge_of(height_m + first_row * stride + column, stride, kCount, 1, kPosts);
-    }
-}
-
-ShadeCells::Cell cell_of(const float* height_m, int columns, int rows, std::ptrdiff_t stride,
-                         int first_column, int first_row) {
-    ShadeCells::Cell cell{kInfinity,
-                          -kInfinity,
-                          {-kInfinity, -kInfinity, -kInfinity, -kInfinity},
-                          {-kInfinity, -kInfinity},
-                          {-kInfinity, -kInfinity}};
-    const int from = first_column - 1, end = first_column + kPosts + 1;
-    const int from_row = first_row - 1, last_row = first_row + kPosts + 1;
-    bool has_hole = false;
-    for (int row = std::max(0, from_row); row < std::min(rows, last_row); ++row)
-        for (int column = std::max(0, from); column < std::min(columns, end); ++column) {
-            const float* const at = height_m + row * stride + column;
-            has_hole = has_hole || *at != *at;
-            cell.lowest_m = *at < cell.lowest_m ? *at : cell.lowest_m;
-            cell.highest_m = *at > cell.highest_m ? *at : cell.highest_m;
-            if (row + 1 < std::min(rows, last_row)) {
-                const float down = at[0] - at[stride];
-                cell.down_m[0] = std::max(cell.down_m[0], down);
-                cell.down_m[1] = std::max(cell.down_m[1], -down);
-            }
-            if (column + 1 < std::min(columns, end)) {
-                const float down = at[0] - at[1];
-                cell.down_m[2] = std::max(cell.down_m[2], down);
-                cell.down_m[3] = std::max(cell.down_m[3], -down);
+    void find_column_ridges() {
+        for (const int after : {0, 1}) {
+            if (!has_ridges(first_row_, after, rows_)) continue;
+            const int begin = begin_of_ridge(first_row_, after);
+            float* const ridge = ridge_m_[static_cast<std::size_t>(after)].data();
+            for (int at = begin; at < begin + kRidge; ++at) {
+                const float* const here = row(at);
+                for (int i = 0; i < columns_; ++i) {
+                    const float least = or_lowest(here[i]);
+                    ridge[i] = least < ridge[i] ? least : ridge[i];
+                }
             }
         }
-    if (has_hole) {
-        cell.lowest_m = -kInfinity;
-        std::fill(std::begin(cell.down_m), std::end(cell.down_m), kInfinity);
     }
-    find_ridges(height_m, columns, rows, stride, first_column, first_row, cell);
-    return cell;
-}
+
+    /// The highest of the rows by its lowest post, along each cell and the one before or after.
+    void find_row_ridges() {
+        const int cells = columns_ / kPosts;
+        for (auto& ridges : row_ridge_m_)
+            ridges.assign(static_cast<std::size_t>(cells), -kInfinity);
+        if (first_row_ + kPosts > rows_) return;
+        std::vector<float> least_m(static_cast<std::size_t>(cells));
+        for (int at = first_row_; at < first_row_ + kPosts; ++at) {
+            const float* const here = row(at);
+            const auto least = [&](int begin, int end) {
+                float found = kInfinity;
+                for (int i = begin; i < end; ++i)
+                    found = std::min(found, or_lowest(here[i]));
+                return found;
+            };
+            for (int k = 0; k < cells; ++k)
+                least_m[static_cast<std::size_t>(k)] = least(k * kPosts, (k + 1) * kPosts);
+            for (int k = 0; k < cells; ++k)
+                for (const int after : {0, 1}) {
+                    const int column = k * kPosts;
+                    if (!has_ridges(column, after, columns_)) continue;
+                    const auto i = static_cast<std::size_t>(k);
+                    // All of two cells, and two posts of the one on the other side.
+                    const int beside = after == 0 ? column + kPosts : column - 2;
+                    const float found = std::min({least_m[i], least_m[after == 0 ? i - 1 : i + 1],
+                                                  least(beside, beside + 2)});
+                    float& ridge = row_ridge_m_[static_cast<std::size_t>(after)][i];
+                    ridge = std::max(ridge, found);
+                }
+        }
+    }
+
+    const float* height_m_;
+    int columns_, rows_;
+    std::ptrdiff_t stride_;
+    int first_row_;
+    std::vector<float> lowest_m_, highest_m_;        // of each column, with the rows beside
+    std::array<std::vector<float>, 4> down_m_;       // likewise, as Cell has it
+    std::array<std::vector<float>, 2> ridge_m_;      // likewise
+    std::array<std::vector<float>, 2> row_ridge_m_;  // of each cell
+};
 
 /// How rays go over rows of posts: at least and at most aside from each to the next, and down.
 struct Steepness {
@@ -228,11 +308,12 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
     : columns_((columns + kPosts - 1) / kPosts), rows_((rows + kPosts - 1) / kPosts) {
     cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
     parallel_for(0, rows_, 4, [&](int first, int last) {
-        for (int row = first; row < last; ++row)
+        for (int row = first; row < last; ++row) {
+            const CellRow found(height_m, columns, rows, stride, row * kPosts);
             for (int column = 0; column < columns_; ++column)
                 cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                       static_cast<std::size_t>(column)] =
-                    cell_of(height_m, columns, rows, stride, column * kPosts, row * kPosts);
+                       static_cast<std::size_t>(column)] = found.cell(column * kPosts);
+        }
     });
     std::fill(std::begin(steepest_m_), std::end(steepest_m_), -kInfinity);
     for (const Cell& cell : cells_)

@@ -884,7 +884,11 @@ struct Extent {
     }
 };
 
-constexpr int kBlockRows = 32;  // of Sweep::Blocks
+/// Rows of Sweep::Blocks: what is kept of their posts stays in the cache.
+constexpr int block_rows(int columns) {
+    constexpr int kPosts = 1 << 17, kLeast = 16, kMost = 256;
+    return std::clamp(kPosts / columns, kLeast, kMost);
+}
 
 /// Rows that ground is read for together, and those before them.
 constexpr int kReadRows = 256, kRowsBefore = 2;
@@ -1483,7 +1487,7 @@ std::optional<SweepWindow> Sweep::Blocks::next() {
     const SweepWindow& w = view.window;
     const int end = w.row + w.rows;
     for (row_ = end_row_; row_ < end; row_ = end_row_) {
-        end_row_ = std::min(row_ + kBlockRows, row_ < w.row ? w.row : end);
+        end_row_ = std::min(row_ + block_rows(w.columns), row_ < w.row ? w.row : end);
         if (sweep_.read_) read(row_, end_row_);
         if (row_ >= w.row) {
             const int line = view.mirrored ? view.sheet.rows - end_row_ : row_;
