@@ -259,15 +259,11 @@ class RowOfRays {
     double least_m_[2], most_m_[2], more_m_[2];  // over the first row, and over the last one
 };
 
-/// Flags and those so many columns beside.
-Flags beside(const unsigned char* flags, int columns, int reach) {
-    Flags wide(static_cast<std::size_t>(columns), 0);
-    for (int column = 0; column < columns; ++column)
-        if (flags[column])
-            for (int at = std::max(0, column - reach); at < std::min(columns, column + reach + 1);
-                 ++at)
-                wide[static_cast<std::size_t>(at)] = 1;
-    return wide;
+/// Sets flags, and those so many columns beside.
+void add_beside(const unsigned char* flags, int columns, int reach, unsigned char* to) {
+    for (int aside = -reach; aside <= reach; ++aside)
+        for (int i = std::max(0, -aside); i < std::min(columns, columns - aside); ++i)
+            to[i] |= flags[i + aside];
 }
 
 /// Sets what lies between flags that are not far apart: there is less work in some posts than in
@@ -282,24 +278,18 @@ void fill_gaps(unsigned char* flags, int columns) {
 }
 
 /// @param flags  of columns of cells
-std::vector<ColumnRange> ranges_of(const CellSheet& sheet, std::span<const unsigned char> flags) {
+void add_ranges(const CellSheet& sheet, const unsigned char* flags,
+                std::vector<ColumnRange>& ranges) {
     constexpr int kFar = 1 << 28;
-    const int columns = static_cast<int>(flags.size());
-    std::vector<ColumnRange> ranges;
+    const int columns = sheet.columns();
     for (int column = 0; column < columns; ++column) {
-        if (!flags[static_cast<std::size_t>(column)]) continue;
+        if (!flags[column]) continue;
         const int first = column;
-        while (column + 1 < columns && flags[static_cast<std::size_t>(column) + 1])
+        while (column + 1 < columns && flags[column + 1])
             ++column;
         ranges.push_back({first == 0 ? -kFar : sheet.first_column(first),
                           column + 1 == columns ? kFar : sheet.first_column(column + 1)});
     }
-    return ranges;
-}
-
-void add(const Flags& more, unsigned char* flags) {
-    for (std::size_t i = 0; i < more.size(); ++i)
-        flags[i] |= more[i];
 }
 
 }  // namespace
@@ -471,11 +461,11 @@ ShadeRanges shade_ranges(const CellSheet& sheet, const ShadedCells* before, cons
         fill_gaps(row_of(look, row), columns);
     // Lines are raised to sources, and to what is before the nearest rows of a post.
     for (int row = 0; row < rows; ++row) {
-        add(beside(sources.data() + static_cast<std::size_t>(row) * width, columns, 1),
-            row_of(raise, row));
-        add(beside(row_of(look, row), columns, 1), row_of(raise, row));
-        if (row + 1 < rows) add(beside(row_of(look, row + 1), columns, 1), row_of(raise, row));
-        fill_gaps(row_of(raise, row), columns);
+        unsigned char* const to = row_of(raise, row);
+        add_beside(row_of(sources, row), columns, 1, to);
+        add_beside(row_of(look, row), columns, 1, to);
+        if (row + 1 < rows) add_beside(row_of(look, row + 1), columns, 1, to);
+        fill_gaps(to, columns);
     }
     // A line beside the grid is as high as the ground that it has left, be that how far off it may.
     for (const int column : {0, columns - 1}) {
@@ -487,18 +477,23 @@ ShadeRanges shade_ranges(const CellSheet& sheet, const ShadedCells* before, cons
         }
     }
     for (int row = 0; row < rows; ++row) {
-        add(beside(row_of(raise, row), columns, 2), row_of(take, row));
-        if (row + 1 < rows) add(beside(row_of(raise, row + 1), columns, 2), row_of(take, row));
+        add_beside(row_of(raise, row), columns, 2, row_of(take, row));
+        if (row + 1 < rows) add_beside(row_of(raise, row + 1), columns, 2, row_of(take, row));
         fill_gaps(row_of(take, row), columns);
     }
     ShadeRanges found;
-    for (int row = 0; row < rows; ++row)
-        for (const auto of :
-             {ShadeRanges::kLook, ShadeRanges::kRaise, ShadeRanges::kTake, ShadeRanges::kDark}) {
-            const Flags& flags = *std::array{&look, &raise, &take, &dark}[of];
-            found.ranges[of].push_back(ranges_of(
-                sheet, std::span(flags).subspan(static_cast<std::size_t>(row) * width, width)));
+    const auto set = [&](ShadeRanges::Of of, Flags& flags) {
+        ShadeRanges::OfRows& to = found.of[of];
+        to.begins.reserve(static_cast<std::size_t>(rows) + 1);
+        for (int row = 0; row < rows; ++row) {
+            add_ranges(sheet, row_of(flags, row), to.ranges);
+            to.begins.push_back(static_cast<std::uint32_t>(to.ranges.size()));
         }
+    };
+    set(ShadeRanges::kLook, look);
+    set(ShadeRanges::kRaise, raise);
+    set(ShadeRanges::kTake, take);
+    set(ShadeRanges::kDark, dark);
     return found;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -64,10 +65,16 @@ struct ShadeRanges {
     /// A post whose edge is asked for; a line that is raised to its ground; ground of either.
     /// Or that of posts in the dark.
     enum Of { kLook, kRaise, kTake, kDark };
-    std::vector<std::vector<ColumnRange>> ranges[4];
+    struct OfRows {
+        std::vector<ColumnRange> ranges;       // of one row of cells after the other
+        std::vector<std::uint32_t> begins{0};  // of each row's, and the end
+    };
+    OfRows of[4];
     /// Of a row of cells, one after the other; those at the border go on beyond it.
-    const std::vector<ColumnRange>& at(Of of, int row) const {
-        return ranges[of][static_cast<std::size_t>(row)];
+    std::span<const ColumnRange> at(Of what, int row) const {
+        const OfRows& all = of[what];
+        const auto i = static_cast<std::size_t>(row);
+        return std::span(all.ranges).subspan(all.begins[i], all.begins[i + 1] - all.begins[i]);
     }
 };
 

@@ -177,7 +177,8 @@ using Numbers [[gnu::vector_size(kPosts * sizeof(float))]] = float;
 #if defined(__x86_64__)
 /// As add_light_of_some(), which no compiler makes as fast.
 [[gnu::target("avx512f")]] void add_light_512(const Light& light, int count) {
-    const __m512 zero = _mm512_setzero_ps(), most = _mm512_set1_ps(kOpen_m);
+    const __m512 zero = _mm512_setzero_ps(), most = _mm512_set1_ps(kOpen_m),
+                 from_h = _mm512_set1_ps(light.from_h), hours = _mm512_set1_ps(light.hours);
     int i = 0;
     for (; i + kPosts <= count; i += kPosts) {
         const __m512 open =
@@ -185,11 +186,16 @@ using Numbers [[gnu::vector_size(kPosts * sizeof(float))]] = float;
         const __m512 now =
             _mm512_mask_mov_ps(open, _mm512_cmp_ps_mask(open, most, _CMP_GT_OQ), most);
         const __m512 before = _mm512_loadu_ps(light.margin_m + i);
-        const auto changes = static_cast<unsigned>(_mm512_cmp_ps_mask(before, zero, _CMP_GE_OQ)) ^
-                             static_cast<unsigned>(_mm512_cmp_ps_mask(now, zero, _CMP_GE_OQ));
-        for (unsigned left = changes; left != 0; left &= left - 1)
-            add_light_of_one(light, i + __builtin_ctz(left));
+        const __mmask16 was_lit = _mm512_cmp_ps_mask(before, zero, _CMP_GE_OQ),
+                        is_lit = _mm512_cmp_ps_mask(now, zero, _CMP_GE_OQ);
         _mm512_storeu_ps(light.margin_m + i, now);
+        if (was_lit == is_lit) continue;
+        const __m512 part = _mm512_div_ps(before, _mm512_sub_ps(before, now));
+        const __m512 when_h = _mm512_add_ps(from_h, _mm512_mul_ps(hours, part));
+        __m512 lit_h = _mm512_loadu_ps(light.lit_h + i);
+        lit_h = _mm512_mask_sub_ps(lit_h, static_cast<__mmask16>(is_lit & ~was_lit), lit_h, when_h);
+        lit_h = _mm512_mask_add_ps(lit_h, static_cast<__mmask16>(was_lit & ~is_lit), lit_h, when_h);
+        _mm512_storeu_ps(light.lit_h + i, lit_h);
     }
     for (; i < count; ++i)
         add_light_of_one(light, i);
@@ -436,7 +442,7 @@ class FewDays {
     }
 
   private:
-    static constexpr std::size_t kTogether = 16;  // steps from sun to sun
+    static constexpr std::size_t kTogether = 32;  // steps from sun to sun
     static constexpr int kWidest = 2048;          // posts across which suns are swept together
 
     /// Suns over a part of a window that is theirs.

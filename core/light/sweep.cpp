@@ -617,6 +617,7 @@ class Strip {
         const Steps::Row& step = steps_.row(row);
         rows_.take(sheet_, row, wanted, [&](const float* from, int count, float* to, int column) {
             kernel_.tilt({.from = from,
+                          .next = from + sheet_.stride,
                           .to = to,
                           .lines = count,
                           .line = column - step.column,
@@ -703,10 +704,19 @@ class Strip {
         const auto more_m = static_cast<float>(base_m - base_m_);
         base_m_ = base_m;
         if (row == steps_.begin || more_m == 0) return;
-        for (float& height : height_m_)
-            height -= more_m;
+        const auto lower = [&](float* heights_m, int count) {
+            kernel_.tilt({.from = heights_m,
+                          .next = heights_m,
+                          .to = heights_m,
+                          .lines = count,
+                          .line = 0,
+                          .between = 0,
+                          .slope = {},
+                          .base_m = -more_m});
+        };
+        lower(height_m_.data(), static_cast<int>(height_m_.size()));
         for (int at = std::max(steps_.begin, row - rows_.kept() + 1); at < row; ++at)
-            std::for_each_n(rows_.begin_of(at), rows_.width(), [=](float& h) { h -= more_m; });
+            lower(rows_.begin_of(at), rows_.width());
     }
 
     Sheet sheet_;
@@ -886,7 +896,7 @@ struct Extent {
 
 /// Rows of Sweep::Blocks: what is kept of their posts stays in the cache.
 constexpr int block_rows(int columns) {
-    constexpr int kPosts = 1 << 17, kLeast = 16, kMost = 256;
+    constexpr int kPosts = 1 << 16, kLeast = 16, kMost = 256;
     return std::clamp(kPosts / columns, kLeast, kMost);
 }
 

@@ -84,6 +84,7 @@ template <typename V>
         const V line = (static_cast<float>(row.line + i) + lane) + row.between;
         V h;
         load(row.from + i, h);
+        __builtin_prefetch(row.next + i);
         store((h + row.base_m) + (row.slope.fall + row.slope.ramp * line), row.to + i);
     }
     for (; i < row.lines; ++i)

@@ -37,6 +37,7 @@ struct Lift {
 /// level.
 struct Tilted {
     const float* from;
+    const float* next;  // what will be taken next: fetched into the cache
     float* to;
     int lines;      // any number
     int line;       // the first one
