@@ -442,7 +442,7 @@ class FewDays {
     }
 
   private:
-    static constexpr std::size_t kTogether = 32;  // steps from sun to sun
+    static constexpr std::size_t kTogether = 16;  // steps from sun to sun
     static constexpr int kWidest = 2048;          // posts across which suns are swept together
 
     /// Suns over a part of a window that is theirs.

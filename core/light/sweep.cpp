@@ -151,10 +151,8 @@ class Plan {
         : sheet_(sheet), sun_(sun) {
         find_begin(window, drop_m);
         rows_.resize(static_cast<std::size_t>(window.row + window.rows - begin_));
-        const auto ray = [&](int row, RowPlan& at) {
-            at.distance_m = sun_.distance_m(row);
-            at.shift = sun_.reference.column + sun_.way(at.distance_m).column;
-        };
+        const int first = static_cast<int>(sun_.reference.row);
+        const RayRows ray(sun_, std::min(first, begin_), std::max(first + 1, end()));
         fill(1, ray);
         fill(-1, ray);
     }
@@ -244,16 +242,14 @@ class Plan {
   private:
     /// The rows from that of the reference on, so that what is found does not hang on where a sweep
     /// begins. @param step  1: away from the sun, -1: towards it
-    template <typename Ray>
-    void fill(int step, const Ray& ray) {
+    void fill(int step, const RayRows& ray) {
         const int first = static_cast<int>(sun_.reference.row);
         const int end = begin_ + static_cast<int>(rows_.size());
         RowPlan last;
         double before_m = 0, before_tangent = 0;
         for (int row = first; step > 0 ? row < end : row >= begin_; row += step) {
-            RowPlan at;
-            ray(row, at);
-            const double s = at.distance_m;
+            const double s = ray.distance_at(row);
+            RowPlan at{s, ray.column_at(row)};
             const double tangent = sun_.tangent_at(at.shift, row);
             if (row != first) {
                 const double step_m = before_m - s;
@@ -287,10 +283,10 @@ class Plan {
                          drop_m);
         const double from_m = sun_.distance_m(window.row);
         begin_ = window.row;
-        double at_m = from_m;
-        while (begin_ > 0 && at_m - from_m <= reach_m_) {
-            at_m = sun_.distance_m(begin_ - 1);
-            if (std::isnan(at_m)) break;
+        RayWalk walk(sun_, begin_);
+        while (begin_ > 0 && walk.distance_m() - from_m <= reach_m_) {
+            walk.step(-1);
+            if (std::isnan(walk.distance_m())) break;
             --begin_;
         }
     }
