@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "base/wide_loops.h"
 #include "light/ground_slope.h"
 #include "light/quick_math.h"
 #include "light/sky.h"
@@ -46,10 +47,19 @@ std::string surroundings(const dem::Posts& posts, double refraction) {
         refraction, double{posts.lowest_m()});
 }
 
+/// Elevations of the horizons of posts next to each other; a hole has no number.
+RELEVO_WIDE_LOOPS void find_elevations(const SweepRun& run, float* elevation_rad) {
+    for (int i = 0; i < run.count; ++i) {
+        const float t = run.found[i], height_m = run.height_m[i];
+        const float elevation = std::copysign(quick_atan(std::abs(t)), t);
+        elevation_rad[i] = height_m == height_m ? elevation : height_m;
+    }
+}
+
 /// What a direction adds to the sky-view factors of posts next to each other.
 /// @param east, north  the rise of the ground
-void add_sky(const SweepRun& run, const float* east, const float* north, float sin_azimuth,
-             float cos_azimuth, float* sum) {
+RELEVO_WIDE_LOOPS void add_sky(const SweepRun& run, const float* east, const float* north,
+                               float sin_azimuth, float cos_azimuth, float* sum) {
     for (int i = 0; i < run.count; ++i) {
         // H of the source is the angle between zenith and horizon, t its cotangent.
         const float t = std::max(run.found[i], 0.0F);
@@ -93,15 +103,8 @@ Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, doub
         const SunSky sky(ground.dem, azimuth);
         TileValues values(part, 0);
         values.turn(sky.along_columns());
-        ground.each_horizon(sky, kHorizonTolerance_rad, part, [&](const SweepRun& run) {
-            float* const out = values.of(run);
-            for (int i = 0; i < run.count; ++i) {
-                const float t = run.found[i];
-                const float elevation_rad = std::copysign(quick_atan(std::abs(t)), t);
-                // A hole has no number.
-                out[i] = run.height_m[i] == run.height_m[i] ? elevation_rad : run.height_m[i];
-            }
-        });
+        ground.each_horizon(sky, kHorizonTolerance_rad, part,
+                            [&](const SweepRun& run) { find_elevations(run, values.of(run)); });
         values.put(result.elevation_rad.emplace_back(part.columns, part.rows), part);
     }
     if (!result.elevation_rad.empty())

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "base/wide_loops.h"
 #include "geo/ellipsoid.h"
 
 namespace relevo::light {
@@ -763,17 +764,22 @@ void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doubl
         scratch, use);
 }
 
+/// The horizon is no lower than the smooth Earth's, as high as the lowest post.
+RELEVO_WIDE_LOOPS static void add_dip(const SweepRun& run, float lowest_m, float curvature,
+                                      float* tangent) {
+    for (int i = 0; i < run.count; ++i) {
+        const float dip = -std::sqrt(2 * curvature * std::max(0.0F, run.height_m[i] - lowest_m));
+        tangent[i] = std::max(run.found[i], dip);
+    }
+}
+
 void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& tile,
                   const Sweep::Use& use) {
     const DemSky& dem = direction.dem();
     const auto curvature = static_cast<float>(dem.curvature());
     const auto lowest_m = static_cast<float>(dem.level_height_m(0));
     const auto fill = [&](const SweepRun& part, float* tangent) {
-        for (int i = 0; i < part.count; ++i) {
-            const float dip =
-                -std::sqrt(2 * curvature * std::max(0.0F, part.height_m[i] - lowest_m));
-            tangent[i] = std::max(part.found[i], dip);
-        }
+        add_dip(part, lowest_m, curvature, tangent);
     };
     sweep.each_horizon(tile.path, dem.curvature(), dem.horizon_reach_m(), tile.part,
                        [&](const SweepRun& run) { each_part(run, fill, use); });

@@ -21,6 +21,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "base/wide_loops.h"
 #include "light/horizons.h"
 #include "light/irradiation.h"
 #include "light/quick_math.h"
@@ -735,6 +736,23 @@ class Direction {
     std::vector<float> over_, level_over_, up_over_;
 };
 
+/// Of posts next to each other, where their horizons are in tables of directions.
+/// @param base, a_post, first  how the sun is higher there than where tables are for:
+///     base + a_post * (first + done), and so on [rad]
+RELEVO_WIDE_LOOPS void find_entries(const float* tangent, int count, float base, float a_post,
+                                    float first, int done, float* at) {
+    constexpr auto kScale = static_cast<float>(1 / Direction::kStep_rad);
+    constexpr float kLast = Direction::kEntries - 1.001F;
+    for (int i = 0; i < count; ++i) {
+        const float t = tangent[i];
+        const float elevation = std::copysign(quick_atan(std::abs(t)), t);
+        const float entry =
+            (elevation - base - a_post * (first + static_cast<float>(done + i))) * kScale;
+        const float least = entry > 0 ? entry : 0;
+        at[i] = least < kLast ? least : kLast;
+    }
+}
+
 class ManyDays {
   public:
     ManyDays(const DemSky& dem, const Sweep& sweep, sun::Instant begin, double length_s,
@@ -761,6 +779,8 @@ class ManyDays {
     static constexpr std::size_t kDirections = 180;
     /// For the air of the lowest post, and of the highest one.
     using Directions = std::array<std::array<Direction, kDirections>, 2>;
+    /// For each entry how long the sun was over it, in the air of both.
+    using BothLevels = std::vector<std::array<float, 2>>;
 
     /// Parts of the DEM over which the sun is at its azimuth in the middle within what directions
     /// are apart.
@@ -855,14 +875,16 @@ class ManyDays {
                 2};
         const double low_m = dem_.level_height_m(0);
         const double span_m = std::max(1.0, dem_.level_height_m(1) - low_m);
+        BothLevels over(Direction::kEntries);
+        for (std::size_t k = 0; k < over.size(); ++k)
+            over[k] = {low.over()[k], high.over()[k]};
         each_horizon(sky, sweep_, tile, [&](const SweepRun& run) {
             // From the reference on, so that bits do not hang on where a run begins.
             const double aside = run.along_column ? more.column * (run.line - at.column)
                                                   : more.row * (run.line - at.row);
             const double a_post = run.along_column ? more.row : more.column;
             const double from = run.first - (run.along_column ? at.row : at.column);
-            look_up(run, lift_rad + aside, a_post, from, low.over(), high.over(), low_m, span_m,
-                    lit_h.of(run));
+            look_up(run, lift_rad + aside, a_post, from, over, low_m, span_m, lit_h.of(run));
             if (beams) look_up_beams(run, lift_rad + aside, a_post, from, low, high, *beams);
         });
     }
@@ -870,47 +892,29 @@ class ManyDays {
     /// @param lift, lift_a_post  of the sun over where it stands in the middle [rad]
     /// @param from               where the run begins, posts from the middle on
     static void look_up(const SweepRun& run, double lift, double lift_a_post, double from,
-                        const float* low, const float* high, double low_m, double span_m,
-                        float* lit_h) {
-        constexpr auto kScale = static_cast<float>(1 / Direction::kStep_rad);
-        const auto a_post = static_cast<float>(lift_a_post), first = static_cast<float>(from);
-        const auto base = static_cast<float>(lift + Direction::kLowest_rad);
+                        const BothLevels& over, double low_m, double span_m, float* lit_h) {
         const auto bottom_m = static_cast<float>(low_m), scale_m = static_cast<float>(1 / span_m);
-        for (int i = 0; i < run.count; ++i) {
-            const float t = run.found[i];
-            const float elevation = std::copysign(quick_atan(std::abs(t)), t);
-            const float at =
-                std::clamp((elevation - base - a_post * (first + static_cast<float>(i))) * kScale,
-                           0.0F, Direction::kEntries - 1.001F);
-            const auto entry = static_cast<int>(at);
-            const float part = at - static_cast<float>(entry);
-            const float in_low = low[entry] + part * (low[entry + 1] - low[entry]);
-            const float in_high = high[entry] + part * (high[entry + 1] - high[entry]);
+        each_entry(run, lift, lift_a_post, from, [&](int i, std::size_t entry, float part) {
+            const auto& [low, high] = over[entry];
+            const auto& [next_low, next_high] = over[entry + 1];
+            const float in_low = low + part * (next_low - low),
+                        in_high = high + part * (next_high - high);
             lit_h[i] += in_low + (run.height_m[i] - bottom_m) * scale_m * (in_high - in_low);
-        }
+        });
     }
 
     /// Likewise the beams' sums, onto the ground as it is inclined; what comes from behind it is
     /// none.
     static void look_up_beams(const SweepRun& run, double lift, double lift_a_post, double from,
                               const Direction& low, const Direction& high, GroundForBeams& ground) {
-        constexpr auto kScale = static_cast<float>(1 / Direction::kStep_rad);
         const auto a_post = static_cast<float>(lift_a_post), first = static_cast<float>(from),
                    base = static_cast<float>(lift),
                    sin_azimuth = static_cast<float>(std::sin(low.azimuth_rad())),
-                   cos_azimuth = static_cast<float>(std::cos(low.azimuth_rad())),
-                   lowest = static_cast<float>(Direction::kLowest_rad);
+                   cos_azimuth = static_cast<float>(std::cos(low.azimuth_rad()));
         const float *const east = ground.east.of(run), *const north = ground.north.of(run),
                            *const air = ground.air.of(run);
         float* const beam = ground.beam_wh.of(run);
-        for (int i = 0; i < run.count; ++i) {
-            const float t = run.found[i];
-            const float elevation = std::copysign(quick_atan(std::abs(t)), t);
-            const float lifted = base + a_post * (first + static_cast<float>(i));
-            const float at = std::clamp((elevation - lifted - lowest) * kScale, 0.0F,
-                                        Direction::kEntries - 1.001F);
-            const auto entry = static_cast<int>(at);
-            const float part = at - static_cast<float>(entry);
+        each_entry(run, lift, lift_a_post, from, [&](int i, std::size_t entry, float part) {
             const auto sum = [&](const float* in_low, const float* in_high) {
                 const float l = in_low[entry] + part * (in_low[entry + 1] - in_low[entry]);
                 const float h = in_high[entry] + part * (in_high[entry + 1] - in_high[entry]);
@@ -920,10 +924,31 @@ class ManyDays {
                         up = sum(low.up_over(), high.up_over());
             const float e = east[i], n = north[i];
             // The sun stands higher there by the lift.
+            const float lifted = base + a_post * (first + static_cast<float>(i));
             const float onto =
                 (up + lifted * level) - (e * sin_azimuth + n * cos_azimuth) * (level - lifted * up);
             const float gain = onto / std::sqrt(1 + e * e + n * n);
             beam[i] += gain > 0 ? gain : 0;
+        });
+    }
+
+    /// Calls `use` with every post, the entry of a direction's table that its horizon is at, and
+    /// how far that is on to the next one.
+    template <typename Use>
+    static void each_entry(const SweepRun& run, double lift, double lift_a_post, double from,
+                           const Use& use) {
+        constexpr int kSome = 256;
+        std::array<float, kSome> at;
+        for (int done = 0; done < run.count; done += kSome) {
+            const int some = std::min(run.count - done, kSome);
+            find_entries(run.found + done, some, static_cast<float>(lift + Direction::kLowest_rad),
+                         static_cast<float>(lift_a_post), static_cast<float>(from), done,
+                         at.data());
+            for (int i = 0; i < some; ++i) {
+                const float entry = at[static_cast<std::size_t>(i)];
+                const auto whole = static_cast<int>(entry);
+                use(done + i, static_cast<std::size_t>(whole), entry - static_cast<float>(whole));
+            }
         }
     }
 

@@ -22,6 +22,7 @@
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "base/wide_loops.h"
 #include "dem/posts.h"
 #include "geo/ellipsoid.h"
 #include "light/horizons.h"
@@ -73,16 +74,9 @@ struct Bytes2 {
 
 constexpr std::uint32_t kHoles = 0x7bff7bffU;  // GroundLight::kHole twice
 
-// Which clone is taken is found out while the program is loaded, before the thread sanitizer can
-// run.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
-#define RELEVO_WIDE [[gnu::target_clones("avx2", "default")]]
-#else
-#define RELEVO_WIDE
-#endif
-
 /// Margins as two halves, the upper limb's in the low one, and the share of the disc that is seen.
-RELEVO_WIDE void encode(const light::MarginRun& run, std::uint32_t* halves, std::uint16_t* shares) {
+RELEVO_WIDE_LOOPS void encode(const light::MarginRun& run, std::uint32_t* halves,
+                              std::uint16_t* shares) {
     const float *const uppers = run.upper_m, *const lowers = run.lower_m;
     const int count = run.count;
     for (int i = 0; i < count; ++i) {
