@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <new>
 #include <span>
 #include <utility>
 
@@ -42,6 +43,23 @@ constexpr ColumnRange kAllColumns{-(1 << 28), 1 << 28};
 constexpr int in_vectors(int count) {
     return (count + Sweep::kMostLanes - 1) / Sweep::kMostLanes * Sweep::kMostLanes;
 }
+
+/// Memory in which a vector of numbers that comes after whole vectors lies in one line of the cache.
+template <typename T>
+struct InLines {
+    using value_type = T;
+    static constexpr std::align_val_t kLine{64};
+
+    InLines() = default;
+    template <typename U>
+    InLines(const InLines<U>&) {}
+    T* allocate(std::size_t count) {
+        return static_cast<T*>(::operator new(count * sizeof(T), kLine));
+    }
+    void deallocate(T* at, std::size_t) { ::operator delete(at, kLine); }
+    bool operator==(const InLines&) const { return true; }
+};
+using FloatsInLines = std::vector<float, InLines<float>>;
 
 /// The whole numbers beside one, which are near enough to 0 to be ints.
 constexpr int floor_of(double x) {
@@ -568,7 +586,7 @@ class GroundRows {
     int line_;
     int width_, pitch_;
     std::array<ColumnRange, 16> ground_{};  // of each row that is kept, where there may be any
-    std::vector<float> height_m_;
+    FloatsInLines height_m_;
 };
 
 /// Lines next to each other, from the sun to the end of the window.
@@ -724,8 +742,8 @@ class Strip {
     double base_m_ = 0;
     GroundRows rows_;
     std::ptrdiff_t pitch_;         // from set to set, the next line, too
-    std::vector<float> height_m_;  // of each set's lines
-    std::vector<float> edge_m_;
+    FloatsInLines height_m_;  // of each set's lines
+    FloatsInLines edge_m_;
 };
 
 /// Lines next to each other, each with a fan of rays over the ground behind it. Heights are less
@@ -820,7 +838,7 @@ class FanStrip {
     static constexpr float kFarther_m = 1e9F;  // than any ground
     static constexpr std::ptrdiff_t kPitch = in_vectors(kFanLines + 1) + Sweep::kMostLanes;
     struct Fans {
-        std::array<float, kRays * kPitch> height_m, distance_m;
+        alignas(64) std::array<float, kRays * kPitch> height_m, distance_m;
     };
 
     /// How far line 0 has come from the row of the reference on.
