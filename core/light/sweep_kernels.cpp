@@ -173,33 +173,37 @@ template <typename V>
 
 template <typename V, int kPoints>
 [[gnu::always_inline]] inline void raise_fans_over(const FanLift& lift) {
-    for (int i = 0; i < lift.lines; i += kWidthOf<V>) {
-        V over[kPoints];
+    const FanLift to = lift;  // nothing is written to it, as far as compilers know
+    for (int i = 0; i < to.lines; i += kWidthOf<V>) {
+        V over[kPoints], way[kPoints];
 #pragma GCC unroll 8
         for (int j = 0; j < kPoints; ++j) {
-            const FanPoint& point = lift.points[j];
+            const FanPoint& point = to.points[j];
             V a, b;
-            load(lift.rows + point.ground.p + i, a);
-            load(lift.rows + point.ground.q + i, b);
+            load(to.rows + point.ground.p + i, a);
+            load(to.rows + point.ground.q + i, b);
             over[j] = (a + point.ground.part * (b - a)) - point.sunk_m;
+            way[j] = V{} + point.distance_m;
         }
+        float *height_m = to.height_m + i, *distance_m = to.distance_m + i;
+        const float *tangent = to.tangents, *rises = to.rises;
         for (int k = 0; k < kRays; ++k) {
-            float* const to_height = lift.height_m + k * lift.pitch + i;
-            float* const to_distance = lift.distance_m + k * lift.pitch + i;
             V height, distance;
-            load(to_height, height);
-            load(to_distance, distance);
-            V most = height + lift.tangents[k] * distance;
+            load(height_m, height);
+            load(distance_m, distance);
+            V most = height + *tangent * distance;
 #pragma GCC unroll 8
             for (int j = 0; j < kPoints; ++j) {
-                const V here = over[j] + lift.rises[k * kFanPoints + j];
+                const V here = over[j] + rises[j];
                 const auto higher = here > most;
                 height = higher ? over[j] : height;
-                distance = higher ? V{} + lift.points[j].distance_m : distance;
+                distance = higher ? way[j] : distance;
                 if (j + 1 < kPoints) most = higher ? here : most;
             }
-            store(height, to_height);
-            store(distance, to_distance);
+            store(height, height_m);
+            store(distance, distance_m);
+            height_m += to.pitch, distance_m += to.pitch;
+            ++tangent, rises += kFanPoints;
         }
     }
 }
@@ -226,10 +230,12 @@ template <typename V>
         eye -= sight.sunk_m;
         V rise = V{} + kNothing_m, way = V{} + 1, next_rise = rise, next_way = way;
         auto over_last = eye == eye;  // not of holes
+        const float* height_m = sight.height_m + sight.first_ray * sight.pitch + i;
+        const float* distance_m = sight.distance_m + sight.first_ray * sight.pitch + i;
         for (int k = sight.first_ray; k < kRays; ++k) {
             V up, along;
-            load(sight.height_m + k * sight.pitch + i, up);
-            load(sight.distance_m + k * sight.pitch + i, along);
+            load(height_m, up);
+            load(distance_m, along);
             up -= eye;
             along = sight.from_m - along;
             const auto over = up > sight.tangents[k] * along;
@@ -238,6 +244,7 @@ template <typename V>
             rise = over ? up : rise;
             way = over ? along : way;
             over_last = over;
+            height_m += sight.pitch, distance_m += sight.pitch;
         }
         V tangent = rise / way;
         if (sight.both) {
