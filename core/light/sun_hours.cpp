@@ -420,7 +420,7 @@ class FewDays {
         const std::vector<Work> works = shuffled(all_works(all_of_them, windows, result));
         double all = 0;
         for (const Work& work : works)
-            all += work.size();
+            all += work.cost;
         if (done) done(0);
         Totals totals(part_, at_h_, result);
         std::mutex mutex;
@@ -432,7 +432,7 @@ class FewDays {
                 const std::lock_guard lock(mutex);
                 if (!done || stopped) continue;
                 try {
-                    done(works[i].size() / all);
+                    done(works[i].cost / all);
                 } catch (...) {
                     stopped = true;
                     throw;
@@ -451,10 +451,7 @@ class FewDays {
         Series series;
         const BandedWindow* window;
         SweepWindow part;
-
-        double size() const {
-            return double(series.last - series.first + 1) * part.columns * part.rows;
-        }
+        double cost;  // in sweeps over all of a post's rays, more or less
     };
 
     /// One of the suns of a series over a tile.
@@ -525,15 +522,29 @@ class FewDays {
                 tiles += most;
                 for (const SweepWindow& part :
                      parts_of(common(window.window, part_), skies_[all[i].first].along_columns()))
-                    works.push_back({all[i], &window, part});
+                    works.push_back({all[i], &window, part, cost_of(all[i], part)});
             }
             result.windows = std::max(result.windows, static_cast<int>(tiles));
         }
         return works;
     }
 
+    double cost_of(const Series& series, const SweepWindow& part) const {
+        double sweeps = 0;
+        for (std::size_t k = series.first; k <= series.last; ++k) {
+            // From there on more and more posts are lit, as is known beforehand.
+            constexpr double kAll_rad = radians(25), kFew_rad = radians(63), kFew = 0.15;
+            const double over_rad = moments_.suns[k].elevation_rad - kAll_rad;
+            const double share =
+                irradiation_ ? 1 : std::clamp(1 - over_rad / (kFew_rad - kAll_rad), kFew, 1.0);
+            sweeps += share * static_cast<double>(skies_[k].levels());
+        }
+        return sweeps * part.columns * part.rows;
+    }
+
     /// In an order in which whatever is done first is much like the rest, so that the time left is
-    /// known soon: low suns take longer than high ones. Sums do not hang on it.
+    /// known soon, and what is done last is short, so that no thread waits long for another. Sums
+    /// do not hang on it.
     static std::vector<Work> shuffled(const std::vector<Work>& works) {
         constexpr double kGolden = 0.6180339887498949;
         std::size_t stride = static_cast<std::size_t>(double(works.size()) * kGolden) | 1U;
@@ -542,6 +553,14 @@ class FewDays {
         std::vector<Work> mixed;
         for (std::size_t i = 0; i < works.size(); ++i)
             mixed.push_back(works[i * stride % works.size()]);
+        const auto by_cost = [](const Work& a, const Work& b) { return a.cost > b.cost; };
+        std::vector<Work> sorted = mixed;
+        std::sort(sorted.begin(), sorted.end(), by_cost);
+        const auto few = std::min(static_cast<std::size_t>(4 * thread_count()), sorted.size());
+        const double short_cost = sorted[sorted.size() - few].cost;
+        std::sort(std::stable_partition(mixed.begin(), mixed.end(),
+                                        [=](const Work& work) { return work.cost > short_cost; }),
+                  mixed.end(), by_cost);
         return mixed;
     }
 

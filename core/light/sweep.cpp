@@ -44,7 +44,8 @@ constexpr int in_vectors(int count) {
     return (count + Sweep::kMostLanes - 1) / Sweep::kMostLanes * Sweep::kMostLanes;
 }
 
-/// Memory in which a vector of numbers that comes after whole vectors lies in one line of the cache.
+/// Memory in which a vector of numbers that comes after whole vectors lies in one line of the
+/// cache.
 template <typename T>
 struct InLines {
     using value_type = T;
@@ -741,7 +742,7 @@ class Strip {
     float zero_m_, floor_m_;
     double base_m_ = 0;
     GroundRows rows_;
-    std::ptrdiff_t pitch_;         // from set to set, the next line, too
+    std::ptrdiff_t pitch_;    // from set to set, the next line, too
     FloatsInLines height_m_;  // of each set's lines
     FloatsInLines edge_m_;
 };
