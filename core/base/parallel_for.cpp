@@ -120,7 +120,7 @@ void parallel_for(int begin, int end, int grain, const std::function<void(int, i
     // Several pieces a thread, so that an uneven load still keeps all of them busy.
     Job job{.body = body,
             .end = end,
-            .piece = std::max(least, length / (threads * 4)),
+            .piece = std::max(least, length / (threads * 8)),
             .next = begin,
             .wanted = static_cast<int>(threads) - 1};
     Pool::instance().run(job);

@@ -99,10 +99,10 @@ Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, doub
     const SweepWindow part = window_of(of, posts.grid());
     Horizons result;
     result.azimuth_rad = std::move(azimuth_rad);
+    TileValues values(part, 0);
     for (const double azimuth : result.azimuth_rad) {
         const SunSky sky(ground.dem, azimuth);
-        TileValues values(part, 0);
-        values.turn(sky.along_columns());
+        values.turn_unset(sky.along_columns());
         ground.each_horizon(sky, kHorizonTolerance_rad, part,
                             [&](const SweepRun& run) { find_elevations(run, values.of(run)); });
         values.put(result.elevation_rad.emplace_back(part.columns, part.rows), part);

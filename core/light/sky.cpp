@@ -827,9 +827,11 @@ void TileValues::put(Array2d<float>& all, const SweepWindow& of) const {
     if (along_columns_)
         return transpose(values_.data(), window_.rows, window_.columns, window_.rows, to,
                          all.width());
-    for (int row = 0; row < window_.rows; ++row)
-        std::copy_n(values_.data() + std::ptrdiff_t{row} * window_.columns, window_.columns,
-                    to + std::ptrdiff_t{row} * all.width());
+    parallel_for(0, window_.rows, 64, [&](int first, int last) {
+        for (int row = first; row < last; ++row)
+            std::copy_n(values_.data() + std::ptrdiff_t{row} * window_.columns, window_.columns,
+                        to + std::ptrdiff_t{row} * all.width());
+    });
 }
 
 }  // namespace relevo::light

@@ -219,6 +219,8 @@ class TileValues {
 
     /// Along columns, or along rows, which is how they begin.
     void turn(bool along_columns);
+    /// The same where all of them are to be set.
+    void turn_unset(bool along_columns) { along_columns_ = along_columns; }
     float* of(const SweepRun& run) { return values_.data() + index_of(run); }
     const float* of(const SweepRun& run) const { return values_.data() + index_of(run); }
     /// Puts them where the window is.

@@ -853,24 +853,48 @@ class ManyDays {
         const sun::Observer observer(middle);
         const double step_s = length_s_ > 40 * kDay_s ? 120 : 60;
         const auto steps = static_cast<std::int64_t>(std::ceil(length_s_ / step_s - 1e-9));
-        for (std::int64_t i = 0; i < steps; ++i) {
+        struct Sample {
+            double azimuth_rad, elevation_rad, hours;
+            std::array<double, 2> apparent_rad, beam_wh;
+        };
+        const auto sample_at = [&](std::int64_t i) {
             const double from_s = static_cast<double>(i) * step_s;
             const double until_s = std::min(from_s + step_s, length_s_);
             const glm::dvec3 towards_au =
                 table_.vector_au(begin_ + (from_s + until_s) / 2, observer);
-            const SunOverDem sun{sun::azimuth_of(towards_au), sun::elevation_of(towards_au), 0};
-            if (sun.elevation_rad < Direction::kLowest_rad) continue;
-            const ClearSky clear(irradiation_ ? irradiation_->linke : 3, glm::length(towards_au));
-            const double hours = (until_s - from_s) / kHour_s;
-            const auto k =
-                std::min(kDirections - 1,
-                         static_cast<std::size_t>(sun.azimuth_rad / (2 * kPi) * kDirections));
+            Sample sun{sun::azimuth_of(towards_au),
+                       sun::elevation_of(towards_au),
+                       (until_s - from_s) / kHour_s,
+                       {},
+                       {}};
+            if (sun.elevation_rad < Direction::kLowest_rad) return sun;
             for (std::size_t level = 0; level < 2; ++level) {
-                const double beam_wh =
-                    irradiation_ ? hours * clear.beam(sun.elevation_rad, level_m(level)) : 0;
-                directions[level][k].add(
-                    sun.azimuth_rad, dem_.apparent_rad(sun.elevation_rad, level), hours,
-                    beam_wh * std::cos(sun.elevation_rad), beam_wh * std::sin(sun.elevation_rad));
+                sun.apparent_rad[level] = dem_.apparent_rad(sun.elevation_rad, level);
+                if (irradiation_)
+                    sun.beam_wh[level] =
+                        sun.hours * ClearSky(irradiation_->linke, glm::length(towards_au))
+                                        .beam(sun.elevation_rad, level_m(level));
+            }
+            return sun;
+        };
+        constexpr int kTogether = 1 << 14;
+        std::vector<Sample> samples;
+        for (std::int64_t done = 0; done < steps; done += kTogether) {
+            samples.resize(
+                static_cast<std::size_t>(std::min<std::int64_t>(kTogether, steps - done)));
+            parallel_for(0, static_cast<int>(samples.size()), 256, [&](int first, int last) {
+                for (int i = first; i < last; ++i)
+                    samples[static_cast<std::size_t>(i)] = sample_at(done + i);
+            });
+            for (const Sample& sun : samples) {
+                if (sun.elevation_rad < Direction::kLowest_rad) continue;
+                const auto k =
+                    std::min(kDirections - 1,
+                             static_cast<std::size_t>(sun.azimuth_rad / (2 * kPi) * kDirections));
+                for (std::size_t level = 0; level < 2; ++level)
+                    directions[level][k].add(sun.azimuth_rad, sun.apparent_rad[level], sun.hours,
+                                             sun.beam_wh[level] * std::cos(sun.elevation_rad),
+                                             sun.beam_wh[level] * std::sin(sun.elevation_rad));
             }
         }
         return directions;
