@@ -546,6 +546,7 @@ class FewDays {
     /// known soon, and what is done last is short, so that no thread waits long for another. Sums
     /// do not hang on it.
     static std::vector<Work> shuffled(const std::vector<Work>& works) {
+        if (works.empty()) return {};
         constexpr double kGolden = 0.6180339887498949;
         std::size_t stride = static_cast<std::size_t>(double(works.size()) * kGolden) | 1U;
         while (std::gcd(stride, works.size()) > 1)
