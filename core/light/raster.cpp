@@ -75,6 +75,11 @@ CPLStringList creation_options(const std::vector<std::string>& given, GDALDataTy
                                   printable(option)));
         options.SetNameValue(option.substr(0, equals).c_str(), option.substr(equals + 1).c_str());
     }
+    // The digits of measured numbers hardly get shorter by looking longer: half a percent, for a
+    // fifth of the time that a file of 36 bands takes.
+    if (type == GDT_Float32 && EQUAL(options.FetchNameValue("COMPRESS"), "DEFLATE") &&
+        !options.FetchNameValue("LEVEL"))
+        options.SetNameValue("LEVEL", "4");
     return options;
 }
 
