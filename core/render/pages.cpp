@@ -8,22 +8,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "base/wide_loops.h"
+
 namespace relevo::render {
 namespace {
 
-/// Rise a post between neighbours, from both sides where both are there, else from the one that is.
-float slope_of(float before, float here, float after, int posts_before, int posts_after) {
-    const bool has_before = !std::isnan(before), has_after = !std::isnan(after);
-    if (has_before && has_after)
-        return (after - before) / static_cast<float>(posts_before + posts_after);
-    if (has_after) return (after - here) / static_cast<float>(posts_after);
-    if (has_before) return (here - before) / static_cast<float>(posts_before);
-    return 0.0f;
-}
-
-std::int16_t snorm16(float value) {
-    return static_cast<std::int16_t>(std::lrint(std::clamp(value, -1.0f, 1.0f) * 32767.0f));
-}
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 /// A block of a level with its coverage blurred, so that the cut beside holes, at one half, is
 /// smooth where posts would make steps. Nodes stay on the side of the cut that they are on.
@@ -103,9 +93,95 @@ std::vector<float> surface_page(const dem::Pyramid& pyramid, int level, glm::ive
     return texels;
 }
 
-// In one piece: two loops, the inner of which reads what the outer knows of its row.
-std::vector<std::int16_t> normal_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page,
-                                      const PatchNet& net, const glm::dvec3& axis) {
+namespace {
+
+/// Posts of a page's row, and what their normals have in common.
+struct NormalRow {
+    // Of each post: its height, and those beside it, NaN where there is none.
+    const float *here, *west, *east, *north, *south;
+    const float* u;                  // where it is on the net
+    const float *to_west, *to_east;  // posts, 0 where there is none
+    float to_north, to_south;
+    float step_x, step_y;
+    glm::vec3 up0, up_u, up_v;            // up there: up0 + u * up_u + up_v
+    glm::vec3 base_u0, base_u1;           // the net's derivative by u: base_u0 + u * base_u1
+    glm::vec3 base_v0, base_v1, base_v2;  // and by v: base_v0 + u * (base_v1 + u * base_v2)
+    glm::vec3 rise_u, rise_v;             // what a metre up adds to them
+    glm::vec3 pole, east_middle;
+};
+
+/// Three numbers of each of many posts. Lambdas and references to it would keep compilers from
+/// doing many at once.
+struct Three {
+    float x, y, z;
+};
+
+/// Rise a post between neighbours, from both sides where both are there, else from the one that is.
+inline float slope_of(float before, float here, float after, float to_before, float to_after) {
+    const bool has_before = before == before, has_after = after == after;
+    const float low = has_before ? before : here, high = has_after ? after : here;
+    const float posts = (has_before ? to_before : 0.0f) + (has_after ? to_after : 0.0f);
+    return (high - low) / (posts > 0 ? posts : 1.0f);
+}
+
+/// To the nearest whole number, the even one of two.
+inline int nearest(float value) {
+    constexpr float kWhole = 12582912.0f;  // floats from there on have no fraction
+    return static_cast<int>((value + kWhole) - kWhole);
+}
+
+inline std::uint32_t snorm16(float value) {
+    const float known = value == value ? value : 0.0f;
+    const float least = known > -1.0f ? known : -1.0f;
+    return static_cast<std::uint32_t>(nearest((least < 1.0f ? least : 1.0f) * 32767.0f)) & 0xffffU;
+}
+
+/// @param to  east in the lower half of each, north in the upper one
+RELEVO_WIDE_LOOPS void encode_normals(const NormalRow& given, std::uint32_t* to) {
+    const NormalRow row = given;  // nothing is written to it, as far as compilers know
+    for (int i = 0; i < kNormalPage_px; ++i) {
+        const float h = row.here[i], u = row.u[i], to_west = row.to_west[i],
+                    to_east = row.to_east[i], west = row.west[i], east = row.east[i];
+        const float dh_column =
+            slope_of(to_west > 0 ? west : kNone, h, to_east > 0 ? east : kNone, to_west, to_east);
+        const float dh_row = slope_of(row.north[i], h, row.south[i], row.to_north, row.to_south);
+        const auto up_of = [&](int k) { return row.up0[k] + u * row.up_u[k] + row.up_v[k]; };
+        const Three up{up_of(0), up_of(1), up_of(2)};
+        const auto column_of = [&](int k, float up_k) {
+            const float base = row.base_u0[k] + u * row.base_u1[k];
+            return row.step_x * (base + h * row.rise_u[k]) + dh_column * up_k;
+        };
+        const auto row_of = [&](int k, float up_k) {
+            const float base = row.base_v0[k] + u * (row.base_v1[k] + u * row.base_v2[k]);
+            return row.step_y * (base + h * row.rise_v[k]) + dh_row * up_k;
+        };
+        const Three a{column_of(0, up.x), column_of(1, up.y), column_of(2, up.z)};
+        const Three b{row_of(0, up.x), row_of(1, up.y), row_of(2, up.z)};
+        const Three normal{a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
+        const float along_up = normal.x * up.x + normal.y * up.y + normal.z * up.z;
+        const float length =
+            std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
+        const float scale = (along_up < 0 ? -1.0f : 1.0f) / length;
+        const glm::vec3& pole = row.pole;
+        Three e{pole.y * up.z - up.y * pole.z, pole.z * up.x - up.z * pole.x,
+                pole.x * up.y - up.x * pole.y};
+        const float reach = e.x * e.x + e.y * e.y + e.z * e.z;
+        const bool has_east = reach > 1e-12f;  // not at a pole
+        const float east_length = std::sqrt(has_east ? reach : 1.0f);
+        e = {has_east ? e.x / east_length : row.east_middle.x,
+             has_east ? e.y / east_length : row.east_middle.y,
+             has_east ? e.z / east_length : row.east_middle.z};
+        const Three n{up.y * e.z - e.y * up.z, up.z * e.x - e.z * up.x, up.x * e.y - e.x * up.y};
+        const float nx = normal.x * scale, ny = normal.y * scale, nz = normal.z * scale;
+        to[i] = snorm16(nx * e.x + ny * e.y + nz * e.z) | snorm16(nx * n.x + ny * n.y + nz * n.z)
+                                                              << 16;
+    }
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> normal_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page,
+                                       const PatchNet& net, const glm::dvec3& axis) {
     // Everything from here on is relative to the page's middle: floats hold it to micrometres.
     using vec3 = glm::vec3;
     const glm::ivec2 first_node = page * kNormalNodes;
@@ -117,67 +193,75 @@ std::vector<std::int16_t> normal_page(const dem::Pyramid& pyramid, int level, gl
         p[i] = vec3(net.position_m[i]);
     const vec3 n0 = vec3(net.vertical[0]), nu = vec3(net.vertical[1]), nv = vec3(net.vertical[2]);
     const vec3 pole = vec3(axis);
-    const vec3 east_middle = normalize(cross(pole, n0));
 
     // One more node on each side than the page has.
-    const auto block = pyramid.block(level, first_node - 2, kNormalPage_px + 2, kNormalPage_px + 2);
-    const auto height = [&](int column, int row) {
-        const glm::ivec2 at = glm::ivec2(column, row) - first_node + 2;
-        return block.coverage.at(at.x, at.y) > 0 ? block.height_m.at(at.x, at.y)
-                                                 : std::numeric_limits<float>::quiet_NaN();
-    };
-    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    auto block = pyramid.block(level, first_node - 2, kNormalPage_px + 2, kNormalPage_px + 2);
+    Array2d<float>& known_m = block.coverage;
+    for (std::size_t i = 0; i < known_m.size(); ++i)
+        known_m.data()[i] = known_m.data()[i] > 0 ? block.height_m.data()[i] : kNone;
 
-    struct Column {
-        int at, to_west, to_east;
-        float u;
-    };
-    std::array<Column, kNormalPage_px> columns;
-    for (int x = 0; x < kNormalPage_px; ++x) {
-        const int at = std::clamp(first_node.x + x - 1, 0, last.x);
+    using OfColumns = std::array<float, kNormalPage_px>;
+    OfColumns u, to_west, to_east;
+    std::array<int, kNormalPage_px> columns;  // of the block
+    for (std::size_t x = 0; x < kNormalPage_px; ++x) {
+        const int at = std::clamp(first_node.x + static_cast<int>(x) - 1, 0, last.x);
         const auto post = [&](int column) { return pyramid.post(level, {column, 0}).x; };
-        columns[static_cast<std::size_t>(x)] = {at, post(at) - post(std::max(at - 1, 0)),
-                                                post(std::min(at + 1, last.x)) - post(at),
-                                                static_cast<float>(post(at) - first.x) * step.x};
+        columns[x] = at - first_node.x + 2;
+        to_west[x] = static_cast<float>(post(at) - post(std::max(at - 1, 0)));
+        to_east[x] = static_cast<float>(post(std::min(at + 1, last.x)) - post(at));
+        u[x] = static_cast<float>(post(at) - first.x) * step.x;
     }
+    // Beside the DEM a column is its rim's.
+    const bool is_inside = columns.front() == 1 && columns.back() == kNormalPage_px;
+    std::array<OfColumns, 5> moved;
+    const OfColumns none = [] {
+        OfColumns all;
+        all.fill(kNone);
+        return all;
+    }();
 
-    std::vector<std::int16_t> texels;
-    texels.reserve(std::size_t{2} * kNormalPage_px * kNormalPage_px);
+    std::vector<std::uint32_t> texels(std::size_t{kNormalPage_px} * kNormalPage_px);
     for (int y = 0; y < kNormalPage_px; ++y) {
         const int row = std::clamp(first_node.y + y - 1, 0, last.y);
         const int row_post = pyramid.post(level, {0, row}).y;
         const int to_north = row_post - pyramid.post(level, {0, std::max(row - 1, 0)}).y;
         const int to_south = pyramid.post(level, {0, std::min(row + 1, last.y)}).y - row_post;
         const float v = static_cast<float>(row_post - first.y) * step.y;
+        const int at = row - first_node.y + 2;  // of the block
+        const auto heights = [&](const Array2d<float>& of, int aside, int block_row,
+                                 OfColumns& to) {
+            const float* const from = of.row(block_row).data() + aside;
+            if (is_inside) return from + 1;
+            for (std::size_t x = 0; x < kNormalPage_px; ++x)
+                to[x] = from[columns[x]];
+            return static_cast<const float*>(to.data());
+        };
         // Derivatives of the net along this row: of u at v, and of v as a parabola of u.
-        const vec3 row_u = p[1] + v * (p[4] + v * p[7]);
-        const vec3 row_uu = p[2] + v * (p[5] + v * p[8]);
-        const vec3 slope_v0 = p[3] + 2.0f * v * p[6];
-        const vec3 slope_v1 = p[4] + 2.0f * v * p[7];
-        const vec3 slope_v2 = p[5] + 2.0f * v * p[8];
-        for (const auto& [column, to_west, to_east, u] : columns) {
-            const glm::ivec2 at = glm::ivec2(column, row) - first_node + 2;
-            const float h = block.height_m.at(at.x, at.y);
-            const float west = to_west > 0 ? height(column - 1, row) : kNone;
-            const float east = to_east > 0 ? height(column + 1, row) : kNone;
-            const float north = to_north > 0 ? height(column, row - 1) : kNone;
-            const float south = to_south > 0 ? height(column, row + 1) : kNone;
-            const float dh_column = slope_of(west, h, east, to_west, to_east);
-            const float dh_row = slope_of(north, h, south, to_north, to_south);
-
-            const vec3 up = n0 + u * nu + v * nv;
-            const vec3 base_u = row_u + 2.0f * u * row_uu;
-            const vec3 base_v = slope_v0 + u * (slope_v1 + u * slope_v2);
-            const vec3 along_column = step.x * (base_u + h * nu) + dh_column * up;
-            const vec3 along_row = step.y * (base_v + h * nv) + dh_row * up;
-            vec3 normal = cross(along_column, along_row);
-            normal *= (dot(normal, up) < 0 ? -1.0f : 1.0f) / length(normal);
-            vec3 eastwards = cross(pole, up);
-            const float reach = dot(eastwards, eastwards);
-            eastwards = reach > 1e-12f ? eastwards / std::sqrt(reach) : east_middle;
-            texels.push_back(snorm16(dot(normal, eastwards)));
-            texels.push_back(snorm16(dot(normal, cross(up, eastwards))));
-        }
+        encode_normals({.here = heights(block.height_m, 0, at, moved[0]),
+                        .west = heights(known_m, -1, at, moved[1]),
+                        .east = heights(known_m, 1, at, moved[2]),
+                        .north = to_north > 0 ? heights(known_m, 0, at - 1, moved[3]) : none.data(),
+                        .south = to_south > 0 ? heights(known_m, 0, at + 1, moved[4]) : none.data(),
+                        .u = u.data(),
+                        .to_west = to_west.data(),
+                        .to_east = to_east.data(),
+                        .to_north = static_cast<float>(to_north),
+                        .to_south = static_cast<float>(to_south),
+                        .step_x = step.x,
+                        .step_y = step.y,
+                        .up0 = n0,
+                        .up_u = nu,
+                        .up_v = v * nv,
+                        .base_u0 = p[1] + v * (p[4] + v * p[7]),
+                        .base_u1 = 2.0f * (p[2] + v * (p[5] + v * p[8])),
+                        .base_v0 = p[3] + 2.0f * v * p[6],
+                        .base_v1 = p[4] + 2.0f * v * p[7],
+                        .base_v2 = p[5] + 2.0f * v * p[8],
+                        .rise_u = nu,
+                        .rise_v = nv,
+                        .pole = pole,
+                        .east_middle = normalize(cross(pole, n0))},
+                       texels.data() + std::ptrdiff_t{y} * kNormalPage_px);
     }
     return texels;
 }

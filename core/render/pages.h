@@ -24,15 +24,15 @@ static_assert(kNormalNodes == kTileQuads << kNormalPageLevels);
 /// beyond the DEM repeat its rim.
 std::vector<float> height_page(const dem::Pyramid& pyramid, int level, glm::ivec2 tile);
 
-/// East and north part of the unit normals of the nodes of a page and its border, as 16-bit signed
-/// fractions, kNormalPage_px a side.
+/// East (in the lower half of each) and north part of the unit normals of the nodes of a page and
+/// its border, as 16-bit signed fractions, kNormalPage_px a side.
 ///
 /// A normal is the cross product of differences of 3-D positions, the net's curvature included,
 /// turned outwards; differences are central, one-sided at the rim and beside holes.
 /// @param net    of the page's part of the DEM, as normal_page_net() says
 /// @param axis   unit vector along the Earth's axis in the local frame: it tells where east is
-std::vector<std::int16_t> normal_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page,
-                                      const PatchNet& net, const glm::dvec3& axis);
+std::vector<std::uint32_t> normal_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page,
+                                       const PatchNet& net, const glm::dvec3& axis);
 
 /// Heights of the nodes of a normal page and its border [m], kNormalPage_px a side.
 std::vector<float> surface_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page);

@@ -30,14 +30,15 @@ TEST(NormalPage, IsOfDifferencesToBothSides) {
     const PatchNet net =
         fit_patch_net([&](double column, double row) { return dem.grid.place(column, row); }, frame,
                       {0, 0}, glm::dvec2(span_on_dem(pyramid, {0, 0}, kNormalNodes)));
-    const std::vector<std::int16_t> page =
+    const std::vector<std::uint32_t> page =
         normal_page(pyramid, 0, {0, 0}, net, frame.up(kPi / 2, 0));
     std::vector<double> errors, at_the_rim;
     for (int row = 0; row < kNormalNodes; ++row) {
         for (int column = 0; column < kNormalNodes; ++column) {
-            const auto texel =
-                static_cast<std::size_t>(2 * ((row + 1) * kNormalPage_px + column + 1));
-            const glm::dvec2 found(page[texel] / 32767.0, page[texel + 1] / 32767.0);
+            const std::uint32_t texel =
+                page[static_cast<std::size_t>((row + 1) * kNormalPage_px + column + 1)];
+            const glm::dvec2 found(static_cast<std::int16_t>(texel & 0xffffU) / 32767.0,
+                                   static_cast<std::int16_t>(texel >> 16) / 32767.0);
             // The slope eastwards and northwards; rows run south.
             const double east = 2 * kPerMetre * (column - kSide / 2) * kSpacing_m;
             const double north = -kPerMetre * (row - kSide / 2) * kSpacing_m;
