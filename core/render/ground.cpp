@@ -1,7 +1,9 @@
 #include "render/ground.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -35,26 +37,36 @@ Footprint make_footprint(const dem::Heightfield& dem, const Ground& ground) {
     footprint.south_west_m = ground.south_west_m - kFootprintRoom * footprint.square_m;
     Array2d<float> samples(footprint.share.width(), footprint.share.height(), 0);
     const int columns = dem.grid.columns(), rows = dem.grid.rows();
-    std::vector<glm::dvec2> posts(kFootprintSamples);
-    std::vector<geo::Geodetic> places(kFootprintSamples);
-    for (int j = 0; j < kFootprintSamples; ++j) {
-        const double row = (rows - 1.0) * j / (kFootprintSamples - 1);
-        for (int i = 0; i < kFootprintSamples; ++i)
-            posts[static_cast<std::size_t>(i)] = {(columns - 1.0) * i / (kFootprintSamples - 1),
-                                                  row};
-        dem.grid.place(posts, places);
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            if (!std::isfinite(places[i].lat_rad)) continue;
-            const glm::dvec2 at(ground.frame.to_local(places[i]));
-            const glm::dvec2 square = floor((at - footprint.south_west_m) / footprint.square_m);
-            const int x = static_cast<int>(square.x), y = static_cast<int>(square.y);
-            if (x < 0 || y < 0 || x >= samples.width() || y >= samples.height()) continue;
-            samples.at(x, y) += 1;
-            const bool there =
-                !std::isnan(dem.height_m.at(static_cast<int>(std::lround(posts[i].x)),
-                                            static_cast<int>(std::lround(posts[i].y))));
-            footprint.share.at(x, y) += there ? 1 : 0;
+    struct Sample {
+        glm::ivec2 square{-1};
+        bool there = false;
+    };
+    Array2d<Sample> found(kFootprintSamples, kFootprintSamples);
+    parallel_for(0, kFootprintSamples, 8, [&](int first, int last) {
+        std::vector<glm::dvec2> posts(kFootprintSamples);
+        std::vector<geo::Geodetic> places(kFootprintSamples);
+        for (int j = first; j < last; ++j) {
+            const double row = (rows - 1.0) * j / (kFootprintSamples - 1);
+            for (int i = 0; i < kFootprintSamples; ++i)
+                posts[static_cast<std::size_t>(i)] = {(columns - 1.0) * i / (kFootprintSamples - 1),
+                                                      row};
+            dem.grid.place(posts, places);
+            for (int i = 0; i < kFootprintSamples; ++i) {
+                const auto k = static_cast<std::size_t>(i);
+                if (!std::isfinite(places[k].lat_rad)) continue;
+                const glm::dvec2 at(ground.frame.to_local(places[k]));
+                found.at(i, j) = {
+                    floor((at - footprint.south_west_m) / footprint.square_m),
+                    !std::isnan(dem.height_m.at(static_cast<int>(std::lround(posts[k].x)),
+                                                static_cast<int>(std::lround(posts[k].y))))};
+            }
         }
+    });
+    for (const Sample& sample : found) {
+        const auto [x, y] = std::pair(sample.square.x, sample.square.y);
+        if (x < 0 || y < 0 || x >= samples.width() || y >= samples.height()) continue;
+        samples.at(x, y) += 1;
+        footprint.share.at(x, y) += sample.there ? 1 : 0;
     }
     for (int y = 0; y < samples.height(); ++y)
         for (int x = 0; x < samples.width(); ++x)
@@ -69,16 +81,19 @@ void make_block(const dem::Heightfield& dem, Ground& ground) {
     if (std::max(sides_m.x, sides_m.y) > kWidestBlock_m) return;
     ground.block_m = kBlockShare * std::sqrt(sides_m.x * sides_m.y);
     // On the round Earth the rim lies lower than the middle.
-    double lowest = 0;
     const double columns = dem.grid.columns() - 1, rows = dem.grid.rows() - 1;
-    for (int j = 0; j <= kPiecesAcross; ++j)
-        for (int i = 0; i <= kPiecesAcross; ++i) {
-            const geo::Geodetic place =
-                dem.grid.place(columns * i / kPiecesAcross, rows * j / kPiecesAcross);
-            if (std::isfinite(place.lat_rad))
-                lowest = std::min(lowest, ground.frame.to_local(place).z);
-        }
-    ground.floor_m = lowest;
+    std::array<double, kPiecesAcross + 1> lowest{};
+    parallel_for(0, kPiecesAcross + 1, 4, [&](int first, int last) {
+        for (int j = first; j < last; ++j)
+            for (int i = 0; i <= kPiecesAcross; ++i) {
+                const geo::Geodetic place =
+                    dem.grid.place(columns * i / kPiecesAcross, rows * j / kPiecesAcross);
+                double& of_row = lowest[static_cast<std::size_t>(j)];
+                if (std::isfinite(place.lat_rad))
+                    of_row = std::min(of_row, ground.frame.to_local(place).z);
+            }
+    });
+    ground.floor_m = *std::min_element(lowest.begin(), lowest.end());
 }
 
 }  // namespace
