@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "base/wide_loops.h"
 
 namespace relevo::light {
 namespace {
@@ -61,14 +62,22 @@ class Kept {
     std::unique_ptr<float[]> values_;
 };
 
+/// By how much the ground is above the edges over it.
+RELEVO_WIDE_LOOPS void find_margins(const float* height_m, const float* edge_m, int count,
+                                    float* margin_m) {
+    for (int i = 0; i < count; ++i)
+        margin_m[i] = height_m[i] - edge_m[i];
+}
+
 /// Lower limbs' margins such that the line between them and the upper limb's passes 0 where the
 /// horizon cuts the disc.
 /// @param lower_m  is changed
-void straighten(const float* upper_m, const float* middle_m, float* lower_m, int count) {
+RELEVO_WIDE_LOOPS void straighten(const float* upper_m, const float* middle_m, int count,
+                                  float* lower_m) {
     for (int i = 0; i < count; ++i) {
-        const float u = upper_m[i], l = lower_m[i];
-        const float height = height_of_disc(u, middle_m[i], l);
-        lower_m[i] = u > 0 && l < 0 ? u - u / height : l;
+        const float u = upper_m[i], l = lower_m[i], m = middle_m[i];
+        const float straight = u - u / height_of_disc(u, m, l);
+        lower_m[i] = u > 0 && l < 0 ? straight : l;
     }
 }
 
@@ -82,9 +91,7 @@ void margins_of_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile,
     scratch.turn(along_columns);
     const auto keep = [&](double offset_rad, Kept& kept) {
         each_edge(sky, sweep, tile, offset_rad, scratch, [&](const SweepRun& run) {
-            float* const margin_m = kept.of(run);
-            for (int i = 0; i < run.count; ++i)
-                margin_m[i] = run.height_m[i] - run.found[i];
+            find_margins(run.height_m, run.found, run.count, kept.of(run));
         });
     };
     keep(-radius_rad, lower);
@@ -95,10 +102,9 @@ void margins_of_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile,
         float* const lower_m = lower.of(run);
         for (int done = 0; done < run.count; done += kPart) {
             const int count = std::min(run.count - done, kPart);
-            for (int i = 0; i < count; ++i)
-                upper_m[static_cast<std::size_t>(i)] = run.height_m[done + i] - run.found[done + i];
+            find_margins(run.height_m + done, run.found + done, count, upper_m.data());
             if (radius_rad > 0)
-                straighten(upper_m.data(), middle.of(run) + done, lower_m + done, count);
+                straighten(upper_m.data(), middle.of(run) + done, count, lower_m + done);
             use({run.along_column, run.line, run.first + done, count, upper_m.data(),
                  lower_m + done});
         }
