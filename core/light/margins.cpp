@@ -62,13 +62,6 @@ class Kept {
     std::unique_ptr<float[]> values_;
 };
 
-/// By how much the ground is above the edges over it.
-RELEVO_WIDE_LOOPS void find_margins(const float* height_m, const float* edge_m, int count,
-                                    float* margin_m) {
-    for (int i = 0; i < count; ++i)
-        margin_m[i] = height_m[i] - edge_m[i];
-}
-
 /// Lower limbs' margins such that the line between them and the upper limb's passes 0 where the
 /// horizon cuts the disc.
 /// @param lower_m  is changed
@@ -90,9 +83,8 @@ void margins_of_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile,
     TileValues scratch(sky.levels() > 1 ? tile.window : SweepWindow{}, 0);
     scratch.turn(along_columns);
     const auto keep = [&](double offset_rad, Kept& kept) {
-        each_edge(sky, sweep, tile, offset_rad, scratch, [&](const SweepRun& run) {
-            find_margins(run.height_m, run.found, run.count, kept.of(run));
-        });
+        each_edge(sky, sweep, tile, offset_rad, scratch,
+                  [&](const SweepRun& run) { find_margins(run, kept.of(run)); });
     };
     keep(-radius_rad, lower);
     if (radius_rad > 0) keep(0, middle);
@@ -102,7 +94,9 @@ void margins_of_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile,
         float* const lower_m = lower.of(run);
         for (int done = 0; done < run.count; done += kPart) {
             const int count = std::min(run.count - done, kPart);
-            find_margins(run.height_m + done, run.found + done, count, upper_m.data());
+            find_margins({run.along_column, run.line, run.first + done, count, run.height_m + done,
+                          run.found + done},
+                         upper_m.data());
             if (radius_rad > 0)
                 straighten(upper_m.data(), middle.of(run) + done, count, lower_m + done);
             use({run.along_column, run.line, run.first + done, count, upper_m.data(),
@@ -112,6 +106,11 @@ void margins_of_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile,
 }
 
 }  // namespace
+
+RELEVO_WIDE_LOOPS void find_margins(const SweepRun& run, float* margin_m) {
+    for (int i = 0; i < run.count; ++i)
+        margin_m[i] = run.height_m[i] - run.found[i];
+}
 
 Margins::Margins(const dem::Posts& posts, const ShadowOptions& options)
     : dem_(posts, of_discs(options)), sweep_(sweep_over(posts)) {}

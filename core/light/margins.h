@@ -20,6 +20,9 @@ struct MarginRun {
     const float* lower_m;
 };
 
+/// By how much the ground is above the edges of the shadow over it [m]; NaN in holes.
+void find_margins(const SweepRun& run, float* margin_m);
+
 /// What of a DEM is the same for all suns, for margins.
 class Margins {
   public:

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/units.h"
+#include "base/wide_loops.h"
 #include "light/margins.h"
 #include "light/sky.h"
 #include "light/sweep.h"
@@ -23,6 +26,24 @@ float share_of_sun(float upper_m, float middle_m, float lower_m) {
     return static_cast<float>(share_of_disc(double{height_of_disc(upper_m, middle_m, lower_m)}));
 }
 
+/// 1 where the ground is as high as the edge of the shadow, 0 where it is lower.
+RELEVO_WIDE_LOOPS void find_lit(const SweepRun& run, float* lit) {
+    for (int i = 0; i < run.count; ++i) {
+        const float height_m = run.height_m[i], is_lit = height_m >= run.found[i] ? 1.0F : 0.0F;
+        lit[i] = height_m == height_m ? is_lit : height_m;
+    }
+}
+
+RELEVO_WIDE_LOOPS void count_posts(std::span<const float> lit, Shadows& result) {
+    std::int64_t holes = 0, lit_posts = 0, shaded_posts = 0;
+    for (const float share : lit) {
+        holes += share != share;
+        lit_posts += share > 0;
+        shaded_posts += share == 0;
+    }
+    result.holes = holes, result.lit_posts = lit_posts, result.shaded_posts = shaded_posts;
+}
+
 /// @param of  what `lit` has the posts of
 void light_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double radius_rad,
                 Array2d<float>& lit, const SweepWindow& of) {
@@ -32,22 +53,15 @@ void light_tile(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doub
         scratch(sky.levels() > 1 ? tile.part : SweepWindow{}, 0);
     for (TileValues* const each : {&values, &upper, &middle, &scratch})
         each->turn(tile.path.along_columns());
-    const auto each_post = [&](double offset_rad, TileValues& to, const auto& figure) {
-        each_edge(sky, sweep, tile, offset_rad, scratch, [&](const SweepRun& run) {
-            float* const out = to.of(run);
-            for (int i = 0; i < run.count; ++i)
-                out[i] = figure(run.height_m[i], run.found[i]);
-        });
+    const auto each_run = [&](double offset_rad, TileValues& to, const auto& figure) {
+        each_edge(sky, sweep, tile, offset_rad, scratch,
+                  [&](const SweepRun& run) { figure(run, to.of(run)); });
     };
     if (!soft) {
-        each_post(0, values, [](float height_m, float edge_m) -> float {
-            if (std::isnan(height_m)) return height_m;
-            return height_m >= edge_m ? 1 : 0;
-        });
+        each_run(0, values, find_lit);
     } else {
-        const auto margin = [](float height_m, float edge_m) { return height_m - edge_m; };
-        each_post(radius_rad, upper, margin);
-        each_post(0, middle, margin);
+        each_run(radius_rad, upper, find_margins);
+        each_run(0, middle, find_margins);
         each_edge(sky, sweep, tile, -radius_rad, scratch, [&](const SweepRun& run) {
             const float *const upper_m = upper.of(run), *const middle_m = middle.of(run);
             float* const out = values.of(run);
@@ -101,11 +115,7 @@ Shadows shadows(const dem::Posts& posts, const SunOverDem& sun, const ShadowOpti
         result.tiles = static_cast<int>(windows.size());
     }
     if (options.done) options.done(1);
-    for (const float lit : result.lit) {
-        result.holes += std::isnan(lit);
-        result.lit_posts += lit > 0;
-        result.shaded_posts += lit == 0;
-    }
+    count_posts({result.lit.data(), result.lit.size()}, result);
     result.definition = fmt::format(
         "{}, at the height of the ground; ground of the DEM alone shades, on the WGS 84 ellipsoid "
         "with terrestrial refraction k = {:.4g}; beyond the DEM smooth ground at {:.0f} m",

@@ -1024,26 +1024,18 @@ SweepSun sun_over_map(const GridPair& spacing_m, const GridPair& direction, doub
 Sweep::Sweep(const float* height_m, int columns, int rows, std::ptrdiff_t stride)
     : height_m_(height_m), columns_(columns), rows_(rows), stride_(stride) {
     assert(columns > 0 && rows > 0);
-    struct Range {
-        float lowest = kInfinity, highest = -kInfinity;
-    };
-    std::vector<Range> of_rows(static_cast<std::size_t>(rows));
+    const SweepKernel& kernel = widest_sweep_kernel(kMostLanes);
+    HeightRange range;
+    std::mutex mutex;
     parallel_for(0, rows, 64, [&](int first, int last) {
-        for (int row = first; row < last; ++row) {
-            Range range;
-            for (int column = 0; column < columns; ++column) {
-                const float h = height_m[row * stride + column];
-                range.lowest = h < range.lowest ? h : range.lowest;
-                range.highest = h > range.highest ? h : range.highest;
-            }
-            of_rows[static_cast<std::size_t>(row)] = range;
-        }
+        HeightRange of_rows;
+        for (int row = first; row < last; ++row)
+            kernel.add_to_range(height_m + row * stride, columns, of_rows);
+        const std::lock_guard lock(mutex);
+        range.lowest_m = std::min(range.lowest_m, of_rows.lowest_m);
+        range.highest_m = std::max(range.highest_m, of_rows.highest_m);
     });
-    lowest_m_ = kInfinity, highest_m_ = -kInfinity;
-    for (const Range& range : of_rows) {
-        lowest_m_ = std::min(lowest_m_, range.lowest);
-        highest_m_ = std::max(highest_m_, range.highest);
-    }
+    lowest_m_ = range.lowest_m, highest_m_ = range.highest_m;
 }
 
 const float* Sweep::transposed() const {

@@ -76,6 +76,35 @@ template <typename V>
 }
 
 template <typename V>
+[[gnu::always_inline]] inline void add_all_to_range(const float* height_m, int count,
+                                                    HeightRange& range) {
+    constexpr int kVectors = 4;
+    V low[kVectors], high[kVectors];
+    for (int k = 0; k < kVectors; ++k) {
+        low[k] = V{} + range.lowest_m;
+        high[k] = V{} + range.highest_m;
+    }
+    int i = 0;
+    for (; i + kVectors * kWidthOf<V> <= count; i += kVectors * kWidthOf<V>)
+#pragma GCC unroll 8
+        for (int k = 0; k < kVectors; ++k) {
+            V h;
+            load(height_m + i + k * kWidthOf<V>, h);
+            low[k] = h < low[k] ? h : low[k];
+            high[k] = h > high[k] ? h : high[k];
+        }
+    const auto add = [&](float lowest_m, float highest_m) {
+        range.lowest_m = lowest_m < range.lowest_m ? lowest_m : range.lowest_m;
+        range.highest_m = highest_m > range.highest_m ? highest_m : range.highest_m;
+    };
+    for (int k = 0; k < kVectors; ++k)
+        for (int lane = 0; lane < kWidthOf<V>; ++lane)
+            add(low[k][lane], high[k][lane]);
+    for (; i < count; ++i)
+        add(height_m[i], height_m[i]);
+}
+
+template <typename V>
 [[gnu::always_inline]] inline void tilt_all(const Tilted& row) {
     V lane;
     count(lane);
@@ -255,29 +284,32 @@ template <typename V>
     }
 }
 
-#define RELEVO_SWEEP_KERNEL(lanes, ...)                                                        \
-    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float;                   \
-    __VA_ARGS__ void raise_##lanes(const Lift& lift) {                                         \
-        raise_all<Vector##lanes>(lift);                                                        \
-    }                                                                                          \
-    __VA_ARGS__ void tilt_##lanes(const Tilted& row) {                                         \
-        tilt_all<Vector##lanes>(row);                                                          \
-    }                                                                                          \
-    __VA_ARGS__ void look_for_edges_##lanes(const EdgeSight& sight) {                          \
-        look_for_all_edges<Vector##lanes>(sight);                                              \
-    }                                                                                          \
-    __VA_ARGS__ void look_##lanes(const Sight& sight) {                                        \
-        look_all<Vector##lanes>(sight);                                                        \
-    }                                                                                          \
-    __VA_ARGS__ void raise_fans_##lanes(const FanLift& lift, int points) {                     \
-        raise_all_fans<Vector##lanes>(lift, points);                                           \
-    }                                                                                          \
-    __VA_ARGS__ void look_over_fans_##lanes(const FanSight& sight) {                           \
-        look_over_all_fans<Vector##lanes>(sight);                                              \
-    }                                                                                          \
-    constexpr SweepKernel kKernel##lanes {                                                     \
-        raise_##lanes, tilt_##lanes, look_for_edges_##lanes, look_##lanes, raise_fans_##lanes, \
-            look_over_fans_##lanes                                                             \
+#define RELEVO_SWEEP_KERNEL(lanes, ...)                                                           \
+    using Vector##lanes [[gnu::vector_size(lanes * sizeof(float))]] = float;                      \
+    __VA_ARGS__ void add_to_range_##lanes(const float* height_m, int count, HeightRange& range) { \
+        add_all_to_range<Vector##lanes>(height_m, count, range);                                  \
+    }                                                                                             \
+    __VA_ARGS__ void raise_##lanes(const Lift& lift) {                                            \
+        raise_all<Vector##lanes>(lift);                                                           \
+    }                                                                                             \
+    __VA_ARGS__ void tilt_##lanes(const Tilted& row) {                                            \
+        tilt_all<Vector##lanes>(row);                                                             \
+    }                                                                                             \
+    __VA_ARGS__ void look_for_edges_##lanes(const EdgeSight& sight) {                             \
+        look_for_all_edges<Vector##lanes>(sight);                                                 \
+    }                                                                                             \
+    __VA_ARGS__ void look_##lanes(const Sight& sight) {                                           \
+        look_all<Vector##lanes>(sight);                                                           \
+    }                                                                                             \
+    __VA_ARGS__ void raise_fans_##lanes(const FanLift& lift, int points) {                        \
+        raise_all_fans<Vector##lanes>(lift, points);                                              \
+    }                                                                                             \
+    __VA_ARGS__ void look_over_fans_##lanes(const FanSight& sight) {                              \
+        look_over_all_fans<Vector##lanes>(sight);                                                 \
+    }                                                                                             \
+    constexpr SweepKernel kKernel##lanes {                                                        \
+        add_to_range_##lanes, raise_##lanes, tilt_##lanes, look_for_edges_##lanes, look_##lanes,  \
+            raise_fans_##lanes, look_over_fans_##lanes                                            \
     }
 
 RELEVO_SWEEP_KERNEL(4);

@@ -114,8 +114,14 @@ struct FanSight {
     bool both;                   // what holds the next steeper ray up is looked over, too
 };
 
+/// Of heights, holes aside: infinity and minus infinity where there are no others.
+struct HeightRange {
+    float lowest_m = std::numeric_limits<float>::infinity(), highest_m = kNothing_m;
+};
+
 /// All of them by vectors of some width.
 struct SweepKernel {
+    void (*add_to_range)(const float* height_m, int count, HeightRange& range);
     void (*raise)(const Lift& lift);
     void (*tilt)(const Tilted& row);
     void (*look_for_edges)(const EdgeSight& sight);
