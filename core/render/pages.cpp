@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -178,90 +179,92 @@ RELEVO_WIDE_LOOPS void encode_normals(const NormalRow& given, std::uint32_t* to)
     }
 }
 
+/// What of a page's posts is the same along its columns.
+struct NormalColumns {
+    using Figures = std::array<float, kNormalPage_px>;
+    Figures u, to_west, to_east;
+    std::array<int, kNormalPage_px> at;  // of the page's block, which has a node more on each side
+
+    NormalColumns(const dem::Pyramid& pyramid, int level, int first_node, int first, float step) {
+        const int last = pyramid.size(level).x - 1;
+        const auto post = [&](int column) { return pyramid.post(level, {column, 0}).x; };
+        for (std::size_t x = 0; x < kNormalPage_px; ++x) {
+            const int column = std::clamp(first_node + static_cast<int>(x) - 1, 0, last);
+            at[x] = column - first_node + 2;
+            to_west[x] = static_cast<float>(post(column) - post(std::max(column - 1, 0)));
+            to_east[x] = static_cast<float>(post(std::min(column + 1, last)) - post(column));
+            u[x] = static_cast<float>(post(column) - first) * step;
+        }
+    }
+
+    /// A row's figures at the columns, or `aside` of them.
+    /// @param moved  memory for them where columns are not one beside the other, as beside the DEM
+    const float* of(std::span<const float> row, int aside, Figures& moved) const {
+        const float* const from = row.data() + aside;
+        if (at.front() == 1 && at.back() == kNormalPage_px) return from + 1;
+        for (std::size_t x = 0; x < kNormalPage_px; ++x)
+            moved[x] = from[at[x]];
+        return moved.data();
+    }
+};
+
+/// What of a row is the same for all its posts. @param v  where it is on the net
+NormalRow normal_row(const PatchNet& net, const glm::dvec3& axis, float v) {
+    using vec3 = glm::vec3;
+    std::array<vec3, 9> p;
+    for (std::size_t i = 0; i < 9; ++i)
+        p[i] = vec3(net.position_m[i]);
+    const vec3 n0 = vec3(net.vertical[0]), nu = vec3(net.vertical[1]), nv = vec3(net.vertical[2]);
+    NormalRow row{};
+    row.up0 = n0, row.up_u = nu, row.up_v = v * nv;
+    row.base_u0 = p[1] + v * (p[4] + v * p[7]);
+    row.base_u1 = 2.0f * (p[2] + v * (p[5] + v * p[8]));
+    row.base_v0 = p[3] + 2.0f * v * p[6];
+    row.base_v1 = p[4] + 2.0f * v * p[7];
+    row.base_v2 = p[5] + 2.0f * v * p[8];
+    row.rise_u = nu, row.rise_v = nv;
+    row.pole = vec3(axis);
+    row.east_middle = normalize(cross(row.pole, n0));
+    return row;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> normal_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page,
                                        const PatchNet& net, const glm::dvec3& axis) {
     // Everything from here on is relative to the page's middle: floats hold it to micrometres.
-    using vec3 = glm::vec3;
     const glm::ivec2 first_node = page * kNormalNodes;
     const glm::ivec2 first = first_node << level;
     const glm::vec2 step = 1.0f / glm::vec2(span_on_dem(pyramid, first, kNormalNodes << level));
-    const glm::ivec2 last = pyramid.size(level) - 1;
-    std::array<vec3, 9> p;
-    for (std::size_t i = 0; i < 9; ++i)
-        p[i] = vec3(net.position_m[i]);
-    const vec3 n0 = vec3(net.vertical[0]), nu = vec3(net.vertical[1]), nv = vec3(net.vertical[2]);
-    const vec3 pole = vec3(axis);
-
+    const int last = pyramid.size(level).y - 1;
     // One more node on each side than the page has.
     auto block = pyramid.block(level, first_node - 2, kNormalPage_px + 2, kNormalPage_px + 2);
     Array2d<float>& known_m = block.coverage;
     for (std::size_t i = 0; i < known_m.size(); ++i)
         known_m.data()[i] = known_m.data()[i] > 0 ? block.height_m.data()[i] : kNone;
-
-    using OfColumns = std::array<float, kNormalPage_px>;
-    OfColumns u, to_west, to_east;
-    std::array<int, kNormalPage_px> columns;  // of the block
-    for (std::size_t x = 0; x < kNormalPage_px; ++x) {
-        const int at = std::clamp(first_node.x + static_cast<int>(x) - 1, 0, last.x);
-        const auto post = [&](int column) { return pyramid.post(level, {column, 0}).x; };
-        columns[x] = at - first_node.x + 2;
-        to_west[x] = static_cast<float>(post(at) - post(std::max(at - 1, 0)));
-        to_east[x] = static_cast<float>(post(std::min(at + 1, last.x)) - post(at));
-        u[x] = static_cast<float>(post(at) - first.x) * step.x;
-    }
-    // Beside the DEM a column is its rim's.
-    const bool is_inside = columns.front() == 1 && columns.back() == kNormalPage_px;
-    std::array<OfColumns, 5> moved;
-    const OfColumns none = [] {
-        OfColumns all;
-        all.fill(kNone);
-        return all;
-    }();
-
+    const NormalColumns columns(pyramid, level, first_node.x, first.x, step.x);
+    std::array<NormalColumns::Figures, 5> moved;
+    NormalColumns::Figures none;
+    none.fill(kNone);
     std::vector<std::uint32_t> texels(std::size_t{kNormalPage_px} * kNormalPage_px);
     for (int y = 0; y < kNormalPage_px; ++y) {
-        const int row = std::clamp(first_node.y + y - 1, 0, last.y);
-        const int row_post = pyramid.post(level, {0, row}).y;
-        const int to_north = row_post - pyramid.post(level, {0, std::max(row - 1, 0)}).y;
-        const int to_south = pyramid.post(level, {0, std::min(row + 1, last.y)}).y - row_post;
-        const float v = static_cast<float>(row_post - first.y) * step.y;
+        const int row = std::clamp(first_node.y + y - 1, 0, last);
+        const int post = pyramid.post(level, {0, row}).y;
+        const int to_north = post - pyramid.post(level, {0, std::max(row - 1, 0)}).y;
+        const int to_south = pyramid.post(level, {0, std::min(row + 1, last)}).y - post;
         const int at = row - first_node.y + 2;  // of the block
-        const auto heights = [&](const Array2d<float>& of, int aside, int block_row,
-                                 OfColumns& to) {
-            const float* const from = of.row(block_row).data() + aside;
-            if (is_inside) return from + 1;
-            for (std::size_t x = 0; x < kNormalPage_px; ++x)
-                to[x] = from[columns[x]];
-            return static_cast<const float*>(to.data());
-        };
-        // Derivatives of the net along this row: of u at v, and of v as a parabola of u.
-        encode_normals({.here = heights(block.height_m, 0, at, moved[0]),
-                        .west = heights(known_m, -1, at, moved[1]),
-                        .east = heights(known_m, 1, at, moved[2]),
-                        .north = to_north > 0 ? heights(known_m, 0, at - 1, moved[3]) : none.data(),
-                        .south = to_south > 0 ? heights(known_m, 0, at + 1, moved[4]) : none.data(),
-                        .u = u.data(),
-                        .to_west = to_west.data(),
-                        .to_east = to_east.data(),
-                        .to_north = static_cast<float>(to_north),
-                        .to_south = static_cast<float>(to_south),
-                        .step_x = step.x,
-                        .step_y = step.y,
-                        .up0 = n0,
-                        .up_u = nu,
-                        .up_v = v * nv,
-                        .base_u0 = p[1] + v * (p[4] + v * p[7]),
-                        .base_u1 = 2.0f * (p[2] + v * (p[5] + v * p[8])),
-                        .base_v0 = p[3] + 2.0f * v * p[6],
-                        .base_v1 = p[4] + 2.0f * v * p[7],
-                        .base_v2 = p[5] + 2.0f * v * p[8],
-                        .rise_u = nu,
-                        .rise_v = nv,
-                        .pole = pole,
-                        .east_middle = normalize(cross(pole, n0))},
-                       texels.data() + std::ptrdiff_t{y} * kNormalPage_px);
+        NormalRow posts = normal_row(net, axis, static_cast<float>(post - first.y) * step.y);
+        posts.here = columns.of(block.height_m.row(at), 0, moved[0]);
+        posts.west = columns.of(known_m.row(at), -1, moved[1]);
+        posts.east = columns.of(known_m.row(at), 1, moved[2]);
+        posts.north = to_north > 0 ? columns.of(known_m.row(at - 1), 0, moved[3]) : none.data();
+        posts.south = to_south > 0 ? columns.of(known_m.row(at + 1), 0, moved[4]) : none.data();
+        posts.u = columns.u.data();
+        posts.to_west = columns.to_west.data(), posts.to_east = columns.to_east.data();
+        posts.to_north = static_cast<float>(to_north),
+        posts.to_south = static_cast<float>(to_south);
+        posts.step_x = step.x, posts.step_y = step.y;
+        encode_normals(posts, texels.data() + std::ptrdiff_t{y} * kNormalPage_px);
     }
     return texels;
 }
