@@ -1351,14 +1351,21 @@ struct Sweep::Blocks::Moment {
         for (const ColumnRange& range : ranges->at(of, cells->row_of(row)))
             use(range);
     }
+    bool has_any(ShadeRanges::Of of, int row) const {
+        return !ranges || !ranges->at(of, cells->row_of(row)).empty();
+    }
+    /// No ground matters anywhere.
+    bool has_none() const { return ranges && ranges->of[ShadeRanges::kTake].ranges.empty(); }
 };
 
 void Sweep::Blocks::OneSun::step(const Moment& moment, Strip& strip, int row, Terms& terms) {
+    const int at = row - Strip::kNearness.near_rows - 1;
+    const bool raises = at >= plan.begin() && moment.has_any(ShadeRanges::kRaise, at);
+    if (!raises && !moment.has_any(ShadeRanges::kTake, row)) return;
     strip.come_to(row);
     moment.each_range(ShadeRanges::kTake, row,
                       [&](const ColumnRange& range) { strip.take(row, range); });
-    const int at = row - Strip::kNearness.near_rows - 1;
-    if (at < plan.begin()) return;
+    if (!raises) return;
     moment.each_range(ShadeRanges::kRaise, at, [&](const ColumnRange& range) {
         terms.add(plan, *steps, at);
         strip.advance(at, terms, range);
@@ -1449,12 +1456,18 @@ void Sweep::Blocks::add_band(const Band& band, const SweepWindow& window, float 
 
 void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvature) {
     std::vector<std::optional<ShadedCells>> shaded(suns.size());
+    // What is known beforehand is so of one path over all of the grid.
+    const auto is_known = [&](std::size_t k) {
+        return !suns[k].all_posts && suns[k].bands.size() == 1;
+    };
     ColumnRange ground{kAllColumns.end, kAllColumns.begin};
-    for (const OneSun* const sun : suns_)
-        ground = {std::min(ground.begin, sun->ground.begin), std::max(ground.end, sun->ground.end)};
+    for (std::size_t k = 0; k < suns.size(); ++k)
+        if (is_known(k))
+            for (const auto& sun : moments_[k]->bands.front().suns)
+                ground = {std::min(ground.begin, sun->ground.begin),
+                          std::max(ground.end, sun->ground.end)};
     for (std::size_t k = 0; k < suns.size(); ++k) {
-        // What is known beforehand is so of one path over all of the grid.
-        if (suns[k].all_posts || suns[k].bands.size() > 1) continue;
+        if (!is_known(k)) continue;
         Moment& moment = *moments_[k];
         const OneBand& band = moment.bands.front();
         moment.cells.emplace(sweep_.cells(), view_->along_columns, view_->mirrored,
@@ -1511,7 +1524,8 @@ std::optional<SweepWindow> Sweep::Blocks::next() {
             return view.along_columns ? SweepWindow{line, w.column, end_row_ - row_, w.columns}
                                       : SweepWindow{w.column, line, w.columns, end_row_ - row_};
         }
-        for (const auto& moment : moments_)
+        for (const auto& moment : moments_) {
+            if (moment->has_none()) continue;
             for (const OneBand& band : moment->bands)
                 for (const auto& sun : band.suns) {
                     terms_->come_to(*sun, row_, end_row_);
@@ -1520,6 +1534,7 @@ std::optional<SweepWindow> Sweep::Blocks::next() {
                         for (int row = first; row < last; ++row)
                             sun->step(*moment, *strip, row, terms_->terms);
                 }
+        }
     }
     return std::nullopt;
 }
@@ -1528,7 +1543,7 @@ void Sweep::Blocks::each_edge(std::size_t index, std::size_t of_band, std::size_
                               const Use& use) {
     const Moment& moment = *moments_[index];
     const OneBand& band = moment.bands[of_band];
-    if (band.suns.empty()) return;
+    if (band.suns.empty() || moment.has_none()) return;
     OneSun& sun = *band.suns[of_sun];
     Terms& terms = terms_->terms;
     terms_->come_to(sun, row_, end_row_);
