@@ -412,13 +412,16 @@ ShadedCells::ShadedCells(const CellSheet& sheet, const SweepSun& sun, std::span<
     const auto width = static_cast<std::size_t>(sheet.columns());
     sources.resize(width * static_cast<std::size_t>(sheet.rows()), 0);
     states.resize(sources.size(), kLit);
+    const int first = sheet.row_of(begin),
+              last = sheet.row_of(begin + static_cast<int>(plan.size()) - 1);
+    first_ = static_cast<std::size_t>(first) * width;
+    end_ = static_cast<std::size_t>(last + 1) * width;
     if (earth && !EarthEdge::is_any(sheet, sun)) earth.reset();
     const CellSheet::Down steepest = sheet.down_m(sheet.cells.steepest_m());
     if (!earth && !Steepness(sheet, plan).may_shade(steepest.away, steepest.before, steepest.after))
         return;
     Carried carried(width);
-    const int last = sheet.row_of(begin + static_cast<int>(plan.size()) - 1);
-    for (int row = sheet.row_of(begin); row <= last; ++row) {
+    for (int row = first; row <= last; ++row) {
         const RowOfRays rays(sheet, plan, begin, row);
         unsigned char* const of_row = sources.data() + static_cast<std::size_t>(row) * width;
         for (int column = 0; column < sheet.columns(); ++column)
@@ -433,12 +436,14 @@ void ShadedCells::join(const ShadedCells& other) {
         if (states[i] != other.states[i]) states[i] = kMixed;
         sources[i] |= other.sources[i];
     }
+    first_ = std::min(first_, other.first_), end_ = std::max(end_, other.end_);
 }
 
 bool ShadedCells::is_mixed() const {
     constexpr double kMost = 0.9;
-    return static_cast<double>(std::count(states.begin(), states.end(), kMixed)) >
-           kMost * static_cast<double>(states.size());
+    const std::span<const unsigned char> all = std::span(states).subspan(first_, end_ - first_);
+    return static_cast<double>(std::count(all.begin(), all.end(), kMixed)) >
+           kMost * static_cast<double>(all.size());
 }
 
 ShadeRanges shade_ranges(const CellSheet& sheet, const ShadedCells* before, const ShadedCells& sun,

@@ -154,8 +154,11 @@ struct ShadedCells {
                 int begin, std::optional<EarthAround> earth);
     /// What is known where this sun is taken for some posts and another one for others.
     void join(const ShadedCells& other);
-    /// So much is not known that all may be looked at.
+    /// So much of what the sun's rays go over is not known that all may be looked at.
     bool is_mixed() const;
+
+  private:
+    std::size_t first_ = 0, end_ = 0;  // of the cells that they go over
 };
 
 /// What is to be looked at so that posts that any of three suns can shade have the edge of the one

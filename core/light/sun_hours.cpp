@@ -128,8 +128,8 @@ void measure(const SweepRun& run, float* margin_m) {
 /// Posts next to each other at a moment, and what is known of them from the moment before.
 ///
 /// Margins are linear between the two. Where light comes, the time of that is taken away from the
-/// post's hours, and where it goes, it is added, so that only posts at which it does either have
-/// their hours touched.
+/// post's hours, and where it goes, it is added, so that hours are touched only where there is a
+/// post at which it does either.
 struct Light {
     float from_h, hours;  // the moment before, and how long ago
     const float *height_m, *edge_m;
@@ -333,8 +333,10 @@ class Totals {
     void add_whole(const float* from, float ticks, Array2d<std::int32_t>& sums, int row, int column,
                    int count) const {
         std::int32_t* const to = &sums.at(column - part_.column, row - part_.row);
-        for (int i = 0; i < count; ++i)
-            to[i] += static_cast<std::int32_t>(from[i] * ticks + std::copysign(0.5F, from[i]));
+        for (int i = 0; i < count; ++i) {
+            const float sum = from[i] == from[i] ? from[i] : 0;  // a hole may have any
+            to[i] += static_cast<std::int32_t>(sum * ticks + std::copysign(0.5F, sum));
+        }
     }
 
     void add_spells(const PostLight& posts, int from, int row, int column, int count) const {
@@ -557,7 +559,8 @@ class FewDays {
         const auto by_cost = [](const Work& a, const Work& b) { return a.cost > b.cost; };
         std::vector<Work> sorted = mixed;
         std::sort(sorted.begin(), sorted.end(), by_cost);
-        const auto few = std::min(static_cast<std::size_t>(4 * thread_count()), sorted.size());
+        const auto few =
+            std::min(static_cast<std::size_t>(4 * thread_count()), (sorted.size() + 2) / 3);
         const double short_cost = sorted[sorted.size() - few].cost;
         std::sort(std::stable_partition(mixed.begin(), mixed.end(),
                                         [=](const Work& work) { return work.cost > short_cost; }),
@@ -757,7 +760,7 @@ class Direction {
 };
 
 /// Of posts next to each other, where their horizons are in tables of directions.
-/// @param base, a_post, first  how the sun is higher there than where tables are for:
+/// @param base, a_post, first  the elevation of the tables' first entry there:
 ///     base + a_post * (first + done), and so on [rad]
 RELEVO_WIDE_LOOPS void find_entries(const float* tangent, int count, float base, float a_post,
                                     float first, int done, float* at) {

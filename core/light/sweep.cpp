@@ -94,35 +94,45 @@ struct Wanted {
 /// A ray from row to row, at a fraction of what SweepSun::distance_m() costs.
 class RayWalk {
   public:
-    RayWalk(const SweepSun& ray, int row)
-        : ray_(ray), row_(row), distance_m_(ray.distance_m(row)), slope_(slope(distance_m_)) {}
+    /// @param ray  outlives this
+    RayWalk(const SweepSun& ray, int row) : ray_(&ray) { start(row); }
 
-    /// To the next row, or to the one before; NaN from where it turns back on.
+    /// To the next row, or to the one before; NaN where it has turned back.
     void step(int rows) {
-        row_ += rows;
         const double guess_m = distance_m_ + rows / slope_;
         slope_ = slope(guess_m);
-        const double at =
-            ((ray_.twist.row / 6 * guess_m + ray_.bend.row / 2) * guess_m + ray_.towards.row) *
-            guess_m;
-        distance_m_ = guess_m - (at - (row_ - ray_.reference.row)) / slope_;
+        row_ += rows;
+        distance_m_ = guess_m - off(guess_m) / slope_;
+        // Near to where it turns a step leads too far, and from beyond that none leads back.
+        if (!(std::abs(off(distance_m_)) < kOnLine)) start(row_);
     }
     double distance_m() const { return distance_m_; }
     double column() const {
         const double s = distance_m_;
-        return ray_.reference.column +
-               ((ray_.twist.column / 6 * s + ray_.bend.column / 2) * s + ray_.towards.column) * s;
+        return ray_->reference.column +
+               ((ray_->twist.column / 6 * s + ray_->bend.column / 2) * s + ray_->towards.column) *
+                   s;
     }
 
   private:
+    void start(int row) {
+        row_ = row;
+        distance_m_ = ray_->distance_m(row);
+        slope_ = slope(distance_m_);
+    }
+    /// Rows beyond the one that it is to come to.
+    double off(double s) const {
+        return ((ray_->twist.row / 6 * s + ray_->bend.row / 2) * s + ray_->towards.row) * s -
+               (row_ - ray_->reference.row);
+    }
     double slope(double s) const {
-        const double slope = (ray_.twist.row / 2 * s + ray_.bend.row) * s + ray_.towards.row;
-        return slope * ray_.towards.row > 0 ? slope : std::numeric_limits<double>::quiet_NaN();
+        const double slope = (ray_->twist.row / 2 * s + ray_->bend.row) * s + ray_->towards.row;
+        return slope * ray_->towards.row > 0 ? slope : std::numeric_limits<double>::quiet_NaN();
     }
 
-    SweepSun ray_;
-    int row_;
-    double distance_m_, slope_;
+    const SweepSun* ray_;
+    int row_ = 0;
+    double distance_m_ = 0, slope_ = 0;
 };
 
 /// Where the ray through the reference is at rows of a sheet.
@@ -150,7 +160,7 @@ struct RayRows {
     /// From whole numbers of rows on, so that bits do not hang on which rows are asked for.
     void fill(const SweepSun& ray, int first, int end) {
         constexpr int kRows = 64;
-        for (int from = first / kRows * kRows; from < end; from += kRows) {
+        for (int from = floor_of(double(first) / kRows) * kRows; from < end; from += kRows) {
             RayWalk walk(ray, from);
             for (int row = from; row < std::min(from + kRows, end); ++row, walk.step(1)) {
                 if (row < first) continue;
@@ -169,9 +179,11 @@ class Plan {
     Plan(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double drop_m)
         : sheet_(sheet), sun_(sun) {
         find_begin(window, drop_m);
-        rows_.resize(static_cast<std::size_t>(window.row + window.rows - begin_));
-        const int first = static_cast<int>(sun_.reference.row);
-        const RayRows ray(sun_, std::min(first, begin_), std::max(first + 1, end()));
+        const int first = static_cast<int>(sun_.reference.row), end = window.row + window.rows;
+        const RayRows ray(sun_, std::min(first, begin_), std::max(first + 1, end));
+        for (int row = window.row - 1; row >= begin_; --row)
+            if (std::isnan(ray.distance_at(row))) begin_ = row + 1;
+        rows_.resize(static_cast<std::size_t>(end - begin_));
         fill(1, ray);
         fill(-1, ray);
     }
@@ -1397,7 +1409,10 @@ Sweep::Blocks::Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const Sw
             add_band(band, window, floor_m, *moments_.back());
     }
     end_row_ = row_;
-    if (!sweep.read_) leave_out(suns, earth_curvature);
+    // The first time that takes a look at all of the grid.
+    const bool is_worth_it = std::int64_t{window.columns} * window.rows * std::ssize(suns) >=
+                             std::int64_t{sweep.columns_} * sweep.rows_;
+    if (is_worth_it && !sweep.read_) leave_out(suns, earth_curvature);
 }
 
 Sweep::Blocks::~Blocks() = default;

@@ -9,8 +9,9 @@
 #include <optional>
 #include <vector>
 
-/// The shadows that ground casts, for every post of a grid at once. This file and its source need
-/// nothing else of the project but base/parallel_for.h.
+/// The shadows that ground casts, for every post of a grid at once. This file, sweep_kernels.h,
+/// shade_cells.h and their sources need nothing else of the project but base/parallel_for.h and a
+/// constant of base/units.h.
 namespace relevo::light {
 
 class ShadeCells;

@@ -509,6 +509,28 @@ TEST(Sweep, BlocksHaveTheBitsOfEachSunAndLeaveOutWhatIsKnown) {
         }
 }
 
+TEST(Sweep, ARayThatTurnsBackBeforeItsGroundIsFollowedFromWhereItComes) {
+    // Wherever the ray turns among the rows that are followed together.
+    for (int turn = 40; turn < 110; turn += 3) {
+        const int wall = turn + 5;
+        const Heights heights =
+            heights_of(60, 200, [&](int, int row) { return row == wall ? 500.0 : 0.0; });
+        SweepSun sun;
+        sun.reference = {30, wall + 25.0};
+        sun.towards = {0, -0.01};
+        sun.bend = {0, 1e-4 / (2 * (sun.reference.row - turn - 0.3))};
+        sun.tangent = 0.1;
+        sun.columns_set = false;
+        ASSERT_TRUE(std::isnan(sun.distance_m(turn - 1))) << turn;
+        const SweepWindow window{0, wall + 10, 60, 30};
+        const Heights edge = edge_of(heights, sun, window);
+        for (int row = 0; row < window.rows; ++row) {
+            const double way_m = sun.distance_m(wall) - sun.distance_m(window.row + row);
+            EXPECT_NEAR(edge.at(30, row), 500 - sun.tangent * way_m, 0.01) << turn << ", " << row;
+        }
+    }
+}
+
 TEST(Sweep, HolesNeitherShadeNorSpoilWhatIsBesideThem) {
     // A ridge with a gap that is a hole: the sun shines through it.
     const auto ridge = [](bool gap) {
