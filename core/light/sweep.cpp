@@ -20,6 +20,8 @@
 namespace relevo::light {
 namespace {
 
+using namespace kernel;
+
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// How a sweep looks at ground.

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cstring>
 
-namespace relevo::light {
+namespace relevo::light::kernel {
 namespace {
 
 /// Loads that cross lines of the cache are what a sweep waits for: what is used twice is loaded
@@ -330,4 +330,4 @@ const SweepKernel& widest_sweep_kernel(int lanes) {
     return kKernel4;
 }
 
-}  // namespace relevo::light
+}  // namespace relevo::light::kernel

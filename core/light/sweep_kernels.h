@@ -7,7 +7,7 @@
 
 /// What light/sweep does to many posts at once, with the widest vectors that a processor has. Every
 /// width finds the same bits.
-namespace relevo::light {
+namespace relevo::light::kernel {
 
 constexpr float kNothing_m = -std::numeric_limits<float>::infinity();  // where nothing shades
 
@@ -135,4 +135,4 @@ struct SweepKernel {
 /// @param lanes  and that have so many numbers at most, 4 to Sweep::kMostLanes
 const SweepKernel& widest_sweep_kernel(int lanes);
 
-}  // namespace relevo::light
+}  // namespace relevo::light::kernel
