@@ -164,7 +164,7 @@ template <typename V>
         look_for_some_edges<V, 1>(sight, lane, i);
 }
 
-/// kVectors vectors of posts, likewise.
+/// kVectors vectors of posts, from the i-th on.
 template <typename V, int kVectors>
 [[gnu::always_inline]] inline void look_some(const Sight& sight, int i) {
     V height[kVectors], tangent[kVectors];

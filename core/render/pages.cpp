@@ -111,12 +111,6 @@ struct NormalRow {
     glm::vec3 pole, east_middle;
 };
 
-/// Three numbers of each of many posts. Lambdas and references to it would keep compilers from
-/// doing many at once.
-struct Three {
-    float x, y, z;
-};
-
 /// Rise a post between neighbours, from both sides where both are there, else from the one that is.
 inline float slope_of(float before, float here, float after, float to_before, float to_after) {
     const bool has_before = before == before, has_after = after == after;
@@ -139,6 +133,7 @@ inline std::uint32_t snorm16(float value) {
 
 /// @param to  east in the lower half of each, north in the upper one
 RELEVO_WIDE_LOOPS void encode_normals(const NormalRow& given, std::uint32_t* to) {
+    using vec3 = glm::vec3;
     const NormalRow row = given;  // nothing is written to it, as far as compilers know
     for (int i = 0; i < kNormalPage_px; ++i) {
         const float h = row.here[i], u = row.u[i], to_west = row.to_west[i],
@@ -146,36 +141,21 @@ RELEVO_WIDE_LOOPS void encode_normals(const NormalRow& given, std::uint32_t* to)
         const float dh_column =
             slope_of(to_west > 0 ? west : kNone, h, to_east > 0 ? east : kNone, to_west, to_east);
         const float dh_row = slope_of(row.north[i], h, row.south[i], row.to_north, row.to_south);
-        const auto up_of = [&](int k) { return row.up0[k] + u * row.up_u[k] + row.up_v[k]; };
-        const Three up{up_of(0), up_of(1), up_of(2)};
-        const auto column_of = [&](int k, float up_k) {
-            const float base = row.base_u0[k] + u * row.base_u1[k];
-            return row.step_x * (base + h * row.rise_u[k]) + dh_column * up_k;
-        };
-        const auto row_of = [&](int k, float up_k) {
-            const float base = row.base_v0[k] + u * (row.base_v1[k] + u * row.base_v2[k]);
-            return row.step_y * (base + h * row.rise_v[k]) + dh_row * up_k;
-        };
-        const Three a{column_of(0, up.x), column_of(1, up.y), column_of(2, up.z)};
-        const Three b{row_of(0, up.x), row_of(1, up.y), row_of(2, up.z)};
-        const Three normal{a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
-        const float along_up = normal.x * up.x + normal.y * up.y + normal.z * up.z;
-        const float length =
-            std::sqrt(normal.x * normal.x + normal.y * normal.y + normal.z * normal.z);
-        const float scale = (along_up < 0 ? -1.0f : 1.0f) / length;
-        const glm::vec3& pole = row.pole;
-        Three e{pole.y * up.z - up.y * pole.z, pole.z * up.x - up.z * pole.x,
-                pole.x * up.y - up.x * pole.y};
-        const float reach = e.x * e.x + e.y * e.y + e.z * e.z;
+        const vec3 up = row.up0 + u * row.up_u + row.up_v;
+        const vec3 base_u = row.base_u0 + u * row.base_u1;
+        const vec3 base_v = row.base_v0 + u * (row.base_v1 + u * row.base_v2);
+        const vec3 along_column = row.step_x * (base_u + h * row.rise_u) + dh_column * up;
+        const vec3 along_row = row.step_y * (base_v + h * row.rise_v) + dh_row * up;
+        const vec3 across = cross(along_column, along_row);
+        const vec3 normal = across * ((dot(across, up) < 0 ? -1.0f : 1.0f) / length(across));
+        const vec3 aside = cross(row.pole, up);
+        const float reach = dot(aside, aside);
         const bool has_east = reach > 1e-12f;  // not at a pole
-        const float east_length = std::sqrt(has_east ? reach : 1.0f);
-        e = {has_east ? e.x / east_length : row.east_middle.x,
-             has_east ? e.y / east_length : row.east_middle.y,
-             has_east ? e.z / east_length : row.east_middle.z};
-        const Three n{up.y * e.z - e.y * up.z, up.z * e.x - e.z * up.x, up.x * e.y - e.x * up.y};
-        const float nx = normal.x * scale, ny = normal.y * scale, nz = normal.z * scale;
-        to[i] = snorm16(nx * e.x + ny * e.y + nz * e.z) | snorm16(nx * n.x + ny * n.y + nz * n.z)
-                                                              << 16;
+        const vec3 unit = aside / std::sqrt(has_east ? reach : 1.0f);
+        const vec3 eastwards(has_east ? unit.x : row.east_middle.x,
+                             has_east ? unit.y : row.east_middle.y,
+                             has_east ? unit.z : row.east_middle.z);
+        to[i] = snorm16(dot(normal, eastwards)) | snorm16(dot(normal, cross(up, eastwards))) << 16;
     }
 }
 
