@@ -1,176 +1,142 @@
 #include "light/shade_cells.h"
 
-#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "base/parallel_for.h"
+#include "base/wide_loops.h"
 
 namespace relevo::light {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kPosts = ShadeCells::kPosts;
-constexpr double kSlack_m = 0.1;    // more than bounds of what rays fall by, and floats, are off
-constexpr double kSlack_posts = 2;  // as far as posts look beside them for lines
+constexpr float kSteep_m = 1e9F;  // more than ground goes down anywhere
+constexpr float kNone_m = -4e9F;  // lines that shade nothing: lower than any hole
+constexpr double kSlack_m = 0.1;  // more than bounds of what rays fall by, and floats, are off
+constexpr int kSlack_posts = 2;   // as far as posts look beside them for lines
 
-using Flags = std::vector<unsigned char>;
+using Floats = std::vector<float>;
 
-/// A hole is as low as can be.
-float or_lowest(float height_m) {
-    return height_m == height_m ? height_m : -kInfinity;
-}
+// --- The ground
 
-/// What is known of the columns of some rows of posts, which are those of a row of cells. Loops go
-/// over columns, so that processors do many at once.
-class CellRow {
-  public:
-    CellRow(const float* height_m, int columns, int rows, std::ptrdiff_t stride, int first_row)
-        : height_m_(height_m),
-          columns_(columns),
-          rows_(rows),
-          stride_(stride),
-          first_row_(first_row) {
-        for (auto* const each : {&lowest_m_, &ridge_m_[0], &ridge_m_[1]})
-            each->assign(static_cast<std::size_t>(columns), kInfinity);
-        for (auto* const each : {&highest_m_, &down_m_[0], &down_m_[1], &down_m_[2], &down_m_[3]})
-            each->assign(static_cast<std::size_t>(columns), -kInfinity);
-        const int end = std::min(rows, first_row + kPosts + 1);
-        for (int row = std::max(0, first_row - 1); row < end; ++row)
-            add(row, row + 1 < end);
-        find_column_ridges();
-        find_row_ridges();
+/// Of the columns of a few rows of posts. What is lowest is negative, so that the most of all
+/// figures is looked for.
+struct ColumnFigures {
+    static constexpr int kBeside = 2;  // columns before the first one and behind the last one
+
+    int columns;
+    std::array<Floats, ShadeCells::kFigures> of;
+    Floats most;
+
+    explicit ColumnFigures(int count) : columns(count) {
+        for (Floats& each : of)
+            each.resize(static_cast<std::size_t>(whole() + 2 * kBeside));
+        most.resize(of[0].size());
     }
-
-    ShadeCells::Cell cell(int first_column) const {
-        const int from = std::max(0, first_column - 1),
-                  end = std::min(columns_, first_column + kPosts + 1);
-        const auto of = [&](const std::vector<float>& figures, int last, bool highest) {
-            float found = highest ? -kInfinity : kInfinity;
-            for (int column = from; column < last; ++column) {
-                const float figure = figures[static_cast<std::size_t>(column)];
-                found = highest ? std::max(found, figure) : std::min(found, figure);
-            }
-            return found;
-        };
-        ShadeCells::Cell cell{of(lowest_m_, end, false),
-                              of(highest_m_, end, true),
-                              {of(down_m_[0], end, true), of(down_m_[1], end, true),
-                               of(down_m_[2], end - 1, true), of(down_m_[3], end - 1, true)},
-                              {-kInfinity, -kInfinity},
-                              {-kInfinity, -kInfinity}};
-        if (cell.lowest_m == -kInfinity)
-            std::fill(std::begin(cell.down_m), std::end(cell.down_m), kInfinity);
-        if (first_column + kPosts > columns_ || first_row_ + kPosts > rows_) return cell;
-        const int k = first_column / kPosts;
-        for (const int after : {0, 1}) {
-            if (has_ridges(first_row_, after, rows_))
-                cell.column_ridge_m[after] = *std::max_element(
-                    ridge_m_[static_cast<std::size_t>(after)].begin() + first_column,
-                    ridge_m_[static_cast<std::size_t>(after)].begin() + first_column + kPosts);
-            if (has_ridges(first_column, after, columns_))
-                cell.row_ridge_m[after] =
-                    row_ridge_m_[static_cast<std::size_t>(after)][static_cast<std::size_t>(k)];
-        }
-        return cell;
+    /// Whole cells of columns.
+    int whole() const { return (columns + kPosts - 1) / kPosts * kPosts; }
+    float* at(ShadeCells::Figure figure) { return of[figure].data() + kBeside; }
+    void clear() {
+        for (Floats& each : of)
+            std::fill(each.begin(), each.end(), -kSteep_m);
     }
-
-  private:
-    static constexpr int kRidge = 2 * kPosts + 2;  // posts along which one is looked for
-
-    /// Where the posts of a ridge begin along a row, or a column, of a cell that begins there.
-    static int begin_of_ridge(int first, int after) { return first - (after == 0 ? kPosts : 2); }
-    static bool has_ridges(int first, int after, int posts) {
-        const int begin = begin_of_ridge(first, after);
-        return begin >= 0 && begin + kRidge <= posts;
-    }
-    const float* row(int at) const { return height_m_ + at * stride_; }
-
-    /// Posts of a row, and how far it is down to the next one.
-    void add(int at, bool has_next) {
-        const float* const here = row(at);
-        float *const low = lowest_m_.data(), *const high = highest_m_.data();
-        for (int i = 0; i < columns_; ++i) {
-            const float least = or_lowest(here[i]);
-            low[i] = least < low[i] ? least : low[i];
-            high[i] = here[i] > high[i] ? here[i] : high[i];
-        }
-        add_down(here, here + 1, columns_ - 1, 2);
-        if (has_next) add_down(here, row(at + 1), columns_, 0);
-    }
-    void add_down(const float* from, const float* to, int count, std::size_t k) {
-        float *const down = down_m_[k].data(), *const up = down_m_[k + 1].data();
-        for (int i = 0; i < count; ++i) {
-            const float by = from[i] - to[i];
-            down[i] = by > down[i] ? by : down[i];
-            up[i] = -by > up[i] ? -by : up[i];
-        }
-    }
-
-    void find_column_ridges() {
-        for (const int after : {0, 1}) {
-            if (!has_ridges(first_row_, after, rows_)) continue;
-            const int begin = begin_of_ridge(first_row_, after);
-            float* const ridge = ridge_m_[static_cast<std::size_t>(after)].data();
-            for (int at = begin; at < begin + kRidge; ++at) {
-                const float* const here = row(at);
-                for (int i = 0; i < columns_; ++i) {
-                    const float least = or_lowest(here[i]);
-                    ridge[i] = least < ridge[i] ? least : ridge[i];
-                }
-            }
-        }
-    }
-
-    /// The highest of the rows by its lowest post, along each cell and the one before or after.
-    void find_row_ridges() {
-        const int cells = columns_ / kPosts;
-        for (auto& ridges : row_ridge_m_)
-            ridges.assign(static_cast<std::size_t>(cells), -kInfinity);
-        if (first_row_ + kPosts > rows_) return;
-        std::vector<float> least_m(static_cast<std::size_t>(cells));
-        for (int at = first_row_; at < first_row_ + kPosts; ++at) {
-            const float* const here = row(at);
-            const auto least = [&](int begin, int end) {
-                float found = kInfinity;
-                for (int i = begin; i < end; ++i)
-                    found = std::min(found, or_lowest(here[i]));
-                return found;
-            };
-            for (int k = 0; k < cells; ++k)
-                least_m[static_cast<std::size_t>(k)] = least(k * kPosts, (k + 1) * kPosts);
-            for (int k = 0; k < cells; ++k)
-                for (const int after : {0, 1}) {
-                    const int column = k * kPosts;
-                    if (!has_ridges(column, after, columns_)) continue;
-                    const auto i = static_cast<std::size_t>(k);
-                    // All of two cells, and two posts of the one on the other side.
-                    const int beside = after == 0 ? column + kPosts : column - 2;
-                    const float found = std::min({least_m[i], least_m[after == 0 ? i - 1 : i + 1],
-                                                  least(beside, beside + 2)});
-                    float& ridge = row_ridge_m_[static_cast<std::size_t>(after)][i];
-                    ridge = std::max(ridge, found);
-                }
-        }
-    }
-
-    const float* height_m_;
-    int columns_, rows_;
-    std::ptrdiff_t stride_;
-    int first_row_;
-    std::vector<float> lowest_m_, highest_m_;        // of each column, with the rows beside
-    std::array<std::vector<float>, 4> down_m_;       // likewise, as Cell has it
-    std::array<std::vector<float>, 2> ridge_m_;      // likewise
-    std::array<std::vector<float>, 2> row_ridge_m_;  // of each cell
 };
 
-/// How rays go over rows of posts: at least and at most aside from each to the next, and down.
+RELEVO_WIDE_LOOPS void add_heights(const float* height_m, int count, float* negative_m,
+                                   float* highest_m) {
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i) {
+        const float h = height_m[i];
+        const float low = h == h ? -h : -ShadeCells::kHole_m;
+        negative_m[i] = low > negative_m[i] ? low : negative_m[i];
+        highest_m[i] = h > highest_m[i] ? h : highest_m[i];
+    }
+}
+
+/// @param down_m  from each post to another
+RELEVO_WIDE_LOOPS void add_down(const float* from_m, const float* to_m, int count, float* down_m) {
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i) {
+        const float by = from_m[i] - to_m[i];
+        const float down = by == by ? by : kSteep_m;
+        down_m[i] = down > down_m[i] ? down : down_m[i];
+    }
+}
+
+/// The most of each figure and of those behind it.
+/// @param beside  0: of 4 figures, 1: of those two on either side of them, too
+RELEVO_WIDE_LOOPS void find_most(const float* from, int count, int beside, float* most) {
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i) {
+        const float a = from[i] > from[i + 1] ? from[i] : from[i + 1],
+                    b = from[i + 2] > from[i + 3] ? from[i + 2] : from[i + 3],
+                    c = from[i - beside] > from[i + 3 + beside] ? from[i - beside]
+                                                                : from[i + 3 + beside];
+        const float d = a > b ? a : b;
+        most[i] = c > d ? c : d;
+    }
+}
+static_assert(kPosts == 4);
+
+}  // namespace
+
+ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdiff_t stride)
+    : columns_((columns + kPosts - 1) / kPosts), rows_((rows + kPosts - 1) / kPosts) {
+    for (Floats& figures : figures_)
+        figures.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    const auto row = [=](int at) { return height_m + at * stride; };
+    const auto add = [&](int cells, ColumnFigures& to) {
+        const int first = cells * kPosts, end = std::min(rows, first + kPosts);
+        to.clear();
+        for (int at = std::max(0, first - 1); at < std::min(rows, end + 1); ++at) {
+            add_down(row(at), row(at) + 1, columns - 1, to.at(kDownToNextColumn));
+            add_down(row(at) + 1, row(at), columns - 1, to.at(kDownToColumnBefore) + 1);
+        }
+        for (int at = first; at < end; ++at) {
+            add_heights(row(at), columns, to.at(kLowest), to.at(kHighest));
+            if (at + 1 < rows) add_down(row(at), row(at + 1), columns, to.at(kDownToNextRow));
+            if (at > 0) add_down(row(at), row(at - 1), columns, to.at(kDownToRowBefore));
+        }
+    };
+    parallel_for(0, rows_, 16, [&](int begin, int end) {
+        ColumnFigures found(columns);
+        for (int cells = begin; cells < end; ++cells) {
+            add(cells, found);
+            const std::size_t first =
+                static_cast<std::size_t>(cells) * static_cast<std::size_t>(columns_);
+            for (const Figure figure : {kLowest, kHighest, kDownToNextRow, kDownToRowBefore,
+                                        kDownToNextColumn, kDownToColumnBefore}) {
+                const bool is_height = figure == kLowest || figure == kHighest;
+                float* const most = found.most.data();
+                find_most(found.at(figure), found.whole() - kPosts + 1, is_height ? 0 : 1, most);
+                float* const to = figures_[figure].data() + first;
+                for (int cell = 0; cell < columns_; ++cell)
+                    to[cell] = figure == kLowest ? -most[cell * kPosts] : most[cell * kPosts];
+            }
+            for (std::size_t i = first; i < first + static_cast<std::size_t>(columns_); ++i)
+                if (figures_[kLowest][i] == kHole_m)
+                    for (const Figure down :
+                         {kDownToNextRow, kDownToRowBefore, kDownToNextColumn, kDownToColumnBefore})
+                        figures_[down][i] = kSteep_m;
+        }
+    });
+    for (std::size_t k = 0; k < kFigures; ++k)
+        most_[k] = *std::max_element(figures_[k].begin(), figures_[k].end());
+}
+
+namespace {
+
+// --- Rays over it
+
+/// How rays go from row to row of posts: at least and at most aside, and down at least.
 struct Steepness {
     double least_aside = kInfinity, most_aside = -kInfinity, least_fall_m = kInfinity;
 
     /// @param plan  rows next to each other, over columns of the sheet
-    Steepness(const CellSheet& sheet, std::span<const RowPlan> plan) {
+    Steepness(const PatchSheet& sheet, std::span<const RowPlan> plan) {
         if (plan.size() < 2) least_aside = most_aside = 0;
         for (std::size_t k = 1; k < plan.size(); ++k) {
             const RowPlan &a = plan[k - 1], &b = plan[k];
@@ -182,323 +148,564 @@ struct Steepness {
                 least_fall_m = std::min(least_fall_m, b.fall - a.fall + (b.ramp - a.ramp) * line);
             }
         }
+        least_fall_m -= kSlack_m / 16;
     }
 
-    /// Ground goes down so steeply somewhere that it may shade what is behind it.
-    /// @param away, before, after  how far at most: to the next row, and to the column before and
-    ///     after
-    bool may_shade(double away_m, double before_m, double after_m) const {
-        return !(away_m + std::max(down_m(least_aside, before_m, after_m),
-                                   down_m(most_aside, before_m, after_m)) <
-                 least_fall_m - kSlack_m / kPosts);
-    }
-
-  private:
-    static double down_m(double aside, double before_m, double after_m) {
-        if (aside == 0) return 0;
-        return aside > 0 ? aside * after_m : -aside * before_m;
+    /// What goes down that way, and how often that counts.
+    struct Aside {
+        ShadeCells::Figure down;
+        double posts;
+    };
+    static Aside of(double aside) {
+        if (aside < 0) return {ShadeCells::kDownToColumnBefore, -aside};
+        return {ShadeCells::kDownToNextColumn, aside};
     }
 };
 
-/// What rays have fallen by over a row of cells.
-class RowOfRays {
+/// A row of cells and what rays have fallen by over it: over the k-th of them, the slack included,
+/// what two lines have there at least and at most.
+struct GroundBounds {
+    int cells;
+    const float *lowest_m, *highest_m;
+    std::array<float, 2> fall_m, fall_a_cell_m;
+    float slack_m;
+    const float* away_m;  // down to the next row
+    std::array<const float*, 2> beside_m;
+    std::array<float, 2> aside;
+    float least_fall_m;
+    // What is found: the ground, level with the rays, how high what may shade anything is, and how
+    // much more steeply it goes down than rays at most, of this row and those before.
+    float *low_m, *high_m, *source_m, *steeper_m;
+};
+
+RELEVO_WIDE_LOOPS void bound_ground(const GroundBounds& given) {
+    const GroundBounds of = given;
+#pragma GCC ivdep
+    for (int k = 0; k < of.cells; ++k) {
+        const auto at = static_cast<float>(k);
+        const float a = of.fall_m[0] + of.fall_a_cell_m[0] * at,
+                    b = of.fall_m[1] + of.fall_a_cell_m[1] * at;
+        const float high = of.highest_m[k] + ((a > b ? a : b) + of.slack_m);
+        const float first = of.aside[0] * of.beside_m[0][k],
+                    second = of.aside[1] * of.beside_m[1][k];
+        const float steeper = of.away_m[k] + (first > second ? first : second) - of.least_fall_m;
+        of.low_m[k] = of.lowest_m[k] + ((a < b ? a : b) - of.slack_m);
+        of.high_m[k] = high;
+        of.source_m[k] = steeper >= 0 ? high : kNone_m;
+        of.steeper_m[k] = steeper > of.steeper_m[k] ? steeper : of.steeper_m[k];
+    }
+}
+
+/// The most and the least of three numbers, and of three so far on: of 3 to 6 next to each other.
+[[gnu::always_inline]] inline float most_of(const float* from, int on) {
+    const float a = from[0] > from[1] ? from[0] : from[1], b = from[2];
+    const float c = from[on] > from[on + 1] ? from[on] : from[on + 1], d = from[on + 2];
+    const float e = a > b ? a : b, f = c > d ? c : d;
+    return e > f ? e : f;
+}
+[[gnu::always_inline]] inline float least_of(const float* from, int on) {
+    const float a = from[0] < from[1] ? from[0] : from[1], b = from[2];
+    const float c = from[on] < from[on + 1] ? from[on] : from[on + 1], d = from[on + 2];
+    const float e = a < b ? a : b, f = c < d ? c : d;
+    return e < f ? e : f;
+}
+
+/// Bundles of lines over a row of cells.
+struct Bundles {
+    int bundles;
+    const float *source_m, *low_m;  // of the first one's first cell
+    int on;                         // as most_of() has it
+    float *most_m, *least_m;        // how high they are: where they may shade anything, and at all
+    float *before_m, *least_before_m;  // as they come to posts: the row's own sources included
+};
+
+RELEVO_WIDE_LOOPS void raise_bundles(const Bundles& given) {
+    const Bundles of = given;
+#pragma GCC ivdep
+    for (int k = 0; k < of.bundles; ++k) {
+        const float source = most_of(of.source_m + k, of.on), low = least_of(of.low_m + k, of.on);
+        const float before = of.most_m[k] > source ? of.most_m[k] : source;
+        const float least = of.least_m[k];
+        of.before_m[k] = before;
+        of.least_before_m[k] = least;
+        of.most_m[k] = before <= low ? kNone_m : before;
+        of.least_m[k] = least > low ? least : low;
+    }
+}
+
+/// How far the lines that come over cells are over their ground, at most and at least.
+struct Cover {
+    int cells;
+    const float *before_m, *least_before_m;  // of the first cell's first bundle
+    int on;
+    const float *low_m, *high_m;
+    float *over_m, *least_over_m;
+};
+
+RELEVO_WIDE_LOOPS void find_cover(const Cover& given) {
+    const Cover of = given;
+#pragma GCC ivdep
+    for (int k = 0; k < of.cells; ++k) {
+        of.over_m[k] = most_of(of.before_m + k, of.on) - of.low_m[k];
+        of.least_over_m[k] = least_of(of.least_before_m + k, of.on) - of.high_m[k];
+    }
+}
+
+/// The edge that the smooth Earth makes over cells, at least and at most: the sun's tangent is a
+/// line from cell to cell.
+struct EarthCover {
+    int cells;
+    float tangent, tangent_a_cell, spread;
+    float earth_m, a_tangent2_m;
+    const float *lowest_m, *highest_m;
+    float *over_m, *least_over_m;
+};
+
+RELEVO_WIDE_LOOPS void add_earth(const EarthCover& given) {
+    const EarthCover of = given;
+    constexpr auto kSlack = static_cast<float>(kSlack_m);
+#pragma GCC ivdep
+    for (int k = 0; k < of.cells; ++k) {
+        const float tangent = of.tangent + of.tangent_a_cell * static_cast<float>(k);
+        const float least = tangent - of.spread, most = tangent + of.spread;
+        const float high = of.earth_m + least * least * of.a_tangent2_m + kSlack,
+                    low = of.earth_m + most * most * of.a_tangent2_m - kSlack;
+        const float over = (least < 0 ? high : kNone_m) - of.lowest_m[k],
+                    least_over = (most < 0 ? low : kNone_m) - of.highest_m[k];
+        of.over_m[k] = over > of.over_m[k] ? over : of.over_m[k];
+        of.least_over_m[k] = least_over > of.least_over_m[k] ? least_over : of.least_over_m[k];
+    }
+}
+
+RELEVO_WIDE_LOOPS void add_cover(const float* over_m, const float* least_over_m, int cells,
+                                 float* most_m, float* least_m) {
+#pragma GCC ivdep
+    for (int k = 0; k < cells; ++k) {
+        most_m[k] = over_m[k] > most_m[k] ? over_m[k] : most_m[k];
+        least_m[k] = least_over_m[k] < least_m[k] ? least_over_m[k] : least_m[k];
+    }
+}
+
+/// The figures of each cell and of those behind it that a patch has, too.
+RELEVO_WIDE_LOOPS void join_cells(int cells, float* steeper_m, float* over_m, float* covered_m) {
+    static_assert(PatchSheet::kCellsAcross == 4);
+#pragma GCC ivdep
+    for (int k = 0; k < cells; ++k) {
+        const auto most = [k](const float* of) {
+            const float a = of[k] > of[k + 1] ? of[k] : of[k + 1],
+                        b = of[k + 2] > of[k + 3] ? of[k + 2] : of[k + 3];
+            return a > b ? a : b;
+        };
+        const float a = covered_m[k] < covered_m[k + 1] ? covered_m[k] : covered_m[k + 1],
+                    b = covered_m[k + 2] < covered_m[k + 3] ? covered_m[k + 2] : covered_m[k + 3];
+        steeper_m[k] = most(steeper_m);
+        over_m[k] = most(over_m);
+        covered_m[k] = a < b ? a : b;
+    }
+}
+
+/// Lines that go from row to row of cells, kPosts together. Bundle b has lines [kPosts b, kPosts b
+/// + kPosts), a line being a column of the patches' less where the ray is there.
+class LinesOverCells {
   public:
-    RowOfRays(const CellSheet& sheet, std::span<const RowPlan> plan, int begin, int row)
-        : rows_(rows_of(sheet, plan, begin, row)), steepness_(sheet, rows_) {
-        const double to_left = std::max(aside(), 0.0) + kSlack_posts,
-                     to_right = std::max(-aside(), 0.0) + kSlack_posts;
-        from_ = {-static_cast<int>(std::ceil(to_left / kPosts)),
-                 static_cast<int>(std::floor(to_right / kPosts)) + 2};
-        for (std::size_t k = 0; k < 2; ++k) {
-            const RowPlan& end = k == 0 ? rows_.front() : rows_.back();
-            // With a post on either side.
-            const double across = end.ramp * (kPosts + 2);
-            const double first = end.fall + end.ramp * (sheet.first_column(0) - 1 - end.shift);
-            least_m_[k] = first + std::min(across, 0.0) - kSlack_m;
-            most_m_[k] = first + std::max(across, 0.0) + kSlack_m;
-            more_m_[k] = end.ramp * kPosts;
+    LinesOverCells(const PatchSheet& sheet, const SweepSun& sun, std::span<const RowPlan> plan,
+                   int begin, const std::optional<EarthAround>& earth)
+        : sheet_(sheet),
+          sun_(sun),
+          plan_(plan),
+          begin_(begin),
+          earth_(earth),
+          first_cell_(sheet.some.begin * PatchSheet::kCellsAcross),
+          cells_(std::min(sheet.columns() * PatchSheet::kCellsAcross,
+                          sheet.cells.columns() - first_cell_)) {
+        for (Floats* const each : {&low_m_, &source_m_})
+            each->assign(static_cast<std::size_t>(cells_ + 2 * kBeside), kNone_m);
+        for (Floats* const each : {&high_m_, &over_m_, &least_over_m_})
+            each->resize(static_cast<std::size_t>(cells_));
+        const auto in_patches =
+            static_cast<std::size_t>(sheet.columns() * PatchSheet::kCellsAcross + 4);
+        for (Floats* const each : {&steeper_m_, &most_over_m_, &covered_m_})
+            each->resize(in_patches);
+        double least = kInfinity, most = -kInfinity;
+        for (const RowPlan& row : plan) {
+            least = std::min(least, row.shift - sheet.first_column(0));
+            most = std::max(most, row.shift - sheet.first_column(0));
         }
+        first_bundle_ = -bundle(most) - 4;
+        const int bundles = cells_ - bundle(least) + 4 - first_bundle_;
+        for (Floats* const each : {&most_m_, &least_m_, &before_m_, &least_before_m_})
+            each->assign(static_cast<std::size_t>(bundles), kNone_m);
     }
 
-    /// Ground goes down more steeply somewhere.
-    bool is_source(const CellSheet& sheet, const ShadeCells::Cell& cell) const {
-        const CellSheet::Down down = sheet.down_m(cell.down_m);
-        return steepness_.may_shade(down.away, down.before, down.after);
-    }
-
-    /// Of rays over a column of cells, from the row of the reference on.
-    double least_fall_m(int column) const {
-        return std::min(least_m_[0] + more_m_[0] * column, least_m_[1] + more_m_[1] * column);
-    }
-    double most_fall_m(int column) const {
-        return std::max(most_m_[0] + more_m_[0] * column, most_m_[1] + more_m_[1] * column);
-    }
-
-    /// Columns that lines go aside by, over the row.
-    double aside() const { return rows_.back().shift - rows_.front().shift; }
-
-    /// Columns of cells whose lines come over one while they go over the row.
-    ColumnRange from(int column, int columns) const {
-        return {std::max(0, column + from_.begin), std::min(columns, column + from_.end)};
+    /// A row of patches, to be called for one after the other. What is not known beforehand is to
+    /// be 0.
+    /// @return  whether any is known: not where rays go too far aside
+    bool go_over(int row, ShadedPatches& patches) {
+        std::fill(steeper_m_.begin(), steeper_m_.end(), -kSteep_m);
+        std::fill(most_over_m_.begin(), most_over_m_.end(), kNone_m);
+        std::fill(covered_m_.begin(), covered_m_.end(), kSteep_m);
+        constexpr int kDown = PatchSheet::kRows / kPosts;
+        const bool mirrored = sheet_.mirrored;
+        const int of_grid = mirrored ? sheet_.rows() - 1 - row : row;
+        for (int k = 0; k < kDown; ++k) {
+            const int cells = of_grid * kDown + (mirrored ? kDown - 1 - k : k);
+            if (cells < sheet_.cells.rows() && !go_over_cells(cells)) return false;
+        }
+        join_cells(cells_, steeper_m_.data(), most_over_m_.data(), covered_m_.data());
+        const std::span<PatchFlags::Word> lit = patches.lit.row(row), dark = patches.dark.row(row),
+                                          sources = patches.sources.row(row);
+        for (int column = 0; column < sheet_.columns(); ++column) {
+            const auto i = static_cast<std::size_t>(column * PatchSheet::kCellsAcross),
+                       word = static_cast<std::size_t>(column / PatchFlags::kBits);
+            const int bit = column % PatchFlags::kBits;
+            const bool is_dark = covered_m_[i] > 0;
+            dark[word] |= PatchFlags::Word{is_dark} << bit;
+            lit[word] |= PatchFlags::Word{!is_dark && !(most_over_m_[i] > 0)} << bit;
+            sources[word] |= PatchFlags::Word{steeper_m_[i] >= 0} << bit;
+        }
+        return true;
     }
 
   private:
-    /// Those of a row of cells, and one on either side.
-    static std::span<const RowPlan> rows_of(const CellSheet& sheet, std::span<const RowPlan> plan,
-                                            int begin, int row) {
-        const int last_row = static_cast<int>(plan.size()) - 1;
-        const int first = std::clamp(sheet.first_row(row) - 1 - begin, 0, last_row),
-                  last = std::clamp(sheet.end_row(row) - begin, 0, last_row);
-        return plan.subspan(static_cast<std::size_t>(first),
-                            static_cast<std::size_t>(last - first + 1));
+    static constexpr int kBeside = 8;        // cells beside that bundles may come over
+    static constexpr double kBase_m = 4096;  // as Strip has it
+
+    static int bundle(double lines) { return static_cast<int>(std::floor(lines / kPosts)); }
+
+    /// Rows [first, end) of the sheet that a row of cells has, of those that there are.
+    std::pair<int, int> rows_of(int cells) const {
+        int first = cells * kPosts, end = std::min(first + kPosts, sheet_.lines);
+        if (sheet_.mirrored) {
+            first = sheet_.lines - first, end = sheet_.lines - end;
+            std::swap(first, end);
+        }
+        const int last = begin_ + static_cast<int>(plan_.size());
+        return {std::max(first, begin_), std::min(end, last)};
+    }
+    const RowPlan& row(int at) const { return plan_[static_cast<std::size_t>(at - begin_)]; }
+
+    bool go_over_cells(int cells) {
+        const auto [first, end] = rows_of(cells);
+        if (first >= end) return true;
+        rebase(row(first).fall);
+        find_bounds(cells, first, end);
+        double least = kInfinity, most = -kInfinity;
+        for (int at = std::max(first - 1, begin_); at < end; ++at) {
+            least = std::min(least, row(at).shift - sheet_.first_column(0));
+            most = std::max(most, row(at).shift - sheet_.first_column(0));
+        }
+        // Bundle b comes over cells [b + to_first, b + to_last].
+        const int to_first = bundle(least - kSlack_posts),
+                  to_last = bundle(most + kPosts + kSlack_posts), on = to_last - to_first - 2;
+        if (on > 3) return false;
+        const int from = -to_last - first_bundle_;
+        raise_bundles({.bundles = cells_ + to_last - to_first,
+                       .source_m = source_m_.data() + kBeside - (to_last - to_first),
+                       .low_m = low_m_.data() + kBeside - (to_last - to_first),
+                       .on = on,
+                       .most_m = most_m_.data() + from,
+                       .least_m = least_m_.data() + from,
+                       .before_m = before_m_.data(),
+                       .least_before_m = least_before_m_.data()});
+        find_cover({.cells = cells_,
+                    .before_m = before_m_.data(),
+                    .least_before_m = least_before_m_.data(),
+                    .on = on,
+                    .low_m = low_m_.data() + kBeside,
+                    .high_m = high_m_.data(),
+                    .over_m = over_m_.data(),
+                    .least_over_m = least_over_m_.data()});
+        if (earth_) cover_by_earth(cells, first, end);
+        add_cover(over_m_.data(), least_over_m_.data(), cells_, most_over_m_.data(),
+                  covered_m_.data());
+        return true;
     }
 
-    std::span<const RowPlan> rows_;
-    Steepness steepness_;
-    ColumnRange from_;
-    double least_m_[2], most_m_[2], more_m_[2];  // over the first row, and over the last one
+    const float* figures(ShadeCells::Figure figure, int cells) const {
+        return sheet_.cells.row(figure, cells) + first_cell_;
+    }
+
+    void find_bounds(int cells, int first, int end) {
+        const int last = begin_ + static_cast<int>(plan_.size());
+        const Steepness steps(
+            sheet_, plan_.subspan(static_cast<std::size_t>(first - begin_),
+                                  static_cast<std::size_t>(std::min(end + 1, last) - first)));
+        const Steepness::Aside least = Steepness::of(steps.least_aside),
+                               most = Steepness::of(steps.most_aside);
+        const RowPlan &a = row(first), &b = row(end - 1);
+        // Of a cell's middle; its posts are less than two beside.
+        const double middle = sheet_.first_column(0) + (kPosts - 1) / 2.0;
+        const auto fall_m = [&](const RowPlan& at) {
+            return static_cast<float>(at.fall - base_m_ + at.ramp * (middle - at.shift));
+        };
+        const double across_m = 2 * std::max(std::abs(a.ramp), std::abs(b.ramp));
+        bound_ground(
+            {.cells = cells_,
+             .lowest_m = figures(ShadeCells::kLowest, cells),
+             .highest_m = figures(ShadeCells::kHighest, cells),
+             .fall_m = {fall_m(a), fall_m(b)},
+             .fall_a_cell_m = {static_cast<float>(a.ramp * kPosts),
+                               static_cast<float>(b.ramp * kPosts)},
+             .slack_m = static_cast<float>(kSlack_m + across_m),
+             .away_m = figures(
+                 sheet_.mirrored ? ShadeCells::kDownToRowBefore : ShadeCells::kDownToNextRow,
+                 cells),
+             .beside_m = {figures(least.down, cells), figures(most.down, cells)},
+             .aside = {static_cast<float>(least.posts), static_cast<float>(most.posts)},
+             .least_fall_m = static_cast<float>(std::min(steps.least_fall_m, double{kSteep_m})),
+             .low_m = low_m_.data() + kBeside,
+             .high_m = high_m_.data(),
+             .source_m = source_m_.data() + kBeside,
+             .steeper_m = steeper_m_.data()});
+    }
+
+    void cover_by_earth(int cells, int first, int end) {
+        const GridPair& more = sun_.tangent_a_post;
+        const double middle_row = (first + end - 1) / 2.0;
+        // Posts are half a cell from its middle, and as far beside.
+        const double spread =
+            std::abs(more.column) * kPosts + std::abs(more.row) * ((end - first) / 2.0 + 1) + 1e-7;
+        add_earth({.cells = cells_,
+                   .tangent = static_cast<float>(
+                       sun_.tangent_at(sheet_.first_column(0) + (kPosts - 1) / 2.0, middle_row)),
+                   .tangent_a_cell = static_cast<float>(more.column * kPosts),
+                   .spread = static_cast<float>(spread),
+                   .earth_m = static_cast<float>(earth_->lowest_m),
+                   .a_tangent2_m = static_cast<float>(1 / (2 * earth_->curvature)),
+                   .lowest_m = figures(ShadeCells::kLowest, cells),
+                   .highest_m = figures(ShadeCells::kHighest, cells),
+                   .over_m = over_m_.data(),
+                   .least_over_m = least_over_m_.data()});
+    }
+
+    /// Takes another base where rays have fallen by so much, so that floats do.
+    void rebase(double fall_m) {
+        if (std::abs(fall_m - base_m_) < kBase_m) return;
+        const auto more_m = static_cast<float>(fall_m - base_m_);
+        base_m_ = fall_m;
+        for (Floats* const each : {&most_m_, &least_m_})
+            for (float& height_m : *each)
+                height_m = std::max(height_m - more_m, kNone_m);
+    }
+
+    const PatchSheet& sheet_;
+    const SweepSun& sun_;
+    std::span<const RowPlan> plan_;
+    int begin_;
+    const std::optional<EarthAround>& earth_;
+    int first_cell_, cells_;
+    int first_bundle_ = 0;
+    double base_m_ = 0;
+    Floats low_m_, high_m_, source_m_;            // of a row of cells
+    Floats over_m_, least_over_m_;                // likewise
+    Floats steeper_m_, most_over_m_, covered_m_;  // of all of a row of patches
+    Floats most_m_, least_m_;                     // of bundles
+    Floats before_m_, least_before_m_;            // of those over a row of cells
 };
+
+/// Whether the smooth Earth makes any edge over a sheet.
+bool has_earth_edge(const PatchSheet& sheet, const SweepSun& sun) {
+    for (const double y : {-1.0, sheet.lines + 1.0})
+        for (const int column : {0, sheet.columns()})
+            if (sun.tangent_at(sheet.first_column(column) + (column == 0 ? -1 : 1), y) < 0)
+                return true;
+    return false;
+}
+
+/// Whether ground is anywhere so steep that it may shade anything.
+bool is_steep(const PatchSheet& sheet, std::span<const RowPlan> plan) {
+    const Steepness steps(sheet, plan);
+    double beside_m = -kSteep_m;
+    for (const double aside : {steps.least_aside, steps.most_aside})
+        beside_m = std::max(
+            beside_m, Steepness::of(aside).posts * sheet.cells.most(Steepness::of(aside).down));
+    return sheet.cells.most(sheet.mirrored ? ShadeCells::kDownToRowBefore
+                                           : ShadeCells::kDownToNextRow) +
+               beside_m >=
+           steps.least_fall_m;
+}
+
+// --- Flags
+
+using Word = PatchFlags::Word;
+
+/// Flags of columns so many before those of a word, and behind them; less than kBits.
+Word before(std::span<const Word> row, std::size_t i, int by) {
+    if (by == 0) return row[i];
+    return row[i] << by | (i > 0 ? row[i - 1] >> (PatchFlags::kBits - by) : 0);
+}
+Word behind(std::span<const Word> row, std::size_t i, int by) {
+    if (by == 0) return row[i];
+    return row[i] >> by | (i + 1 < row.size() ? row[i + 1] << (PatchFlags::kBits - by) : 0);
+}
+
+/// None behind the last column.
+void trim(std::span<Word> row, int columns) {
+    const int some = columns % PatchFlags::kBits;
+    if (some != 0) row.back() &= (Word{1} << some) - 1;
+}
 
 /// Sets flags, and those so many columns beside.
-void add_beside(const unsigned char* flags, int columns, int reach, unsigned char* to) {
-    for (int aside = -reach; aside <= reach; ++aside)
-        for (int i = std::max(0, -aside); i < std::min(columns, columns - aside); ++i)
-            to[i] |= flags[i + aside];
+void add_beside(std::span<const Word> flags, int columns, int reach, std::span<Word> to) {
+    for (std::size_t i = 0; i < to.size(); ++i)
+        for (int by = 0; by <= reach; ++by)
+            to[i] |= before(flags, i, by) | behind(flags, i, by);
+    trim(to, columns);
 }
 
 /// Sets what lies between flags that are not far apart: there is less work in some posts than in
 /// going about them.
-void fill_gaps(unsigned char* flags, int columns) {
-    constexpr int kGap = 4;
-    for (int column = 0, last = -kGap - 1; column < columns; ++column) {
-        if (!flags[column]) continue;
-        if (column - last <= kGap) std::fill(flags + std::max(last, 0), flags + column, 1);
-        last = column;
+void fill_gaps(std::span<Word> flags) {
+    constexpr int kGap = 3;
+    std::vector<Word> first(flags.size());  // of gaps
+    for (int gap = 1; gap <= kGap; ++gap) {
+        for (std::size_t i = 0; i < flags.size(); ++i)
+            first[i] = before(flags, i, 1) & behind(flags, i, gap);
+        for (std::size_t i = 0; i < flags.size(); ++i)
+            for (int by = 0; by < gap; ++by)
+                flags[i] |= before(first, i, by);
     }
 }
 
-/// @param flags  of columns of cells
-void add_ranges(const CellSheet& sheet, const unsigned char* flags,
+/// The next column from one on whose flag is set, or is not; or the one behind all.
+int next_column(std::span<const Word> flags, int columns, int column, bool set) {
+    while (column < columns) {
+        const Word word = flags[static_cast<std::size_t>(column / PatchFlags::kBits)];
+        const Word left = (set ? word : ~word) >> (column % PatchFlags::kBits);
+        if (left != 0) return std::min(columns, column + std::countr_zero(left));
+        column += PatchFlags::kBits - column % PatchFlags::kBits;
+    }
+    return columns;
+}
+
+/// @param flags  of columns of patches
+void add_ranges(const PatchSheet& sheet, std::span<const Word> flags,
                 std::vector<ColumnRange>& ranges) {
     constexpr int kFar = 1 << 28;
     const int columns = sheet.columns();
-    for (int column = 0; column < columns; ++column) {
-        if (!flags[column]) continue;
-        const int first = column;
-        while (column + 1 < columns && flags[column + 1])
-            ++column;
+    for (int end = 0;;) {
+        const int first = next_column(flags, columns, end, true);
+        if (first == columns) return;
+        end = next_column(flags, columns, first, false);
         ranges.push_back({first == 0 ? -kFar : sheet.first_column(first),
-                          column + 1 == columns ? kFar : sheet.first_column(column + 1)});
+                          end == columns ? kFar : sheet.first_column(end)});
     }
 }
 
 }  // namespace
 
-ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdiff_t stride)
-    : columns_((columns + kPosts - 1) / kPosts), rows_((rows + kPosts - 1) / kPosts) {
-    cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
-    parallel_for(0, rows_, 4, [&](int first, int last) {
-        for (int row = first; row < last; ++row) {
-            const CellRow found(height_m, columns, rows, stride, row * kPosts);
-            for (int column = 0; column < columns_; ++column)
-                cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                       static_cast<std::size_t>(column)] = found.cell(column * kPosts);
-        }
-    });
-    std::fill(std::begin(steepest_m_), std::end(steepest_m_), -kInfinity);
-    for (const Cell& cell : cells_)
-        for (std::size_t k = 0; k < std::size(steepest_m_); ++k)
-            steepest_m_[k] = std::max(steepest_m_[k], cell.down_m[k]);
+void PatchFlags::set_all(int first, int end) {
+    for (int at = first; at < end; ++at) {
+        std::fill(row(at).begin(), row(at).end(), ~Word{0});
+        trim(row(at), columns_);
+    }
 }
 
-namespace {
+std::int64_t PatchFlags::count(int first, int end) const {
+    std::int64_t found = 0;
+    for (int at = first; at < end; ++at)
+        for (const Word word : row(at))
+            found += std::popcount(word);
+    return found;
+}
 
-/// The edge that the smooth Earth makes over a cell, at least and at most.
-struct EarthEdge {
-    double least_m = -kInfinity, most_m = -kInfinity;
-
-    EarthEdge(const CellSheet& sheet, const SweepSun& sun, int column, int row,
-              const EarthAround& earth) {
-        double least = kInfinity, most = -kInfinity;
-        for (const double y : {sheet.first_row(row) - 1.0, sheet.end_row(row) + 1.0})
-            for (const double x :
-                 {sheet.first_column(column) - 1.0, sheet.first_column(column + 1) + 1.0}) {
-                least = std::min(least, sun.tangent_at(x, y));
-                most = std::max(most, sun.tangent_at(x, y));
-            }
-        const auto edge_m = [&](double tangent) {
-            return earth.lowest_m + tangent * tangent / (2 * earth.curvature);
-        };
-        if (most < 0) least_m = edge_m(most) - kSlack_m;
-        if (least < 0) most_m = edge_m(least) + kSlack_m;
-    }
-
-    /// Whether it makes any over some cell of a sheet.
-    static bool is_any(const CellSheet& sheet, const SweepSun& sun) {
-        for (const double y : {-1.0, sheet.lines + 1.0})
-            for (const int column : {0, sheet.columns()})
-                if (sun.tangent_at(sheet.first_column(column) + (column == 0 ? -1 : 1), y) < 0)
-                    return true;
-        return false;
-    }
-};
-
-/// How high lines are where they leave the cells of a row, their fall added: at most, for what may
-/// hide anything, and at least.
-class Carried {
-  public:
-    explicit Carried(std::size_t columns)
-        : most_(columns, -kInfinity),
-          least_(columns, -kInfinity),
-          next_(most_),
-          next_least_(most_),
-          over_(most_) {}
-
-    /// The states of a row of cells, lines coming from the one before it.
-    /// @param earth  none: it hides nothing
-    void go_over(const CellSheet& sheet, const SweepSun& sun, int row, const RowOfRays& rays,
-                 const std::optional<EarthAround>& earth, const unsigned char* sources,
-                 unsigned char* states) {
-        const int columns = sheet.columns();
-        const bool after = rays.aside() < 0;
-        const bool narrow = std::abs(rays.aside()) <= kPosts + 1;
-        for (int column = 0; column < columns; ++column) {
-            const auto i = static_cast<std::size_t>(column);
-            over_[i] = most_[i];
-            if (sources[i])
-                over_[i] =
-                    std::max(over_[i], sheet.at(column, row).highest_m + rays.most_fall_m(column));
-        }
-        for (int column = 0; column < columns; ++column) {
-            const auto i = static_cast<std::size_t>(column);
-            const ShadeCells::Cell& cell = sheet.at(column, row);
-            const ColumnRange from = rays.from(column, columns);
-            double most = -kInfinity, least = kInfinity;
-            for (int k = from.begin; k < from.end; ++k) {
-                const auto at = static_cast<std::size_t>(k);
-                most = std::max(most, over_[at]);
-                least = std::min(least, least_[at]);
-            }
-            const bool at_end = column == 0 || column + 1 == columns;
-            if (at_end) least = -kInfinity;  // others come in from outside
-            const double least_fall_m = rays.least_fall_m(column);
-            const bool may_shade = most > cell.lowest_m + least_fall_m;
-            bool is_dark = least > cell.highest_m + rays.most_fall_m(column), is_lit = !may_shade;
-            if (earth) {
-                const EarthEdge edge(sheet, sun, column, row, *earth);
-                is_dark = is_dark || edge.least_m > cell.highest_m;
-                is_lit = is_lit && cell.lowest_m > edge.most_m;
-            }
-            states[i] = is_dark  ? ShadedCells::kDark
-                        : is_lit ? ShadedCells::kLit
-                                 : ShadedCells::kMixed;
-            next_[i] = may_shade ? most : -kInfinity;
-            next_least_[i] = least;
-            if (narrow && !at_end)
-                next_least_[i] = std::max(least, sheet.ridge_m(cell, after) + least_fall_m);
-        }
-        most_.swap(next_);
-        least_.swap(next_least_);
-    }
-
-  private:
-    std::vector<double> most_, least_, next_, next_least_, over_;
-};
-
-}  // namespace
-
-ShadedCells::ShadedCells(const CellSheet& sheet, const SweepSun& sun, std::span<const RowPlan> plan,
-                         int begin, std::optional<EarthAround> earth) {
-    const auto width = static_cast<std::size_t>(sheet.columns());
-    sources.resize(width * static_cast<std::size_t>(sheet.rows()), 0);
-    states.resize(sources.size(), kLit);
-    const int first = sheet.row_of(begin),
-              last = sheet.row_of(begin + static_cast<int>(plan.size()) - 1);
-    first_ = static_cast<std::size_t>(first) * width;
-    end_ = static_cast<std::size_t>(last + 1) * width;
-    if (earth && !EarthEdge::is_any(sheet, sun)) earth.reset();
-    const CellSheet::Down steepest = sheet.down_m(sheet.cells.steepest_m());
-    if (!earth && !Steepness(sheet, plan).may_shade(steepest.away, steepest.before, steepest.after))
+ShadedPatches::ShadedPatches(const PatchSheet& sheet, const SweepSun& sun,
+                             std::span<const RowPlan> plan, int begin,
+                             std::optional<EarthAround> earth)
+    : lit(sheet.columns(), sheet.rows()),
+      dark(sheet.columns(), sheet.rows()),
+      sources(sheet.columns(), sheet.rows()),
+      first_(sheet.row_of(begin)),
+      end_(sheet.row_of(begin + static_cast<int>(plan.size()) - 1) + 1) {
+    if (earth && !has_earth_edge(sheet, sun)) earth.reset();
+    if (!earth && !is_steep(sheet, plan)) {
+        lit.set_all(0, sheet.rows());
         return;
-    Carried carried(width);
-    for (int row = first; row <= last; ++row) {
-        const RowOfRays rays(sheet, plan, begin, row);
-        unsigned char* const of_row = sources.data() + static_cast<std::size_t>(row) * width;
-        for (int column = 0; column < sheet.columns(); ++column)
-            of_row[column] = rays.is_source(sheet, sheet.at(column, row));
-        carried.go_over(sheet, sun, row, rays, earth, of_row,
-                        states.data() + static_cast<std::size_t>(row) * width);
+    }
+    lit.set_all(0, first_);
+    lit.set_all(end_, sheet.rows());
+    LinesOverCells lines(sheet, sun, plan, begin, earth);
+    for (int row = first_; row < end_; ++row) {
+        if (lines.go_over(row, *this)) continue;
+        lit = dark = PatchFlags(sheet.columns(), sheet.rows());
+        sources.set_all(0, sheet.rows());
+        return;
     }
 }
 
-void ShadedCells::join(const ShadedCells& other) {
-    for (std::size_t i = 0; i < states.size(); ++i) {
-        if (states[i] != other.states[i]) states[i] = kMixed;
-        sources[i] |= other.sources[i];
-    }
+void ShadedPatches::join(const ShadedPatches& other) {
+    for (int row = 0; row < std::max(end_, other.end_); ++row)
+        for (std::size_t i = 0; i < lit.row(row).size(); ++i) {
+            lit.row(row)[i] &= other.lit.row(row)[i];
+            dark.row(row)[i] &= other.dark.row(row)[i];
+            sources.row(row)[i] |= other.sources.row(row)[i];
+        }
     first_ = std::min(first_, other.first_), end_ = std::max(end_, other.end_);
 }
 
-bool ShadedCells::is_mixed() const {
-    constexpr double kMost = 0.9;
-    const std::span<const unsigned char> all = std::span(states).subspan(first_, end_ - first_);
-    return static_cast<double>(std::count(all.begin(), all.end(), kMixed)) >
-           kMost * static_cast<double>(all.size());
+bool ShadedPatches::is_mixed() const {
+    constexpr double kLeast = 0.1;
+    const std::int64_t known = lit.count(first_, end_) + dark.count(first_, end_);
+    return static_cast<double>(known) < kLeast * (end_ - first_) * lit.columns();
 }
 
-ShadeRanges shade_ranges(const CellSheet& sheet, const ShadedCells* before, const ShadedCells& sun,
-                         const ShadedCells* after) {
+ShadeRanges shade_ranges(const PatchSheet& sheet, const ShadedPatches* before,
+                         const ShadedPatches& sun, const ShadedPatches* after) {
     const int columns = sheet.columns(), rows = sheet.rows();
-    const auto width = static_cast<std::size_t>(columns);
-    Flags look(sun.states.size()), raise(look.size()), take(look.size()), dark(look.size()),
-        sources = sun.sources;
-    for (std::size_t i = 0; i < look.size(); ++i) {
-        dark[i] = sun.states[i] == ShadedCells::kDark;
-        look[i] = sun.states[i] == ShadedCells::kMixed ||
-                  (before && before->states[i] != sun.states[i]) ||
-                  (after && after->states[i] != sun.states[i]);
-        if (dark[i]) sources[i] = 0;  // all lines are over it
-    }
-    const auto row_of = [&](Flags& flags, int row) {
-        return flags.data() + static_cast<std::size_t>(row) * width;
+    PatchFlags look(columns, rows), raise(columns, rows), take(columns, rows);
+    const auto differ = [](const ShadedPatches* a, const ShadedPatches& b, int row, std::size_t i) {
+        if (!a) return Word{0};
+        return (a->lit.row(row)[i] ^ b.lit.row(row)[i]) |
+               (a->dark.row(row)[i] ^ b.dark.row(row)[i]);
     };
-    for (int row = 0; row < rows; ++row)
-        fill_gaps(row_of(look, row), columns);
-    // Lines are raised to sources, and to what is before the nearest rows of a post.
     for (int row = 0; row < rows; ++row) {
-        unsigned char* const to = row_of(raise, row);
-        add_beside(row_of(sources, row), columns, 1, to);
-        add_beside(row_of(look, row), columns, 1, to);
-        if (row + 1 < rows) add_beside(row_of(look, row + 1), columns, 1, to);
-        fill_gaps(to, columns);
+        const std::span<Word> to = look.row(row);
+        for (std::size_t i = 0; i < to.size(); ++i)
+            to[i] = ~(sun.lit.row(row)[i] | sun.dark.row(row)[i]) | differ(before, sun, row, i) |
+                    differ(after, sun, row, i);
+        trim(to, columns);
+        fill_gaps(to);
+    }
+    // Lines are raised to sources, and to what is before the nearest rows of a post.
+    std::vector<Word> wanted(look.row(0).size());
+    for (int row = 0; row < rows; ++row) {
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            wanted[i] = look.row(row)[i];
+            wanted[i] |= sun.sources.row(row)[i] & ~sun.dark.row(row)[i];  // lines are over those
+            if (row + 1 < rows) wanted[i] |= look.row(row + 1)[i];
+        }
+        add_beside(wanted, columns, 1, raise.row(row));
+        fill_gaps(raise.row(row));
     }
     // A line beside the grid is as high as the ground that it has left, be that how far off it may.
     for (const int column : {0, columns - 1}) {
         if (!sheet.is_border(column)) continue;
+        const auto word = static_cast<std::size_t>(column / PatchFlags::kBits);
+        const Word bit = Word{1} << (column % PatchFlags::kBits);
         bool is_looked_at = false;
         for (int row = rows - 1; row >= 0; --row) {
-            is_looked_at = is_looked_at || row_of(look, row)[column];
-            if (is_looked_at) row_of(raise, row)[column] = 1;
+            is_looked_at = is_looked_at || (look.row(row)[word] & bit) != 0;
+            if (is_looked_at) raise.row(row)[word] |= bit;
         }
     }
     for (int row = 0; row < rows; ++row) {
-        add_beside(row_of(raise, row), columns, 2, row_of(take, row));
-        if (row + 1 < rows) add_beside(row_of(raise, row + 1), columns, 2, row_of(take, row));
-        fill_gaps(row_of(take, row), columns);
+        add_beside(raise.row(row), columns, 2, take.row(row));
+        if (row + 1 < rows) add_beside(raise.row(row + 1), columns, 2, take.row(row));
+        fill_gaps(take.row(row));
     }
     ShadeRanges found;
-    const auto set = [&](ShadeRanges::Of of, Flags& flags) {
+    const auto set = [&](ShadeRanges::Of of, const PatchFlags& flags) {
         ShadeRanges::OfRows& to = found.of[of];
         to.begins.reserve(static_cast<std::size_t>(rows) + 1);
         for (int row = 0; row < rows; ++row) {
-            add_ranges(sheet, row_of(flags, row), to.ranges);
+            add_ranges(sheet, flags.row(row), to.ranges);
             to.begins.push_back(static_cast<std::uint32_t>(to.ranges.size()));
         }
     };
     set(ShadeRanges::kLook, look);
     set(ShadeRanges::kRaise, raise);
     set(ShadeRanges::kTake, take);
-    set(ShadeRanges::kDark, dark);
+    set(ShadeRanges::kDark, sun.dark);
     return found;
 }
 

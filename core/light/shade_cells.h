@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -9,7 +10,7 @@
 
 #include "light/sweep.h"
 
-/// Where shade can be at all: what spares sweeps most of the ground where the sun is high.
+/// Where shade can be at all: what spares sweeps ground that is lit, or in the shade, anyway.
 namespace relevo::light {
 
 /// Lines of a sweep at a row. Line i is the ray through the reference, which is a post, moved by i
@@ -26,51 +27,57 @@ struct ColumnRange {
     int begin = 0, end = 0;
 };
 
-/// What is known of the ground of squares of kPosts posts a side.
+/// What is known of the ground of cells of kPosts posts a side, row by row.
 class ShadeCells {
   public:
-    static constexpr int kPosts = 16;
+    static constexpr int kPosts = 4;
+    static constexpr float kHole_m = -1e9F;  ///< how low a hole counts as
 
     /// @param height_m  as Sweep has it
     ShadeCells(const float* height_m, int columns, int rows, std::ptrdiff_t stride);
 
-    struct Cell {
-        /// With the posts beside; minus infinity where there are holes for the lowest.
-        float lowest_m, highest_m;
-        /// How far the ground goes down from post to post at most, also to those beside: to the
-        /// next row, to the one before, and to the next column, to the one before. Infinite
-        /// by holes.
-        float down_m[4];
-        /// Some row has no lower post, neither here nor in the cell before on that row nor in the
-        /// next one; likewise some column.
-        float row_ridge_m[2], column_ridge_m[2];
+    /// Of a cell.
+    enum Figure {
+        kLowest,
+        kHighest,
+        /// How far the ground goes down from post to post at most: from posts of the cell, and of
+        /// columns beside, to the next row or to the one before; from posts of the cell, and of
+        /// columns and rows beside, to the next column or to the one before. More than anything by
+        /// holes.
+        kDownToNextRow,
+        kDownToRowBefore,
+        kDownToNextColumn,
+        kDownToColumnBefore,
     };
+    static constexpr std::size_t kFigures = 6;
+
     int columns() const { return columns_; }
     int rows() const { return rows_; }
-    const Cell& at(int column, int row) const {
-        return cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                      static_cast<std::size_t>(column)];
+    /// A figure of a row of cells, from the first column on.
+    const float* row(Figure figure, int row) const {
+        return figures_[figure].data() +
+               static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
     }
-    /// Of all cells, what Cell::down_m is of one.
-    const float (&steepest_m() const)[4] { return steepest_m_; }
+    /// Of all cells.
+    float most(Figure figure) const { return most_[figure]; }
 
   private:
     int columns_, rows_;
-    std::vector<Cell> cells_;
-    float steepest_m_[4];
+    std::array<std::vector<float>, kFigures> figures_;
+    std::array<float, kFigures> most_;
 };
 
-/// What a sweep has to look at, for each row of cells of a sheet.
+/// What a sweep has to look at, for each row of patches of a sheet.
 struct ShadeRanges {
     /// A post whose edge is asked for; a line that is raised to its ground; ground of either.
     /// Or that of posts in the dark.
     enum Of { kLook, kRaise, kTake, kDark };
     struct OfRows {
-        std::vector<ColumnRange> ranges;       // of one row of cells after the other
+        std::vector<ColumnRange> ranges;       // of one row of patches after the other
         std::vector<std::uint32_t> begins{0};  // of each row's, and the end
     };
     OfRows of[4];
-    /// Of a row of cells, one after the other; those at the border go on beyond it.
+    /// Of a row of patches, one after the other; those at the border go on beyond it.
     std::span<const ColumnRange> at(Of what, int row) const {
         const OfRows& all = of[what];
         const auto i = static_cast<std::size_t>(row);
@@ -78,61 +85,67 @@ struct ShadeRanges {
     }
 };
 
-/// The cells of a grid as a sweep goes over them: away from the sun from row to row.
-struct CellSheet {
-    const ShadeCells& cells;
-    bool along_columns, mirrored;
-    int lines;               ///< of the sheet: rows of posts
-    ColumnRange some{0, 0};  ///< columns of cells that it has
+/// A grid as a sweep goes over it, away from the sun from row to row, in patches of some columns
+/// and rows: what is looked at or left out as a whole.
+struct PatchSheet {
+    static constexpr int kColumns = 16, kRows = 8;  ///< of posts
+    static constexpr int kCellsAcross = kColumns / ShadeCells::kPosts;
 
-    /// @param posts  columns of the sheet that are looked at; it has all cells with any of them
-    CellSheet(const ShadeCells& all, bool turned, bool in_a_mirror, int rows_of_posts,
-              const ColumnRange& posts)
-        : cells(all), along_columns(turned), mirrored(in_a_mirror), lines(rows_of_posts) {
+    const ShadeCells& cells;  ///< of the sheet, its rows as they are without a mirror
+    bool mirrored;
+    int lines;               ///< of the sheet: rows of posts
+    ColumnRange some{0, 0};  ///< columns of patches that it has
+
+    /// @param posts  columns of the sheet that are looked at; it has all patches with any of them
+    PatchSheet(const ShadeCells& all, bool in_a_mirror, int rows_of_posts, const ColumnRange& posts)
+        : cells(all), mirrored(in_a_mirror), lines(rows_of_posts) {
         const int columns = all_columns();
-        some.begin = std::clamp(posts.begin / ShadeCells::kPosts, 0, columns - 1);
-        some.end = std::clamp((posts.end - 1) / ShadeCells::kPosts + 1, some.begin + 1, columns);
+        some.begin = std::clamp(posts.begin / kColumns, 0, columns - 1);
+        some.end = std::clamp((posts.end - 1) / kColumns + 1, some.begin + 1, columns);
     }
 
-    int all_columns() const { return along_columns ? cells.rows() : cells.columns(); }
+    int all_columns() const { return (cells.columns() + kCellsAcross - 1) / kCellsAcross; }
     int columns() const { return some.end - some.begin; }
-    int rows() const { return along_columns ? cells.columns() : cells.rows(); }
-    /// Of the sheet, where a column of cells begins; it need not end in as many posts.
-    int first_column(int column) const { return (some.begin + column) * ShadeCells::kPosts; }
+    int rows() const { return (lines + kRows - 1) / kRows; }
+    /// Of the sheet, where a column of patches begins; it need not end in as many posts.
+    int first_column(int column) const { return (some.begin + column) * kColumns; }
     /// A column at which the grid ends.
     bool is_border(int column) const {
         return some.begin + column == 0 || some.begin + column + 1 == all_columns();
     }
-    /// The row of cells that a row of the sheet is in.
+    /// The row of patches that a row of the sheet is in.
     int row_of(int row) const {
-        const int r = (mirrored ? lines - 1 - row : row) / ShadeCells::kPosts;
+        const int r = (mirrored ? lines - 1 - row : row) / kRows;
         return mirrored ? rows() - 1 - r : r;
     }
-    /// The rows of the sheet [first, end) that a row of cells has.
-    int first_row(int row) const {
-        return mirrored ? (row == 0 ? 0 : lines - (rows() - row) * ShadeCells::kPosts)
-                        : row * ShadeCells::kPosts;
-    }
-    int end_row(int row) const { return row + 1 < rows() ? first_row(row + 1) : lines; }
-    const ShadeCells::Cell& at(int column, int row) const {
-        const int r = mirrored ? rows() - 1 - row : row;
-        const int c = some.begin + column;
-        return along_columns ? cells.at(r, c) : cells.at(c, r);
-    }
-    /// So high is all ground of some row at least, here and on one side.
-    float ridge_m(const ShadeCells::Cell& cell, bool after) const {
-        return (along_columns ? cell.column_ridge_m : cell.row_ridge_m)[after];
-    }
-    /// How far ground goes down at most: to the next row, away from the sun, and to the column
-    /// before and after.
-    struct Down {
-        float away, before, after;
-    };
-    /// @param down_m  as a cell has it
-    Down down_m(const float (&down_m)[4]) const {
-        const int along = along_columns ? 2 : 0, across = 2 - along;
-        return {down_m[along + mirrored], down_m[across + 1], down_m[across]};
-    }
+};
+
+/// A flag for each patch of a sheet.
+class PatchFlags {
+  public:
+    using Word = std::uint64_t;
+    static constexpr int kBits = 64;
+
+    PatchFlags() = default;
+    PatchFlags(int columns, int rows)
+        : columns_(columns),
+          words_(static_cast<std::size_t>((columns + kBits - 1) / kBits)),
+          bits_(words_ * static_cast<std::size_t>(rows), 0) {}
+
+    int columns() const { return columns_; }
+    /// Of column k the bit k % kBits of word k / kBits; further ones are 0.
+    std::span<Word> row(int at) { return std::span(bits_).subspan(index(at), words_); }
+    std::span<const Word> row(int at) const { return std::span(bits_).subspan(index(at), words_); }
+    /// Rows [first, end).
+    void set_all(int first, int end);
+    std::int64_t count(int first, int end) const;
+
+  private:
+    std::size_t index(int at) const { return static_cast<std::size_t>(at) * words_; }
+
+    int columns_ = 0;
+    std::size_t words_ = 0;
+    std::vector<Word> bits_;
 };
 
 /// The smooth Earth around a DEM, which hides suns that are lower than level.
@@ -140,31 +153,32 @@ struct EarthAround {
     double lowest_m = 0, curvature = 0;
 };
 
-/// What is known of the posts of cells before a sun is swept. Ground shades what is behind it only
-/// from where it goes down more steeply than the rays do: elsewhere the ground next to it is higher
-/// on the ray.
-struct ShadedCells {
-    enum State : unsigned char { kLit, kMixed, kDark };  ///< all of a cell's posts, or not known
-    std::vector<unsigned char> states, sources;          ///< row by row
+/// What is known of the posts of patches before a sun is swept. Ground shades what is behind it
+/// only from where it goes down more steeply than the rays do: elsewhere the ground next to it is
+/// higher on the ray. So lines are followed from cell to cell, some together: how high they are at
+/// most where they may shade anything, and at least.
+struct ShadedPatches {
+    PatchFlags lit, dark;  ///< all of a patch's posts; where neither is set it is not known
+    PatchFlags sources;    ///< some ground of a patch may shade anything
 
     /// @param sun    over the sheet; of its tangents
     /// @param plan   rows of the sheet from `begin` on
     /// @param earth  none: it hides nothing
-    ShadedCells(const CellSheet& sheet, const SweepSun& sun, std::span<const RowPlan> plan,
-                int begin, std::optional<EarthAround> earth);
+    ShadedPatches(const PatchSheet& sheet, const SweepSun& sun, std::span<const RowPlan> plan,
+                  int begin, std::optional<EarthAround> earth);
     /// What is known where this sun is taken for some posts and another one for others.
-    void join(const ShadedCells& other);
-    /// So much of what the sun's rays go over is not known that all may be looked at.
+    void join(const ShadedPatches& other);
+    /// So little of what the sun's rays go over is known that all may be looked at.
     bool is_mixed() const;
 
   private:
-    std::size_t first_ = 0, end_ = 0;  // of the cells that they go over
+    int first_ = 0, end_ = 0;  // rows of patches that they go over
 };
 
 /// What is to be looked at so that posts that any of three suns can shade have the edge of the one
 /// in the middle, to the bit, as if all were.
 /// @param before, after  none: the sun is the first, or the last one
-ShadeRanges shade_ranges(const CellSheet& sheet, const ShadedCells* before, const ShadedCells& sun,
-                         const ShadedCells* after);
+ShadeRanges shade_ranges(const PatchSheet& sheet, const ShadedPatches* before,
+                         const ShadedPatches& sun, const ShadedPatches* after);
 
 }  // namespace relevo::light

@@ -1060,11 +1060,14 @@ const float* Sweep::transposed() const {
     return transposed_.data();
 }
 
-const ShadeCells& Sweep::cells() const {
-    std::call_once(cells_once_, [&] {
-        cells_ = std::make_shared<const ShadeCells>(height_m_, columns_, rows_, stride_);
+const ShadeCells& Sweep::cells(bool along_columns) const {
+    const auto k = static_cast<std::size_t>(along_columns);
+    std::call_once(cells_once_[k], [&] {
+        cells_[k] = along_columns
+                        ? std::make_shared<const ShadeCells>(transposed(), rows_, columns_, rows_)
+                        : std::make_shared<const ShadeCells>(height_m_, columns_, rows_, stride_);
     });
-    return *cells_;
+    return *cells_[k];
 }
 
 Sweep::Sweep(Read read, int columns, int rows, float lowest_m, float highest_m)
@@ -1356,17 +1359,17 @@ struct Sweep::Blocks::BlockTerms {
 /// The suns of a moment, and what of the ground matters to them.
 struct Sweep::Blocks::Moment {
     std::vector<OneBand> bands;
-    std::optional<CellSheet> cells;
+    std::optional<PatchSheet> sheet;
     std::optional<ShadeRanges> ranges;  // none: everywhere
 
     template <typename Use>
     void each_range(ShadeRanges::Of of, int row, const Use& use) const {
         if (!ranges) return use(kAllColumns);
-        for (const ColumnRange& range : ranges->at(of, cells->row_of(row)))
+        for (const ColumnRange& range : ranges->at(of, sheet->row_of(row)))
             use(range);
     }
     bool has_any(ShadeRanges::Of of, int row) const {
-        return !ranges || !ranges->at(of, cells->row_of(row)).empty();
+        return !ranges || !ranges->at(of, sheet->row_of(row)).empty();
     }
     /// No ground matters anywhere.
     bool has_none() const { return ranges && ranges->of[ShadeRanges::kTake].ranges.empty(); }
@@ -1472,7 +1475,7 @@ void Sweep::Blocks::add_band(const Band& band, const SweepWindow& window, float 
 }
 
 void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvature) {
-    std::vector<std::optional<ShadedCells>> shaded(suns.size());
+    std::vector<std::optional<ShadedPatches>> shaded(suns.size());
     // What is known beforehand is so of one path over all of the grid.
     const auto is_known = [&](std::size_t k) {
         return !suns[k].all_posts && suns[k].bands.size() == 1;
@@ -1487,12 +1490,12 @@ void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvatu
         if (!is_known(k)) continue;
         Moment& moment = *moments_[k];
         const OneBand& band = moment.bands.front();
-        moment.cells.emplace(sweep_.cells(), view_->along_columns, view_->mirrored,
-                             view_->sheet.rows, ground);
+        moment.sheet.emplace(sweep_.cells(view_->along_columns), view_->mirrored, view_->sheet.rows,
+                             ground);
         for (const auto& sun : band.suns) {
-            const ShadedCells found(*moment.cells, sun->view.sun, sun->plan.rows(),
-                                    sun->plan.begin(),
-                                    EarthAround{sweep_.lowest_m_, earth_curvature});
+            const ShadedPatches found(*moment.sheet, sun->view.sun, sun->plan.rows(),
+                                      sun->plan.begin(),
+                                      EarthAround{sweep_.lowest_m_, earth_curvature});
             if (shaded[k])
                 shaded[k]->join(found);
             else
@@ -1504,7 +1507,7 @@ void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvatu
         if (!shaded[k] || (!is_first && !shaded[k - 1]) || (!is_last && !shaded[k + 1])) continue;
         if (shaded[k]->is_mixed()) continue;
         moments_[k]->ranges =
-            shade_ranges(*moments_[k]->cells, is_first ? nullptr : &*shaded[k - 1], *shaded[k],
+            shade_ranges(*moments_[k]->sheet, is_first ? nullptr : &*shaded[k - 1], *shaded[k],
                          is_last ? nullptr : &*shaded[k + 1]);
     }
 }

@@ -10,8 +10,8 @@
 #include <vector>
 
 /// The shadows that ground casts, for every post of a grid at once. This file, sweep_kernels.h,
-/// shade_cells.h and their sources need nothing else of the project but base/parallel_for.h and a
-/// constant of base/units.h.
+/// shade_cells.h and their sources need nothing else of the project but base/parallel_for.h,
+/// base/wide_loops.h and a constant of base/units.h.
 namespace relevo::light {
 
 class ShadeCells;
@@ -160,7 +160,7 @@ class Sweep {
     View edge_view(const SweepSun& sun, const SweepWindow& window) const;
     double drop_m(float floor_m) const;  // that matters of what rays fall by
     const float* transposed() const;
-    const ShadeCells& cells() const;
+    const ShadeCells& cells(bool along_columns) const;
     template <typename OneStrip, typename Make, typename Look>
     void sweep_strips(View& view, double drop_m, const Make& make, const Look& look) const;
 
@@ -169,9 +169,10 @@ class Sweep {
     int columns_, rows_;
     std::ptrdiff_t stride_ = 0;
     float lowest_m_, highest_m_;
-    mutable std::once_flag once_, cells_once_;
-    mutable std::vector<float> transposed_;            // made for the first sun that needs it
-    mutable std::shared_ptr<const ShadeCells> cells_;  // likewise
+    // Made for the first sun that needs them; cells of rows, and of columns.
+    mutable std::once_flag once_, cells_once_[2];
+    mutable std::vector<float> transposed_;
+    mutable std::shared_ptr<const ShadeCells> cells_[2];
 };
 
 /// The edges of several suns over a window, block by block: some rows (or columns) of it for one
