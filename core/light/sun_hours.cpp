@@ -216,10 +216,17 @@ void add_light(const Light& light, int count) {
 }
 
 /// Posts that are lit at the last moment: what they have had of it so far.
-void add_lit(double at_h, std::span<const float> margin_m, std::span<float> lit_h) {
-    const auto when_h = static_cast<float>(at_h);
-    for (std::size_t i = 0; i < lit_h.size(); ++i)
-        lit_h[i] += margin_m[i] >= 0 ? when_h : 0;
+RELEVO_WIDE_LOOPS void add_lit(float at_h, const float* margin_m, std::size_t count, float* lit_h) {
+    for (std::size_t i = 0; i < count; ++i)
+        lit_h[i] += margin_m[i] >= 0 ? at_h : 0;
+}
+
+/// Sums of figures, in whole ticks.
+RELEVO_WIDE_LOOPS void add_ticks(const float* from, float ticks, int count, std::int32_t* to) {
+    for (int i = 0; i < count; ++i) {
+        const float sum = from[i] == from[i] ? from[i] : 0;  // a hole may have any
+        to[i] += static_cast<std::int32_t>(sum * ticks + std::copysign(0.5F, sum));
+    }
 }
 
 /// Where light comes or goes between two moments. Call before add_light().
@@ -332,11 +339,7 @@ class Totals {
 
     void add_whole(const float* from, float ticks, Array2d<std::int32_t>& sums, int row, int column,
                    int count) const {
-        std::int32_t* const to = &sums.at(column - part_.column, row - part_.row);
-        for (int i = 0; i < count; ++i) {
-            const float sum = from[i] == from[i] ? from[i] : 0;  // a hole may have any
-            to[i] += static_cast<std::int32_t>(sum * ticks + std::copysign(0.5F, sum));
-        }
+        add_ticks(from, ticks, count, &sums.at(column - part_.column, row - part_.row));
     }
 
     void add_spells(const PostLight& posts, int from, int row, int column, int count) const {
@@ -655,7 +658,8 @@ class FewDays {
 
     /// What is lit at the last sun has had light until then.
     void finish(const Series& series, PostLight& posts, Totals& totals) const {
-        add_lit(at_h_[series.last] - at_h_[series.first], posts.margin_m.all(), posts.lit_h.all());
+        add_lit(static_cast<float>(at_h_[series.last] - at_h_[series.first]),
+                posts.margin_m.all().data(), posts.lit_h.all().size(), posts.lit_h.all().data());
         totals.add(series, posts);
     }
 

@@ -1486,13 +1486,12 @@ void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvatu
             for (const auto& sun : moments_[k]->bands.front().suns)
                 ground = {std::min(ground.begin, sun->ground.begin),
                           std::max(ground.end, sun->ground.end)};
-    for (std::size_t k = 0; k < suns.size(); ++k) {
-        if (!is_known(k)) continue;
+    const auto find = [&](std::size_t k) {
+        if (!is_known(k)) return;
         Moment& moment = *moments_[k];
-        const OneBand& band = moment.bands.front();
         moment.sheet.emplace(sweep_.cells(view_->along_columns), view_->mirrored, view_->sheet.rows,
                              ground);
-        for (const auto& sun : band.suns) {
+        for (const auto& sun : moment.bands.front().suns) {
             const ShadedPatches found(*moment.sheet, sun->view.sun, sun->plan.rows(),
                                       sun->plan.begin(),
                                       EarthAround{sweep_.lowest_m_, earth_curvature});
@@ -1501,6 +1500,17 @@ void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvatu
             else
                 shaded[k] = found;
         }
+    };
+    // Between two suns of which little is known, little is of the others.
+    constexpr std::size_t kSome = 4;
+    const auto is_mixed = [&](std::size_t k) { return !shaded[k] || shaded[k]->is_mixed(); };
+    for (std::size_t k = 0; k < suns.size(); k += kSome)
+        find(k);
+    for (std::size_t k = 0; k < suns.size(); k += kSome) {
+        const std::size_t next = std::min(k + kSome, suns.size());
+        if (next < suns.size() && is_mixed(k) && is_mixed(next)) continue;
+        for (std::size_t i = k + 1; i < next; ++i)
+            find(i);
     }
     for (std::size_t k = 0; k < suns.size(); ++k) {
         const bool is_first = k == 0, is_last = k + 1 == suns.size();
