@@ -343,6 +343,7 @@ struct Steps {
         int far_set = 0;
         int first_line = 0, end_line = 0;  // which come over posts of the window that it shades
         int ground_column = 0;             // the first one that terms of line 0 have
+        double per_column = 0;             // of the way from the row before, where rays go aside
     };
     std::vector<Row> rows;  // from `begin` on
     int begin = 0;
@@ -376,8 +377,7 @@ class Terms {
     /// Rows [first, end) that have none yet.
     /// @param pitch  of the rows of ground in a strip
     void clear(int first, int end, int pitch) {
-        grounds_.clear();
-        distances_.clear();
+        count_ = 0;
         first_ = first;
         pitch_ = pitch;
         rows_.assign(static_cast<std::size_t>(std::max(0, end - first)), {});
@@ -404,7 +404,8 @@ class Terms {
 
     int first_ = 0, pitch_ = 0;
     std::vector<Row> rows_;
-    std::vector<Ground> grounds_;
+    std::size_t count_ = 0;
+    std::vector<Ground> grounds_;  // and room for more
     std::vector<double> distances_;
 };
 
@@ -463,6 +464,7 @@ Steps::Steps(const Plan& plan, const Wanted& wanted, const Nearness& of)
         const float at = step.between * static_cast<float>(nearness.line_sets);
         step.far_set = static_cast<int>(at);
         step.far_part = at - static_cast<float>(step.far_set);
+        if (row > begin) step.per_column = 1 / (here.shift - plan.row(row - 1).shift);
         rows.push_back(step);
     }
     set_lines(plan, wanted, *this);
@@ -472,8 +474,23 @@ Steps::Steps(const Plan& plan, const Wanted& wanted, const Nearness& of)
 /// Of rays that all fall from there to one row.
 class Terms::Maker {
   public:
-    Maker(Terms& terms, const Plan& plan, const Steps& steps, const RowPlan& to)
-        : terms_(terms), plan_(plan), steps_(steps), to_(to) {}
+    /// Room for what they meet, which is no more than so much.
+    Maker(Terms& terms, const Plan& plan, const Steps& steps, const RowPlan& to, std::size_t most)
+        : terms_(terms), plan_(plan), steps_(steps), to_(to) {
+        if (terms.grounds_.size() < terms.count_ + most) {
+            terms.grounds_.resize(2 * (terms.count_ + most));
+            if (steps.nearness.distances) terms.distances_.resize(terms.grounds_.size());
+        }
+        ground_ = terms.grounds_.data() + terms.count_;
+    }
+    ~Maker() { terms_.count_ = static_cast<std::size_t>(ground_ - terms_.grounds_.data()); }
+    Maker(const Maker&) = delete;
+    Maker& operator=(const Maker&) = delete;
+
+    /// What is the next one's number.
+    std::uint32_t at() const {
+        return static_cast<std::uint32_t>(ground_ - terms_.grounds_.data());
+    }
 
     /// The ground of a row, for rays that are at `shift` there.
     void add_row(int row, double shift) {
@@ -486,8 +503,7 @@ class Terms::Maker {
             part = 0;
         }
         const int at = origin(row) + column;  // at a post, what is beside it plays no part
-        terms_.grounds_.push_back({at, at + (part > 0), static_cast<float>(part)});
-        if (steps_.nearness.distances) terms_.distances_.push_back(to_.fall - plan_.row(row).fall);
+        add({at, at + (part > 0), static_cast<float>(part)}, plan_.row(row).fall);
     }
 
     /// The ground of all columns that such rays cross between row `row - 1` and row `row`.
@@ -499,21 +515,28 @@ class Terms::Maker {
         const int first = ceil_of(low);
         if (first > high) return;
         const int before = origin(row - 1), here = origin(row);
+        const double per_column = steps_.row(row).per_column;
         for (int column = first; column <= high; ++column) {
-            const double part = (column - from) / (until - from);
-            terms_.grounds_.push_back({before + column, here + column, static_cast<float>(part)});
-            if (steps_.nearness.distances)
-                terms_.distances_.push_back(to_.fall - (a.fall + part * (b.fall - a.fall)));
+            const double part = (column - from) * per_column;
+            add({before + column, here + column, static_cast<float>(part)},
+                a.fall + part * (b.fall - a.fall));
         }
     }
 
   private:
+    void add(const Ground& ground, double fall) {
+        if (steps_.nearness.distances)
+            terms_.distances_[static_cast<std::size_t>(ground_ - terms_.grounds_.data())] =
+                to_.fall - fall;
+        *ground_++ = ground;
+    }
     int origin(int row) const { return steps_.origin(row, terms_.pitch_); }
 
     Terms& terms_;
     const Plan& plan_;
     const Steps& steps_;
     const RowPlan& to_;
+    Ground* ground_;
 };
 
 void Terms::add(const Plan& plan, const Steps& steps, int row) {
@@ -521,15 +544,18 @@ void Terms::add(const Plan& plan, const Steps& steps, int row) {
     if (of.end() > 0) return;
     const Nearness& nearness = steps.nearness;
     const RowPlan& here = plan.row(row);
-    Maker maker(*this, plan, steps, here);
+    // Of each row one, and those of the columns that are crossed on the way there.
+    const std::size_t most = (nearness.line_sets + static_cast<std::size_t>(nearness.near_rows)) *
+                             static_cast<std::size_t>(steps.ground_columns + 1);
+    Maker maker(*this, plan, steps, here, most);
     for (std::size_t set = 0; set < kMostLineSets; ++set) {
-        of.begins[set] = static_cast<std::uint32_t>(grounds_.size());
+        of.begins[set] = maker.at();
         if (set >= nearness.line_sets) continue;
         const double offset = double(set) / double(nearness.line_sets);
         maker.add_row(row, here.shift + offset);
         if (row > plan.begin()) maker.add_columns(row, offset);
     }
-    of.begins[kMostLineSets] = static_cast<std::uint32_t>(grounds_.size());
+    of.begins[kMostLineSets] = maker.at();
     const double between = std::max(0.0, steps.row(row).column - here.shift);
     const int first =
         row >= steps.first_row ? std::max(row - nearness.near_rows, plan.begin()) : row;
@@ -537,7 +563,7 @@ void Terms::add(const Plan& plan, const Steps& steps, int row) {
         maker.add_row(at, plan.row(at).shift + between);
         maker.add_columns(at + 1, between);
     }
-    of.begins[kMostLineSets + 1] = static_cast<std::uint32_t>(grounds_.size());
+    of.begins[kMostLineSets + 1] = maker.at();
 }
 
 /// The last rows of ground under lines next to each other: those that posts look back over, and the
