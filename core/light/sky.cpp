@@ -300,14 +300,29 @@ glm::dvec3 SunSky::direction(double column, double row) const {
             std::sin(sun.elevation_rad)};
 }
 
-void SunSky::find_way() {
+/// Towards the sun from the middle of the DEM.
+glm::dvec2 SunSky::middle_step() const {
     const dem::Grid& grid = dem_.grid();
-    const glm::dvec2 middle((grid.columns() - 1) / 2.0, (grid.rows() - 1) / 2.0);
-    const geo::Geodetic place = grid.place(middle.x, middle.y);
-    const glm::dvec2 step =
-        moved(grid, place, at(place).azimuth_rad, 4 * dem_.widest_spacing_m()) - middle;
+    return step({(grid.columns() - 1) / 2.0, (grid.rows() - 1) / 2.0});
+}
+
+void SunSky::find_way() {
+    const glm::dvec2 step = middle_step();
     along_columns_ = std::abs(step.y) < std::abs(step.x);
     from_first_ = (along_columns_ ? step.x : step.y) < 0;
+}
+
+std::optional<SunSky> SunSky::going_like(const SunSky& other) const {
+    constexpr double kMost = 1.25;  // posts aside from each to the next
+    const glm::dvec2 step = middle_step();
+    const double along = other.along_columns_ ? step.x : step.y,
+                 aside = other.along_columns_ ? step.y : step.x;
+    if (!(std::abs(aside) <= kMost * std::abs(along)) || (along < 0) != other.from_first_)
+        return std::nullopt;
+    SunSky turned = *this;
+    turned.along_columns_ = other.along_columns_;
+    turned.from_first_ = other.from_first_;
+    return turned;
 }
 
 SunSky::Local SunSky::at(const geo::Geodetic& place) const {

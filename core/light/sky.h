@@ -117,6 +117,9 @@ class SunSky {
         return along_columns_ == other.along_columns_ && from_first_ == other.from_first_;
     }
 
+    /// The same, swept as another one is; none where rays would go too far aside.
+    std::optional<SunSky> going_like(const SunSky& other) const;
+
     /// The sun is under the horizon of every post.
     bool is_night() const;
 
@@ -152,6 +155,7 @@ class SunSky {
     Local at(double column, double row) const { return at(dem_.grid().place(column, row)); }
     class BandMaker;
     void find_way();
+    glm::dvec2 middle_step() const;
     glm::dvec2 step(const glm::dvec2& post) const;
     std::optional<SweepSun> cubic(const glm::dvec2& middle, double far_m,
                                   const glm::dvec3& shares) const;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <span>
@@ -265,6 +266,8 @@ void add_end(const SweepRun& run, double at_h, bool is_first, PostLight& posts) 
 /// alike. The last one is the first of the next series, unless night is between.
 struct Series {
     std::size_t first, last;
+    /// The last one, where it is not swept as its own way would have it but as the others.
+    std::shared_ptr<const SunSky> turned = nullptr;
 };
 
 /// The sums of all series, which come in any order and from several threads: whole numbers, so that
@@ -477,14 +480,22 @@ class FewDays {
             while (is_day(last + 1) && last - k < kTogether &&
                    skies_[last].goes_like(skies_[last + 1]))
                 ++last;
-            if (last == k && is_day(k + 1)) ++last;  // two that go otherwise
             all.push_back({k, last});
+            if (is_day(last + 1) && last - k < kTogether) {
+                const std::optional<SunSky> next = skies_[last + 1].going_like(skies_[last]);
+                if (next || last == k) all.back().last = ++last;
+                if (next) all.back().turned = std::make_shared<const SunSky>(*next);
+            }
             if (is_day(last + 1))
                 k = last - 1;
             else
                 k = last;
         }
         return all;
+    }
+
+    const SunSky& sky_of(const Series& series, std::size_t k) const {
+        return k == series.last && series.turned ? *series.turned : skies_[k];
     }
 
     /// Parts of a window, no wider across the way of sweeps than they are to be.
@@ -507,9 +518,10 @@ class FewDays {
         Windows windows(all.size());
         parallel_for(0, static_cast<int>(all.size()), 1, [&](int begin, int end) {
             for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-                const auto& [first, last] = all[i];
-                windows[i] = divide_in_bands(std::span(skies_).subspan(first, last - first + 1),
-                                             whole(dem_.grid()), part_);
+                std::vector<SunSky> skies;
+                for (std::size_t k = all[i].first; k <= all[i].last; ++k)
+                    skies.push_back(sky_of(all[i], k));
+                windows[i] = divide_in_bands(skies, whole(dem_.grid()), part_);
             }
         });
         return windows;
@@ -573,7 +585,7 @@ class FewDays {
 
     TileSun tile_sun(const Series& series, std::size_t k, const SunTile& tile,
                      std::size_t band) const {
-        TileSun sun{k, band, TileEdges(skies_[k], tile, 0), std::nullopt};
+        TileSun sun{k, band, TileEdges(sky_of(series, k), tile, 0), std::nullopt};
         if (irradiation_ && k > series.first) {
             const SunSky sky(dem_, moments_.middles[k - 1]);
             sun.beam.emplace(sky, tile, ClearSky(irradiation_->linke, moments_.distances_au[k - 1]),
@@ -587,7 +599,7 @@ class FewDays {
         Sweep::Blocks::Sun moment;
         moment.all_posts = irradiation_ || k == 0 || k + 1 == skies_.size();
         if (work.window->bands.empty()) {
-            const SunTile tile = tile_of(skies_[k], work.window->window, work.part);
+            const SunTile tile = tile_of(sky_of(work.series, k), work.window->window, work.part);
             suns.push_back(tile_sun(work.series, k, tile, 0));
             moment.bands.push_back({suns.back().edges.suns()});
             return moment;
