@@ -87,6 +87,8 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
     : columns_((columns + kPosts - 1) / kPosts), rows_((rows + kPosts - 1) / kPosts) {
     for (Floats& figures : figures_)
         figures.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    for (Floats& most : most_of_rows_)
+        most.resize(static_cast<std::size_t>(rows_));
     const auto row = [=](int at) { return height_m + at * stride; };
     const auto add = [&](int cells, ColumnFigures& to) {
         const int first = cells * kPosts, end = std::min(rows, first + kPosts);
@@ -121,10 +123,13 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
                     for (const Figure down :
                          {kDownToNextRow, kDownToRowBefore, kDownToNextColumn, kDownToColumnBefore})
                         figures_[down][i] = kSteep_m;
+            for (std::size_t k = 0; k < kFigures; ++k)
+                most_of_rows_[k][static_cast<std::size_t>(cells)] = *std::max_element(
+                    figures_[k].data() + first, figures_[k].data() + first + columns_);
         }
     });
     for (std::size_t k = 0; k < kFigures; ++k)
-        most_[k] = *std::max_element(figures_[k].begin(), figures_[k].end());
+        most_[k] = *std::max_element(most_of_rows_[k].begin(), most_of_rows_[k].end());
 }
 
 namespace {
@@ -159,6 +164,18 @@ struct Steepness {
     static Aside of(double aside) {
         if (aside < 0) return {ShadeCells::kDownToColumnBefore, -aside};
         return {ShadeCells::kDownToNextColumn, aside};
+    }
+    /// Whether ground is anywhere so steep that it may shade anything.
+    /// @param most  a figure of the ground there
+    template <typename Most>
+    bool may_shade(bool mirrored, const Most& most) const {
+        double beside_m = -kSteep_m;
+        for (const double aside : {least_aside, most_aside})
+            beside_m = std::max(beside_m, of(aside).posts * double{most(of(aside).down)});
+        return most(away(mirrored)) + beside_m >= least_fall_m;
+    }
+    static ShadeCells::Figure away(bool mirrored) {
+        return mirrored ? ShadeCells::kDownToRowBefore : ShadeCells::kDownToNextRow;
     }
 };
 
@@ -231,6 +248,13 @@ RELEVO_WIDE_LOOPS void raise_bundles(const Bundles& given) {
         of.most_m[k] = before <= low ? kNone_m : before;
         of.least_m[k] = least > low ? least : low;
     }
+}
+
+RELEVO_WIDE_LOOPS bool is_any_over(const float* most_m, int bundles) {
+    int any = 0;
+    for (int k = 0; k < bundles; ++k)
+        any |= most_m[k] > kNone_m;
+    return any != 0;
 }
 
 /// How far the lines that come over cells are over their ground, at most and at least.
@@ -387,8 +411,20 @@ class LinesOverCells {
     bool go_over_cells(int cells) {
         const auto [first, end] = rows_of(cells);
         if (first >= end) return true;
+        const int last = begin_ + static_cast<int>(plan_.size());
+        const Steepness steps(
+            sheet_, plan_.subspan(static_cast<std::size_t>(first - begin_),
+                                  static_cast<std::size_t>(std::min(end + 1, last) - first)));
+        const auto most_of_row = [&](ShadeCells::Figure figure) {
+            return sheet_.cells.most(figure, cells);
+        };
+        // Nothing is in the shade, nor gets there.
+        if (!earth_ && !any_ && !steps.may_shade(sheet_.mirrored, most_of_row)) {
+            std::fill(covered_m_.begin(), covered_m_.end(), -kSteep_m);
+            return true;
+        }
         rebase(row(first).fall);
-        find_bounds(cells, first, end);
+        find_bounds(cells, first, end, steps);
         double least = kInfinity, most = -kInfinity;
         for (int at = std::max(first - 1, begin_); at < end; ++at) {
             least = std::min(least, row(at).shift - sheet_.first_column(0));
@@ -407,6 +443,7 @@ class LinesOverCells {
                        .least_m = least_m_.data() + from,
                        .before_m = before_m_.data(),
                        .least_before_m = least_before_m_.data()});
+        any_ = is_any_over(most_m_.data(), static_cast<int>(most_m_.size()));
         find_cover({.cells = cells_,
                     .before_m = before_m_.data(),
                     .least_before_m = least_before_m_.data(),
@@ -425,11 +462,7 @@ class LinesOverCells {
         return sheet_.cells.row(figure, cells) + first_cell_;
     }
 
-    void find_bounds(int cells, int first, int end) {
-        const int last = begin_ + static_cast<int>(plan_.size());
-        const Steepness steps(
-            sheet_, plan_.subspan(static_cast<std::size_t>(first - begin_),
-                                  static_cast<std::size_t>(std::min(end + 1, last) - first)));
+    void find_bounds(int cells, int first, int end, const Steepness& steps) {
         const Steepness::Aside least = Steepness::of(steps.least_aside),
                                most = Steepness::of(steps.most_aside);
         const RowPlan &a = row(first), &b = row(end - 1);
@@ -496,6 +529,7 @@ class LinesOverCells {
     int first_cell_, cells_;
     int first_bundle_ = 0;
     double base_m_ = 0;
+    bool any_ = false;                            // of the bundles is over ground somewhere
     Floats low_m_, high_m_, source_m_;            // of a row of cells
     Floats over_m_, least_over_m_;                // likewise
     Floats steeper_m_, most_over_m_, covered_m_;  // of all of a row of patches
@@ -510,19 +544,6 @@ bool has_earth_edge(const PatchSheet& sheet, const SweepSun& sun) {
             if (sun.tangent_at(sheet.first_column(column) + (column == 0 ? -1 : 1), y) < 0)
                 return true;
     return false;
-}
-
-/// Whether ground is anywhere so steep that it may shade anything.
-bool is_steep(const PatchSheet& sheet, std::span<const RowPlan> plan) {
-    const Steepness steps(sheet, plan);
-    double beside_m = -kSteep_m;
-    for (const double aside : {steps.least_aside, steps.most_aside})
-        beside_m = std::max(
-            beside_m, Steepness::of(aside).posts * sheet.cells.most(Steepness::of(aside).down));
-    return sheet.cells.most(sheet.mirrored ? ShadeCells::kDownToRowBefore
-                                           : ShadeCells::kDownToNextRow) +
-               beside_m >=
-           steps.least_fall_m;
 }
 
 // --- Flags
@@ -618,7 +639,8 @@ ShadedPatches::ShadedPatches(const PatchSheet& sheet, const SweepSun& sun,
       first_(sheet.row_of(begin)),
       end_(sheet.row_of(begin + static_cast<int>(plan.size()) - 1) + 1) {
     if (earth && !has_earth_edge(sheet, sun)) earth.reset();
-    if (!earth && !is_steep(sheet, plan)) {
+    const auto most = [&](ShadeCells::Figure figure) { return sheet.cells.most(figure); };
+    if (!earth && !Steepness(sheet, plan).may_shade(sheet.mirrored, most)) {
         lit.set_all(0, sheet.rows());
         return;
     }

@@ -58,12 +58,15 @@ class ShadeCells {
         return figures_[figure].data() +
                static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
     }
-    /// Of all cells.
+    /// The most of a row's, and of all.
+    float most(Figure figure, int row) const {
+        return most_of_rows_[figure][static_cast<std::size_t>(row)];
+    }
     float most(Figure figure) const { return most_[figure]; }
 
   private:
     int columns_, rows_;
-    std::array<std::vector<float>, kFigures> figures_;
+    std::array<std::vector<float>, kFigures> figures_, most_of_rows_;
     std::array<float, kFigures> most_;
 };
 

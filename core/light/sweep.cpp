@@ -178,9 +178,10 @@ struct RayRows {
 class Plan {
   public:
     /// @param drop_m  what lines may fall by before they matter no more
-    Plan(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double drop_m)
-        : sheet_(sheet), sun_(sun) {
-        find_begin(window, drop_m);
+    /// @param begin   its first row, begin_of_window() or one before
+    Plan(const Sheet& sheet, const SweepSun& sun, const SweepWindow& window, double drop_m,
+         int begin)
+        : sheet_(sheet), sun_(sun), reach_m_(reach(sun, window, drop_m)), begin_(begin) {
         const int first = static_cast<int>(sun_.reference.row), end = window.row + window.rows;
         const RayRows ray(sun_, std::min(first, begin_), std::max(first + 1, end));
         for (int row = window.row - 1; row >= begin_; --row)
@@ -209,6 +210,17 @@ class Plan {
     Plan(const Plan&) = delete;
     Plan& operator=(const Plan&) = delete;
 
+    /// The first row from which shade can reach a window.
+    static int begin_of_window(const SweepSun& sun, const SweepWindow& window, double drop_m) {
+        const double reach_m = reach(sun, window, drop_m), from_m = sun.distance_m(window.row);
+        int begin = window.row;
+        for (RayWalk walk(sun, begin); begin > 0 && walk.distance_m() - from_m <= reach_m;
+             --begin) {
+            walk.step(-1);
+            if (std::isnan(walk.distance_m())) break;
+        }
+        return begin;
+    }
     /// The first row from which shade can reach a band while lines are over the grid.
     /// @param ray  at the band's rows; gets those from there on, too
     static int begin_of_band(const Sheet& sheet, const SweepSun& sun, const Wanted& wanted,
@@ -237,6 +249,7 @@ class Plan {
         return begin;
     }
 
+    double reach_m() const { return reach_m_; }
     int begin() const { return begin_; }
     int end() const { return begin_ + static_cast<int>(rows_.size()); }
     const RowPlan& row(int row) const { return rows_[static_cast<std::size_t>(row - begin_)]; }
@@ -306,22 +319,14 @@ class Plan {
                                        : std::numeric_limits<double>::infinity();
     }
 
-    /// The first row from which shade can reach the window.
-    void find_begin(const SweepWindow& window, double drop_m) {
-        const GridPair& more = sun_.tangent_a_post;
+    /// Likewise of a window.
+    static double reach(const SweepSun& sun, const SweepWindow& window, double drop_m) {
+        const GridPair& more = sun.tangent_a_post;
         const int right = window.column + window.columns - 1, end = window.row + window.rows - 1;
-        reach_m_ = reach(sun_,
-                         sun_.tangent_at(more.column > 0 ? window.column : right,
-                                         more.row > 0 ? window.row : end),
-                         drop_m);
-        const double from_m = sun_.distance_m(window.row);
-        begin_ = window.row;
-        RayWalk walk(sun_, begin_);
-        while (begin_ > 0 && walk.distance_m() - from_m <= reach_m_) {
-            walk.step(-1);
-            if (std::isnan(walk.distance_m())) break;
-            --begin_;
-        }
+        return reach(sun,
+                     sun.tangent_at(more.column > 0 ? window.column : right,
+                                    more.row > 0 ? window.row : end),
+                     drop_m);
     }
 
     static constexpr double kMargin = 1.05;  // of a reach
@@ -334,10 +339,15 @@ class Plan {
     std::vector<RowPlan> rows_;
 };
 
+/// The column of the post that belongs to line 0.
+int column_at(const RowPlan& row) {
+    return ceil_of(row.shift - kOnLine);
+}
+
 /// Where posts and lines are on each row, the same for all strips.
 struct Steps {
     struct Row {
-        int column = 0;      // of the post that belongs to line 0
+        int column = 0;      // column_at()
         float between = 0;   // how far on towards the next line each post stands
         float far_part = 0;  // of posts, between the lines before and behind
         int far_set = 0;
@@ -458,7 +468,7 @@ Steps::Steps(const Plan& plan, const Wanted& wanted, const Nearness& of)
     for (int row = plan.begin(); row < plan.end(); ++row) {
         Row step;
         const RowPlan& here = plan.row(row);
-        step.column = ceil_of(here.shift - kOnLine);
+        step.column = column_at(here);
         const double between = std::max(0.0, step.column - here.shift);
         step.between = static_cast<float>(between < kOnLine ? 0 : between);
         const float at = step.between * static_cast<float>(nearness.line_sets);
@@ -938,13 +948,14 @@ class FanStrip {
 struct Extent {
     int first_line = std::numeric_limits<int>::max(), end_line = std::numeric_limits<int>::min();
 
-    Extent(const Steps& steps, const Wanted& wanted) {
+    Extent(const Plan& plan, const Wanted& wanted) {
         const SweepWindow& window = wanted.window;
         for (int row = window.row; row < window.row + window.rows; ++row) {
             const ColumnRange columns = wanted.at(row);
             if (columns.begin >= columns.end) continue;
-            first_line = std::min(first_line, columns.begin - steps.row(row).column);
-            end_line = std::max(end_line, columns.end - steps.row(row).column);
+            const int column = column_at(plan.row(row));
+            first_line = std::min(first_line, columns.begin - column);
+            end_line = std::max(end_line, columns.end - column);
         }
     }
 };
@@ -1211,9 +1222,9 @@ void Sweep::sweep_strips(View& view, double drop_m, const Make& make, const Look
     const SweepWindow& w = view.window;
     Sheet& sheet = view.sheet;
     const Wanted wanted{w};
-    const Plan plan(sheet, view.sun, w, drop_m);
+    const Plan plan(sheet, view.sun, w, drop_m, Plan::begin_of_window(view.sun, w, drop_m));
     const Steps steps(plan, wanted, OneStrip::kNearness);
-    const Extent extent(steps, wanted);
+    const Extent extent(plan, wanted);
     const int lines = extent.end_line - extent.first_line;
     const int width = width_of_strips(lines, OneStrip::kMostWidth);
     const int strips = (lines + width - 1) / width;
@@ -1311,27 +1322,24 @@ void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
 struct Sweep::Blocks::OneSun {
     View view;
     Plan plan;
-    std::shared_ptr<const Steps> steps;
+    Extent extent;
+    ColumnRange ground;                  // columns that its lines go over
+    std::shared_ptr<const Steps> steps;  // none, nor strips: nothing is looked at
     std::vector<std::unique_ptr<Strip>> strips;
-    int pitch = 0;             // of their rows of ground
-    ColumnRange ground{0, 0};  // columns that its lines go over
+    int pitch = 0;  // of their rows of ground
 
-    OneSun(const Sweep& sweep, const View& of, const Wanted& wanted, float floor_m)
+    /// @param begin  as Plan has it
+    OneSun(const View& of, const Wanted& wanted, double drop_m, int begin)
         : view(of),
-          plan(view.sheet, view.sun, view.window, sweep.drop_m(floor_m)),
-          steps(std::make_shared<const Steps>(plan, wanted, Strip::kNearness)) {
-        make_strips(sweep, wanted, floor_m);
-    }
+          plan(view.sheet, view.sun, view.window, drop_m, begin),
+          extent(plan, wanted),
+          ground(columns()) {}
     /// Of a band.
-    /// @param of_band  its steps, if another sun has made them; these begin with the same row
-    OneSun(const Sweep& sweep, const View& of, const Wanted& wanted, const RayRows& ray, int begin,
-           std::shared_ptr<const Steps> of_band, float floor_m)
+    OneSun(const View& of, const Wanted& wanted, const RayRows& ray, int begin)
         : view(of),
           plan(view.sheet, view.sun, ray, begin, wanted.window.row + wanted.window.rows),
-          steps(std::move(of_band)) {
-        if (!steps) steps = std::make_shared<const Steps>(plan, wanted, Strip::kNearness);
-        make_strips(sweep, wanted, floor_m);
-    }
+          extent(plan, wanted),
+          ground(columns()) {}
     OneSun(const OneSun&) = delete;
     OneSun& operator=(const OneSun&) = delete;
 
@@ -1343,13 +1351,10 @@ struct Sweep::Blocks::OneSun {
     /// A strip comes to a row.
     void step(const Moment& moment, Strip& strip, int row, Terms& terms);
 
-  private:
-    void make_strips(const Sweep& sweep, const Wanted& wanted, float floor_m) {
-        const Extent extent(*steps, wanted);
-        constexpr int kBeside = 3;  // columns beside lines whose ground matters to posts
-        const auto [least, most] = plan.columns(plan.begin(), plan.end());
-        ground = {static_cast<int>(std::floor(least)) + extent.first_line - kBeside,
-                  static_cast<int>(std::ceil(most)) + extent.end_line + kBeside};
+    /// To be called before it goes over rows.
+    /// @param of  its own, or of another sun whose rays go the same way from the same row on
+    void make_strips(const std::shared_ptr<const Steps>& of, float lowest_m, float floor_m) {
+        steps = of;
         const int lines = extent.end_line - extent.first_line;
         const int count = (lines + Strip::kMostWidth - 1) / Strip::kMostWidth;
         const int width =
@@ -1358,7 +1363,15 @@ struct Sweep::Blocks::OneSun {
         for (int line = extent.first_line; line < extent.end_line; line += width)
             strips.push_back(std::make_unique<Strip>(view.sheet, plan, *steps,
                                                      widest_sweep_kernel(kMostLanes), line, width,
-                                                     sweep.lowest_m_, floor_m));
+                                                     lowest_m, floor_m));
+    }
+
+  private:
+    ColumnRange columns() const {
+        constexpr int kBeside = 3;  // columns beside lines whose ground matters to posts
+        const auto [least, most] = plan.columns(plan.begin(), plan.end());
+        return {static_cast<int>(std::floor(least)) + extent.first_line - kBeside,
+                static_cast<int>(std::ceil(most)) + extent.end_line + kBeside};
     }
 };
 
@@ -1366,6 +1379,17 @@ struct Sweep::Blocks::OneSun {
 struct Sweep::Blocks::OneBand {
     Wanted wanted;
     std::vector<std::unique_ptr<OneSun>> suns;
+
+    void make_strips(float lowest_m, float floor_m) {
+        if (suns.empty()) return;
+        // Of the sun whose shade reaches farthest, for all of them.
+        const auto& farthest = *std::max_element(
+            suns.begin(), suns.end(),
+            [](const auto& a, const auto& b) { return a->plan.reach_m() < b->plan.reach_m(); });
+        const auto steps = std::make_shared<const Steps>(farthest->plan, wanted, Strip::kNearness);
+        for (const auto& sun : suns)
+            sun->make_strips(steps, lowest_m, floor_m);
+    }
 };
 
 /// What the suns of a band meet at the rows of a block.
@@ -1433,17 +1457,27 @@ Sweep::Blocks::Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const Sw
     assert(!suns.empty() && go_together(suns));
     view_ =
         std::make_unique<View>(sweep.edge_view(suns.front().bands.front().suns.front(), window));
-    row_ = std::numeric_limits<int>::max();
     for (const Sun& of : suns) {
         moments_.push_back(std::make_unique<Moment>());
         for (const Band& band : of.bands)
             add_band(band, window, floor_m, *moments_.back());
     }
-    end_row_ = row_;
     // The first time that takes a look at all of the grid.
     const bool is_worth_it = std::int64_t{window.columns} * window.rows * std::ssize(suns) >=
                              std::int64_t{sweep.columns_} * sweep.rows_;
     if (is_worth_it && !sweep.read_) leave_out(suns, earth_curvature);
+    row_ = view_->window.row;
+    for (const auto& moment : moments_) {
+        if (moment->has_none()) continue;
+        for (OneBand& band : moment->bands) {
+            band.make_strips(sweep.lowest_m_, floor_m);
+            for (const auto& sun : band.suns) {
+                suns_.push_back(sun.get());
+                row_ = std::min(row_, sun->plan.begin());
+            }
+        }
+    }
+    end_row_ = row_;
 }
 
 Sweep::Blocks::~Blocks() = default;
@@ -1480,24 +1514,21 @@ void Sweep::Blocks::add_band(const Band& band, const SweepWindow& window, float 
     std::vector<View> views;
     for (const SweepSun& sun : band.suns)
         views.push_back(sweep_.edge_view(sun, window));
+    const double drop_m = sweep_.drop_m(floor_m);
     if (!to.wanted.is_band()) {
-        for (const View& view : views)
-            to.suns.push_back(std::make_unique<OneSun>(sweep_, view, to.wanted, floor_m));
-    } else {
-        RayRows ray(views.front().sun, w.row, w.row + w.rows);
         int begin = w.row;
         for (const View& view : views)
-            begin = std::min(begin, Plan::begin_of_band(view.sheet, view.sun, to.wanted,
-                                                        sweep_.drop_m(floor_m), ray));
+            begin = std::min(begin, Plan::begin_of_window(view.sun, w, drop_m));
         for (const View& view : views)
-            to.suns.push_back(std::make_unique<OneSun>(
-                sweep_, view, to.wanted, ray, begin,
-                to.suns.empty() ? nullptr : to.suns.front()->steps, floor_m));
+            to.suns.push_back(std::make_unique<OneSun>(view, to.wanted, drop_m, begin));
+        return;
     }
-    for (const auto& sun : to.suns) {
-        suns_.push_back(sun.get());
-        row_ = std::min(row_, sun->plan.begin());
-    }
+    RayRows ray(views.front().sun, w.row, w.row + w.rows);
+    int begin = w.row;
+    for (const View& view : views)
+        begin = std::min(begin, Plan::begin_of_band(view.sheet, view.sun, to.wanted, drop_m, ray));
+    for (const View& view : views)
+        to.suns.push_back(std::make_unique<OneSun>(view, to.wanted, ray, begin));
 }
 
 void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvature) {
