@@ -165,11 +165,14 @@ void each_part(const SweepRun& run, const Fill& fill, const Sweep::Use& use) {
 }
 
 /// How far off the suns of a window are at most [rad].
-double error_rad(const std::vector<SunSky>& suns, const SweepWindow& window) {
+/// @param enough  as SunSky::error_rad() has it
+double error_rad(const std::vector<SunSky>& suns, const SweepWindow& window,
+                 double enough_rad = kPi) {
     double worst = 0;
     for (const SunSky& sun : suns) {
         const std::optional<SunTile> tile = sun.tile(window);
-        worst = std::max(worst, tile ? sun.error_rad(*tile) : kPi);
+        worst = std::max(worst, tile ? sun.error_rad(*tile, enough_rad) : kPi);
+        if (worst > enough_rad) break;
     }
     return worst;
 }
@@ -194,7 +197,7 @@ void divide(const std::vector<SunSky>& suns, double tolerance_rad, const SweepWi
             const SweepWindow& part, std::size_t most, std::vector<SweepWindow>& windows) {
     const SweepWindow wanted = common(window, part);
     if (wanted.columns == 0 || wanted.rows == 0 || windows.size() >= most) return;
-    if (error_rad(suns, window) <= tolerance_rad) return windows.push_back(window);
+    if (error_rad(suns, window, tolerance_rad) <= tolerance_rad) return windows.push_back(window);
     const bool wide = window.columns > kLeastTile, high = window.rows > kLeastTile;
     if (!wide && !high) no_tile(suns.front().dem().grid());
     // Across that way across which the sun differs more; a small one across its length.
@@ -643,7 +646,7 @@ double SunSky::path_error_rad(const SunTile& tile, const glm::dvec2& post, const
     return worst;
 }
 
-double SunSky::error_rad(const SunTile& tile) const {
+double SunSky::error_rad(const SunTile& tile, double enough_rad) const {
     double worst = 0;
     const SweepWindow& w = tile.window;
     for (std::size_t k = 0; k < levels_; ++k) {
@@ -663,6 +666,7 @@ double SunSky::error_rad(const SunTile& tile) const {
             worst = std::max(worst, std::abs(std::atan(tangent) - seen));
             if (k == 0) worst = std::max(worst, path_error_rad(tile, post, local));
             if (std::isnan(worst + local.elevation_rad)) return kPi;
+            if (worst > enough_rad) return worst;
         }
     }
     return worst;

@@ -145,7 +145,8 @@ class SunSky {
     double reach_m(double apparent_rad) const;
 
     /// How far off a tile's sun is anywhere on it [rad].
-    double error_rad(const SunTile& tile) const;
+    /// @param enough_rad  where it is off by more, by how much does not matter
+    double error_rad(const SunTile& tile, double enough_rad = kPi) const;
 
   private:
     struct Local {
