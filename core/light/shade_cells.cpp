@@ -17,6 +17,11 @@ constexpr float kSteep_m = 1e9F;  // more than ground goes down anywhere
 constexpr float kNone_m = -4e9F;  // lines that shade nothing: lower than any hole
 constexpr double kSlack_m = 0.1;  // more than bounds of what rays fall by, and floats, are off
 constexpr int kSlack_posts = 2;   // as far as posts look beside them for lines
+/// A post has the mean of two lines' heights some rows before it, which over a kink of the ground
+/// between them are higher than its own ray met: by so much of the kink for each of those rows.
+constexpr float kOfKink = 1.0F / (4 * kLinesFromPostToPost * (kNearRows + 1));
+/// Cells around one that its posts look back over as far as that.
+constexpr int kCellsBack = (kNearRows + 1 + kPosts - 1) / kPosts;
 
 using Floats = std::vector<float>;
 
@@ -66,6 +71,21 @@ RELEVO_WIDE_LOOPS void add_down(const float* from_m, const float* to_m, int coun
     }
 }
 
+/// @param height_m, kink_m  of a post that has others on either side
+RELEVO_WIDE_LOOPS void add_kinks(const float* height_m, int count, float* kink_m) {
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i) {
+        const float kink = (height_m[i - 1] - height_m[i]) + (height_m[i + 1] - height_m[i]);
+        kink_m[i] = kink > kink_m[i] ? kink : kink_m[i];
+    }
+}
+
+RELEVO_WIDE_LOOPS void add_most(const float* from, int count, float* to) {
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i)
+        to[i] = from[i] > to[i] ? from[i] : to[i];
+}
+
 /// The most of each figure and of those behind it.
 /// @param beside  0: of 4 figures, 1: of those two on either side of them, too
 RELEVO_WIDE_LOOPS void find_most(const float* from, int count, int beside, float* most) {
@@ -101,6 +121,7 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
             add_heights(row(at), columns, to.at(kLowest), to.at(kHighest));
             if (at + 1 < rows) add_down(row(at), row(at + 1), columns, to.at(kDownToNextRow));
             if (at > 0) add_down(row(at), row(at - 1), columns, to.at(kDownToRowBefore));
+            add_kinks(row(at) + 1, columns - 2, to.at(kKink) + 1);
         }
     };
     parallel_for(0, rows_, 16, [&](int begin, int end) {
@@ -110,7 +131,7 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
             const std::size_t first =
                 static_cast<std::size_t>(cells) * static_cast<std::size_t>(columns_);
             for (const Figure figure : {kLowest, kHighest, kDownToNextRow, kDownToRowBefore,
-                                        kDownToNextColumn, kDownToColumnBefore}) {
+                                        kDownToNextColumn, kDownToColumnBefore, kKink}) {
                 const bool is_height = figure == kLowest || figure == kHighest;
                 float* const most = found.most.data();
                 find_most(found.at(figure), found.whole() - kPosts + 1, is_height ? 0 : 1, most);
@@ -123,13 +144,38 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
                     for (const Figure down :
                          {kDownToNextRow, kDownToRowBefore, kDownToNextColumn, kDownToColumnBefore})
                         figures_[down][i] = kSteep_m;
-            for (std::size_t k = 0; k < kFigures; ++k)
-                most_of_rows_[k][static_cast<std::size_t>(cells)] = *std::max_element(
-                    figures_[k].data() + first, figures_[k].data() + first + columns_);
         }
     });
-    for (std::size_t k = 0; k < kFigures; ++k)
+    spread_kinks();
+    const auto width = static_cast<std::size_t>(columns_);
+    for (std::size_t k = 0; k < kFigures; ++k) {
+        for (std::size_t i = 0; i < most_of_rows_[k].size(); ++i) {
+            const float* const of_row = figures_[k].data() + i * width;
+            most_of_rows_[k][i] = *std::max_element(of_row, of_row + width);
+        }
         most_[k] = *std::max_element(most_of_rows_[k].begin(), most_of_rows_[k].end());
+    }
+}
+
+/// To the cells around, and none that goes down.
+void ShadeCells::spread_kinks() {
+    const auto width = static_cast<std::size_t>(columns_);
+    const Floats of = figures_[kKink];
+    std::fill(figures_[kKink].begin(), figures_[kKink].end(), 0.0F);
+    parallel_for(0, rows_, 16, [&](int begin, int end) {
+        Floats most(width);
+        for (int row = begin; row < end; ++row) {
+            std::fill(most.begin(), most.end(), 0.0F);
+            for (int at = std::max(0, row - kCellsBack);
+                 at <= std::min(rows_ - 1, row + kCellsBack); ++at)
+                add_most(of.data() + static_cast<std::size_t>(at) * width, columns_, most.data());
+            float* const to = figures_[kKink].data() + static_cast<std::size_t>(row) * width;
+            for (int aside = -kCellsBack; aside <= kCellsBack; ++aside) {
+                const int from = std::max(0, -aside), last = columns_ - std::max(0, aside);
+                if (from < last) add_most(most.data() + from + aside, last - from, to + from);
+            }
+        }
+    });
 }
 
 namespace {
@@ -172,7 +218,7 @@ struct Steepness {
         double beside_m = -kSteep_m;
         for (const double aside : {least_aside, most_aside})
             beside_m = std::max(beside_m, of(aside).posts * double{most(of(aside).down)});
-        return most(away(mirrored)) + beside_m >= least_fall_m;
+        return most(away(mirrored)) + beside_m + kOfKink * most(ShadeCells::kKink) >= least_fall_m;
     }
     static ShadeCells::Figure away(bool mirrored) {
         return mirrored ? ShadeCells::kDownToRowBefore : ShadeCells::kDownToNextRow;
@@ -189,6 +235,7 @@ struct GroundBounds {
     const float* away_m;  // down to the next row
     std::array<const float*, 2> beside_m;
     std::array<float, 2> aside;
+    const float* kink_m;
     float least_fall_m;
     // What is found: the ground, level with the rays, how high what may shade anything is, and how
     // much more steeply it goes down than rays at most, of this row and those before.
@@ -205,7 +252,8 @@ RELEVO_WIDE_LOOPS void bound_ground(const GroundBounds& given) {
         const float high = of.highest_m[k] + ((a > b ? a : b) + of.slack_m);
         const float first = of.aside[0] * of.beside_m[0][k],
                     second = of.aside[1] * of.beside_m[1][k];
-        const float steeper = of.away_m[k] + (first > second ? first : second) - of.least_fall_m;
+        const float steeper = of.away_m[k] + (first > second ? first : second) +
+                              kOfKink * of.kink_m[k] - of.least_fall_m;
         of.low_m[k] = of.lowest_m[k] + ((a < b ? a : b) - of.slack_m);
         of.high_m[k] = high;
         of.source_m[k] = steeper >= 0 ? high : kNone_m;
@@ -485,6 +533,7 @@ class LinesOverCells {
                  cells),
              .beside_m = {figures(least.down, cells), figures(most.down, cells)},
              .aside = {static_cast<float>(least.posts), static_cast<float>(most.posts)},
+             .kink_m = figures(ShadeCells::kKink, cells),
              .least_fall_m = static_cast<float>(std::min(steps.least_fall_m, double{kSteep_m})),
              .low_m = low_m_.data() + kBeside,
              .high_m = high_m_.data(),

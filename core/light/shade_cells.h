@@ -22,6 +22,10 @@ struct RowPlan {
     double ramp = 0;        // likewise, more for each line
 };
 
+/// How sweeps look for edges: over so many rows a post's own ray is followed, and beyond it lies
+/// between two of so many lines from post to post.
+constexpr int kNearRows = 4, kLinesFromPostToPost = 2;
+
 /// Columns [begin, end) of a sheet.
 struct ColumnRange {
     int begin = 0, end = 0;
@@ -48,8 +52,11 @@ class ShadeCells {
         kDownToRowBefore,
         kDownToNextColumn,
         kDownToColumnBefore,
+        /// How much more the ground goes up from column to column behind a post than before it,
+        /// at most: of the cell and those two beside.
+        kKink,
     };
-    static constexpr std::size_t kFigures = 6;
+    static constexpr std::size_t kFigures = 7;
 
     int columns() const { return columns_; }
     int rows() const { return rows_; }
@@ -65,6 +72,8 @@ class ShadeCells {
     float most(Figure figure) const { return most_[figure]; }
 
   private:
+    void spread_kinks();
+
     int columns_, rows_;
     std::array<std::vector<float>, kFigures> figures_, most_of_rows_;
     std::array<float, kFigures> most_;
@@ -157,9 +166,9 @@ struct EarthAround {
 };
 
 /// What is known of the posts of patches before a sun is swept. Ground shades what is behind it
-/// only from where it goes down more steeply than the rays do: elsewhere the ground next to it is
-/// higher on the ray. So lines are followed from cell to cell, some together: how high they are at
-/// most where they may shade anything, and at least.
+/// only from where it goes down more steeply than the rays do, or nearly so: elsewhere the ground
+/// next to it is higher on the ray. So lines are followed from cell to cell, some together: how
+/// high they are at most where they may shade anything, and at least.
 struct ShadedPatches {
     PatchFlags lit, dark;  ///< all of a patch's posts; where neither is set it is not known
     PatchFlags sources;    ///< some ground of a patch may shade anything

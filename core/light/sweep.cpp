@@ -32,7 +32,7 @@ struct Nearness {
     bool distances;         // how far off ground is matters
 };
 constexpr std::size_t kMostLineSets = 2;
-constexpr Nearness kOfEdges{4, 2, 8, false};
+constexpr Nearness kOfEdges{kNearRows, kLinesFromPostToPost, 8, false};
 constexpr Nearness kOfHorizons{8, 1, 16, true};  // a row near costs less than a fan of rays
 constexpr double kSteepest = 1e4;                // tangent: 0.006 degrees from the zenith
 constexpr double kOnLine = 1e-6;   // of a post: a ray that meets a row there meets the post

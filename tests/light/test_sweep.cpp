@@ -5,6 +5,8 @@
 #include <functional>
 #include <limits>
 #include <mutex>
+#include <optional>
+#include <random>
 #include <vector>
 
 #include <fmt/format.h>
@@ -409,7 +411,14 @@ struct Together {
     SweepWindow window;
     std::vector<SweepSun> suns;
     bool all_posts;
+    std::vector<double> lifts{0};  // of tangents, by airs of which each is taken for some posts
     long looked_at = 0, left_lit = 0, left_dark = 0;
+
+    SweepSun sun(std::size_t k, std::size_t air) const {
+        SweepSun sun = suns[k];
+        sun.tangent += lifts[air];
+        return sun;
+    }
 
     /// Where a post is in arrays of the window.
     std::size_t index(const SweepRun& run, int i) const {
@@ -428,10 +437,16 @@ struct Together {
         const float floor_m = sweep.lowest_m() - 300;
         std::mutex mutex;
         std::vector<Sweep::Blocks::Sun> moments;
-        for (const SweepSun& sun : suns)
-            moments.push_back({{{{sun}}}, all_posts});
+        for (std::size_t k = 0; k < suns.size(); ++k) {
+            Sweep::Blocks::Band band;
+            for (std::size_t air = 0; air < lifts.size(); ++air)
+                band.suns.push_back(sun(k, air));
+            moments.push_back({{band}, all_posts});
+        }
         ASSERT_TRUE(Sweep::Blocks::go_together(moments));
-        std::vector<std::vector<float>> found(suns.size(), std::vector<float>(posts(), kHole));
+        const std::vector<std::vector<float>> none(lifts.size(),
+                                                   std::vector<float>(posts(), kHole));
+        std::vector<std::vector<std::vector<float>>> found(suns.size(), none);
         std::vector<bool> dark(posts());
         Sweep::Blocks blocks(sweep, moments, window, floor_m, kCurvature);
         while (blocks.next()) {
@@ -440,21 +455,25 @@ struct Together {
                     dark[index(run, i)] = true;
             });
             for (std::size_t k = 0; k < suns.size(); ++k)
-                blocks.each_edge(k, 0, 0, [&](const SweepRun& run) {
-                    for (int i = 0; i < run.count; ++i)
-                        found[k][index(run, i)] = run.found[i];
-                });
+                for (std::size_t air = 0; air < lifts.size(); ++air)
+                    blocks.each_edge(k, 0, air, [&](const SweepRun& run) {
+                        for (int i = 0; i < run.count; ++i)
+                            found[k][air][index(run, i)] = run.found[i];
+                    });
         }
-        for (std::size_t k = 0; k < suns.size(); ++k)
-            sweep.each_edge(
-                suns[k], window,
-                [&](const SweepRun& run) {
-                    const std::lock_guard lock(mutex);
-                    for (int i = 0; i < run.count; ++i)
-                        compare_post(run, i, found[k][index(run, i)], dark, suns[k],
-                                     sweep.lowest_m());
-                },
-                Sweep::kMostLanes, floor_m);
+        for (std::size_t air = 0; air < lifts.size(); ++air) {
+            std::vector<bool> dark_so_far = dark;
+            for (std::size_t k = 0; k < suns.size(); ++k)
+                sweep.each_edge(
+                    sun(k, air), window,
+                    [&](const SweepRun& run) {
+                        const std::lock_guard lock(mutex);
+                        for (int i = 0; i < run.count; ++i)
+                            compare_post(run, i, found[k][air][index(run, i)], dark_so_far,
+                                         sun(k, air), sweep.lowest_m());
+                    },
+                    Sweep::kMostLanes, floor_m);
+        }
     }
 
     /// @param dark  posts that have been in the shade so far
@@ -507,6 +526,94 @@ TEST(Sweep, BlocksHaveTheBitsOfEachSunAndLeaveOutWhatIsKnown) {
                 if (testing::Test::HasFailure()) return;
             }
         }
+}
+
+/// Steps, single rocks, slopes and holes, all of any size; or a plane with rocks.
+Heights broken_ground(std::mt19937& random, int columns, int rows) {
+    const auto any = [&](double least, double most) {
+        return std::uniform_real_distribution(least, most)(random);
+    };
+    const bool is_plane = any(0, 1) < 0.5;
+    const double step_m = is_plane ? 0 : std::exp(any(0, 6)), across = any(0.01, 0.3),
+                 along = any(0.01, 0.3), slope = any(-10, 10),
+                 rough_m = is_plane || any(0, 1) < 0.6 ? 0 : any(0, 20),
+                 rocks = std::exp(any(-9, -5));
+    Heights heights = heights_of(columns, rows, [&](int column, int row) {
+        const double wave = std::sin(across * column + 3) * std::sin(along * row + 1);
+        return 500 + step_m * std::floor(2 * wave) + slope * row + any(-rough_m, rough_m);
+    });
+    for (float& height_m : heights)
+        if (any(0, 1) < rocks)
+            height_m = any(0, 1) < 0.3 ? kHole : height_m + static_cast<float>(any(1, 300));
+    return heights;
+}
+
+TEST(Sweep, BlocksLeaveOutNothingElseOfAnyGround) {
+    std::mt19937 random(7);
+    const auto any = [&](double least, double most) {
+        return std::uniform_real_distribution(least, most)(random);
+    };
+    const auto whole = [&](int least, int most) {
+        return std::uniform_int_distribution(least, most)(random);
+    };
+    long looked_at = 0, left_lit = 0, left_dark = 0;
+    for (int round = 0; round < 2000; ++round) {
+        const Heights heights = broken_ground(random, whole(1, 130), whole(1, 130));
+        const int column = whole(0, heights.width() - 1), row = whole(0, heights.height() - 1);
+        const SweepWindow part{column, row, whole(1, heights.width() - column),
+                               whole(1, heights.height() - row)};
+        const double azimuth_deg = any(0, 360), elevation_deg = std::pow(any(0, 8), 2) - 2;
+        const GridPair spacing_m{any(20, 40), any(20, 40)};
+        std::vector<SweepSun> suns;
+        std::optional<bool> along_columns;
+        for (int k = 0; k < 7; ++k) {
+            SweepSun sun =
+                MapSun{azimuth_deg + 0.4 * k, elevation_deg + 0.3 * k, spacing_m, kCurvature}.over(
+                    heights);
+            if (!along_columns) along_columns = sun.along_columns();
+            sun.columns_set = along_columns;  // some go over the other way then
+            suns.push_back(sun);
+        }
+        Together some{heights,
+                      round % 2 == 0 ? part : SweepWindow{0, 0, heights.width(), heights.height()},
+                      suns, false};
+        if (round % 3 == 0) some.lifts = {0, any(-0.01, 0.01)};
+        std::vector<Sweep::Blocks::Sun> moments;
+        for (const SweepSun& sun : suns)
+            moments.push_back({{{{sun}}}, false});
+        if (!Sweep::Blocks::go_together(moments)) continue;
+        some.compare();
+        looked_at += some.looked_at, left_lit += some.left_lit, left_dark += some.left_dark;
+        ASSERT_FALSE(testing::Test::HasFailure())
+            << "round " << round << ": azimuth " << azimuth_deg << ", elevation " << elevation_deg;
+    }
+    const auto all = static_cast<double>(looked_at + left_lit + left_dark);
+    fmt::print(
+        "[ accuracy ] of any ground {:.0f} % of the posts are looked at, {:.0f} % are left lit "
+        "and {:.0f} % dark, none of them otherwise\n",
+        100 * double(looked_at) / all, 100 * double(left_lit) / all, 100 * double(left_dark) / all);
+    EXPECT_GT(left_lit, all / 20);
+    EXPECT_GT(left_dark, all / 20);
+}
+
+// A post has the mean of two lines, of which one is on the wall and the post's own ray not.
+TEST(Sweep, BlocksLeaveOutNothingElseBesideAWallAlongRays) {
+    const Heights heights =
+        heights_of(13, 55, [](int column, int row) { return (column < 5 ? 500 : 253) - 5 * row; });
+    long left_lit = 0;
+    for (double azimuth_deg = 354; azimuth_deg < 359; azimuth_deg += 0.05)
+        for (double elevation_deg = 27; elevation_deg < 32; elevation_deg += 0.5) {
+            std::vector<SweepSun> suns;
+            for (int k = 0; k < 7; ++k)
+                suns.push_back(
+                    MapSun{azimuth_deg + 0.4 * k, elevation_deg + 0.3 * k, {39.2, 20.9}, kCurvature}
+                        .over(heights));
+            Together some{heights, {0, 0, 13, 55}, suns, false};
+            some.compare();
+            left_lit += some.left_lit;
+            ASSERT_FALSE(testing::Test::HasFailure()) << azimuth_deg << " " << elevation_deg;
+        }
+    EXPECT_GT(left_lit, 0);
 }
 
 TEST(Sweep, ARayThatTurnsBackBeforeItsGroundIsFollowedFromWhereItComes) {
