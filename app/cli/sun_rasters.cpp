@@ -13,6 +13,7 @@
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "light/horizon.h"
+#include "light/sweep.h"
 #include "session/sun_raster.h"
 
 namespace relevo::cli {
@@ -175,13 +176,14 @@ void RasterRun::tell() const {
     for (const dem::Window& part : ground_.parts)
         most = std::max(most, posts_of(part));
     const dem::Grid& grid = ground_.posts.grid();
-    // Sweeps along columns have the heights a second time; those beyond memory have what is kept
-    // of them, and the file's blocks.
-    const double heights = ground_.posts.in_memory()
-                               ? 2.0 * sizeof(float) * grid.columns() * grid.rows()
-                               : static_cast<double>(sizeof(float)) *
-                                         static_cast<double>(arguments_.dem.options.max_posts) +
-                                     kBlocks_mib * kMiB;
+    // What sweeps keep; those beyond memory have what is kept of the heights, and the file's
+    // blocks.
+    const double heights =
+        ground_.posts.in_memory()
+            ? (sizeof(float) + light::Sweep::kBytesAPost) * grid.columns() * grid.rows()
+            : static_cast<double>(sizeof(float)) *
+                      static_cast<double>(arguments_.dem.options.max_posts) +
+                  kBlocks_mib * kMiB;
     // A result is written from what is kept of it.
     const double tiles =
         std::ceil(ground_.window.columns / kTile) * std::ceil(ground_.window.rows / kTile);

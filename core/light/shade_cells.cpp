@@ -17,9 +17,12 @@ constexpr float kSteep_m = 1e9F;  // more than ground goes down anywhere
 constexpr float kNone_m = -4e9F;  // lines that shade nothing: lower than any hole
 constexpr double kSlack_m = 0.1;  // more than bounds of what rays fall by, and floats, are off
 constexpr int kSlack_posts = 2;   // as far as posts look beside them for lines
-/// A post has the mean of two lines' heights some rows before it, which over a kink of the ground
-/// between them are higher than its own ray met: by so much of the kink for each of those rows.
-constexpr float kOfKink = 1.0F / (4 * kLinesFromPostToPost * (kNearRows + 1));
+/// Beyond its nearest rows a post has the mean of two lines' heights, which may be higher than what
+/// its own ray met. Ground that goes aside by a metre from column to column is then higher by so
+/// much for each of those rows; and where one line has fallen from afar and the other one lies on
+/// ground, they are to have fallen so far below all ground that may be told to be lit.
+constexpr float kMeanOfGround = 0.5F / (kLinesFromPostToPost * (kNearRows + 1)),
+                kMeanOfLines = 1.0F / kLinesFromPostToPost;
 /// Cells around one that its posts look back over as far as that.
 constexpr int kCellsBack = (kNearRows + 1 + kPosts - 1) / kPosts;
 
@@ -71,15 +74,6 @@ RELEVO_WIDE_LOOPS void add_down(const float* from_m, const float* to_m, int coun
     }
 }
 
-/// @param height_m, kink_m  of a post that has others on either side
-RELEVO_WIDE_LOOPS void add_kinks(const float* height_m, int count, float* kink_m) {
-#pragma GCC ivdep
-    for (int i = 0; i < count; ++i) {
-        const float kink = (height_m[i - 1] - height_m[i]) + (height_m[i + 1] - height_m[i]);
-        kink_m[i] = kink > kink_m[i] ? kink : kink_m[i];
-    }
-}
-
 RELEVO_WIDE_LOOPS void add_most(const float* from, int count, float* to) {
 #pragma GCC ivdep
     for (int i = 0; i < count; ++i)
@@ -121,7 +115,6 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
             add_heights(row(at), columns, to.at(kLowest), to.at(kHighest));
             if (at + 1 < rows) add_down(row(at), row(at + 1), columns, to.at(kDownToNextRow));
             if (at > 0) add_down(row(at), row(at - 1), columns, to.at(kDownToRowBefore));
-            add_kinks(row(at) + 1, columns - 2, to.at(kKink) + 1);
         }
     };
     parallel_for(0, rows_, 16, [&](int begin, int end) {
@@ -131,7 +124,7 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
             const std::size_t first =
                 static_cast<std::size_t>(cells) * static_cast<std::size_t>(columns_);
             for (const Figure figure : {kLowest, kHighest, kDownToNextRow, kDownToRowBefore,
-                                        kDownToNextColumn, kDownToColumnBefore, kKink}) {
+                                        kDownToNextColumn, kDownToColumnBefore}) {
                 const bool is_height = figure == kLowest || figure == kHighest;
                 float* const most = found.most.data();
                 find_most(found.at(figure), found.whole() - kPosts + 1, is_height ? 0 : 1, most);
@@ -146,7 +139,7 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
                         figures_[down][i] = kSteep_m;
         }
     });
-    spread_kinks();
+    find_aside();
     const auto width = static_cast<std::size_t>(columns_);
     for (std::size_t k = 0; k < kFigures; ++k) {
         for (std::size_t i = 0; i < most_of_rows_[k].size(); ++i) {
@@ -157,19 +150,17 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
     }
 }
 
-/// To the cells around, and none that goes down.
-void ShadeCells::spread_kinks() {
+void ShadeCells::find_aside() {
     const auto width = static_cast<std::size_t>(columns_);
-    const Floats of = figures_[kKink];
-    std::fill(figures_[kKink].begin(), figures_[kKink].end(), 0.0F);
     parallel_for(0, rows_, 16, [&](int begin, int end) {
         Floats most(width);
         for (int row = begin; row < end; ++row) {
             std::fill(most.begin(), most.end(), 0.0F);
             for (int at = std::max(0, row - kCellsBack);
                  at <= std::min(rows_ - 1, row + kCellsBack); ++at)
-                add_most(of.data() + static_cast<std::size_t>(at) * width, columns_, most.data());
-            float* const to = figures_[kKink].data() + static_cast<std::size_t>(row) * width;
+                for (const Figure down : {kDownToNextColumn, kDownToColumnBefore})
+                    add_most(this->row(down, at), columns_, most.data());
+            float* const to = figures_[kAside].data() + static_cast<std::size_t>(row) * width;
             for (int aside = -kCellsBack; aside <= kCellsBack; ++aside) {
                 const int from = std::max(0, -aside), last = columns_ - std::max(0, aside);
                 if (from < last) add_most(most.data() + from + aside, last - from, to + from);
@@ -218,7 +209,8 @@ struct Steepness {
         double beside_m = -kSteep_m;
         for (const double aside : {least_aside, most_aside})
             beside_m = std::max(beside_m, of(aside).posts * double{most(of(aside).down)});
-        return most(away(mirrored)) + beside_m + kOfKink * most(ShadeCells::kKink) >= least_fall_m;
+        return most(away(mirrored)) + beside_m + kMeanOfGround * most(ShadeCells::kAside) >=
+               least_fall_m;
     }
     static ShadeCells::Figure away(bool mirrored) {
         return mirrored ? ShadeCells::kDownToRowBefore : ShadeCells::kDownToNextRow;
@@ -235,7 +227,7 @@ struct GroundBounds {
     const float* away_m;  // down to the next row
     std::array<const float*, 2> beside_m;
     std::array<float, 2> aside;
-    const float* kink_m;
+    const float* aside_m;
     float least_fall_m;
     // What is found: the ground, level with the rays, how high what may shade anything is, and how
     // much more steeply it goes down than rays at most, of this row and those before.
@@ -253,8 +245,9 @@ RELEVO_WIDE_LOOPS void bound_ground(const GroundBounds& given) {
         const float first = of.aside[0] * of.beside_m[0][k],
                     second = of.aside[1] * of.beside_m[1][k];
         const float steeper = of.away_m[k] + (first > second ? first : second) +
-                              kOfKink * of.kink_m[k] - of.least_fall_m;
-        of.low_m[k] = of.lowest_m[k] + ((a < b ? a : b) - of.slack_m);
+                              kMeanOfGround * of.aside_m[k] - of.least_fall_m;
+        of.low_m[k] =
+            of.lowest_m[k] + ((a < b ? a : b) - of.slack_m) - kMeanOfLines * of.aside_m[k];
         of.high_m[k] = high;
         of.source_m[k] = steeper >= 0 ? high : kNone_m;
         of.steeper_m[k] = steeper > of.steeper_m[k] ? steeper : of.steeper_m[k];
@@ -359,7 +352,8 @@ RELEVO_WIDE_LOOPS void add_cover(const float* over_m, const float* least_over_m,
 }
 
 /// The figures of each cell and of those behind it that a patch has, too.
-RELEVO_WIDE_LOOPS void join_cells(int cells, float* steeper_m, float* over_m, float* covered_m) {
+RELEVO_WIDE_LOOPS void join_cells(int cells, float* steeper_m, float* over_m, float* covered_m,
+                                  float* covered_by_lines_m) {
     static_assert(PatchSheet::kCellsAcross == 4);
 #pragma GCC ivdep
     for (int k = 0; k < cells; ++k) {
@@ -368,11 +362,15 @@ RELEVO_WIDE_LOOPS void join_cells(int cells, float* steeper_m, float* over_m, fl
                         b = of[k + 2] > of[k + 3] ? of[k + 2] : of[k + 3];
             return a > b ? a : b;
         };
-        const float a = covered_m[k] < covered_m[k + 1] ? covered_m[k] : covered_m[k + 1],
-                    b = covered_m[k + 2] < covered_m[k + 3] ? covered_m[k + 2] : covered_m[k + 3];
+        const auto least = [k](const float* of) {
+            const float a = of[k] < of[k + 1] ? of[k] : of[k + 1],
+                        b = of[k + 2] < of[k + 3] ? of[k + 2] : of[k + 3];
+            return a < b ? a : b;
+        };
         steeper_m[k] = most(steeper_m);
         over_m[k] = most(over_m);
-        covered_m[k] = a < b ? a : b;
+        covered_m[k] = least(covered_m);
+        covered_by_lines_m[k] = least(covered_by_lines_m);
     }
 }
 
@@ -396,7 +394,7 @@ class LinesOverCells {
             each->resize(static_cast<std::size_t>(cells_));
         const auto in_patches =
             static_cast<std::size_t>(sheet.columns() * PatchSheet::kCellsAcross + 4);
-        for (Floats* const each : {&steeper_m_, &most_over_m_, &covered_m_})
+        for (Floats* const each : {&steeper_m_, &most_over_m_, &covered_m_, &covered_by_lines_m_})
             each->resize(in_patches);
         double least = kInfinity, most = -kInfinity;
         for (const RowPlan& row : plan) {
@@ -415,7 +413,8 @@ class LinesOverCells {
     bool go_over(int row, ShadedPatches& patches) {
         std::fill(steeper_m_.begin(), steeper_m_.end(), -kSteep_m);
         std::fill(most_over_m_.begin(), most_over_m_.end(), kNone_m);
-        std::fill(covered_m_.begin(), covered_m_.end(), kSteep_m);
+        for (Floats* const each : {&covered_m_, &covered_by_lines_m_})
+            std::fill(each->begin(), each->end(), kSteep_m);
         constexpr int kDown = PatchSheet::kRows / kPosts;
         const bool mirrored = sheet_.mirrored;
         const int of_grid = mirrored ? sheet_.rows() - 1 - row : row;
@@ -423,7 +422,9 @@ class LinesOverCells {
             const int cells = of_grid * kDown + (mirrored ? kDown - 1 - k : k);
             if (cells < sheet_.cells.rows() && !go_over_cells(cells)) return false;
         }
-        join_cells(cells_, steeper_m_.data(), most_over_m_.data(), covered_m_.data());
+        join_cells(cells_, steeper_m_.data(), most_over_m_.data(), covered_m_.data(),
+                   covered_by_lines_m_.data());
+        const Floats& by_lines_m = earth_ ? covered_by_lines_m_ : covered_m_;
         const std::span<PatchFlags::Word> lit = patches.lit.row(row), dark = patches.dark.row(row),
                                           sources = patches.sources.row(row);
         for (int column = 0; column < sheet_.columns(); ++column) {
@@ -433,7 +434,8 @@ class LinesOverCells {
             const bool is_dark = covered_m_[i] > 0;
             dark[word] |= PatchFlags::Word{is_dark} << bit;
             lit[word] |= PatchFlags::Word{!is_dark && !(most_over_m_[i] > 0)} << bit;
-            sources[word] |= PatchFlags::Word{steeper_m_[i] >= 0} << bit;
+            const bool is_source = steeper_m_[i] >= 0 && !(by_lines_m[i] > 0);
+            sources[word] |= PatchFlags::Word{is_source} << bit;
         }
         return true;
     }
@@ -500,7 +502,11 @@ class LinesOverCells {
                     .high_m = high_m_.data(),
                     .over_m = over_m_.data(),
                     .least_over_m = least_over_m_.data()});
-        if (earth_) cover_by_earth(cells, first, end);
+        if (earth_) {
+            add_cover(over_m_.data(), least_over_m_.data(), cells_, most_over_m_.data(),
+                      covered_by_lines_m_.data());
+            cover_by_earth(cells, first, end);
+        }
         add_cover(over_m_.data(), least_over_m_.data(), cells_, most_over_m_.data(),
                   covered_m_.data());
         return true;
@@ -533,7 +539,7 @@ class LinesOverCells {
                  cells),
              .beside_m = {figures(least.down, cells), figures(most.down, cells)},
              .aside = {static_cast<float>(least.posts), static_cast<float>(most.posts)},
-             .kink_m = figures(ShadeCells::kKink, cells),
+             .aside_m = figures(ShadeCells::kAside, cells),
              .least_fall_m = static_cast<float>(std::min(steps.least_fall_m, double{kSteep_m})),
              .low_m = low_m_.data() + kBeside,
              .high_m = high_m_.data(),
@@ -578,12 +584,13 @@ class LinesOverCells {
     int first_cell_, cells_;
     int first_bundle_ = 0;
     double base_m_ = 0;
-    bool any_ = false;                            // of the bundles is over ground somewhere
-    Floats low_m_, high_m_, source_m_;            // of a row of cells
-    Floats over_m_, least_over_m_;                // likewise
-    Floats steeper_m_, most_over_m_, covered_m_;  // of all of a row of patches
-    Floats most_m_, least_m_;                     // of bundles
-    Floats before_m_, least_before_m_;            // of those over a row of cells
+    bool any_ = false;                       // of the bundles is over ground somewhere
+    Floats low_m_, high_m_, source_m_;       // of a row of cells
+    Floats over_m_, least_over_m_;           // likewise
+    Floats steeper_m_, most_over_m_;         // of all of a row of patches
+    Floats covered_m_, covered_by_lines_m_;  // likewise: the Earth included, and not
+    Floats most_m_, least_m_;                // of bundles
+    Floats before_m_, least_before_m_;       // of those over a row of cells
 };
 
 /// Whether the smooth Earth makes any edge over a sheet.
@@ -741,8 +748,7 @@ ShadeRanges shade_ranges(const PatchSheet& sheet, const ShadedPatches* before,
     std::vector<Word> wanted(look.row(0).size());
     for (int row = 0; row < rows; ++row) {
         for (std::size_t i = 0; i < wanted.size(); ++i) {
-            wanted[i] = look.row(row)[i];
-            wanted[i] |= sun.sources.row(row)[i] & ~sun.dark.row(row)[i];  // lines are over those
+            wanted[i] = look.row(row)[i] | sun.sources.row(row)[i];
             if (row + 1 < rows) wanted[i] |= look.row(row + 1)[i];
         }
         add_beside(wanted, columns, 1, raise.row(row));

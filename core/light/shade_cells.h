@@ -52,9 +52,9 @@ class ShadeCells {
         kDownToRowBefore,
         kDownToNextColumn,
         kDownToColumnBefore,
-        /// How much more the ground goes up from column to column behind a post than before it,
-        /// at most: of the cell and those two beside.
-        kKink,
+        /// How far the ground goes up or down from column to column at most: of the cell, and of
+        /// those two beside on all sides.
+        kAside,
     };
     static constexpr std::size_t kFigures = 7;
 
@@ -72,7 +72,7 @@ class ShadeCells {
     float most(Figure figure) const { return most_[figure]; }
 
   private:
-    void spread_kinks();
+    void find_aside();
 
     int columns_, rows_;
     std::array<std::vector<float>, kFigures> figures_, most_of_rows_;
@@ -171,7 +171,9 @@ struct EarthAround {
 /// high they are at most where they may shade anything, and at least.
 struct ShadedPatches {
     PatchFlags lit, dark;  ///< all of a patch's posts; where neither is set it is not known
-    PatchFlags sources;    ///< some ground of a patch may shade anything
+    /// Some ground of a patch may shade anything; not where all lines are over it already. Ground
+    /// that the Earth hides may: a post has the mean of two lines.
+    PatchFlags sources;
 
     /// @param sun    over the sheet; of its tangents
     /// @param plan   rows of the sheet from `begin` on

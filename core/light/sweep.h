@@ -149,6 +149,9 @@ class Sweep {
     class Blocks;
 
     static constexpr int kMostLanes = 16;
+    /// What is kept for each post of a grid besides its height: that once more, turned, and where
+    /// shade can be, along rows and along columns.
+    static constexpr double kBytesAPost = 4 + 2 * 1.75;
     static constexpr float kNoFloor_m = -std::numeric_limits<float>::infinity();
 
     float lowest_m() const { return lowest_m_; }    ///< infinity where there are only holes

@@ -598,7 +598,7 @@ TEST(Sweep, BlocksLeaveOutNothingElseOfAnyGround) {
 
 // A post has the mean of two lines, of which one is on the wall and the post's own ray not.
 TEST(Sweep, BlocksLeaveOutNothingElseBesideAWallAlongRays) {
-    const Heights heights =
+    const Heights wall =
         heights_of(13, 55, [](int column, int row) { return (column < 5 ? 500 : 253) - 5 * row; });
     long left_lit = 0;
     for (double azimuth_deg = 354; azimuth_deg < 359; azimuth_deg += 0.05)
@@ -607,8 +607,8 @@ TEST(Sweep, BlocksLeaveOutNothingElseBesideAWallAlongRays) {
             for (int k = 0; k < 7; ++k)
                 suns.push_back(
                     MapSun{azimuth_deg + 0.4 * k, elevation_deg + 0.3 * k, {39.2, 20.9}, kCurvature}
-                        .over(heights));
-            Together some{heights, {0, 0, 13, 55}, suns, false};
+                        .over(wall));
+            Together some{wall, {0, 0, 13, 55}, suns, false};
             some.compare();
             left_lit += some.left_lit;
             ASSERT_FALSE(testing::Test::HasFailure()) << azimuth_deg << " " << elevation_deg;
