@@ -53,14 +53,11 @@ struct ColumnFigures {
     }
 };
 
-RELEVO_WIDE_LOOPS void add_heights(const float* height_m, int count, float* negative_m,
-                                   float* highest_m) {
+RELEVO_WIDE_LOOPS void add_lowest(const float* height_m, int count, float* negative_m) {
 #pragma GCC ivdep
     for (int i = 0; i < count; ++i) {
-        const float h = height_m[i];
-        const float low = h == h ? -h : -ShadeCells::kHole_m;
+        const float low = height_m[i] == height_m[i] ? -height_m[i] : -ShadeCells::kHole_m;
         negative_m[i] = low > negative_m[i] ? low : negative_m[i];
-        highest_m[i] = h > highest_m[i] ? h : highest_m[i];
     }
 }
 
@@ -110,9 +107,10 @@ ShadeCells::ShadeCells(const float* height_m, int columns, int rows, std::ptrdif
         for (int at = std::max(0, first - 1); at < std::min(rows, end + 1); ++at) {
             add_down(row(at), row(at) + 1, columns - 1, to.at(kDownToNextColumn));
             add_down(row(at) + 1, row(at), columns - 1, to.at(kDownToColumnBefore) + 1);
+            add_most(row(at), columns, to.at(kHighest));
         }
         for (int at = first; at < end; ++at) {
-            add_heights(row(at), columns, to.at(kLowest), to.at(kHighest));
+            add_lowest(row(at), columns, to.at(kLowest));
             if (at + 1 < rows) add_down(row(at), row(at + 1), columns, to.at(kDownToNextRow));
             if (at > 0) add_down(row(at), row(at - 1), columns, to.at(kDownToRowBefore));
         }
@@ -519,7 +517,8 @@ class LinesOverCells {
     void find_bounds(int cells, int first, int end, const Steepness& steps) {
         const Steepness::Aside least = Steepness::of(steps.least_aside),
                                most = Steepness::of(steps.most_aside);
-        const RowPlan &a = row(first), &b = row(end - 1);
+        const int last = begin_ + static_cast<int>(plan_.size());
+        const RowPlan &a = row(std::max(first - 1, begin_)), &b = row(std::min(end, last - 1));
         // Of a cell's middle; its posts are less than two beside.
         const double middle = sheet_.first_column(0) + (kPosts - 1) / 2.0;
         const auto fall_m = [&](const RowPlan& at) {

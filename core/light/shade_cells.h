@@ -43,7 +43,7 @@ class ShadeCells {
     /// Of a cell.
     enum Figure {
         kLowest,
-        kHighest,
+        kHighest,  ///< of the rows beside, too: rays meet columns between these
         /// How far the ground goes down from post to post at most: from posts of the cell, and of
         /// columns beside, to the next row or to the one before; from posts of the cell, and of
         /// columns and rows beside, to the next column or to the one before. More than anything by

@@ -650,7 +650,7 @@ class FewDays {
                      const std::optional<GroundForBeams>& ground, Totals& totals) const {
         PostLight posts = light_of(work.part, skies_[work.series.first].along_columns(), ground);
         for (const TileSun& sun : suns) {
-            posts.turn(skies_[sun.k].along_columns());
+            posts.turn(sky_of(work.series, sun.k).along_columns());
             if (work.window->bands.empty()) {
                 add(work.series, sun, posts, [&](std::size_t i, const Sweep::Use& use) {
                     sweep_.each_edge(sun.edges.suns()[i], work.part, use, Sweep::kMostLanes,

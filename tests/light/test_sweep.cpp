@@ -599,7 +599,7 @@ TEST(Sweep, BlocksLeaveOutNothingElseOfAnyGround) {
 // A post has the mean of two lines, of which one is on the wall and the post's own ray not.
 TEST(Sweep, BlocksLeaveOutNothingElseBesideAWallAlongRays) {
     const Heights wall =
-        heights_of(13, 55, [](int column, int row) { return (column < 5 ? 500 : 253) - 5 * row; });
+        heights_of(60, 55, [](int column, int row) { return (column < 5 ? 500 : 253) - 5 * row; });
     long left_lit = 0;
     for (double azimuth_deg = 354; azimuth_deg < 359; azimuth_deg += 0.05)
         for (double elevation_deg = 27; elevation_deg < 32; elevation_deg += 0.5) {
@@ -608,12 +608,40 @@ TEST(Sweep, BlocksLeaveOutNothingElseBesideAWallAlongRays) {
                 suns.push_back(
                     MapSun{azimuth_deg + 0.4 * k, elevation_deg + 0.3 * k, {39.2, 20.9}, kCurvature}
                         .over(wall));
-            Together some{wall, {0, 0, 13, 55}, suns, false};
+            Together some{wall, {0, 0, 60, 55}, suns, false};
             some.compare();
             left_lit += some.left_lit;
             ASSERT_FALSE(testing::Test::HasFailure()) << azimuth_deg << " " << elevation_deg;
         }
     EXPECT_GT(left_lit, 0);
+}
+
+// A ray that goes aside by more than a column from row to row meets one between them, whose next
+// post may be far higher.
+TEST(Sweep, BlocksLeaveOutNothingElseBehindAStepBetweenRows) {
+    const auto compare = [](const Heights& heights, const SweepWindow& window, double spacing_m,
+                            double tangent) {
+        SweepSun sun = sun_over_map(
+            {spacing_m, spacing_m}, {1.2 / std::hypot(1.2, 1), -1 / std::hypot(1.2, 1)},
+            std::atan(tangent), {heights.width() / 2.0, heights.width() / 2.0});
+        sun.columns_set = false;
+        Together some{heights, window, std::vector(6, sun), false};
+        some.compare();
+    };
+    for (int rows = 33; rows < 37; ++rows) {
+        const Heights last = heights_of(32, rows, [&](int column, int row) {
+            return column == 17 && row == rows - 1 ? 300 : 0;
+        });
+        compare(last, {0, 0, 32, rows}, 10, 0.3);
+        const Heights edge = heights_of(
+            32, 64, [&](int column, int row) { return column >= 17 && row >= rows - 1 ? 300 : 0; });
+        compare(edge, {0, 0, 32, rows}, 10, 0.3);
+        const Heights inside = heights_of(64, 64, [&](int column, int row) {
+            const int step = column >= 16 ? 0 : -200;
+            return 1000 + (row < rows - 1 ? step - 190 : step + 240 * (row - rows + 1));
+        });
+        compare(inside, {0, 0, 64, 64}, 30, 20 / (30 * std::hypot(1.2, 1)));
+    }
 }
 
 TEST(Sweep, ARayThatTurnsBackBeforeItsGroundIsFollowedFromWhereItComes) {
