@@ -110,9 +110,12 @@ TEST_F(Viewer, AnOverlayOfALargeDemIsOfEveryPostAndWaitsForThem) {
     ASSERT_TRUE(wait([&] {
         return count_near(display_.screen(), {326, 332, 18, 18}, {49, 83, 123}, 8) > 100;
     }));
-    act({"mousemove", "336",       "341",       "sleep", "0.1",   "click", "1",     "sleep",
-         "0.2",       "mousemove", "100",       "448",   "sleep", "0.1",   "click", "1",
-         "sleep",     "0.1",       "mousemove", "900",   "500",   "key",   "ctrl+e"});
+    const glm::ivec4 arrow{326, 332, 18, 18}, choices{20, 356, 300, 100}, choice{20, 440, 200, 16};
+    ASSERT_TRUE(changes_in(arrow, [&] { act({"mousemove", "336", "341"}); }));
+    ASSERT_TRUE(changes_in(choices, [&] { act({"click", "1"}); }));
+    ASSERT_TRUE(changes_in(choice, [&] { act({"mousemove", "100", "448"}); }));
+    ASSERT_TRUE(changes_in(choices, [&] { act({"click", "1"}); }));
+    act({"mousemove", "900", "500", "key", "ctrl+e"});
     const auto saved = folder_ / "relevo-1.tif";
     ASSERT_TRUE(test::WindowedProgram::wait([&] { return std::filesystem::exists(saved); }, 120))
         << program_->output();

@@ -23,6 +23,19 @@
 
 namespace relevo {
 
+/// Pixels of an area that differ to the eye.
+inline int count_other(const image::Image8& one, const image::Image8& other, glm::ivec4 area) {
+    constexpr int kSeen = 8;
+    int count = 0;
+    for (int y = area.y; y < area.y + area.w; ++y)
+        for (int x = 3 * area.x; x < 3 * (area.x + area.z); x += 3) {
+            const std::uint8_t *a = one.row(y) + x, *b = other.row(y) + x;
+            count += std::abs(a[0] - b[0]) > kSeen || std::abs(a[1] - b[1]) > kSeen ||
+                     std::abs(a[2] - b[2]) > kSeen;
+        }
+    return count;
+}
+
 /// The window of `relevo DEM`, driven by a mouse and keys on a display of the tests' own.
 class Viewer : public testing::Test {
   protected:
@@ -78,6 +91,13 @@ class Viewer : public testing::Test {
         if (!wait([&] { return test::difference(display_.screen(), before) > share; }))
             return false;
         return settles();
+    }
+    /// Whether doing it changes a part of the screen, however slowly the window goes on meanwhile.
+    bool changes_in(const glm::ivec4& area, const std::function<void()>& act) {
+        constexpr int kSome = 30;  // pixels
+        const image::Image8 before = display_.screen();
+        act();
+        return wait([&] { return count_other(before, display_.screen(), area) > kSome; });
     }
     /// The scene as Ctrl+S saves it now.
     nlohmann::json scene() {
