@@ -810,6 +810,13 @@ TileValues::TileValues(const SweepWindow& window, float value, bool along_column
       values_(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows),
               value) {}
 
+void TileValues::cover(const SweepWindow& window, float value, bool along_columns) {
+    window_ = window;
+    along_columns_ = along_columns;
+    values_.assign(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows),
+                   value);
+}
+
 void TileValues::turn(bool along_columns) {
     if (along_columns == along_columns_) return;
     const int rows = along_columns_ ? window_.columns : window_.rows;

@@ -219,6 +219,9 @@ SunTile tile_of(const SunSky& sky, const SweepWindow& window, const SweepWindow&
 class TileValues {
   public:
     TileValues(const SweepWindow& window, float value, bool along_columns = false);
+    TileValues() : TileValues({}, 0) {}
+    /// Of another window from now on, in the same memory.
+    void cover(const SweepWindow& window, float value, bool along_columns);
     /// Some of them, turned so.
     TileValues part(const SweepWindow& window, bool along_columns) const;
 

@@ -88,18 +88,22 @@ Moments moments(const DemSky& dem, sun::Instant begin, double length_s, double s
 
 /// What is known of the posts of a block so far, from the first of some suns on.
 struct PostLight {
-    TileValues margin_m, lit_h, scratch;
+    TileValues margin_m;  // lit where no sun's sweep has looked
+    TileValues lit_h, scratch;
     TileValues began_m, first_h, last_h, spells;  // with spells: margins at the first sun, ...
     std::optional<GroundForBeams> beams;
 
-    PostLight(const SweepWindow& window, bool along_columns, bool with_spells)
-        : margin_m(window, 1, along_columns),  // of what no sun's sweep has looked at
-          lit_h(window, 0, along_columns),
-          scratch(window, 0, along_columns),
-          began_m(with_spells ? window : SweepWindow{}, 0, along_columns),
-          first_h(with_spells ? window : SweepWindow{}, kNaN, along_columns),
-          last_h(with_spells ? window : SweepWindow{}, kNaN, along_columns),
-          spells(with_spells ? window : SweepWindow{}, 0, along_columns) {}
+    /// Begins with other posts.
+    void begin(const SweepWindow& window, bool along_columns, bool with_spells) {
+        margin_m.cover(window, 1, along_columns);
+        for (TileValues* const each : {&lit_h, &scratch})
+            each->cover(window, 0, along_columns);
+        const SweepWindow other = with_spells ? window : SweepWindow{};
+        for (TileValues* const each : {&began_m, &spells})
+            each->cover(other, 0, along_columns);
+        for (TileValues* const each : {&first_h, &last_h})
+            each->cover(other, kNaN, along_columns);
+    }
 
     void turn(bool along_columns) {
         for (TileValues* const each : {&margin_m, &scratch})
@@ -435,8 +439,9 @@ class FewDays {
         std::atomic<std::size_t> next = 0;
         std::atomic<bool> stopped = false;
         parallel_for(0, thread_count(), 1, [&](int, int) {
+            PostLight posts;  // one after the other: memory that is new takes time
             for (std::size_t i = next++; i < works.size() && !stopped; i = next++) {
-                light_part(works[i], ground, totals);
+                light_part(works[i], ground, posts, totals);
                 const std::lock_guard lock(mutex);
                 if (!done || stopped) continue;
                 try {
@@ -613,24 +618,23 @@ class FewDays {
         return moment;
     }
 
-    PostLight light_of(const SweepWindow& window, bool along_columns,
-                       const std::optional<GroundForBeams>& ground) const {
-        PostLight posts(window, along_columns, spells_);
+    void begin(PostLight& posts, const SweepWindow& window, bool along_columns,
+               const std::optional<GroundForBeams>& ground) const {
+        posts.begin(window, along_columns, spells_);
         if (ground) posts.beams = ground->part(window, along_columns);
-        return posts;
     }
 
-    void light_part(const Work& work, const std::optional<GroundForBeams>& ground,
+    void light_part(const Work& work, const std::optional<GroundForBeams>& ground, PostLight& posts,
                     Totals& totals) const {
         std::vector<TileSun> suns;
         std::vector<Sweep::Blocks::Sun> sweeps;
         for (std::size_t k = work.series.first; k <= work.series.last; ++k)
             sweeps.push_back(add_suns(work, k, suns));
         if (!Sweep::Blocks::go_together(sweeps))
-            return light_apart(work, suns, sweeps, ground, totals);
+            return light_apart(work, suns, sweeps, ground, posts, totals);
         Sweep::Blocks blocks(sweep_, sweeps, work.part, dem_.floor_m(), dem_.curvature());
         while (const std::optional<SweepWindow> block = blocks.next()) {
-            PostLight posts = light_of(*block, skies_[work.series.first].along_columns(), ground);
+            begin(posts, *block, skies_[work.series.first].along_columns(), ground);
             blocks.each_dark([&](const SweepRun& run) {
                 for (TileValues* const each : {&posts.margin_m, &posts.began_m})
                     if (spells_ || each == &posts.margin_m)
@@ -647,8 +651,9 @@ class FewDays {
     /// Likewise suns that do not go over the grid alike.
     void light_apart(const Work& work, const std::vector<TileSun>& suns,
                      const std::vector<Sweep::Blocks::Sun>& sweeps,
-                     const std::optional<GroundForBeams>& ground, Totals& totals) const {
-        PostLight posts = light_of(work.part, skies_[work.series.first].along_columns(), ground);
+                     const std::optional<GroundForBeams>& ground, PostLight& posts,
+                     Totals& totals) const {
+        begin(posts, work.part, skies_[work.series.first].along_columns(), ground);
         for (const TileSun& sun : suns) {
             posts.turn(sky_of(work.series, sun.k).along_columns());
             if (work.window->bands.empty()) {

@@ -14,6 +14,7 @@
 
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "base/wide_loops.h"
 #include "light/shade_cells.h"
 #include "light/sweep_kernels.h"
 
@@ -137,6 +138,29 @@ class RayWalk {
     double distance_m_ = 0, slope_ = 0;
 };
 
+/// Where a ray is at rows that it meets at nearly one angle: the first row, and how many.
+/// @param distance_m, column  get NaN where it is not found so
+RELEVO_WIDE_LOOPS void find_ray(const SweepSun& ray, int first, int rows, double* distance_m,
+                                double* column) {
+    const double begin = first - ray.reference.row, column_0 = ray.reference.column;
+    const double r1 = ray.towards.row, r2 = ray.bend.row / 2, r3 = ray.twist.row / 6;
+    const double c1 = ray.towards.column, c2 = ray.bend.column / 2, c3 = ray.twist.column / 6;
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+#pragma GCC ivdep
+    for (int i = 0; i < rows; ++i) {
+        const double to = begin + i;
+        double s = to / r1;
+        const auto off = [&] { return ((r3 * s + r2) * s + r1) * s - to; };
+        const auto slope = [&] { return (3 * r3 * s + 2 * r2) * s + r1; };
+        s -= off() / slope();
+        s -= off() / slope();
+        s -= off() / slope();
+        const bool is_found = std::abs(off()) < kOnLine * kOnLine && slope() * r1 > r1 * r1 / 2;
+        distance_m[i] = is_found ? s : kNone;
+        column[i] = is_found ? column_0 + ((c3 * s + c2) * s + c1) * s : kNone;
+    }
+}
+
 /// Where the ray through the reference is at rows of a sheet.
 struct RayRows {
     int begin;
@@ -159,16 +183,25 @@ struct RayRows {
     double column_at(int row) const { return column[static_cast<std::size_t>(row - begin)]; }
 
   private:
-    /// From whole numbers of rows on, so that bits do not hang on which rows are asked for.
     void fill(const SweepSun& ray, int first, int end) {
+        const auto at = static_cast<std::size_t>(first - begin);
+        find_ray(ray, first, end - first, distance_m.data() + at, column.data() + at);
+        // Where it nearly turns back it is followed from whole numbers of rows on, so that bits do
+        // not hang on which rows are asked for.
         constexpr int kRows = 64;
         for (int from = floor_of(double(first) / kRows) * kRows; from < end; from += kRows) {
+            const int to = std::min(from + kRows, end);
+            const auto is_found = [&](int row) { return !std::isnan(distance_at(row)); };
+            int row = std::max(from, first);
+            while (row < to && is_found(row))
+                ++row;
+            if (row == to) continue;
             RayWalk walk(ray, from);
-            for (int row = from; row < std::min(from + kRows, end); ++row, walk.step(1)) {
-                if (row < first) continue;
-                const auto at = static_cast<std::size_t>(row - begin);
-                distance_m[at] = walk.distance_m();
-                column[at] = walk.column();
+            for (row = from; row < to; ++row, walk.step(1)) {
+                if (row < first || is_found(row)) continue;
+                const auto here = static_cast<std::size_t>(row - begin);
+                distance_m[here] = walk.distance_m();
+                column[here] = walk.column();
             }
         }
     }
@@ -522,23 +555,24 @@ class Terms::Maker {
         const RowPlan &a = plan_.row(row - 1), &b = plan_.row(row);
         const double from = a.shift + offset, until = b.shift + offset;
         const double low = std::min(from, until) + kOnLine, high = std::max(from, until) - kOnLine;
-        const int first = ceil_of(low);
-        if (first > high) return;
         const int before = origin(row - 1), here = origin(row);
         const double per_column = steps_.row(row).per_column;
-        for (int column = first; column <= high; ++column) {
+        // Rays that go with the rows cross one at most: what is put there counts if they do.
+        for (int column = ceil_of(low);; ++column) {
             const double part = (column - from) * per_column;
             add({before + column, here + column, static_cast<float>(part)},
-                a.fall + part * (b.fall - a.fall));
+                a.fall + part * (b.fall - a.fall), column <= high);
+            if (column + 1 > high) return;
         }
     }
 
   private:
-    void add(const Ground& ground, double fall) {
+    void add(const Ground& ground, double fall, bool counts = true) {
         if (steps_.nearness.distances)
             terms_.distances_[static_cast<std::size_t>(ground_ - terms_.grounds_.data())] =
                 to_.fall - fall;
-        *ground_++ = ground;
+        *ground_ = ground;
+        ground_ += counts;
     }
     int origin(int row) const { return steps_.origin(row, terms_.pitch_); }
 
@@ -556,7 +590,8 @@ void Terms::add(const Plan& plan, const Steps& steps, int row) {
     const RowPlan& here = plan.row(row);
     // Of each row one, and those of the columns that are crossed on the way there.
     const std::size_t most = (nearness.line_sets + static_cast<std::size_t>(nearness.near_rows)) *
-                             static_cast<std::size_t>(steps.ground_columns + 1);
+                                 static_cast<std::size_t>(steps.ground_columns + 1) +
+                             1;
     Maker maker(*this, plan, steps, here, most);
     for (std::size_t set = 0; set < kMostLineSets; ++set) {
         of.begins[set] = maker.at();
