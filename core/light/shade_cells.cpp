@@ -424,7 +424,8 @@ class LinesOverCells {
                    covered_by_lines_m_.data());
         const Floats& by_lines_m = earth_ ? covered_by_lines_m_ : covered_m_;
         const std::span<PatchFlags::Word> lit = patches.lit.row(row), dark = patches.dark.row(row),
-                                          sources = patches.sources.row(row);
+                                          steep = patches.steep.row(row),
+                                          covered = patches.covered.row(row);
         for (int column = 0; column < sheet_.columns(); ++column) {
             const auto i = static_cast<std::size_t>(column * PatchSheet::kCellsAcross),
                        word = static_cast<std::size_t>(column / PatchFlags::kBits);
@@ -432,8 +433,8 @@ class LinesOverCells {
             const bool is_dark = covered_m_[i] > 0;
             dark[word] |= PatchFlags::Word{is_dark} << bit;
             lit[word] |= PatchFlags::Word{!is_dark && !(most_over_m_[i] > 0)} << bit;
-            const bool is_source = steeper_m_[i] >= 0 && !(by_lines_m[i] > 0);
-            sources[word] |= PatchFlags::Word{is_source} << bit;
+            steep[word] |= PatchFlags::Word{steeper_m_[i] >= 0} << bit;
+            covered[word] |= PatchFlags::Word{by_lines_m[i] > 0} << bit;
         }
         return true;
     }
@@ -690,7 +691,8 @@ ShadedPatches::ShadedPatches(const PatchSheet& sheet, const SweepSun& sun,
                              std::optional<EarthAround> earth)
     : lit(sheet.columns(), sheet.rows()),
       dark(sheet.columns(), sheet.rows()),
-      sources(sheet.columns(), sheet.rows()),
+      steep(sheet.columns(), sheet.rows()),
+      covered(sheet.columns(), sheet.rows()),
       first_(sheet.row_of(begin)),
       end_(sheet.row_of(begin + static_cast<int>(plan.size()) - 1) + 1) {
     if (earth && !has_earth_edge(sheet, sun)) earth.reset();
@@ -704,10 +706,15 @@ ShadedPatches::ShadedPatches(const PatchSheet& sheet, const SweepSun& sun,
     LinesOverCells lines(sheet, sun, plan, begin, earth);
     for (int row = first_; row < end_; ++row) {
         if (lines.go_over(row, *this)) continue;
-        lit = dark = PatchFlags(sheet.columns(), sheet.rows());
-        sources.set_all(0, sheet.rows());
+        lit = dark = covered = PatchFlags(sheet.columns(), sheet.rows());
+        steep.set_all(0, sheet.rows());
         return;
     }
+}
+
+void ShadedPatches::rise_to(const ShadedPatches& higher) {
+    dark = higher.dark;
+    covered = higher.covered;
 }
 
 void ShadedPatches::join(const ShadedPatches& other) {
@@ -715,7 +722,8 @@ void ShadedPatches::join(const ShadedPatches& other) {
         for (std::size_t i = 0; i < lit.row(row).size(); ++i) {
             lit.row(row)[i] &= other.lit.row(row)[i];
             dark.row(row)[i] &= other.dark.row(row)[i];
-            sources.row(row)[i] |= other.sources.row(row)[i];
+            steep.row(row)[i] |= other.steep.row(row)[i];
+            covered.row(row)[i] &= other.covered.row(row)[i];
         }
     first_ = std::min(first_, other.first_), end_ = std::max(end_, other.end_);
 }
@@ -747,7 +755,7 @@ ShadeRanges shade_ranges(const PatchSheet& sheet, const ShadedPatches* before,
     std::vector<Word> wanted(look.row(0).size());
     for (int row = 0; row < rows; ++row) {
         for (std::size_t i = 0; i < wanted.size(); ++i) {
-            wanted[i] = look.row(row)[i] | sun.sources.row(row)[i];
+            wanted[i] = look.row(row)[i] | (sun.steep.row(row)[i] & ~sun.covered.row(row)[i]);
             if (row + 1 < rows) wanted[i] |= look.row(row + 1)[i];
         }
         add_beside(wanted, columns, 1, raise.row(row));

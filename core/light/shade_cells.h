@@ -171,15 +171,18 @@ struct EarthAround {
 /// high they are at most where they may shade anything, and at least.
 struct ShadedPatches {
     PatchFlags lit, dark;  ///< all of a patch's posts; where neither is set it is not known
-    /// Some ground of a patch may shade anything; not where all lines are over it already. Ground
-    /// that the Earth hides may: a post has the mean of two lines.
-    PatchFlags sources;
+    /// Some ground of a patch may shade anything, unless lines are over all of it. Ground that the
+    /// Earth hides may: a post has the mean of two lines.
+    PatchFlags steep, covered;
 
     /// @param sun    over the sheet; of its tangents
     /// @param plan   rows of the sheet from `begin` on
     /// @param earth  none: it hides nothing
     ShadedPatches(const PatchSheet& sheet, const SweepSun& sun, std::span<const RowPlan> plan,
                   int begin, std::optional<EarthAround> earth);
+    /// What is known of this sun and of all between it and a higher one, whose rays have the same
+    /// shape.
+    void rise_to(const ShadedPatches& higher);
     /// What is known where this sun is taken for some posts and another one for others.
     void join(const ShadedPatches& other);
     /// So little of what the sun's rays go over is known that all may be looked at.

@@ -59,7 +59,7 @@ glm::dvec2 moved(const dem::Grid& grid, const geo::Geodetic& from, double azimut
 }
 
 constexpr double kNearLevel = 1e-5;  // tangent: what is over that is over level in floats, too
-constexpr int kRun = 512;            // posts whose edges are looked at together
+constexpr int kRun = TileEdges::kRun;
 
 /// The edge that the smooth Earth makes: where a post sees the sun, from some post on.
 struct EarthLine {
@@ -753,23 +753,30 @@ TileEdges::TileEdges(const SunSky& sky, const SunTile& tile, double offset_rad)
     if (sky.levels() == 2) suns_.push_back(sky.sun(tile, 1, offset_rad));
 }
 
+const float* TileEdges::find(const SweepRun& run, const float* other_m, float* room) const {
+    const bool two = suns_.size() == 2;
+    if (over_earth_ && !two) return run.found;
+    const double low_m = dem_.level_height_m(0), span_m = dem_.level_height_m(1) - low_m;
+    std::copy_n(run.found, run.count, room);
+    add_earth(suns_.back(), run, low_m, dem_.curvature(), room);
+    if (!two) return room;
+    std::array<float, kRun> other;
+    std::copy_n(other_m, run.count, other.data());
+    add_earth(suns_.front(), run, low_m, dem_.curvature(), other.data());
+    mix(run, other.data(), low_m, span_m, room);
+    return room;
+}
+
 void TileEdges::each(const std::function<void(std::size_t, const Sweep::Use&)>& sweep,
                      TileValues& scratch, const Sweep::Use& use) const {
     const bool two = suns_.size() == 2;
     if (over_earth_ && !two) return sweep(0, use);
-
     if (two)
         sweep(0, [&](const SweepRun& run) { std::copy_n(run.found, run.count, scratch.of(run)); });
-    const double low_m = dem_.level_height_m(0), span_m = dem_.level_height_m(1) - low_m;
-    const auto fill = [&](const SweepRun& part, float* edge_m) {
-        std::copy_n(part.found, part.count, edge_m);
-        add_earth(suns_.back(), part, low_m, dem_.curvature(), edge_m);
-        if (!two) return;
-        float* const other_m = scratch.of(part);
-        add_earth(suns_.front(), part, low_m, dem_.curvature(), other_m);
-        mix(part, other_m, low_m, span_m, edge_m);
+    const auto find_part = [&](const SweepRun& part, float* edge_m) {
+        find(part, two ? scratch.of(part) : nullptr, edge_m);
     };
-    sweep(suns_.size() - 1, [&](const SweepRun& run) { each_part(run, fill, use); });
+    sweep(suns_.size() - 1, [&](const SweepRun& run) { each_part(run, find_part, use); });
 }
 
 void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,

@@ -269,6 +269,19 @@ class TileEdges {
     /// @param use      takes the posts and their edges
     void each(const std::function<void(std::size_t sun, const Sweep::Use&)>& sweep,
               TileValues& scratch, const Sweep::Use& use) const;
+    /// Those of a run of kRun posts at most.
+    /// @param run      with the edges of the last one that is swept
+    /// @param other_m  those of the first one, where there are two
+    /// @param room     for as many
+    /// @return where they are: there, or what the run has
+    const float* find(const SweepRun& run, const float* other_m, float* room) const;
+    static constexpr int kRun = 512;
+
+    /// Takes tangents to change from post to post as those of another sun do.
+    void go_like(const SweepSun& other) {
+        for (SweepSun& sun : suns_)
+            sun.tangent_a_post = other.tangent_a_post;
+    }
 
   private:
     const DemSky& dem_;

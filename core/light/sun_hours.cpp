@@ -39,6 +39,9 @@ constexpr float kOpen_m = 1e6F;            // margin where nothing of the DEM li
 constexpr double kLow_rad = radians(1.5);  // a sun under that is near the horizon
 constexpr int kFiner = 3;                  // as many steps there as one elsewhere
 constexpr double kPeriodTolerance_rad = radians(0.1);  // of suns that are put together anyway
+/// Between the azimuths of suns that are taken to stand in one direction, at most: three of them,
+/// where they are 3 minutes apart.
+constexpr double kOnePath_rad = radians(0.8);
 
 /// Moments of a time, each with the sun.
 struct Moments {
@@ -130,38 +133,55 @@ void measure(const SweepRun& run, float* margin_m) {
         margin_m[i] = std::min(run.height_m[i] - run.found[i], kOpen_m);
 }
 
-/// Posts next to each other at a moment, and what is known of them from the moment before.
+/// A moment: when the one before it was, how long ago, and edges of shadows.
+struct LightAt {
+    float from_h, hours;
+    const float* edge_m;
+};
+
+/// Posts next to each other at moments one after the other, and what is known of them from the
+/// moment before.
 ///
-/// Margins are linear between the two. Where light comes, the time of that is taken away from the
-/// post's hours, and where it goes, it is added, so that hours are touched only where there is a
-/// post at which it does either.
+/// Margins are linear between two moments. Where light comes, the time of that is taken away from
+/// the post's hours, and where it goes, it is added, so that hours are touched only where there is
+/// a post at which it does either.
 struct Light {
-    float from_h, hours;  // the moment before, and how long ago
-    const float *height_m, *edge_m;
+    std::span<const LightAt> moments;
+    const float* height_m;
     float *margin_m, *lit_h;
 };
 
 [[gnu::always_inline]] inline void add_light_of_one(const Light& light, int i) {
-    const float before = light.margin_m[i];
-    const float open = light.height_m[i] - light.edge_m[i];
-    const float now = open > kOpen_m ? kOpen_m : open;
-    light.margin_m[i] = now;
-    if ((before >= 0) == (now >= 0)) return;
-    const float when_h = light.from_h + light.hours * (before / (before - now));
-    light.lit_h[i] += now >= 0 ? -when_h : when_h;
+    float before = light.margin_m[i];
+    for (const LightAt& at : light.moments) {
+        const float open = light.height_m[i] - at.edge_m[i];
+        const float now = open > kOpen_m ? kOpen_m : open;
+        if ((before >= 0) != (now >= 0)) {
+            const float when_h = at.from_h + at.hours * (before / (before - now));
+            light.lit_h[i] += now >= 0 ? -when_h : when_h;
+        }
+        before = now;
+    }
+    light.margin_m[i] = before;
 }
 
 constexpr int kPosts = 16;  // at once
 using Numbers [[gnu::vector_size(kPosts * sizeof(float))]] = float;
 
 [[gnu::always_inline]] inline void add_light_of_some(const Light& light, int i) {
-    Numbers height, edge, before;
+    Numbers height, before;
     std::memcpy(&height, light.height_m + i, sizeof height);
-    std::memcpy(&edge, light.edge_m + i, sizeof edge);
     std::memcpy(&before, light.margin_m + i, sizeof before);
-    Numbers now = height - edge;
-    now = now > kOpen_m ? Numbers{} + kOpen_m : now;
-    const auto changes = (before >= 0) ^ (now >= 0);
+    auto changes = before != before;
+    changes = changes ^ changes;
+    for (const LightAt& at : light.moments) {
+        Numbers edge;
+        std::memcpy(&edge, at.edge_m + i, sizeof edge);
+        Numbers now = height - edge;
+        now = now > kOpen_m ? Numbers{} + kOpen_m : now;
+        changes |= (before >= 0) ^ (now >= 0);
+        before = now;
+    }
     bool any = false;
     for (int k = 0; k < kPosts; ++k)
         any |= changes[k] != 0;
@@ -169,7 +189,7 @@ using Numbers [[gnu::vector_size(kPosts * sizeof(float))]] = float;
         for (int k = 0; k < kPosts; ++k)
             add_light_of_one(light, i + k);
     else
-        std::memcpy(light.margin_m + i, &now, sizeof now);
+        std::memcpy(light.margin_m + i, &before, sizeof before);
 }
 
 [[gnu::always_inline]] inline void add_light_to_all(const Light& light, int count) {
@@ -183,25 +203,33 @@ using Numbers [[gnu::vector_size(kPosts * sizeof(float))]] = float;
 #if defined(__x86_64__)
 /// As add_light_of_some(), which no compiler makes as fast.
 [[gnu::target("avx512f")]] void add_light_512(const Light& light, int count) {
-    const __m512 zero = _mm512_setzero_ps(), most = _mm512_set1_ps(kOpen_m),
-                 from_h = _mm512_set1_ps(light.from_h), hours = _mm512_set1_ps(light.hours);
+    const __m512 zero = _mm512_setzero_ps(), most = _mm512_set1_ps(kOpen_m);
+    const LightAt *const first = light.moments.data(), *const end = first + light.moments.size();
     int i = 0;
     for (; i + kPosts <= count; i += kPosts) {
-        const __m512 open =
-            _mm512_sub_ps(_mm512_loadu_ps(light.height_m + i), _mm512_loadu_ps(light.edge_m + i));
-        const __m512 now =
-            _mm512_mask_mov_ps(open, _mm512_cmp_ps_mask(open, most, _CMP_GT_OQ), most);
-        const __m512 before = _mm512_loadu_ps(light.margin_m + i);
-        const __mmask16 was_lit = _mm512_cmp_ps_mask(before, zero, _CMP_GE_OQ),
-                        is_lit = _mm512_cmp_ps_mask(now, zero, _CMP_GE_OQ);
-        _mm512_storeu_ps(light.margin_m + i, now);
-        if (was_lit == is_lit) continue;
-        const __m512 part = _mm512_div_ps(before, _mm512_sub_ps(before, now));
-        const __m512 when_h = _mm512_add_ps(from_h, _mm512_mul_ps(hours, part));
-        __m512 lit_h = _mm512_loadu_ps(light.lit_h + i);
-        lit_h = _mm512_mask_sub_ps(lit_h, static_cast<__mmask16>(is_lit & ~was_lit), lit_h, when_h);
-        lit_h = _mm512_mask_add_ps(lit_h, static_cast<__mmask16>(was_lit & ~is_lit), lit_h, when_h);
-        _mm512_storeu_ps(light.lit_h + i, lit_h);
+        const __m512 height = _mm512_loadu_ps(light.height_m + i);
+        __m512 before = _mm512_loadu_ps(light.margin_m + i);
+        __mmask16 was_lit = _mm512_cmp_ps_mask(before, zero, _CMP_GE_OQ);
+        for (const LightAt* at = first; at < end; ++at) {
+            const __m512 open = _mm512_sub_ps(height, _mm512_loadu_ps(at->edge_m + i));
+            const __m512 now =
+                _mm512_mask_mov_ps(open, _mm512_cmp_ps_mask(open, most, _CMP_GT_OQ), most);
+            const __mmask16 is_lit = _mm512_cmp_ps_mask(now, zero, _CMP_GE_OQ);
+            if (was_lit != is_lit) {
+                const __m512 part = _mm512_div_ps(before, _mm512_sub_ps(before, now));
+                const __m512 when_h = _mm512_add_ps(_mm512_set1_ps(at->from_h),
+                                                    _mm512_mul_ps(_mm512_set1_ps(at->hours), part));
+                __m512 lit_h = _mm512_loadu_ps(light.lit_h + i);
+                lit_h = _mm512_mask_sub_ps(lit_h, static_cast<__mmask16>(is_lit & ~was_lit), lit_h,
+                                           when_h);
+                lit_h = _mm512_mask_add_ps(lit_h, static_cast<__mmask16>(was_lit & ~is_lit), lit_h,
+                                           when_h);
+                _mm512_storeu_ps(light.lit_h + i, lit_h);
+            }
+            before = now;
+            was_lit = is_lit;
+        }
+        _mm512_storeu_ps(light.margin_m + i, before);
     }
     for (; i < count; ++i)
         add_light_of_one(light, i);
@@ -272,6 +300,13 @@ struct Series {
     std::size_t first, last;
     /// The last one, where it is not swept as its own way would have it but as the others.
     std::shared_ptr<const SunSky> turned = nullptr;
+    /// Suns from one on, up to the next path's, that are taken to stand in one direction, each as
+    /// high as it does: their rays are looked up once.
+    struct Path {
+        std::size_t first, end;
+        SunSky sky;
+    };
+    std::vector<Path> paths{};
 };
 
 /// The sums of all series, which come in any order and from several threads: whole numbers, so that
@@ -456,8 +491,10 @@ class FewDays {
     }
 
   private:
-    static constexpr std::size_t kTogether = 16;  // steps from sun to sun
+    static constexpr std::size_t kTogether = 32;  // steps from sun to sun
     static constexpr int kWidest = 2048;          // posts across which suns are swept together
+    /// How far off suns of one direction may be anywhere for what they share besides.
+    static constexpr double kShared_rad = radians(0.02);
 
     /// Suns over a part of a window that is theirs.
     struct Work {
@@ -470,9 +507,15 @@ class FewDays {
     /// One of the suns of a series over a tile.
     struct TileSun {
         std::size_t k;
-        std::size_t band;
         TileEdges edges;
         std::optional<SunBeam> beam;  // since the moment before
+    };
+    /// Those of a path, or of a moment, over a window or a band of it.
+    struct PathSuns {
+        std::size_t path;
+        std::size_t band;
+        std::vector<TileSun> suns;
+        bool together;  // swept so
     };
     using Windows = std::vector<std::vector<BandedWindow>>;  // of each series
 
@@ -496,7 +539,31 @@ class FewDays {
             else
                 k = last;
         }
+        for (Series& series : all)
+            add_paths(series);
         return all;
+    }
+
+    void add_paths(Series& series) const {
+        for (std::size_t k = series.first; k <= series.last;) {
+            const bool is_turned = k == series.last && series.turned;
+            std::size_t end = k + 1, levels = skies_[k].levels();
+            std::optional<SunSky> middle;
+            while (!is_turned && end <= series.last && !(end == series.last && series.turned)) {
+                const SunOverDem &first = moments_.suns[k], &last = moments_.suns[end];
+                levels += skies_[end].levels();
+                const double way_rad =
+                    std::remainder(last.azimuth_rad - first.azimuth_rad, 2 * kPi);
+                if (levels > Sweep::Blocks::kMostLevels || std::abs(way_rad) > kOnePath_rad) break;
+                const SunSky between(dem_, {first.azimuth_rad + way_rad / 2,
+                                            (first.elevation_rad + last.elevation_rad) / 2, 0});
+                if (!between.goes_like(skies_[series.first])) break;
+                middle.emplace(between);
+                ++end;
+            }
+            series.paths.push_back({k, end, middle ? *middle : sky_of(series, k)});
+            k = end;
+        }
     }
 
     const SunSky& sky_of(const Series& series, std::size_t k) const {
@@ -524,8 +591,8 @@ class FewDays {
         parallel_for(0, static_cast<int>(all.size()), 1, [&](int begin, int end) {
             for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
                 std::vector<SunSky> skies;
-                for (std::size_t k = all[i].first; k <= all[i].last; ++k)
-                    skies.push_back(sky_of(all[i], k));
+                for (const Series::Path& path : all[i].paths)
+                    skies.push_back(path.sky);
                 windows[i] = divide_in_bands(skies, whole(dem_.grid()), part_);
             }
         });
@@ -588,9 +655,8 @@ class FewDays {
         return mixed;
     }
 
-    TileSun tile_sun(const Series& series, std::size_t k, const SunTile& tile,
-                     std::size_t band) const {
-        TileSun sun{k, band, TileEdges(sky_of(series, k), tile, 0), std::nullopt};
+    TileSun tile_sun(const Series& series, std::size_t k, const SunTile& tile) const {
+        TileSun sun{k, TileEdges(sky_of(series, k), tile, 0), std::nullopt};
         if (irradiation_ && k > series.first) {
             const SunSky sky(dem_, moments_.middles[k - 1]);
             sun.beam.emplace(sky, tile, ClearSky(irradiation_->linke, moments_.distances_au[k - 1]),
@@ -599,21 +665,63 @@ class FewDays {
         return sun;
     }
 
-    /// The suns of a moment over a part: one, or one for each band.
-    Sweep::Blocks::Sun add_suns(const Work& work, std::size_t k, std::vector<TileSun>& suns) const {
+    /// Whether suns over a tile differ by the same everywhere, or nearly so; they do then.
+    bool make_alike(std::vector<TileSun>& suns) const {
+        const SweepSun like = suns[suns.size() / 2].edges.suns().front();
+        const GridPair& at = like.reference;
+        const double across = std::max(at.column, dem_.grid().columns() - at.column),
+                     down = std::max(at.row, dem_.grid().rows() - at.row);
+        for (const TileSun& each : suns)
+            for (const SweepSun& sun : each.edges.suns()) {
+                const GridPair &a = sun.tangent_a_post, &b = like.tangent_a_post;
+                const double off =
+                    std::abs(a.column - b.column) * across + std::abs(a.row - b.row) * down;
+                if (off > kShared_rad * (1 + sun.tangent * sun.tangent)) return false;
+            }
+        for (TileSun& each : suns)
+            each.edges.go_like(like);
+        return true;
+    }
+
+    /// Those of a path over a tile.
+    PathSuns path_suns(const Series& series, std::size_t path, const SunTile& tile,
+                       std::size_t band) const {
+        PathSuns found{path, band, {}, false};
+        for (std::size_t k = series.paths[path].first; k < series.paths[path].end; ++k)
+            found.suns.push_back(tile_sun(series, k, tile));
+        found.together = make_alike(found.suns);
+        return found;
+    }
+
+    static std::vector<Sweep::Blocks::Suns> sweeps_of(const PathSuns& path) {
+        std::vector<Sweep::Blocks::Suns> sweeps;
+        for (const TileSun& each : path.suns)
+            for (const SweepSun& sun : each.edges.suns()) {
+                if (sweeps.empty() || !path.together)
+                    sweeps.push_back({sun});
+                else
+                    sweeps.back().more.push_back(sun.tangent - sweeps.back().sun.tangent);
+            }
+        return sweeps;
+    }
+
+    /// The suns of a path over a part: those of a window, or those of each band.
+    Sweep::Blocks::Sun add_suns(const Work& work, std::size_t path,
+                                std::vector<PathSuns>& suns) const {
+        const Series::Path& of = work.series.paths[path];
         Sweep::Blocks::Sun moment;
-        moment.all_posts = irradiation_ || k == 0 || k + 1 == skies_.size();
+        moment.all_posts = irradiation_ || of.first == 0 || of.end == skies_.size();
         if (work.window->bands.empty()) {
-            const SunTile tile = tile_of(sky_of(work.series, k), work.window->window, work.part);
-            suns.push_back(tile_sun(work.series, k, tile, 0));
-            moment.bands.push_back({suns.back().edges.suns()});
+            suns.push_back(
+                path_suns(work.series, path, tile_of(of.sky, work.window->window, work.part), 0));
+            moment.bands.push_back({sweeps_of(suns.back())});
             return moment;
         }
-        const SunBands& bands = work.window->bands[k - work.series.first];
+        const SunBands& bands = work.window->bands[path];
         moment.bands = bands.over(work.part);
         for (std::size_t band = 0; band < bands.tiles.size(); ++band) {
-            suns.push_back(tile_sun(work.series, k, bands.tiles[band], band));
-            moment.bands[band].suns = suns.back().edges.suns();
+            suns.push_back(path_suns(work.series, path, bands.tiles[band], band));
+            moment.bands[band].suns = sweeps_of(suns.back());
         }
         return moment;
     }
@@ -626,10 +734,10 @@ class FewDays {
 
     void light_part(const Work& work, const std::optional<GroundForBeams>& ground, PostLight& posts,
                     Totals& totals) const {
-        std::vector<TileSun> suns;
+        std::vector<PathSuns> suns;
         std::vector<Sweep::Blocks::Sun> sweeps;
-        for (std::size_t k = work.series.first; k <= work.series.last; ++k)
-            sweeps.push_back(add_suns(work, k, suns));
+        for (std::size_t path = 0; path < work.series.paths.size(); ++path)
+            sweeps.push_back(add_suns(work, path, suns));
         if (!Sweep::Blocks::go_together(sweeps))
             return light_apart(work, suns, sweeps, ground, posts, totals);
         Sweep::Blocks blocks(sweep_, sweeps, work.part, dem_.floor_m(), dem_.curvature());
@@ -640,35 +748,32 @@ class FewDays {
                     if (spells_ || each == &posts.margin_m)
                         std::fill_n(each->of(run), run.count, -1.0F);
             });
-            for (const TileSun& sun : suns)
-                add(work.series, sun, posts, [&](std::size_t i, const Sweep::Use& use) {
-                    blocks.each_edge(sun.k - work.series.first, sun.band, i, use);
-                });
+            for (const PathSuns& path : suns)
+                add(work.series, path, posts,
+                    [&](std::size_t i, const Sweep::Blocks::UseEach& use) {
+                        blocks.each_edge(path.path, path.band, i, use);
+                    });
             finish(work.series, posts, totals);
         }
     }
 
     /// Likewise suns that do not go over the grid alike.
-    void light_apart(const Work& work, const std::vector<TileSun>& suns,
+    void light_apart(const Work& work, const std::vector<PathSuns>& suns,
                      const std::vector<Sweep::Blocks::Sun>& sweeps,
                      const std::optional<GroundForBeams>& ground, PostLight& posts,
                      Totals& totals) const {
         begin(posts, work.part, skies_[work.series.first].along_columns(), ground);
-        for (const TileSun& sun : suns) {
-            posts.turn(sky_of(work.series, sun.k).along_columns());
-            if (work.window->bands.empty()) {
-                add(work.series, sun, posts, [&](std::size_t i, const Sweep::Use& use) {
-                    sweep_.each_edge(sun.edges.suns()[i], work.part, use, Sweep::kMostLanes,
-                                     dem_.floor_m());
-                });
-                continue;
-            }
+        for (const PathSuns& path : suns) {
+            posts.turn(sky_of(work.series, path.suns.front().k).along_columns());
             Sweep::Blocks::Sun alone;
-            alone.bands = {sweeps[sun.k - work.series.first].bands[sun.band]};
+            alone.bands = {sweeps[path.path].bands[path.band]};
             Sweep::Blocks blocks(sweep_, {alone}, work.part, dem_.floor_m(), dem_.curvature());
+            // Block by block each sun's posts come before the next one's.
             while (blocks.next())
-                add(work.series, sun, posts,
-                    [&](std::size_t i, const Sweep::Use& use) { blocks.each_edge(0, 0, i, use); });
+                add(work.series, path, posts,
+                    [&](std::size_t i, const Sweep::Blocks::UseEach& use) {
+                        blocks.each_edge(0, 0, i, use);
+                    });
         }
         finish(work.series, posts, totals);
     }
@@ -680,31 +785,84 @@ class FewDays {
         totals.add(series, posts);
     }
 
-    /// A sun over all posts of `posts`, whose edges `sweep` has. A series counts light from its
-    /// first sun to its last.
-    void add(const Series& series, const TileSun& sun, PostLight& posts,
-             const std::function<void(std::size_t, const Sweep::Use&)>& sweep) const {
-        const std::size_t k = sun.k;
-        const bool is_first = k == series.first;
-        const double begin_h = at_h_[series.first], now_h = at_h_[k];
-        const Step step{is_first ? now_h : at_h_[k - 1], is_first ? 0 : now_h - at_h_[k - 1]};
-        sun.edges.each(sweep, posts.scratch, [&](const SweepRun& run) {
-            float *const margin_m = posts.margin_m.of(run), *const lit_h = posts.lit_h.of(run);
-            if (is_first) {
+    /// Suns over posts, whose edges `sweep` has for each of sweeps_of() them.
+    void add(const Series& series, const PathSuns& path, PostLight& posts,
+             const std::function<void(std::size_t, const Sweep::Blocks::UseEach&)>& sweep) const {
+        if (path.together)
+            return sweep(0, [&](const SweepRun& run, const float* const* found) {
+                add_run(series, path.suns, run, found, posts);
+            });
+        std::size_t i = 0;
+        for (const TileSun& sun : path.suns) {
+            const bool two = sun.edges.suns().size() == 2;
+            if (two)
+                sweep(i++, [&](const SweepRun& run, const float* const*) {
+                    std::copy_n(run.found, run.count, posts.scratch.of(run));
+                });
+            sweep(i++, [&](const SweepRun& run, const float* const*) {
+                const std::array<const float*, 2> found{two ? posts.scratch.of(run) : run.found,
+                                                        run.found};
+                add_run(series, {&sun, 1}, run, found.data(), posts);
+            });
+        }
+    }
+
+    /// @param found  for each of the suns edges of those that are swept
+    void add_run(const Series& series, std::span<const TileSun> suns, const SweepRun& run,
+                 const float* const* found, PostLight& posts) const {
+        constexpr int kRun = TileEdges::kRun;
+        std::array<float, kRun * Sweep::Blocks::kMostLevels> room;
+        std::array<const float*, Sweep::Blocks::kMostLevels> edges;
+        for (int done = 0; done < run.count; done += kRun) {
+            SweepRun part = run;
+            part.first += done;
+            part.count = std::min(run.count - done, kRun);
+            part.height_m += done;
+            const float* const* of_sun = found;
+            for (std::size_t i = 0; i < suns.size(); ++i) {
+                const TileEdges& of = suns[i].edges;
+                part.found = of_sun[of.suns().size() - 1] + done;
+                edges[i] = of.find(part, *of_sun + done, room.data() + i * kRun);
+                of_sun += of.suns().size();
+            }
+            add_light_of(series, suns, part, edges.data(), posts);
+        }
+    }
+
+    /// A series counts light from its first sun to its last.
+    void add_light_of(const Series& series, std::span<const TileSun> suns, SweepRun run,
+                      const float* const* edges, PostLight& posts) const {
+        const double begin_h = at_h_[series.first];
+        float *const margin_m = posts.margin_m.of(run), *const lit_h = posts.lit_h.of(run);
+        std::array<LightAt, Sweep::Blocks::kMostLevels> moments;
+        std::size_t count = 0;  // of those that are to be added
+        const auto add_all = [&] {
+            if (count > 0)
+                add_light({{moments.data(), count}, run.height_m, margin_m, lit_h}, run.count);
+            count = 0;
+        };
+        for (std::size_t i = 0; i < suns.size(); ++i) {
+            const std::size_t k = suns[i].k;
+            run.found = edges[i];
+            if (k == series.first) {
                 measure(run, margin_m);
                 if (spells_) std::copy_n(margin_m, run.count, posts.began_m.of(run));
                 if (spells_ && k == 0) add_end(run, 0, true, posts);
             } else {
+                const Step step{at_h_[k - 1], at_h_[k] - at_h_[k - 1]};
+                const std::optional<SunBeam>& beam = suns[i].beam;
+                if (spells_ || beam) add_all();
                 if (spells_) add_spells(run, step, posts);
-                if (sun.beam && sun.beam->given.back() > 0)
-                    add_beam(run, *sun.beam, margin_m, *posts.beams);
-                add_light(
-                    {static_cast<float>(step.from_h - begin_h), static_cast<float>(step.hours),
-                     run.height_m, run.found, margin_m, lit_h},
-                    run.count);
+                if (beam && beam->given.back() > 0) add_beam(run, *beam, margin_m, *posts.beams);
+                moments[count++] = {static_cast<float>(step.from_h - begin_h),
+                                    static_cast<float>(step.hours), run.found};
             }
-            if (spells_ && k + 1 == skies_.size()) add_end(run, now_h, false, posts);
-        });
+            if (spells_ && k + 1 == skies_.size()) {
+                add_all();
+                add_end(run, at_h_[k], false, posts);
+            }
+        }
+        add_all();
     }
 
     const DemSky& dem_;
@@ -1146,8 +1304,9 @@ SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end
         "{}; "
         "ground of the DEM alone shades, on the WGS 84 ellipsoid with terrestrial refraction k = "
         "{:.4g}; beyond the DEM smooth ground at {:.0f} m; no clouds",
-        few ? fmt::format("from suns {:.10g} s apart, {:.10g} s near the horizon", options.step_s,
-                          options.step_s / kFiner)
+        few ? fmt::format("from suns {:.10g} s apart, {:.10g} s near the horizon, in directions "
+                          "within {:.2g} degrees of theirs",
+                          options.step_s, options.step_s / kFiner, degrees(kOnePath_rad) / 2)
             : "from horizons in directions 2 degrees apart",
         options.refraction, double{posts.lowest_m()});
     return result;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -35,12 +36,14 @@ struct Nearness {
 constexpr std::size_t kMostLineSets = 2;
 constexpr Nearness kOfEdges{kNearRows, kLinesFromPostToPost, 8, false};
 constexpr Nearness kOfHorizons{8, 1, 16, true};  // a row near costs less than a fan of rays
-constexpr double kSteepest = 1e4;                // tangent: 0.006 degrees from the zenith
+static_assert(kMostLevels == Sweep::Blocks::kMostLevels);
+constexpr double kSteepest = 1e4;  // tangent: 0.006 degrees from the zenith
 constexpr double kOnLine = 1e-6;   // of a post: a ray that meets a row there meets the post
 constexpr int kStripLines = 2047;  // which a thread sweeps together: its rows stay in the cache
 constexpr int kFanLines = 63;      // likewise, where each line has a fan
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr ColumnRange kAllColumns{-(1 << 28), 1 << 28};
+constexpr std::array<double, 1> kOneLevel{0};
 
 /// Numbers of floats are filled up to whole vectors.
 constexpr int in_vectors(int count) {
@@ -431,8 +434,7 @@ class Terms {
     /// Those of the lines of a set, at a row.
     std::span<const Ground> of_lines(std::size_t set, int row) const { return part(set, row); }
     std::span<const Ground> of_posts(int row) const { return part(kMostLineSets, row); }
-    /// For each of them, what rays have fallen by from there on, which is the way where tangents
-    /// are 1.
+    /// For each of them, how far off it is [m], where the steps have distances.
     const double* distances(std::span<const Ground> of) const {
         return distances_.data() + (of.data() - grounds_.data());
     }
@@ -520,10 +522,9 @@ class Terms::Maker {
     /// Room for what they meet, which is no more than so much.
     Maker(Terms& terms, const Plan& plan, const Steps& steps, const RowPlan& to, std::size_t most)
         : terms_(terms), plan_(plan), steps_(steps), to_(to) {
-        if (terms.grounds_.size() < terms.count_ + most) {
+        if (terms.grounds_.size() < terms.count_ + most)
             terms.grounds_.resize(2 * (terms.count_ + most));
-            if (steps.nearness.distances) terms.distances_.resize(terms.grounds_.size());
-        }
+        if (steps.nearness.distances) terms.distances_.resize(terms.grounds_.size());
         ground_ = terms.grounds_.data() + terms.count_;
     }
     ~Maker() { terms_.count_ = static_cast<std::size_t>(ground_ - terms_.grounds_.data()); }
@@ -546,7 +547,7 @@ class Terms::Maker {
             part = 0;
         }
         const int at = origin(row) + column;  // at a post, what is beside it plays no part
-        add({at, at + (part > 0), static_cast<float>(part)}, plan_.row(row).fall);
+        add({at, at + (part > 0), static_cast<float>(part)}, plan_.row(row).distance_m);
     }
 
     /// The ground of all columns that such rays cross between row `row - 1` and row `row`.
@@ -561,16 +562,16 @@ class Terms::Maker {
         for (int column = ceil_of(low);; ++column) {
             const double part = (column - from) * per_column;
             add({before + column, here + column, static_cast<float>(part)},
-                a.fall + part * (b.fall - a.fall), column <= high);
+                a.distance_m + part * (b.distance_m - a.distance_m), column <= high);
             if (column + 1 > high) return;
         }
     }
 
   private:
-    void add(const Ground& ground, double fall, bool counts = true) {
+    void add(const Ground& ground, double distance_m, bool counts = true) {
         if (steps_.nearness.distances)
             terms_.distances_[static_cast<std::size_t>(ground_ - terms_.grounds_.data())] =
-                to_.fall - fall;
+                distance_m - to_.distance_m;
         *ground_ = ground;
         ground_ += counts;
     }
@@ -686,12 +687,16 @@ class Strip {
     static constexpr Nearness kNearness = kOfEdges;
     static_assert(kNearness.kept_rows >= kNearness.near_rows + 3);
 
+    /// @param plan   of the first level
+    /// @param more   tangents of the levels, more than the first one's, which is 0; kMostLevels at
+    ///     most. Steps of several have distances. Outlives this
     /// @param line   the first one
     /// @param width  how many whose posts it has, kMostWidth at most
-    Strip(const Sheet& sheet, const Plan& plan, const Steps& steps, const SweepKernel& kernel,
-          int line, int width, float lowest_m, float floor_m)
+    Strip(const Sheet& sheet, const Plan& plan, std::span<const double> more, const Steps& steps,
+          const SweepKernel& kernel, int line, int width, float lowest_m, float floor_m)
         : sheet_(sheet),
           plan_(plan),
+          more_(more),
           steps_(steps),
           kernel_(kernel),
           line_(line),
@@ -700,8 +705,13 @@ class Strip {
           floor_m_(floor_m),
           rows_(steps, line, width + 1),
           pitch_(in_vectors(width + 1) + Sweep::kMostLanes),
-          height_m_(static_cast<std::size_t>(pitch_) * kNearness.line_sets, kNothing_m),
-          edge_m_(static_cast<std::size_t>(in_vectors(width))) {}
+          height_m_(static_cast<std::size_t>(level_pitch()) * more.size(), kNothing_m),
+          edge_pitch_(in_vectors(width)),
+          edge_m_(static_cast<std::size_t>(edge_pitch_) * more.size()) {
+        assert(!more.empty() && more.size() <= kMostLevels);
+    }
+
+    std::ptrdiff_t edge_pitch() const { return edge_pitch_; }
 
     /// Where its ground is, from now on.
     Sheet& sheet() { return sheet_; }
@@ -744,14 +754,18 @@ class Strip {
                            .lines = in_vectors(to - first),
                            .rows = rows_.from(line_ + first),
                            .ground = ground.data(),
-                           .grounds = static_cast<int>(ground.size())});
+                           .grounds = static_cast<int>(ground.size()),
+                           .levels = levels(),
+                           .pitch = level_pitch(),
+                           .over_m = over_first(row, terms, ground)});
         }
     }
 
     /// The edge at the posts of a row, the lines having been left kNearness.near_rows + 1 rows
     /// before.
     /// @param first, end  of the columns that are wanted
-    /// @param use         takes the first column, how many there are, and their edges
+    /// @param use         takes the first column, how many there are, and their edges, of the
+    ///     first level; those of the next begin edge_pitch() on
     template <typename Use>
     void look(int row, const Terms& terms, int first, int end, const Use& use) {
         const Steps::Row& step = steps_.row(row);
@@ -759,6 +773,9 @@ class Strip {
         const int to = std::min(line_ + width_, end - step.column);
         if (from >= to) return;
         const std::span<const Ground> ground = terms.of_posts(row);
+        std::array<float, kMostLevels> falls;
+        for (std::size_t level = 0; level < more_.size(); ++level)
+            falls[level] = static_cast<float>(fallen_m(row, level));
         EdgeSight sight{.edge_m = edge_m_.data(),
                         .posts = in_vectors(to - from),
                         .before_m = nullptr,
@@ -766,12 +783,17 @@ class Strip {
                         .part = step.far_part,
                         .line = from,
                         .between = step.between,
-                        .slope = fallen(row),
+                        .falls = falls.data(),
+                        .ramp = static_cast<float>(plan_.row(row).ramp),
                         .base_m = zero_m_,
                         .floor_m = floor_m_,
                         .rows = rows_.from(from),
                         .ground = ground.data(),
-                        .grounds = static_cast<int>(ground.size())};
+                        .grounds = static_cast<int>(ground.size()),
+                        .levels = levels(),
+                        .edge_pitch = edge_pitch_,
+                        .line_pitch = level_pitch(),
+                        .over_m = over_first(row, terms, ground)};
         if (row - kNearness.near_rows - 1 >= steps_.begin) {
             // The next line of the last set is the first one's, one on.
             const auto set = static_cast<std::size_t>(step.far_set);
@@ -788,48 +810,79 @@ class Strip {
     static constexpr float kZero_m = 256;  // of which heights have some taken away
     static constexpr double kBase_m = 2048;
 
-    Slope fallen(int row) const {
+    int levels() const { return static_cast<int>(more_.size()); }
+    std::ptrdiff_t level_pitch() const {
+        return pitch_ * static_cast<std::ptrdiff_t>(kNearness.line_sets);
+    }
+    double fall_m(int row, std::size_t level) const {
         const RowPlan& at = plan_.row(row);
-        return {static_cast<float>(at.fall - base_m_), static_cast<float>(at.ramp)};
+        return at.fall - at.distance_m * more_[level];
+    }
+    /// From its base on.
+    double fallen_m(int row, std::size_t level) const {
+        return fall_m(row, level) - base_m_[level];
+    }
+    Slope fallen(int row) const {
+        return {static_cast<float>(fallen_m(row, 0)), static_cast<float>(plan_.row(row).ramp)};
     }
     float* lines_of(std::size_t set) {
         return height_m_.data() + static_cast<std::ptrdiff_t>(set) * pitch_;
     }
 
-    /// Takes another base where rays have fallen by so much.
+    /// How much higher the ground is over further levels' rays, that are at a row, than over those
+    /// of the first.
+    const float* over_first(int row, const Terms& terms, std::span<const Ground> ground) {
+        if (more_.size() == 1) return nullptr;
+        over_m_.clear();
+        const double* const distance_m = terms.distances(ground);
+        for (std::size_t k = 0; k < ground.size(); ++k)
+            for (std::size_t level = 1; level < more_.size(); ++level)
+                over_m_.push_back(static_cast<float>(fallen_m(row, level) - fallen_m(row, 0) -
+                                                     distance_m[k] * more_[level]));
+        return over_m_.data();
+    }
+
+    /// Takes other bases where rays have fallen by so much.
     void rebase(int row) {
-        const double fallen_m = plan_.row(row).fall;
-        if (fallen_m >= base_m_ && fallen_m < base_m_ + kBase_m) return;
-        const double base_m = kBase_m * std::floor(fallen_m / kBase_m);
-        const auto more_m = static_cast<float>(base_m - base_m_);
-        base_m_ = base_m;
-        if (row == steps_.begin || more_m == 0) return;
-        const auto lower = [&](float* heights_m, int count) {
-            kernel_.tilt({.from = heights_m,
-                          .next = heights_m,
-                          .to = heights_m,
-                          .lines = count,
-                          .line = 0,
-                          .between = 0,
-                          .slope = {},
-                          .base_m = -more_m});
-        };
-        lower(height_m_.data(), static_cast<int>(height_m_.size()));
-        for (int at = std::max(steps_.begin, row - rows_.kept() + 1); at < row; ++at)
-            lower(rows_.begin_of(at), rows_.width());
+        for (std::size_t level = 0; level < more_.size(); ++level) {
+            const double fallen_m = this->fallen_m(row, level);
+            if (fallen_m >= 0 && fallen_m < kBase_m) continue;
+            const double base_m = kBase_m * std::floor(fall_m(row, level) / kBase_m);
+            const auto more_m = static_cast<float>(base_m - base_m_[level]);
+            base_m_[level] = base_m;
+            if (row == steps_.begin || more_m == 0) continue;
+            const auto lower = [&](float* heights_m, int count) {
+                kernel_.tilt({.from = heights_m,
+                              .next = heights_m,
+                              .to = heights_m,
+                              .lines = count,
+                              .line = 0,
+                              .between = 0,
+                              .slope = {},
+                              .base_m = -more_m});
+            };
+            lower(height_m_.data() + static_cast<std::ptrdiff_t>(level) * level_pitch(),
+                  static_cast<int>(level_pitch()));
+            if (level > 0) continue;
+            for (int at = std::max(steps_.begin, row - rows_.kept() + 1); at < row; ++at)
+                lower(rows_.begin_of(at), rows_.width());
+        }
     }
 
     Sheet sheet_;
     const Plan& plan_;
+    std::span<const double> more_;
     const Steps& steps_;
     const SweepKernel& kernel_;
     int line_, width_;
     float zero_m_, floor_m_;
-    double base_m_ = 0;
+    std::array<double, kMostLevels> base_m_{};  // of each level
     GroundRows rows_;
     std::ptrdiff_t pitch_;    // from set to set, the next line, too
-    FloatsInLines height_m_;  // of each set's lines
+    FloatsInLines height_m_;  // of each level's, each set's lines
+    std::ptrdiff_t edge_pitch_;
     FloatsInLines edge_m_;
+    std::vector<float> over_m_;
 };
 
 /// Lines next to each other, each with a fan of rays over the ground behind it. Heights are less
@@ -977,6 +1030,23 @@ class FanStrip {
     GroundRows rows_;
     std::array<float, kRays> tangents_;
     std::array<Fans, kNearness.line_sets> fans_;
+};
+
+/// Suns whose rays have one shape, from the lowest one on.
+struct Levels {
+    std::vector<double> more;     // of their tangents, than that of the lowest
+    std::vector<std::size_t> of;  // the level of each
+
+    explicit Levels(const std::vector<double>& given) : of(given.size()) {
+        std::vector<std::size_t> order(given.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t a, std::size_t b) { return given[a] < given[b]; });
+        for (std::size_t level = 0; level < order.size(); ++level) {
+            of[order[level]] = level;
+            more.push_back(given[order[level]] - given[order[0]]);
+        }
+    }
 };
 
 /// What lies where on a sheet for a sweep.
@@ -1315,8 +1385,8 @@ void Sweep::each_edge(const SweepSun& given, const SweepWindow& window, const Us
     sweep_strips<Strip>(
         view, drop_m(floor_m),
         [&](const Plan& plan, const Steps& steps, int line, int width) {
-            return std::make_unique<Strip>(view.sheet, plan, steps, kernel, line, width, lowest_m_,
-                                           floor_m);
+            return std::make_unique<Strip>(view.sheet, plan, kOneLevel, steps, kernel, line, width,
+                                           lowest_m_, floor_m);
         },
         [&](Strip& strip, int row, const Terms& terms) {
             strip.look(row, terms, w.column, w.column + w.columns,
@@ -1354,8 +1424,9 @@ void Sweep::each_horizon(const SweepSun& way, double curvature, double reach_m,
 }
 
 /// A sun whose sweep goes on from block to block.
-struct Sweep::Blocks::OneSun {
-    View view;
+struct Sweep::Blocks::OneShape {
+    View view;  // of the lowest one
+    Levels levels;
     Plan plan;
     Extent extent;
     ColumnRange ground;                  // columns that its lines go over
@@ -1364,19 +1435,21 @@ struct Sweep::Blocks::OneSun {
     int pitch = 0;  // of their rows of ground
 
     /// @param begin  as Plan has it
-    OneSun(const View& of, const Wanted& wanted, double drop_m, int begin)
+    OneShape(const View& of, const Levels& all, const Wanted& wanted, double drop_m, int begin)
         : view(of),
+          levels(all),
           plan(view.sheet, view.sun, view.window, drop_m, begin),
           extent(plan, wanted),
           ground(columns()) {}
     /// Of a band.
-    OneSun(const View& of, const Wanted& wanted, const RayRows& ray, int begin)
+    OneShape(const View& of, const Levels& all, const Wanted& wanted, const RayRows& ray, int begin)
         : view(of),
+          levels(all),
           plan(view.sheet, view.sun, ray, begin, wanted.window.row + wanted.window.rows),
           extent(plan, wanted),
           ground(columns()) {}
-    OneSun(const OneSun&) = delete;
-    OneSun& operator=(const OneSun&) = delete;
+    OneShape(const OneShape&) = delete;
+    OneShape& operator=(const OneShape&) = delete;
 
     /// Of rows [first, end), those that it goes over.
     std::pair<int, int> rows(int first, int end) const {
@@ -1386,8 +1459,21 @@ struct Sweep::Blocks::OneSun {
     /// A strip comes to a row.
     void step(const Moment& moment, Strip& strip, int row, Terms& terms);
 
+    /// What is known of the posts of patches before all of its suns are swept.
+    ShadedPatches shaded(const PatchSheet& sheet, const EarthAround& earth) const {
+        ShadedPatches found(sheet, view.sun, plan.rows(), plan.begin(), earth);
+        if (levels.more.size() == 1) return found;
+        std::vector<RowPlan> rows(plan.rows().begin(), plan.rows().end());
+        for (RowPlan& row : rows)
+            row.fall -= row.distance_m * levels.more.back();
+        SweepSun highest = view.sun;
+        highest.tangent += levels.more.back();
+        found.rise_to(ShadedPatches(sheet, highest, rows, plan.begin(), earth));
+        return found;
+    }
+
     /// To be called before it goes over rows.
-    /// @param of  its own, or of another sun whose rays go the same way from the same row on
+    /// @param of  its own, or of others whose rays go the same way from the same row on
     void make_strips(const std::shared_ptr<const Steps>& of, float lowest_m, float floor_m) {
         steps = of;
         const int lines = extent.end_line - extent.first_line;
@@ -1396,7 +1482,7 @@ struct Sweep::Blocks::OneSun {
             std::min(in_vectors((lines + count - 1) / count + 1) - 1, Strip::kMostWidth);
         pitch = steps->pitch(width + 1);
         for (int line = extent.first_line; line < extent.end_line; line += width)
-            strips.push_back(std::make_unique<Strip>(view.sheet, plan, *steps,
+            strips.push_back(std::make_unique<Strip>(view.sheet, plan, levels.more, *steps,
                                                      widest_sweep_kernel(kMostLanes), line, width,
                                                      lowest_m, floor_m));
     }
@@ -1413,17 +1499,20 @@ struct Sweep::Blocks::OneSun {
 /// The suns of a band, where it has posts.
 struct Sweep::Blocks::OneBand {
     Wanted wanted;
-    std::vector<std::unique_ptr<OneSun>> suns;
+    std::vector<std::unique_ptr<OneShape>> shapes;
 
     void make_strips(float lowest_m, float floor_m) {
-        if (suns.empty()) return;
+        if (shapes.empty()) return;
         // Of the sun whose shade reaches farthest, for all of them.
         const auto& farthest = *std::max_element(
-            suns.begin(), suns.end(),
+            shapes.begin(), shapes.end(),
             [](const auto& a, const auto& b) { return a->plan.reach_m() < b->plan.reach_m(); });
-        const auto steps = std::make_shared<const Steps>(farthest->plan, wanted, Strip::kNearness);
-        for (const auto& sun : suns)
-            sun->make_strips(steps, lowest_m, floor_m);
+        Nearness nearness = Strip::kNearness;
+        for (const auto& shape : shapes)
+            nearness.distances = nearness.distances || shape->levels.more.size() > 1;
+        const auto steps = std::make_shared<const Steps>(farthest->plan, wanted, nearness);
+        for (const auto& shape : shapes)
+            shape->make_strips(steps, lowest_m, floor_m);
     }
 };
 
@@ -1434,10 +1523,10 @@ struct Sweep::Blocks::BlockTerms {
     int row = 0;
 
     /// @param first, end  of the block
-    void come_to(const OneSun& sun, int first, int end) {
-        if (of == sun.steps.get() && row == first) return;
-        of = sun.steps.get(), row = first;
-        terms.clear(first - Strip::kNearness.near_rows - 1, end, sun.pitch);
+    void come_to(const OneShape& shape, int first, int end) {
+        if (of == shape.steps.get() && row == first) return;
+        of = shape.steps.get(), row = first;
+        terms.clear(first - Strip::kNearness.near_rows - 1, end, shape.pitch);
     }
 };
 
@@ -1460,7 +1549,7 @@ struct Sweep::Blocks::Moment {
     bool has_none() const { return ranges && ranges->of[ShadeRanges::kTake].ranges.empty(); }
 };
 
-void Sweep::Blocks::OneSun::step(const Moment& moment, Strip& strip, int row, Terms& terms) {
+void Sweep::Blocks::OneShape::step(const Moment& moment, Strip& strip, int row, Terms& terms) {
     const int at = row - Strip::kNearness.near_rows - 1;
     const bool raises = at >= plan.begin() && moment.has_any(ShadeRanges::kRaise, at);
     if (!raises && !moment.has_any(ShadeRanges::kTake, row)) return;
@@ -1481,8 +1570,9 @@ bool Sweep::Blocks::go_together(const std::vector<Sun>& suns) {
     };
     for (const Sun& moment : suns)
         for (const Band& band : moment.bands)
-            for (const SweepSun& sun : band.suns)
-                if (way(sun) != way(suns.front().bands.front().suns.front())) return false;
+            for (const Suns& shape : band.suns)
+                if (way(shape.sun) != way(suns.front().bands.front().suns.front().sun))
+                    return false;
     return true;
 }
 
@@ -1490,8 +1580,8 @@ Sweep::Blocks::Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const Sw
                       float floor_m, double earth_curvature)
     : sweep_(sweep), terms_(std::make_unique<BlockTerms>()) {
     assert(!suns.empty() && go_together(suns));
-    view_ =
-        std::make_unique<View>(sweep.edge_view(suns.front().bands.front().suns.front(), window));
+    view_ = std::make_unique<View>(
+        sweep.edge_view(suns.front().bands.front().suns.front().sun, window));
     for (const Sun& of : suns) {
         moments_.push_back(std::make_unique<Moment>());
         for (const Band& band : of.bands)
@@ -1506,9 +1596,9 @@ Sweep::Blocks::Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const Sw
         if (moment->has_none()) continue;
         for (OneBand& band : moment->bands) {
             band.make_strips(sweep.lowest_m_, floor_m);
-            for (const auto& sun : band.suns) {
-                suns_.push_back(sun.get());
-                row_ = std::min(row_, sun->plan.begin());
+            for (const auto& shape : band.shapes) {
+                shapes_.push_back(shape.get());
+                row_ = std::min(row_, shape->plan.begin());
             }
         }
     }
@@ -1547,23 +1637,28 @@ void Sweep::Blocks::add_band(const Band& band, const SweepWindow& window, float 
     const SweepWindow& w = to.wanted.window;
     if (w.rows == 0) return;
     std::vector<View> views;
-    for (const SweepSun& sun : band.suns)
-        views.push_back(sweep_.edge_view(sun, window));
+    std::vector<Levels> levels;
+    for (const Suns& suns : band.suns) {
+        levels.emplace_back(suns.more);
+        SweepSun lowest = suns.sun;
+        lowest.tangent += *std::min_element(suns.more.begin(), suns.more.end());
+        views.push_back(sweep_.edge_view(lowest, window));
+    }
     const double drop_m = sweep_.drop_m(floor_m);
+    int begin = w.row;
     if (!to.wanted.is_band()) {
-        int begin = w.row;
         for (const View& view : views)
             begin = std::min(begin, Plan::begin_of_window(view.sun, w, drop_m));
-        for (const View& view : views)
-            to.suns.push_back(std::make_unique<OneSun>(view, to.wanted, drop_m, begin));
+        for (std::size_t i = 0; i < views.size(); ++i)
+            to.shapes.push_back(
+                std::make_unique<OneShape>(views[i], levels[i], to.wanted, drop_m, begin));
         return;
     }
     RayRows ray(views.front().sun, w.row, w.row + w.rows);
-    int begin = w.row;
     for (const View& view : views)
         begin = std::min(begin, Plan::begin_of_band(view.sheet, view.sun, to.wanted, drop_m, ray));
-    for (const View& view : views)
-        to.suns.push_back(std::make_unique<OneSun>(view, to.wanted, ray, begin));
+    for (std::size_t i = 0; i < views.size(); ++i)
+        to.shapes.push_back(std::make_unique<OneShape>(views[i], levels[i], to.wanted, ray, begin));
 }
 
 void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvature) {
@@ -1575,18 +1670,17 @@ void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvatu
     ColumnRange ground{kAllColumns.end, kAllColumns.begin};
     for (std::size_t k = 0; k < suns.size(); ++k)
         if (is_known(k))
-            for (const auto& sun : moments_[k]->bands.front().suns)
-                ground = {std::min(ground.begin, sun->ground.begin),
-                          std::max(ground.end, sun->ground.end)};
+            for (const auto& shape : moments_[k]->bands.front().shapes)
+                ground = {std::min(ground.begin, shape->ground.begin),
+                          std::max(ground.end, shape->ground.end)};
     const auto find = [&](std::size_t k) {
         if (!is_known(k)) return;
         Moment& moment = *moments_[k];
         moment.sheet.emplace(sweep_.cells(view_->along_columns), view_->mirrored, view_->sheet.rows,
                              ground);
-        for (const auto& sun : moment.bands.front().suns) {
-            const ShadedPatches found(*moment.sheet, sun->view.sun, sun->plan.rows(),
-                                      sun->plan.begin(),
-                                      EarthAround{sweep_.lowest_m_, earth_curvature});
+        for (const auto& shape : moment.bands.front().shapes) {
+            const ShadedPatches found =
+                shape->shaded(*moment.sheet, EarthAround{sweep_.lowest_m_, earth_curvature});
             if (shaded[k])
                 shaded[k]->join(found);
             else
@@ -1618,19 +1712,19 @@ void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvatu
 void Sweep::Blocks::read(int row, int end_row) {
     Sheet sheet = view_->sheet;
     int column = sheet.columns, end_column = 0;
-    for (const auto& sun : suns_) {
-        const auto [first, end] = sun->rows(row, end_row);
+    for (const auto& shape : shapes_) {
+        const auto [first, end] = shape->rows(row, end_row);
         for (int at = first; at < end; ++at) {
-            column = std::min(column, sun->strips.front()->first_ground(at));
-            end_column = std::max(end_column, sun->strips.back()->end_ground(at));
+            column = std::min(column, shape->strips.front()->first_ground(at));
+            end_column = std::max(end_column, shape->strips.back()->end_ground(at));
         }
     }
     column = std::max(column, 0), end_column = std::min(end_column, sheet.columns);
     if (column >= end_column) return;
     sheet.stride = end_column - column;
     view_->read(sweep_.read_, sheet, row, end_row, column, end_column, buffer_);
-    for (const auto& sun : suns_)
-        for (const auto& strip : sun->strips)
+    for (const auto& shape : shapes_)
+        for (const auto& strip : shape->strips)
             strip->sheet() = sheet;
 }
 
@@ -1649,38 +1743,44 @@ std::optional<SweepWindow> Sweep::Blocks::next() {
         for (const auto& moment : moments_) {
             if (moment->has_none()) continue;
             for (const OneBand& band : moment->bands)
-                for (const auto& sun : band.suns) {
-                    terms_->come_to(*sun, row_, end_row_);
-                    const auto [first, last] = sun->rows(row_, end_row_);
-                    for (const auto& strip : sun->strips)
+                for (const auto& shape : band.shapes) {
+                    terms_->come_to(*shape, row_, end_row_);
+                    const auto [first, last] = shape->rows(row_, end_row_);
+                    for (const auto& strip : shape->strips)
                         for (int row = first; row < last; ++row)
-                            sun->step(*moment, *strip, row, terms_->terms);
+                            shape->step(*moment, *strip, row, terms_->terms);
                 }
         }
     }
     return std::nullopt;
 }
 
-void Sweep::Blocks::each_edge(std::size_t index, std::size_t of_band, std::size_t of_sun,
-                              const Use& use) {
+void Sweep::Blocks::each_edge(std::size_t index, std::size_t of_band, std::size_t of_suns,
+                              const UseEach& use) {
     const Moment& moment = *moments_[index];
     const OneBand& band = moment.bands[of_band];
-    if (band.suns.empty() || moment.has_none()) return;
-    OneSun& sun = *band.suns[of_sun];
+    if (band.shapes.empty() || moment.has_none()) return;
+    OneShape& shape = *band.shapes[of_suns];
     Terms& terms = terms_->terms;
-    terms_->come_to(sun, row_, end_row_);
-    const auto [first, end] = sun.rows(row_, end_row_);
-    for (const auto& strip : sun.strips)
+    terms_->come_to(shape, row_, end_row_);
+    const std::vector<std::size_t>& levels = shape.levels.of;
+    std::array<const float*, kMostLevels> found;
+    const auto [first, end] = shape.rows(row_, end_row_);
+    for (const auto& strip : shape.strips)
         for (int row = first; row < end; ++row) {
-            sun.step(moment, *strip, row, terms);
+            shape.step(moment, *strip, row, terms);
             if (row < band.wanted.window.row) continue;
             const ColumnRange posts = band.wanted.at(row);
             moment.each_range(ShadeRanges::kLook, row, [&](const ColumnRange& range) {
-                terms.add(sun.plan, *sun.steps, row);
+                terms.add(shape.plan, *shape.steps, row);
                 strip->look(row, terms, std::max(posts.begin, range.begin),
                             std::min(posts.end, range.end),
                             [&](int column, int count, const float* edge_m) {
-                                use(sun.view.run(strip->sheet(), row, column, count, edge_m));
+                                for (std::size_t i = 0; i < levels.size(); ++i)
+                                    found[i] = edge_m + static_cast<std::ptrdiff_t>(levels[i]) *
+                                                            strip->edge_pitch();
+                                use(shape.view.run(strip->sheet(), row, column, count, found[0]),
+                                    found.data());
                             });
             });
         }

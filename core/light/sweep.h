@@ -180,26 +180,34 @@ class Sweep {
 
 /// The edges of several suns over a window, block by block: some rows (or columns) of it for one
 /// sun after the other, then the next ones, so that the ground and what is kept of its posts stays
-/// in the processor's cache. Of a window they are those of Sweep::each_edge(), to the bit. A sun
-/// that differs across its rays, as over a grid in degrees, has bands of posts between rays, each
-/// with lines of its own. For one thread.
+/// in the processor's cache. Of a window they are those of Sweep::each_edge(), to the bit; of
+/// several suns with one shape of rays but for what floats round differently. A sun that differs
+/// across its rays, as over a grid in degrees, has bands of posts between rays, each with lines of
+/// its own. For one thread.
 class Sweep::Blocks {
   public:
-    /// Posts between two rays, over which the sun is one: or several of which each is taken for
-    /// some posts.
+    /// Suns whose rays have one shape over the grid: what these meet is looked up once for all.
+    struct Suns {
+        SweepSun sun;
+        /// What is added to its tangent for each of them; kMostLevels at most.
+        std::vector<double> more{0};
+    };
+    /// Posts between two rays, over which suns are one: or several of which each is taken for some
+    /// posts.
     struct Band {
-        std::vector<SweepSun> suns;
+        std::vector<Suns> suns;
         /// Where its posts begin and end on each of the window's lines, as first_posts() has them;
         /// none: where the window does. Both none: a window, over which lines are found otherwise.
         std::shared_ptr<const std::vector<int>> begin = nullptr, end = nullptr;
     };
-    /// A moment.
+    /// A moment, or some whose suns have one shape of rays.
     struct Sun {
         std::vector<Band> bands;  ///< with each post of the window once
         /// Else those posts may be left out which are lit, or in the shade, by all that is known
         /// before they are looked at, now and at the moments before and after.
         bool all_posts = true;
     };
+    static constexpr int kMostLevels = 6;
     /// @param suns     one after the other in time, that go_together()
     /// @param floor_m  as Sweep::each_edge() has it
     /// @param earth_curvature  of the smooth Earth around the grid, as high as the lowest post: it
@@ -216,15 +224,17 @@ class Sweep::Blocks {
 
     /// The next block of the window; none where all are done.
     std::optional<SweepWindow> next();
-    /// To be called once for each sun of each band of each moment in each block; `use` as
+    /// Takes a run, and for each of the suns the edges there; those of the first are `run.found`.
+    using UseEach = std::function<void(const SweepRun& run, const float* const* found)>;
+    /// To be called once for all suns of each band of each moment in each block; `use` as
     /// Sweep::each_edge() has it, along columns or rows as the suns go.
-    void each_edge(std::size_t moment, std::size_t band, std::size_t sun, const Use& use);
+    void each_edge(std::size_t moment, std::size_t band, std::size_t suns, const UseEach& use);
     /// Posts of a block that are in the shade at the first moment, others among them which are
     /// looked at then: what is left out else is lit. Runs have neither heights nor edges.
     void each_dark(const Use& use) const;
 
   private:
-    struct OneSun;
+    struct OneShape;
     struct OneBand;
     struct BlockTerms;
     struct Moment;
@@ -236,7 +246,7 @@ class Sweep::Blocks {
     std::unique_ptr<View> view_;  // of the window
     std::unique_ptr<BlockTerms> terms_;
     std::vector<std::unique_ptr<Moment>> moments_;
-    std::vector<OneSun*> suns_;  // of all moments
+    std::vector<OneShape*> shapes_;  // of all moments
     std::vector<float> buffer_;
     int row_, end_row_;  // of the block, as the suns go
 };

@@ -35,12 +35,18 @@ template <typename V>
         lane[k] = static_cast<float>(k);
 }
 
+/// Vectors that are looked at together, so that they and what is between fit into registers.
+template <int kLevels>
+constexpr int kTogether = kLevels <= 3 ? 4 : 2;
+
 /// kVectors vectors of lines, from the i-th on. Multiplications and additions are not contracted
 /// (CMakeLists.txt), so that the bits are the same for every V.
-template <typename V, int kVectors>
-[[gnu::always_inline]] inline void rise(const float* rows, const Ground* ground, int grounds, int i,
-                                        V (&height)[kVectors]) {
-    for (const Ground* g = ground; g < ground + grounds; ++g) {
+/// @param over_m  as Lift has it
+template <typename V, int kLevels, int kVectors>
+[[gnu::always_inline]] inline void rise(const float* rows, const Ground* ground, int grounds,
+                                        const float* over_m, int i,
+                                        V (&height)[kLevels][kVectors]) {
+    for (const Ground* g = ground; g < ground + grounds; ++g, over_m += kLevels - 1) {
         const float *const p = rows + g->p + i, *const q = rows + g->q + i;
 #pragma GCC unroll 8
         for (int k = 0; k < kVectors; ++k) {
@@ -48,31 +54,60 @@ template <typename V, int kVectors>
             load(p + k * kWidthOf<V>, a);
             load(q + k * kWidthOf<V>, b);
             RELEVO_IN_REGISTER(a);
-            const V h = a + g->part * (b - a);
-            height[k] = h > height[k] ? h : height[k];
+            const V first = a + g->part * (b - a);
+            height[0][k] = first > height[0][k] ? first : height[0][k];
+#pragma GCC unroll 8
+            for (int level = 1; level < kLevels; ++level) {
+                const V h = first + over_m[level - 1];
+                height[level][k] = h > height[level][k] ? h : height[level][k];
+            }
         }
     }
 }
 
-template <typename V, int kVectors>
+template <typename V, int kLevels, int kVectors>
 [[gnu::always_inline]] inline void raise_some(const Lift& lift, int i) {
-    V height[kVectors];
+    V height[kLevels][kVectors];
 #pragma GCC unroll 8
-    for (int k = 0; k < kVectors; ++k)
-        load(lift.height_m + i + k * kWidthOf<V>, height[k]);
-    rise(lift.rows, lift.ground, lift.grounds, i, height);
+    for (int level = 0; level < kLevels; ++level)
 #pragma GCC unroll 8
-    for (int k = 0; k < kVectors; ++k)
-        store(height[k], lift.height_m + i + k * kWidthOf<V>);
+        for (int k = 0; k < kVectors; ++k)
+            load(lift.height_m + level * lift.pitch + i + k * kWidthOf<V>, height[level][k]);
+    rise(lift.rows, lift.ground, lift.grounds, lift.over_m, i, height);
+#pragma GCC unroll 8
+    for (int level = 0; level < kLevels; ++level)
+#pragma GCC unroll 8
+        for (int k = 0; k < kVectors; ++k)
+            store(height[level][k], lift.height_m + level * lift.pitch + i + k * kWidthOf<V>);
+}
+
+template <typename V, int kLevels>
+[[gnu::always_inline]] inline void raise_levels(const Lift& lift) {
+    constexpr int kSome = kTogether<kLevels>;
+    int i = 0;
+    for (; i + kSome * kWidthOf<V> <= lift.lines; i += kSome * kWidthOf<V>)
+        raise_some<V, kLevels, kSome>(lift, i);
+    for (; i < lift.lines; i += kWidthOf<V>)
+        raise_some<V, kLevels, 1>(lift, i);
 }
 
 template <typename V>
 [[gnu::always_inline]] inline void raise_all(const Lift& lift) {
-    int i = 0;
-    for (; i + 4 * kWidthOf<V> <= lift.lines; i += 4 * kWidthOf<V>)
-        raise_some<V, 4>(lift, i);
-    for (; i < lift.lines; i += kWidthOf<V>)
-        raise_some<V, 1>(lift, i);
+    static_assert(kMostLevels == 6);
+    switch (lift.levels) {
+        case 1:
+            return raise_levels<V, 1>(lift);
+        case 2:
+            return raise_levels<V, 2>(lift);
+        case 3:
+            return raise_levels<V, 3>(lift);
+        case 4:
+            return raise_levels<V, 4>(lift);
+        case 5:
+            return raise_levels<V, 5>(lift);
+        default:
+            return raise_levels<V, 6>(lift);
+    }
 }
 
 template <typename V>
@@ -122,46 +157,70 @@ template <typename V>
             (row.slope.fall + row.slope.ramp * (static_cast<float>(row.line + i) + row.between));
 }
 
-template <typename V, int kVectors>
+template <typename V, int kLevels, int kVectors>
 [[gnu::always_inline]] inline void look_for_some_edges(const EdgeSight& sight, const V& lane,
                                                        int i) {
     const V nothing = V{} + kNothing_m;
     const float floor_m = sight.floor_m - sight.base_m;
-    V fallen[kVectors], height[kVectors];
+    V ramp[kVectors], height[kLevels][kVectors];
 #pragma GCC unroll 8
     for (int k = 0; k < kVectors; ++k) {
         const int at = i + k * kWidthOf<V>;
-        const V line = (static_cast<float>(sight.line + at) + lane) + sight.between;
-        fallen[k] = sight.slope.fall + sight.slope.ramp * line;
-        height[k] = nothing;
-        if (!sight.before_m) continue;
-        const V least = floor_m + fallen[k];
-        V a, b;
-        load(sight.before_m + at, a);
-        load(sight.behind_m + at, b);
-        a = a >= least ? a : nothing;
-        b = b >= least ? b : nothing;
-        const V h = a + sight.part * (b - a);
-        height[k] = h > nothing ? h : nothing;
-    }
-    rise(sight.rows, sight.ground, sight.grounds, i, height);
+        ramp[k] = sight.ramp * ((static_cast<float>(sight.line + at) + lane) + sight.between);
 #pragma GCC unroll 8
-    for (int k = 0; k < kVectors; ++k) {
-        const V edge = (height[k] - fallen[k]) + sight.base_m;
-        store(edge > sight.floor_m ? edge : V{} + sight.floor_m,
-              sight.edge_m + i + k * kWidthOf<V>);
+        for (int level = 0; level < kLevels; ++level) {
+            height[level][k] = nothing;
+            if (!sight.before_m) continue;
+            const V least = floor_m + (sight.falls[level] + ramp[k]);
+            V a, b;
+            load(sight.before_m + level * sight.line_pitch + at, a);
+            load(sight.behind_m + level * sight.line_pitch + at, b);
+            a = a >= least ? a : nothing;
+            b = b >= least ? b : nothing;
+            const V h = a + sight.part * (b - a);
+            height[level][k] = h > nothing ? h : nothing;
+        }
     }
+    rise(sight.rows, sight.ground, sight.grounds, sight.over_m, i, height);
+#pragma GCC unroll 8
+    for (int level = 0; level < kLevels; ++level)
+#pragma GCC unroll 8
+        for (int k = 0; k < kVectors; ++k) {
+            const V edge = (height[level][k] - (sight.falls[level] + ramp[k])) + sight.base_m;
+            store(edge > sight.floor_m ? edge : V{} + sight.floor_m,
+                  sight.edge_m + level * sight.edge_pitch + i + k * kWidthOf<V>);
+        }
+}
+
+template <typename V, int kLevels>
+[[gnu::always_inline]] inline void look_for_edges_of_levels(const EdgeSight& sight) {
+    constexpr int kSome = kTogether<kLevels>;
+    V lane;
+    count(lane);
+    int i = 0;
+    for (; i + kSome * kWidthOf<V> <= sight.posts; i += kSome * kWidthOf<V>)
+        look_for_some_edges<V, kLevels, kSome>(sight, lane, i);
+    for (; i < sight.posts; i += kWidthOf<V>)
+        look_for_some_edges<V, kLevels, 1>(sight, lane, i);
 }
 
 template <typename V>
 [[gnu::always_inline]] inline void look_for_all_edges(const EdgeSight& sight) {
-    V lane;
-    count(lane);
-    int i = 0;
-    for (; i + 4 * kWidthOf<V> <= sight.posts; i += 4 * kWidthOf<V>)
-        look_for_some_edges<V, 4>(sight, lane, i);
-    for (; i < sight.posts; i += kWidthOf<V>)
-        look_for_some_edges<V, 1>(sight, lane, i);
+    static_assert(kMostLevels == 6);
+    switch (sight.levels) {
+        case 1:
+            return look_for_edges_of_levels<V, 1>(sight);
+        case 2:
+            return look_for_edges_of_levels<V, 2>(sight);
+        case 3:
+            return look_for_edges_of_levels<V, 3>(sight);
+        case 4:
+            return look_for_edges_of_levels<V, 4>(sight);
+        case 5:
+            return look_for_edges_of_levels<V, 5>(sight);
+        default:
+            return look_for_edges_of_levels<V, 6>(sight);
+    }
 }
 
 /// kVectors vectors of posts, from the i-th on.

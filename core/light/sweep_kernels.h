@@ -23,14 +23,21 @@ struct Slope {
     float fall = 0, ramp = 0;
 };
 
+/// Rays of one shape that come down more or less steeply, each on a level of its own: what they
+/// meet is looked up once.
+constexpr int kMostLevels = 6;
+
 /// Whole vectors of lines that rise to their ground: height[i] = max(height[i], all ground). NaN, a
 /// hole, changes nothing.
 struct Lift {
-    float* height_m;
+    float* height_m;  // of the first level; those of the next begin `pitch` on
     int lines;
     const float* rows;  // at the first line, here and below
     const Ground* ground;
     int grounds;
+    int levels;
+    std::ptrdiff_t pitch;
+    const float* over_m;  // for each ground and each further level: how much higher it is there
 };
 
 /// A row of ground, to whose heights is added what rays have fallen by there, so that they are
@@ -50,18 +57,22 @@ struct Tilted {
 /// ground. A line below the floor counts as one that has met nothing, so that a post's edge does
 /// not hang on how far off ground is swept; a post beside such a line has nothing from either.
 struct EdgeSight {
-    float* edge_m;
+    float* edge_m;                     // of the first level; those of the next begin `pitch` on
     int posts;                         // filled up to whole vectors
-    const float *before_m, *behind_m;  // the lines; null: there are none yet
+    const float *before_m, *behind_m;  // the lines, likewise; null: there are none yet
     float part;                        // of the way between them
     int line;                          // as Tilted has it, and the next ones
     float between;
-    Slope slope;
+    const float* falls;  // of each level
+    float ramp;
     float base_m;  // taken away again
     float floor_m;
     const float* rows;
     const Ground* ground;
     int grounds;
+    int levels;
+    std::ptrdiff_t edge_pitch, line_pitch;
+    const float* over_m;  // as Lift has it
 };
 
 /// Ground before posts next to each other, as their own rays meet it.

@@ -53,11 +53,11 @@ struct Found {
         times.assign(edge_m.size(), 0);
         Sweep::Blocks::Sun moment{bands.over(part)};
         for (std::size_t k = 0; k < moment.bands.size(); ++k)
-            moment.bands[k].suns = {sun_of(k)};
+            moment.bands[k].suns = {{sun_of(k)}};
         Sweep::Blocks blocks(over, {moment}, part, sky.dem().floor_m(), sky.dem().curvature());
         while (blocks.next())
             for (std::size_t k = 0; k < moment.bands.size(); ++k)
-                blocks.each_edge(0, k, 0, [&](const SweepRun& run) {
+                blocks.each_edge(0, k, 0, [&](const SweepRun& run, const float* const*) {
                     for (int i = 0; i < run.count; ++i) {
                         const std::size_t at = run.along_column ? index(run.line, run.first + i)
                                                                 : index(run.first + i, run.line);
