@@ -93,17 +93,17 @@ class HelpOfAll : public CLI::Formatter {
 };
 
 int run(int argc, char** argv) {
-    CLI::App app{"Relevo: any DEM under the sun of a date", "relevo"};
+    CLI::App app{"Relevo: shows any DEM in the sunlight of a date", "relevo"};
     app.require_subcommand(1);
     app.formatter(std::make_shared<HelpOfAll>());
     app.set_version_flag("--version", "relevo " RELEVO_VERSION);
-    app.set_help_all_flag("--help-all", "Help of every command");
+    app.set_help_all_flag("--help-all", "Help for all commands");
     app.add_flag_callback(
         "-q,--quiet", [] { relevo::log::set_level(relevo::log::Level::Warning); },
         "Warnings and errors only");
     app.add_flag_callback(
         "-v,--verbose", [] { relevo::log::set_level(relevo::log::Level::Debug); },
-        "Say more on standard error");
+        "More messages on standard error");
     app.fallthrough();
     relevo::cli::add_view(app);
     relevo::cli::add_capture(app);

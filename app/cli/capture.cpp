@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <filesystem>
 #include <memory>
@@ -9,11 +11,13 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/held_notices.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
 #include "dem/files_of.h"
+#include "geo/format.h"
 #include "session/batch.h"
 #include "session/record.h"
 #include "session/session.h"
@@ -43,8 +47,8 @@ Wanted wanted(const Arguments& arguments) {
     const auto text = metadata.find(session::kSceneKeyword);
     if (text == metadata.end())
         bad_input(
-            fmt::format("--from: {}: carries no scene, expected a picture of relevo capture "
-                        "or run whose metadata nobody took out",
+            fmt::format("--from: {}: contains no scene; expected a picture of relevo capture or "
+                        "run with its metadata",
                         printable(arguments.from)));
     const std::filesystem::path path = arguments.from;
     Wanted result{scene::read_scene_text(text->second, path.string(), path.parent_path()),
@@ -129,26 +133,54 @@ void write_picture(OutputFile& file, const image::Metadata& metadata, Timings& t
     timings.add("write", milliseconds_since(write_began));
 }
 
-/// Where and when it is, and what was assumed of the ground.
-void tell_of(const session::Session& session) {
-    std::string chosen = session.moment_reason();
-    if (!chosen.empty()) chosen = "; no --time given" + chosen;
-    if (const std::string view = session.view_reason(); !view.empty())
-        chosen += "; by its relief " + view;
-    log::info(fmt::format("{}, {}: sun at {}{}", session.place_text(),
-                          sun::to_iso(session.moment()), session.sun_text(), chosen));
+/// "21 June 2026 16:34", local time of the scene's zone.
+std::string local_time(const session::Session& session) {
+    constexpr std::array kMonths = {"January",   "February", "March",    "April",
+                                    "May",       "June",     "July",     "August",
+                                    "September", "October",  "November", "December"};
+    const std::string text = session.clock_text();  // 2026-06-21 16:34 UTC-04:00
+    const sun::Date date = sun::parse_date(text.substr(0, 10));
+    return fmt::format("{} {} {} {}", date.day, kMonths[static_cast<std::size_t>(date.month - 1)],
+                       date.year, text.substr(11, 5));
+}
+
+/// What the program chose because the command line does not say it, in one line.
+void report_chosen(const session::Session& session) {
+    const bool time = !session.moment_reason().empty(), view = !session.view_reason().empty();
+    if (!time && !view) return;
+    const std::optional<double> azimuth_deg = session.scene().view.orbit.azimuth_deg;
+    std::string text = "chosen: " + (time ? local_time(session) : "");
+    if (view && azimuth_deg)
+        text += fmt::format("{}seen from the {}", time ? ", " : "",
+                            geo::compass_point(std::fmod(*azimuth_deg + 360, 360)));
+    log::info(fmt::format("{}; {} others", text,
+                          time && view ? "--time and --view set"
+                          : time       ? "--time sets"
+                                       : "--view sets"));
+}
+
+/// Place, time, sun and the assumptions about the ground.
+void report_scene(const session::Session& session) {
+    log::debug(fmt::format("{}, {}: sun at {}", session.place_text(), sun::to_iso(session.moment()),
+                           session.sun_text()));
+    for (const std::string& reason : {session.moment_reason(), session.view_reason()})
+        if (!reason.empty()) log::debug(reason);
     if (const std::string climate = session.climate_text(); !climate.empty())
-        log::info(fmt::format("natural ground of a normal year, in the DEM's middle: {}", climate));
+        log::debug(
+            fmt::format("natural ground at the centre of the DEM, in a year of mean "
+                        "climate: {}",
+                        climate));
     for (const std::string& note : session.ground_notes())
         log::info(note);
 }
 
 // In one piece: the stages of a picture in their order.
 void capture(const Arguments& arguments) {
+    log::HeldNotices notices;
     const std::filesystem::path output = arguments.output;
     const auto [scene, compared] = wanted(arguments);
     if (arguments.audit && !compared.empty())
-        bad_usage("--audit: expected one picture but got a comparison; leave --ab out");
+        bad_usage("--audit: cannot audit a comparison; remove --ab");
     image::check_format(output, scene.width_px, scene.height_px);
     FilesInUse files;
     if (!arguments.scene.file.empty()) files.add_input(arguments.scene.file, "the scene");
@@ -177,7 +209,7 @@ void capture(const Arguments& arguments) {
     for (const auto& [stage, took_ms] : session.stages())
         timings.add(stage, took_ms);
 
-    tell_of(session);
+    report_scene(session);
     const auto passes_began = Clock::now();
     session.draw(timings.passes());
     timings.add("passes", milliseconds_since(passes_began));
@@ -194,7 +226,7 @@ void capture(const Arguments& arguments) {
     for (const std::string& note : session.stamp_notes())
         log::info(note);
     if (options.radiance && scene.stamps != scene::Stamps())
-        log::info("stamp: linear light is written without stamps");
+        log::info("--stamp has no effect: EXR has linear light without stamps");
     if (scene_file)
         scene_file->write(scene::scene_text(
             session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));
@@ -207,48 +239,49 @@ void capture(const Arguments& arguments) {
                                                   session::hashed_files(scene.dems), audit));
     timings.write(session, arguments.repeat);
     files.finish_outputs();
+    notices.release();
+    report_chosen(session);
 }
 
 }  // namespace
 
 void add_capture(CLI::App& app) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("capture", "Takes one picture");
+    CLI::App& verb = *app.add_subcommand("capture", "Makes one picture");
     arguments->scene.add_to(verb);
     verb.add_option("-o,--output", arguments->output,
-                    "Picture to write: png, jpg, webp, tif, or exr in linear light")
+                    "Picture to write: png, jpg, webp, tif, or exr (linear light)")
         ->required();
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
-    verb.add_option("--save-scene", arguments->save_scene, "Write what is drawn as a scene, JSON");
+    verb.add_option("--save-scene", arguments->save_scene, "Write the scene as JSON");
     verb.add_option_function<std::string>(
         "--from",
         [arguments](const std::string& path) {
             arguments->from = path;
             arguments->scene.dem.dem_option->required(false);
         },
-        "Picture to make again, by the scene that it carries; other options replace what it says");
+        "Make this picture again from the scene in it; other options override the scene");
     verb.add_flag("--sidecar", arguments->sidecar,
-                  "Write a JSON beside the picture: sun, camera, device, versions, DEM");
+                  "Write a JSON sidecar: sun, camera, device, versions, DEM");
     verb.add_flag("--audit", arguments->audit,
-                  "Compare the drawn shadows with those of the figures, for the sidecar");
-    verb.add_flag("--allow-blank", arguments->allow_blank,
-                  "Take a picture without ground in it too");
+                  "Compare the drawn shadows with the computed ones; implies --sidecar");
+    verb.add_flag("--allow-blank", arguments->allow_blank, "Accept a picture that shows no ground");
     verb.add_option("--ab", arguments->ab,
-                    "Compare: the left half with these effects, the right half without them")
+                    "Comparison: left half with these effects, right half without")
         ->delimiter(',')
         ->group("Effects");
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
     CLI::Option* timings =
-        verb.add_option("--timings", arguments->timings, "Write what each stage took, as JSON")
+        verb.add_option("--timings", arguments->timings, "Write the time of each stage as JSON")
             ->group("Diagnosis");
-    verb.add_option("--repeat", arguments->repeat, "Further frames to time")
+    verb.add_option("--repeat", arguments->repeat, "Additional frames for --timings")
         ->needs(timings)
         ->check(whole_number())
         ->check(CLI::NonNegativeNumber)
         ->group("Diagnosis");
     verb.add_option("--dump-shaders", arguments->dump_shaders,
-                    "Write the stitched programs into a folder")
+                    "Write the generated shaders into a folder")
         ->group("Diagnosis");
     verb.callback([arguments] {
         try {

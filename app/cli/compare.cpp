@@ -113,11 +113,11 @@ void add_compare(CLI::App& app) {
     verb.add_option("B", arguments->b, "Picture of the same size")->required();
     verb.add_option(
             "--tolerance", arguments->tolerance,
-            "Largest difference of a value that is none: of 255, in an EXR of its light (0)")
+            "Largest difference that counts as equal: of 255; for EXR in units of its light (0)")
         ->check(in_range(0.0, 1e9));
     verb.add_option("-o,--output", arguments->output,
-                    "Picture of the difference to write, the worst of it white");
-    verb.add_flag("--json", arguments->json, "The figures as JSON");
+                    "Write the difference as a picture; the largest difference is white");
+    verb.add_flag("--json", arguments->json, "JSON on standard output");
     verb.add_flag("--overwrite", arguments->overwrite, "Replace an existing file");
     verb.callback([arguments] { compare(*arguments); });
 }

@@ -257,7 +257,8 @@ void add_doctor(CLI::App& app) {
         bool json = false;
     };
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("doctor", "What would draw here, and why");
+    CLI::App& verb =
+        *app.add_subcommand("doctor", "Lists the GL devices and says which one draws, and why");
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");

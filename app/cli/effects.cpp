@@ -8,7 +8,7 @@ namespace relevo::cli {
 
 void EffectArguments::add_to(CLI::App& verb) {
     only_option =
-        verb.add_option("--only", only, "These effects and no others (an empty list: none)")
+        verb.add_option("--only", only, "Only these effects and what they require (empty: none)")
             ->delimiter(',')
             ->expected(0, CLI::detail::expected_max_vector_size)
             ->group("Effects");
@@ -19,10 +19,10 @@ void EffectArguments::add_to(CLI::App& verb) {
     verb.add_option("--set", settings, "Value of a parameter: layering.texture_m=8")
         ->allow_extra_args(false)
         ->group("Effects");
-    verb.add_option("--preset", presets, "File of switches and values, by name or path: paper")
+    verb.add_option("--preset", presets, "Preset of switches and values, by name or path: paper")
         ->allow_extra_args(false)
         ->group("Effects");
-    verb.add_option("--plugin-path", plugin_path, "Folder of further plugins")
+    verb.add_option("--plugin-path", plugin_path, "Folder with more plugins")
         ->allow_extra_args(false)
         ->group("Effects");
 }

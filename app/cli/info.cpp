@@ -143,7 +143,7 @@ void add_info(CLI::App& app) {
         bool json = false;
     };
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("info", "What a DEM is, and what is assumed of it");
+    CLI::App& verb = *app.add_subcommand("info", "Describes a DEM and all assumptions about it");
     arguments->dem.add_to(verb);
     arguments->time.add_to(verb);
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");

@@ -112,14 +112,14 @@ void add_plugins(CLI::App& app) {
         }
     };
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("plugins", "The effects there are, and their parameters");
+    CLI::App& verb = *app.add_subcommand("plugins", "Lists effects and their parameters");
     verb.require_subcommand(0, 1);
-    verb.add_option("--plugin-path", arguments->plugin_path, "Folder of further plugins")
+    verb.add_option("--plugin-path", arguments->plugin_path, "Folder with more plugins")
         ->allow_extra_args(false);
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");
     verb.fallthrough();
-    CLI::App& list_verb = *verb.add_subcommand("list", "A line each");
-    CLI::App& info_verb = *verb.add_subcommand("info", "One plugin and all its parameters");
+    CLI::App& list_verb = *verb.add_subcommand("list", "One line for each effect");
+    CLI::App& info_verb = *verb.add_subcommand("info", "One effect with all its parameters");
     info_verb.add_option("ID", arguments->id, "Plugin")->required();
     info_verb.callback([arguments] {
         info(arguments->registry().effect(arguments->id, "plugins"), arguments->json);

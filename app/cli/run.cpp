@@ -42,13 +42,12 @@ std::optional<std::string> environment(const char* name) {
     return value ? std::optional<std::string>(value) : std::nullopt;
 }
 
-/// Tells of the first few of many.
-void warn_of(const std::vector<std::string>& reasons, const char* what) {
-    constexpr std::size_t kFew = 3;
-    for (std::size_t i = 0; i < std::min(kFew, reasons.size()); ++i)
-        log::warning(fmt::format("{}: {}", what, reasons[i]));
-    if (reasons.size() > kFew)
-        log::warning(fmt::format("{}: {} more", what, reasons.size() - kFew));
+/// Warns of skipped pictures in one line.
+void warn_of_skipped(const std::vector<std::string>& reasons) {
+    if (reasons.size() == 1) log::warning("1 picture is skipped: " + reasons.front());
+    if (reasons.size() > 1)
+        log::warning(
+            fmt::format("{} pictures are skipped; the first: {}", reasons.size(), reasons.front()));
 }
 
 /// What the audits of a job's pictures come to.
@@ -112,7 +111,7 @@ class Run {
         scene::Shots drawn_up = scene::shots_of(
             job, [&](const scene::Scene& scene) { return moments_.of(scene); },
             arguments_.yes ? kMost : kMostUnasked);
-        warn_of(drawn_up.left_out, "left out");
+        warn_of_skipped(drawn_up.left_out);
         return std::move(drawn_up.shots);
     }
 
@@ -292,26 +291,25 @@ class Run {
 
 void add_run(CLI::App& app) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand("run", "Takes the pictures of a job");
-    verb.add_option("JOB", arguments->job, "Job: a file of JSON, docs/jobs.md")->required();
+    CLI::App& verb = *app.add_subcommand("run", "Makes the pictures of a job");
+    verb.add_option("JOB", arguments->job, "Job file, JSON: docs/jobs.md")->required();
     arguments->scene.add_to(verb, /*with_file=*/false);
     arguments->scene.dem.dem_option->required(false);
     const CLI::Option* const output =
         verb.add_option("-o,--output", arguments->output,
-                        "Template of the names, {dem}_{time:%Y%m%dT%H%M}_{n:04}.png");
+                        "Template of the file names, {dem}_{time:%Y%m%dT%H%M}_{n:04}.png");
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
     verb.add_flag("--resume", arguments->resume,
-                  "Leave out pictures that are there, whole and of the same scene");
+                  "Skip pictures that exist, complete and of the same scene");
     verb.add_option("--shard", arguments->shard,
-                    "Part of the pictures: I/N, or array for the task of a scheduler's array");
-    verb.add_flag("--dry-run", arguments->dry_run, "List the files and say how long it would take");
-    verb.add_flag("--yes", arguments->yes, "More than 100000 pictures are meant");
+                    "Make one part of the pictures: I/N, or array in an array task of a scheduler");
+    verb.add_flag("--dry-run", arguments->dry_run, "List the files and estimate the time");
+    verb.add_flag("--yes", arguments->yes, "Allow more than 100000 pictures");
     verb.add_flag("--sidecar", arguments->sidecar,
-                  "Write a JSON beside each picture: sun, camera, device, versions, DEM");
+                  "Write a JSON sidecar for each picture: sun, camera, device, versions, DEM");
     verb.add_flag("--audit", arguments->audit,
-                  "Compare the drawn shadows with those of the figures, for the sidecars");
-    verb.add_flag("--allow-blank", arguments->allow_blank,
-                  "Take pictures without ground in them too");
+                  "Compare the drawn shadows with the computed ones; implies --sidecar");
+    verb.add_flag("--allow-blank", arguments->allow_blank, "Accept pictures that show no ground");
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
     verb.callback([arguments, template_given = output] {

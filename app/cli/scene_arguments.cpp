@@ -9,24 +9,26 @@ namespace relevo::cli {
 
 void OverlayArguments::add_to(CLI::App& verb) {
     verb.add_option("--overlay", file,
-                    "Raster to lay on the ground in true colours, with a legend: of relevo sun, or "
-                    "any that GDAL reads")
+                    "Raster to show on the ground in true colours, with a legend: from relevo sun, "
+                    "or any that GDAL reads")
         ->group("Overlay");
-    verb.add_option("--overlay-band", band, "Its band, from 1")
+    verb.add_option("--overlay-band", band, "Band of the overlay, from 1")
         ->check(whole_number())
         ->check(CLI::PositiveNumber)
         ->group("Overlay");
-    verb.add_option("--overlay-colours", colours,
-                    "Its colours: sun, shade, steel, viridis, inferno, grey, or a colour file of "
-                    "gdaldem's, a path with a slash or a dot; by default as the band is")
+    verb.add_option(
+            "--overlay-colours", colours,
+            "Colours of the overlay: sun, shade, steel, viridis, inferno, grey, or the path of a "
+            "gdaldem colour file (with a slash or a dot); default: by the kind of band")
         ->group("Overlay");
-    verb.add_option("--overlay-range", range,
-                    "Values of the first and the last colour, LOW,HIGH; by default the raster's")
+    verb.add_option(
+            "--overlay-range", range,
+            "Values of the first and the last colour, LOW,HIGH; default: the raster's range")
         ->group("Overlay");
     verb.add_option("--overlay-opacity", opacity, "0 to 1")
         ->check(in_range(0.0, 1.0))
         ->group("Overlay");
-    verb.add_option("--overlay-title", title, "Of the legend; by default the band's name")
+    verb.add_option("--overlay-title", title, "Title of the legend; default: the band's name")
         ->group("Overlay");
 }
 
@@ -52,16 +54,14 @@ void OverlayArguments::apply_to(scene::Scene& scene) const {
 
 void StampArguments::add_to(CLI::App& verb) {
     verb.add_option("--stamp", stamps,
-                    "What stands on the picture, a list of title, scale, north, graticule, date, "
-                    "sun, attribution; all, none")
+                    "Annotations: a list of title, scale, north, graticule, date, sun, "
+                    "attribution; or all, none")
         ->group("Stamps");
-    verb.add_option("--title", title,
-                    "Words of the title, and stamps it; by default the DEM's name")
+    verb.add_option("--title", title, "Title on the picture; default: the DEM's name")
         ->group("Stamps");
-    verb.add_option("--attribution", attribution,
-                    "Words that name the data's source, and stamps them")
+    verb.add_option("--attribution", attribution, "Attribution of the data on the picture")
         ->group("Stamps");
-    verb.add_flag("--no-legend", no_legend, "Leave out what colours mean")->group("Stamps");
+    verb.add_flag("--no-legend", no_legend, "Draw no legend")->group("Stamps");
 }
 
 void StampArguments::apply_to(scene::Stamps& result) const {
@@ -86,8 +86,8 @@ void StampArguments::apply_to(scene::Stamps& result) const {
 void SceneArguments::add_to(CLI::App& verb, bool with_file) {
     dem.add_to(verb);
     verb.add_option("--holes", holes,
-                    "How holes in the DEM are drawn: fill small ones and cut out the rest, cut out "
-                    "all, or fill and mark (fill)")
+                    "How voids in the DEM are drawn: fill (small ones filled, others cut out), cut "
+                    "(all cut out), mark (filled and painted) (fill)")
         ->check(CLI::IsMember({"fill", "cut", "mark"}));
     verb.add_option("--size", size, "Width and height in pixels, 1280x1024");
     if (with_file)
@@ -97,18 +97,17 @@ void SceneArguments::add_to(CLI::App& verb, bool with_file) {
                 file = path;
                 dem.dem_option->required(false);
             },
-            "Scene to draw, a file of --save-scene; other options replace what it says");
+            "Scene to draw, a file of --save-scene; other options override it");
     time.add_to(verb);
     refraction.add_to(verb);
     view.add_to(verb);
     effects.add_to(verb);
     overlay.add_to(verb);
     stamps.add_to(verb);
-    verb.add_option("--exposure", exposure_ev, "Stops brighter than natural, EV")
+    verb.add_option("--exposure", exposure_ev, "Brighter than the default by this many stops, EV")
         ->check(in_range(-20.0, 20.0));
     verb.add_option("--pixel-error", pixel_error,
-                    "Largest error of the ground's shape in the picture, pixels; 0 draws every "
-                    "post")
+                    "Largest error of the drawn surface, pixels; 0 draws every post")
         ->check(in_range(0.0, 100.0));
 }
 

@@ -18,7 +18,7 @@ namespace relevo::cli {
 
 void DemArguments::add_to(CLI::App& verb) {
     dem_option = verb.add_option("DEM", paths,
-                                 "Elevation rasters: anything GDAL opens; several are one DEM");
+                                 "Elevation rasters that GDAL opens; several files are one DEM");
     dem_option->required();
     verb.add_option("--crs", options.crs,
                     "Coordinate reference system instead of the file's (EPSG:n, WKT)")
@@ -39,26 +39,26 @@ void DemArguments::add_to(CLI::App& verb) {
                         fmt::format("--nodata: expected a number or none but got \"{}\"", text));
                 options.nodata = value;
             },
-            "Stored value that marks a hole; none: no value does")
+            "Stored value that marks voids; none: no value does")
         ->group("DEM");
     verb.add_option_function<std::string>(
             "--encoding",
             [this](const std::string& text) {
                 options.encoding = dem::parse_encoding(text, "--encoding");
             },
-            "Heights in the colours of a picture: terrain-rgb, terrarium")
+            "Heights encoded as colours: terrain-rgb, terrarium")
         ->group("DEM");
     verb.add_option_function<std::string>(
             "--bounds",
             [this](const std::string& text) {
                 options.bounds = dem::parse_bounds(text, "--bounds");
             },
-            "Edges of the raster instead of its georeference: W,S,E,N in degrees")
+            "Edges of the raster, W,S,E,N in degrees, instead of its georeference")
         ->group("DEM");
     verb.add_option_function<int>(
             "--memory", [this](int mib) { options.max_posts = dem::posts_in_mib(mib); },
-            "MiB of heights that are kept; a larger DEM is averaged, and drawn in detail where it "
-            "is near (1024)")
+            "MiB of heights in memory; a larger DEM is averaged in memory and read from the file "
+            "near the camera (1024)")
         ->check(whole_number())
         ->check(in_range(1, 1 << 20))
         ->group("DEM");
@@ -81,10 +81,9 @@ void DemArguments::apply_to(scene::Scene& scene) const {
 }
 
 void TimeArguments::add_to(CLI::App& verb) {
-    verb.add_option(
-        "--time", time,
-        "Moment: 2026-06-21T18:30+02:00, or without offset, by the clocks of --tz; or an "
-        "event, sunset-30min or sunrise@46.55,8.56, together with --date");
+    verb.add_option("--time", time,
+                    "Time: 2026-06-21T18:30+02:00, or without offset, in --tz; or an event with "
+                    "--date: sunset-30min, sunrise@46.55,8.56");
     verb.add_option("--date", date, "Day of the event in --time: 2026-06-21");
     verb.add_option("--tz", zone,
                     "Time zone: Europe/Zurich, +05:30, solar, or auto, that of the place (auto)")
@@ -104,38 +103,37 @@ bool TimeArguments::given() const {
 
 void RefractionArguments::add_to(CLI::App& verb) {
     option = verb.add_option("--refraction", model,
-                             "How the air lifts the sun: standard (integrated ICAO atmosphere), "
-                             "saemundsson (as JPL "
-                             "Horizons), none")
+                             "Refraction of the sun: standard (integrated ICAO atmosphere), "
+                             "saemundsson (as JPL Horizons), none")
                  ->check(CLI::IsMember({"standard", "saemundsson", "none"}));
     verb.add_flag("--no-refraction", off, "Same as --refraction none");
 }
 
 void ViewArguments::add_to(CLI::App& verb) {
-    verb.add_option(
-            "--view", view,
-            "Orbit: where the camera stands as seen from the DEM's centre, az=210,el=30,zoom=1, or "
-            "top, north, north-east, ...; without it where relief stands up")
+    verb.add_option("--view", view,
+                    "Camera as seen from the DEM's centre: az=210,el=30,zoom=1, or top, north, "
+                    "north-east, ...; default: where relief shows best")
         ->group("View");
     verb.add_option("--eye", eye,
                     "Camera at LAT,LON[,H]; H in metres, with suffix agl above the ground")
         ->group("View");
-    verb.add_option("--look-at", look_at, "Place in the middle of the picture, LAT,LON[,H]")
+    verb.add_option("--look-at", look_at, "Place at the centre of the picture, LAT,LON[,H]")
         ->group("View");
     verb.add_option("--heading", heading_deg,
-                    "Direction from --eye, degrees clockwise from true north")
+                    "Viewing direction from --eye, degrees clockwise from true north")
         ->check(any_number())
         ->group("View");
-    verb.add_option("--pitch", pitch_deg, "Degrees above the horizontal")
+    verb.add_option("--pitch", pitch_deg, "Viewing direction above the horizontal, degrees")
         ->check(in_range(-90.0, 90.0))
         ->group("View");
-    verb.add_option("--fov", fov_deg, "Angle of view from bottom to top, degrees (40)")
+    verb.add_option("--fov", fov_deg, "Vertical field of view, degrees (40)")
         ->check(in_range(0.1, 170.0))
         ->group("View");
-    verb.add_option("--focal-length", focal_length_mm, "Lens instead of --fov, mm on 35 mm film")
+    verb.add_option("--focal-length", focal_length_mm,
+                    "Focal length instead of --fov, mm on 35 mm film")
         ->check(in_range(1.0, 10000.0))
         ->group("View");
-    verb.add_option("--exaggerate", exaggeration, "Factor on heights")
+    verb.add_option("--exaggerate", exaggeration, "Vertical exaggeration")
         ->check(in_range(0.01, 1000.0))
         ->group("View");
 }

@@ -5,7 +5,7 @@
 namespace relevo::cli {
 
 void add_sun(CLI::App& app) {
-    CLI::App& verb = *app.add_subcommand("sun", "Figures of the sun");
+    CLI::App& verb = *app.add_subcommand("sun", "Sun position, shadows, sun hours, horizons");
     verb.require_subcommand(1);
     add_sun_position(verb);
     add_sun_day(verb);

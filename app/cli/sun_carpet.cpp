@@ -43,8 +43,8 @@ std::vector<MonthSums> months_of(const light::Carpet& carpet) {
 std::string holes_text(const light::Carpet& carpet, const light::Doubt& doubt) {
     if (doubt.holes.empty()) return {};
     return fmt::format(
-        "not known: {:.2f} h of the direct sun, through holes of the DEM {}, where "
-        "ground as high as its highest post would hide it",
+        "not known: {:.2f} h of the direct sun, through voids of the DEM {}, where ground as high "
+        "as its highest post would hide it",
         carpet.not_known_s / 3600, sectors_text(doubt.holes));
 }
 
@@ -179,12 +179,12 @@ void run(const Arguments& arguments) {
 void add_sun_carpet(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb =
-        *sun_verb.add_subcommand("carpet", "A year of direct light at a point, day by time of day");
+        *sun_verb.add_subcommand("carpet", "A year of direct sun at a point, day by time of day");
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     arguments->days.add_year_to(verb);
     verb.get_option("--year")->required();
-    verb.add_option("--step", arguments->step, "Of the time of day (3min); divides a day");
+    verb.add_option("--step", arguments->step, "Step of the time of day (3min); divides a day");
     arguments->light.add_to(verb);
     arguments->output.add_to(verb, {"png", "svg", "csv", "json"});
     verb.callback([arguments] { run(*arguments); });

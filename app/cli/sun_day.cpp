@@ -133,8 +133,8 @@ ordered_json json_of(const Result& result) {
 /// Where holes of the DEM leave the light open.
 std::string holes_text(const Result& result) {
     return fmt::format(
-        "not known: direct sun through holes of the DEM {}, where ground as high as "
-        "its highest post would hide it",
+        "not known: direct sun through voids of the DEM {}, where ground as high as its highest "
+        "post would hide it",
         sectors_text(result.doubt.holes));
 }
 
@@ -305,8 +305,8 @@ void print_day(const Result& result) {
                        lit.end.midnight ? "midnight" : clock_text(lit.end.utc, zone),
                        degrees(lit.begin.azimuth_rad), degrees(lit.end.azimuth_rad),
                        lit.not_known.empty() ? ""
-                       : lit.all_unknown()   ? "  not known: a hole of the DEM"
-                                             : fmt::format("  not known {}: a hole of the DEM",
+                       : lit.all_unknown()   ? "  not known: a void of the DEM"
+                                             : fmt::format("  not known {}: a void of the DEM",
                                                            spans_text(lit.not_known, zone)));
         if (light.lit.empty()) fmt::print("direct sun          none\n");
         fmt::print("direct sun, total   {}{}\n", hours_text(light.lit_s), not_known_text(light));
@@ -446,7 +446,7 @@ void run(const Arguments& arguments) {
 void add_sun_day(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb = *sun_verb.add_subcommand(
-        "day", "Sunrise, twilights, transit, day length; with a DEM also direct light");
+        "day", "Sunrise, twilights, transit, day length; with a DEM also direct sun");
     arguments->terrain.add_to(verb);
     verb.get_option("DEM")->required(false);
     arguments->place.add_to(verb);

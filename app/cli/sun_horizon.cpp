@@ -64,9 +64,8 @@ ordered_json json_of(const light::TerrainHorizon& horizon,
 /// Where holes of the DEM leave the horizon open.
 std::string holes_text(const light::Doubt& doubt) {
     return fmt::format(
-        "not known: the horizon {}, where ground as high as the DEM's highest post would stand "
-        "over "
-        "it in a hole",
+        "not known: the horizon {}, where ground as high as the DEM's highest post in a void would "
+        "be above it",
         sectors_text(doubt.holes));
 }
 
@@ -111,10 +110,10 @@ void print_text(const light::TerrainHorizon& horizon,
         fmt::print("{:5.1f} {:<4}  {:7.3f} deg", azimuth_deg, compass_point(azimuth_deg),
                    degrees(p.elevation_rad));
         if (std::isnan(p.distance_m))
-            fmt::print("   beyond the DEM{}\n", p.hole ? "  not known: a hole of the DEM" : "");
+            fmt::print("   outside the DEM{}\n", p.hole ? "  not known: a void of the DEM" : "");
         else
             fmt::print("  {:6.2f} km  {:5.0f} m{}\n", p.distance_m / 1000, p.height_m,
-                       p.hole ? "  not known: a hole of the DEM" : "");
+                       p.hole ? "  not known: a void of the DEM" : "");
     };
     for (int k = 0; k < 16; ++k)
         line(22.5 * k);
@@ -264,17 +263,15 @@ void run(const Arguments& arguments) {
 void add_sun_horizon(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb = *sun_verb.add_subcommand(
-        "horizon", "The terrain horizon of a point; as a panorama also the sun's paths over it");
+        "horizon", "Terrain horizon of a point; as a panorama also with the sun's paths");
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     arguments->points.add_to(verb);
     verb.add_option("--step", arguments->step_deg,
-                    "Degrees from direction to direction (0.1; for pvlib and pvgis 1, for pvsyst "
-                    "3)")
+                    "Step of the azimuth, degrees (0.1; pvlib and pvgis 1, pvsyst 3)")
         ->check(in_range(0.01, 90.0));
     verb.add_option("--format", arguments->format,
-                    "Of the table: csv, or a horizon file of pvlib, pvgis or pvsyst, each with its "
-                    "own azimuths")
+                    "Format of the table: csv, or a horizon file of pvlib, pvgis or pvsyst")
         ->check(CLI::IsMember({"csv", "pvlib", "pvgis", "pvsyst"}));
     arguments->days.add_to(verb);
     arguments->light.add_to(verb);

@@ -46,7 +46,7 @@ std::vector<light::RasterBand> bands_of(const std::vector<std::string>& wanted) 
         if (band == "hours") bands.push_back(session::sun_hours_band());
         if (band == "first") bands.push_back({"minutes to the first light", "min"});
         if (band == "last") bands.push_back({"minutes to the last light", "min"});
-        if (band == "spells") bands.push_back({"spells of light", "1"});
+        if (band == "spells") bands.push_back({"sunshine periods", "1"});
         if (band == "global") bands.push_back({"global irradiation", kEnergy});
         if (is_energy(band) && band != "global") bands.push_back({band + " irradiation", kEnergy});
     }
@@ -101,8 +101,9 @@ void check(const Arguments& arguments) {
                         "the sun instead",
                         light::SunHoursOptions::kMostDays));
     if (has_spells(bands))
-        bad_usage(fmt::format("--bands: first, last and spells are known of {:.10g} days at most",
-                              light::SunHoursOptions::kMostDays));
+        bad_usage(
+            fmt::format("--bands: first, last and spells are available for at most {:.10g} days",
+                        light::SunHoursOptions::kMostDays));
 }
 
 std::string words_of(const light::SunHoursOptions::Irradiation& irradiation) {
@@ -197,25 +198,26 @@ void run(const Arguments& arguments) {
 
 void add_sun_hours(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *sun_verb.add_subcommand(
-        "hours", "For how long each post of a DEM lies in the sun, as a raster");
+    CLI::App& verb =
+        *sun_verb.add_subcommand("hours", "Hours of direct sun of each post, as a raster");
     arguments->raster.add_to(verb);
     arguments->days.add_to(verb);
     arguments->refraction.add_to(verb);
     verb.add_option("--step", arguments->step_min,
-                    "Minutes from sun to sun, where few days are asked for (3)")
+                    "Time step of the sun in minutes, for at most four days (3)")
         ->check(in_range(1 / 60.0, 60.0));
     verb.add_option("--bands", arguments->bands,
-                    "hours; of a few days also first, last (minutes from the beginning) and "
-                    "spells; global, beam, diffuse, reflected (irradiation of clear days, kWh/m2)")
+                    "Bands: hours; for at most four days also first, last (minutes from the start) "
+                    "and spells (number of sunshine periods); global, beam, diffuse, reflected "
+                    "(clear-sky irradiation, kWh/m2)")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::IsMember(kBands));
     verb.add_option("--linke", arguments->linke,
-                    "Turbidity of the air, for irradiation: 2 clean, 3 country, 5 city (3)")
+                    "Linke turbidity for irradiation: 2 clean, 3 country, 5 city (3)")
         ->check(in_range(1.0, 10.0));
     verb.add_option("--albedo", arguments->albedo,
-                    "Of the ground around, for irradiation: 0.2 grass, 0.8 snow (0.2)")
+                    "Albedo of the ground for irradiation: 0.2 grass, 0.8 snow (0.2)")
         ->check(in_range(0.0, 1.0));
     verb.callback([arguments] { run(*arguments); });
 }

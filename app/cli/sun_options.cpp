@@ -36,7 +36,7 @@ CLI::Validator year_number() {
 void PlaceArguments::add_to(CLI::App& verb) {
     verb.add_option("--at", at, "Place: LAT,LON[,H]")->required();
     verb.add_option("--name", name, "Name of the place, for titles");
-    verb.add_option("--eye-height", eye_height_m, "Of the eye above the ground, m")
+    verb.add_option("--eye-height", eye_height_m, "Height of the eye above the ground, m")
         ->check(in_range(0.0, 10000.0));
 }
 
@@ -47,16 +47,15 @@ geo::PlaceText PlaceArguments::parse() const {
 void DaysArguments::add_to(CLI::App& verb) {
     verb.add_option("--date", date, "Day: 2026-06-21");
     verb.add_option("--from", from, "First day of a range");
-    verb.add_option("--to", to, "Last day of it");
+    verb.add_option("--to", to, "Last day of the range");
     add_year_to(verb);
 }
 
 void DaysArguments::add_year_to(CLI::App& verb) {
     verb.add_option("--year", year, "All days of a year, 1900 to 2100")->check(year_number());
-    verb.add_option(
-            "--tz", zone,
-            "Time zone that days are counted by: Europe/Zurich, +05:30, solar, or auto, that of "
-            "the place (auto)")
+    verb.add_option("--tz", zone,
+                    "Time zone of the days: Europe/Zurich, +05:30, solar, or auto, that of the "
+                    "place (auto)")
         ->check(zone_name());
 }
 
@@ -96,13 +95,12 @@ DaysArguments::Days DaysArguments::parse(const geo::Geodetic& place, bool tell) 
 
 void LightArguments::add_to(CLI::App& verb) {
     refraction.add_to(verb);
-    verb.add_option("--limb", limb, "Part of the sun that counts: upper, center, lower")
+    verb.add_option("--limb", limb, "Part of the solar disc that counts: upper, center, lower")
         ->check(CLI::IsMember({"upper", "center", "lower"}));
 }
 
 void LightArguments::add_dip_to(CLI::App& verb) {
-    verb.add_option("--dip", dip_deg,
-                    "Of a flat horizon below the level one, degrees; otherwise by --eye-height")
+    verb.add_option("--dip", dip_deg, "Dip of a flat horizon, degrees; default: from --eye-height")
         ->check(in_range(0.0, 5.0));
 }
 
@@ -138,12 +136,13 @@ light::LightOptions LightArguments::light(const geo::Geodetic& place,
 
 void TerrainArguments::add_to(CLI::App& verb) {
     dem.add_to(verb);
-    verb.add_option("-k,--terrestrial-refraction", refraction,
-                    "Curvature of a line of sight over the ground, in units of the Earth's (0.13)")
+    verb.add_option(
+            "-k,--terrestrial-refraction", refraction,
+            "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
         ->check(in_range(-1.0, 0.9))
         ->group("Horizon");
     verb.add_option("--highest", highest_m,
-                    "Terrain beyond the DEM is no higher than this, m (the DEM's highest)")
+                    "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")
         ->check(in_range(-12000.0, 9000.0))
         ->group("Horizon");
 }
@@ -195,11 +194,11 @@ std::string sector_text(const light::Sector& sector) {
 const char* matters_text(light::Matters matters) {
     switch (matters) {
         case light::Matters::Sun:
-            return "hide sun that is taken to shine";
+            return "hide the sun";
         case light::Matters::Alignment:
-            return "hide the summit or the sun over it";
+            return "hide the summit or the sun";
         default:
-            return "stand over this horizon";
+            return "raise the horizon";
     }
 }
 
@@ -215,20 +214,20 @@ void warn_of_the_edge(const light::Doubt& doubt) {
             "above {:.0f} m {} as far as {:.0f} km away, where the DEM reaches {:.1f} km",
             s.least_m, sector_text(s), s.needed_m / 1000, s.reach_m / 1000));
     if (parts.empty()) return;
-    log::warning(fmt::format(
-        "the blocking ridge may lie beyond the DEM, as terrain of up to {:.0f} m would {}: {}; use "
-        "a DEM that goes so far, or --highest with the height that terrain has there at most",
-        doubt.highest_m, matters_text(doubt.matters), fmt::join(parts, ", and ")));
+    log::warning(
+        fmt::format("mountains of up to {:.0f} m outside the DEM could {}: {}; use a larger DEM, "
+                    "or bound them with --highest",
+                    doubt.highest_m, matters_text(doubt.matters), fmt::join(parts, ", and ")));
 }
 
 void warn_of_holes(const light::Doubt& doubt) {
     if (doubt.holes.empty()) return;
     log::warning(fmt::format(
-        "the DEM has holes {}: {}; a DEM without them settles it", sectors_text(doubt.holes),
+        "the DEM has voids {}: {}; use a DEM without voids", sectors_text(doubt.holes),
         doubt.matters == light::Matters::Sun
             ? fmt::format("of the direct sun {} is not known, as ground in them could hide it",
                           hours_text(std::max(1.0, doubt.not_known_s)))
-            : "ground in them could stand over this horizon"));
+            : "ground in them could raise the horizon"));
 }
 
 }  // namespace
@@ -264,7 +263,7 @@ void OutputArguments::add_to(CLI::App& verb, const std::vector<std::string>& end
     endings = endings_of_verb;
     verb.add_option("-o,--output", path, fmt::format("Write {}", fmt::join(endings, ", ")));
     verb.add_flag("--overwrite", overwrite, "Replace an existing file");
-    verb.add_option("--scale", scale, "Pixels of a PNG for each unit of the drawing (1.5)")
+    verb.add_option("--scale", scale, "Pixels of a PNG per unit of the drawing (1.5)")
         ->check(in_range(0.25, 8.0));
     CLI::Option* csv_flag = verb.add_flag("--csv", csv, "CSV on standard output");
     verb.add_flag("--json", json, "One JSON object on standard output")->excludes(csv_flag);
@@ -332,12 +331,6 @@ double angle_deg(double angle_rad) {
 nlohmann::ordered_json utc_json(const std::optional<sun::Instant>& utc) {
     if (!utc) return nullptr;
     return sun::to_iso(*utc, 3);
-}
-
-const char* compass_point(double azimuth_deg) {
-    constexpr const char* kPoints[] = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
-                                       "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
-    return kPoints[static_cast<int>(azimuth_deg / 22.5 + 0.5) % 16];
 }
 
 std::string clock_text(sun::Instant utc, const sun::Zone& zone) {

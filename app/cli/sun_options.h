@@ -12,6 +12,7 @@
 #include "chart/drawing.h"
 #include "cli/shared.h"
 #include "dem/posts.h"
+#include "geo/format.h"
 #include "light/direct_light.h"
 #include "light/doubt.h"
 #include "light/horizon.h"
@@ -154,8 +155,7 @@ double angle_deg(double angle_rad);
 /// The moment in UTC with milliseconds, or null.
 nlohmann::ordered_json utc_json(const std::optional<sun::Instant>& utc);
 
-/// A direction in words of the compass rose: "ESE".
-const char* compass_point(double azimuth_deg);
+using geo::compass_point;
 
 /// "05:25:12", by the clock of the zone.
 std::string clock_text(sun::Instant utc, const sun::Zone& zone);

@@ -114,15 +114,14 @@ Record record_of(const PointsJob& job, const dem::NamedPlace& point, const std::
 /// What warn_of() says of one place, in one word for many.
 void warn_of_points(std::size_t open, std::size_t holes, std::size_t all) {
     if (open > 0)
-        log::warning(fmt::format(
-            "{} of {} points: the blocking ridge may lie beyond the DEM; --at with one of them "
-            "says where, and --highest how high terrain is there at most",
-            open, all));
-    if (holes > 0)
         log::warning(
-            fmt::format("{} of {} points: the DEM has holes in the way, in which ground "
-                        "could stand; a DEM without them settles it",
-                        holes, all));
+            fmt::format("{} of {} points: mountains outside the DEM could change the result; --at "
+                        "for one of them says where, --highest bounds them",
+                        open, all));
+    if (holes > 0)
+        log::warning(fmt::format(
+            "{} of {} points: voids of the DEM may hide ground; use a DEM without voids", holes,
+            all));
 }
 
 }  // namespace
@@ -132,10 +131,10 @@ void PointsArguments::add_to(CLI::App& verb) {
     at->required(false);
     at_ = at;
     verb.add_option("--points", path,
-                    "Instead of --at: a CSV (columns lat, lon, name), GPX or GeoJSON of places; "
-                    "one record for each, as CSV or JSON")
+                    "Many places instead of --at: CSV (columns lat, lon, name), GPX or GeoJSON; "
+                    "one record for each")
         ->excludes(at);
-    verb.add_option("--points-crs", crs, "Of columns x and y in that CSV: EPSG:n");
+    verb.add_option("--points-crs", crs, "CRS of columns x and y in that CSV: EPSG:n");
 }
 
 bool PointsArguments::given() const {
@@ -157,7 +156,7 @@ std::vector<dem::NamedPlace> PointsArguments::read(FilesInUse& files,
 void deliver_points(const PointsArguments& arguments, const std::vector<dem::NamedPlace>& points,
                     const PointsJob& job, const OutputArguments& output, OutputFile* file,
                     bool zone_by_place) {
-    if (zone_by_place) log::info("each point by the clocks of its own place; --tz names others");
+    if (zone_by_place) log::info("times are local times of each point; --tz sets another zone");
     const auto name_of = [&](std::size_t i) {
         return points[i].name.empty() ? std::to_string(i + 1) : points[i].name;
     };

@@ -138,7 +138,7 @@ void run(const Arguments& arguments) {
 
 void add_sun_position(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *sun_verb.add_subcommand("position", "Where the sun stands");
+    CLI::App& verb = *sun_verb.add_subcommand("position", "Position of the sun");
     verb.add_option("--at", arguments->at, "Place: LAT,LON[,H]");
     arguments->points.add_to(verb);
     arguments->time.add_to(verb);

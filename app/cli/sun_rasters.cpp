@@ -36,28 +36,28 @@ dem::Grid RasterGround::grid() const {
 
 void RasterArguments::add_to(CLI::App& verb) {
     dem.add_to(verb);
-    verb.add_option("-k,--terrestrial-refraction", terrestrial_refraction,
-                    "Curvature of a line of sight over the ground, in units of the Earth's (0.13)")
+    verb.add_option(
+            "-k,--terrestrial-refraction", terrestrial_refraction,
+            "Terrestrial refraction: curvature of a line of sight in units of the Earth's (0.13)")
         ->check(in_range(-1.0, 0.9));
     output.endings = {"tif", "tiff"};
-    verb.add_option("-o,--output", output.path, "Write a cloud-optimised GeoTIFF on the DEM's grid")
+    verb.add_option("-o,--output", output.path,
+                    "Cloud-optimised GeoTIFF to write, on the DEM's grid")
         ->required();
     verb.add_flag("--overwrite", output.overwrite, "Replace an existing file");
     verb.add_option("--co", creation_options,
                     "Creation option of GDAL's COG driver: COMPRESS=ZSTD; may be repeated")
         ->allow_extra_args(false);
     verb.add_option("--clip", clip,
-                    "Only the posts in W,S,E,N of the DEM's CRS; ground around them counts all "
-                    "the same")
+                    "Compute only the posts in W,S,E,N of the DEM's CRS; the terrain around still "
+                    "casts shadows")
         ->type_name("W,S,E,N");
-    verb.add_option("--clip-crs", clip_crs, "CRS of --clip instead: EPSG:4326");
+    verb.add_option("--clip-crs", clip_crs, "CRS of --clip: EPSG:4326");
     verb.add_option("--highest", highest_m,
-                    "Height of the terrain beyond the DEM at most, for the warning that it may "
-                    "matter; else the DEM's highest post")
+                    "Upper bound of the terrain outside the DEM, m (the DEM's highest post)")
         ->check(in_range(-500.0, light::kHighestTerrain_m));
     verb.add_flag("--dry-run", dry_run,
-                  "Say how long it takes and how much memory, from computing a little of it, and "
-                  "write nothing");
+                  "Estimate time and memory from a small part; write nothing");
 }
 
 OutputFile& RasterArguments::open(FilesInUse& files) const {
@@ -149,9 +149,8 @@ void RasterRun::warn_of(const std::function<std::optional<light::Beyond>()>& loo
     const std::optional<light::Beyond> beyond = look();
     if (!beyond) return;
     beyond_ = beyond->text(would);
-    log::warning(beyond_ +
-                 "; use a DEM that goes so far with --clip, or --highest with the height that "
-                 "terrain has there at most");
+    log::warning(beyond->advice());
+    log::debug(beyond_);
 }
 
 bool RasterRun::finish(const std::string& definition, std::int64_t holes,
@@ -163,7 +162,7 @@ bool RasterRun::finish(const std::string& definition, std::int64_t holes,
     }
     if (holes > 0)
         log::warning(
-            fmt::format("the DEM has {} holes: they get no figure, and hide nothing", holes));
+            fmt::format("the DEM has {} voids: they get no value and cast no shadow", holes));
     if (!beyond_.empty()) more.emplace_back("BEYOND_DEM", beyond_);
     writer_->finish(arguments_.about(ground_, definition, holes, std::move(more)));
     return true;
@@ -200,8 +199,8 @@ void RasterRun::tell() const {
                              (passed_s_ - ready_s_) / std::max(share_, 1e-9)),
                100 * share_, passed_s_, thread_count());
     fmt::print(
-        "result              {} band{} of {:.0f} MiB before compression, for which the "
-        "folder of the result has to have room besides\n",
+        "result              {} band{} of {:.0f} MiB before compression, temporary space in the "
+        "folder of the result\n",
         bands_, bands_ == 1 ? "" : "s", posts * bytes_a_value_ / kMiB);
 }
 

@@ -95,7 +95,7 @@ std::vector<Asked> at_times(const Arguments& arguments, const std::vector<dem::N
         asked.name = time.name;
         const std::string& assumption = asked.when->assumption;
         if (!assumption.empty() && said.insert(assumption).second)
-            log::info(assumption + "; --tz overrides it");
+            log::info(assumption + "; --tz sets another");
         if (!asked.when->note.empty()) log::info(line + asked.when->note);
     }
     return suns;
@@ -169,7 +169,7 @@ void print_many(const std::vector<Asked>& suns, const std::vector<Counts>& count
 void check(const Arguments& arguments) {
     const bool timed = !arguments.times.empty() || arguments.time.given();
     if (!arguments.times.empty() && !(arguments.time.time + arguments.time.date).empty())
-        bad_usage("--times: has its times and their days itself; leave out --time and --date");
+        bad_usage("--times: excludes --time and --date; remove them");
     if (timed == !arguments.sun.empty())
         bad_usage(timed ? fmt::format("{} and --sun exclude each other; give one of them",
                                       arguments.times.empty() ? "--time" : "--times")
@@ -250,19 +250,19 @@ void run(const Arguments& arguments) {
 
 void add_sun_shadow(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *sun_verb.add_subcommand(
-        "shadow", "What of a DEM lies in the sun at a moment, as a raster");
+    CLI::App& verb =
+        *sun_verb.add_subcommand("shadow", "Shadow mask of a DEM at a given time, as a raster");
     arguments->raster.add_to(verb);
     arguments->time.add_to(verb);
     verb.add_option("--times", arguments->times,
-                    "Instead of --time: a CSV with a column time (and perhaps name), a band for "
-                    "each of its rows");
+                    "Many times instead of --time: a CSV with a column time and optionally name; "
+                    "one band for each row");
     verb.add_option("--sun", arguments->sun,
-                    "Instead of a time: AZ,EL in degrees, from true north and as seen in the "
-                    "middle of the DEM; grid:AZ,EL from the map's north");
+                    "Sun direction instead of a time: AZ,EL in degrees from true north at the "
+                    "DEM's centre; grid:AZ,EL from grid north");
     arguments->refraction.add_to(verb);
     verb.add_flag("--soft", arguments->soft,
-                  "How much of the sun's disc is seen, 0 to 1, instead of whether its centre is");
+                  "Visible fraction of the solar disc, 0 to 1, instead of a mask");
     verb.callback([arguments] { run(*arguments); });
 }
 

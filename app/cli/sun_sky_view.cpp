@@ -108,7 +108,7 @@ std::shared_ptr<Arguments> add_directions(CLI::App& verb, int least, int most) {
     const auto arguments = std::make_shared<Arguments>();
     arguments->raster.add_to(verb);
     verb.add_option("--directions", arguments->directions,
-                    "How many horizons there are around a post (36)")
+                    "Number of azimuths around each post (36)")
         ->check(in_range(least, most));
     return arguments;
 }
@@ -116,17 +116,17 @@ std::shared_ptr<Arguments> add_directions(CLI::App& verb, int least, int most) {
 }  // namespace
 
 void add_sun_sky_view(CLI::App& sun_verb) {
-    CLI::App& verb = *sun_verb.add_subcommand(
-        "sky-view", "How much of the sky each post of a DEM sees, as a raster");
+    CLI::App& verb =
+        *sun_verb.add_subcommand("sky-view", "Sky-view factor of each post, as a raster");
     const auto arguments = add_directions(verb, 4, 3600);
     verb.add_flag("--level", arguments->level,
-                  "Of a level plane at each post instead of the ground as it is inclined");
+                  "For a level plane at each post instead of the inclined ground");
     verb.callback([arguments] { run_sky_view(*arguments); });
 }
 
 void add_sun_horizons(CLI::App& sun_verb) {
-    CLI::App& verb = *sun_verb.add_subcommand(
-        "horizons", "The horizon of each post of a DEM all around, a band for each direction");
+    CLI::App& verb =
+        *sun_verb.add_subcommand("horizons", "Horizon of each post, one band for each azimuth");
     const auto arguments = add_directions(verb, 1, 720);
     verb.callback([arguments] { run_horizons(*arguments); });
 }

@@ -106,7 +106,7 @@ void print_text(const light::Alignments& found, const light::TerrainHorizon& hor
         fmt::print("not seen            ground before it stands {:.3f} deg higher\n",
                    degrees(found.sight.hidden_by_rad));
     if (found.sight.hole)
-        fmt::print("not known           whether it is seen, through a hole of the DEM\n");
+        fmt::print("not known           whether it is visible, through a void of the DEM\n");
     if (found.passages.empty())
         fmt::print("\nthe sun does not come that near on these days\n");
     else
@@ -118,7 +118,7 @@ void print_text(const light::Alignments& found, const light::TerrainHorizon& hor
                    std::abs(degrees(p.right_rad)), p.right_rad < 0 ? "left" : "right",
                    std::abs(degrees(p.above_rad)), p.above_rad < 0 ? "below" : "above",
                    !p.sun_visible ? "  behind terrain"
-                   : p.hole       ? "  not known: a hole of the DEM"
+                   : p.hole       ? "  not known: a void of the DEM"
                                   : "");
     fmt::print("\n{}\n{}\n", found.definition, horizon.description());
 }
@@ -188,8 +188,8 @@ void run(const Arguments& arguments) {
 
     if (through_hole(found))
         log::warning(
-            "the DEM has holes in the way: ground in them could hide the summit or the sun over "
-            "it; a DEM without them settles it");
+            "the DEM has voids in the way: ground in them could hide the summit or the sun over "
+            "it; use a DEM without voids");
 
     warn_of(light::doubt_of(horizon, found, arguments.terrain.highest_m));
 
@@ -204,19 +204,19 @@ void run(const Arguments& arguments) {
 
 void add_sun_when(CLI::App& sun_verb) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb =
-        *sun_verb.add_subcommand("when", "When the sun stands over a summit, as seen from a place");
+    CLI::App& verb = *sun_verb.add_subcommand(
+        "when", "Times when the sun stands over a summit, seen from a place");
     arguments->terrain.add_to(verb);
     arguments->place.add_to(verb);
     arguments->points.add_to(verb);
     verb.add_option("--over", arguments->over,
-                    "Summit: LAT,LON; the highest post nearby is taken. With a height: that point")
+                    "Summit: LAT,LON for the highest post nearby, or LAT,LON,H for that point")
         ->required();
     verb.add_option("--summit-radius", arguments->summit_radius_m,
-                    "How far around LAT,LON the summit may be, m (100)")
+                    "Search radius of the summit, m (100)")
         ->check(in_range(0.0, 10000.0));
     verb.add_option("--tolerance", arguments->tolerance_deg,
-                    "How near the sun's centre must come, degrees (0.5)")
+                    "Largest distance of the sun's centre, degrees (0.5)")
         ->check(in_range(0.001, 45.0));
     arguments->days.add_to(verb);
     arguments->refraction.add_to(verb);

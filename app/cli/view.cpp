@@ -28,8 +28,8 @@ void view(Arguments arguments) {
 
 void add_view(CLI::App& app) {
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App& verb = *app.add_subcommand(
-        "view", "Opens a window on a DEM; without one, on the DEM that comes along");
+    CLI::App& verb =
+        *app.add_subcommand("view", "Opens a window on a DEM (default: the bundled DEM)");
     arguments->scene.add_to(verb);
     arguments->scene.dem.dem_option->required(false);
     verb.add_option("--device", arguments->device,

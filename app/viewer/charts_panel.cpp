@@ -144,7 +144,7 @@ void ChartsPanel::draw(State& state, glm::vec2 size_px, double px_a_unit) {
             else if (state.point && !state.point->error.empty())
                 ImGui::TextWrapped("%s", state.point->error.c_str());
             else
-                ImGui::TextDisabled("looking at its horizon ...");
+                ImGui::TextDisabled("computing its horizon ...");
             ImGui::EndTabItem();
         };
         tab("Horizon", horizon_.chart != nullptr, [&] { horizon(state); });

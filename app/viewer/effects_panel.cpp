@@ -89,7 +89,7 @@ void param_row(State& state, const Param& param, bool on) {
     ImGui::TextUnformatted(param.label.empty() ? param.address.c_str() : param.label.c_str());
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s\n%s%s", param.address.c_str(), param.description.c_str(),
-                          param.is_static ? "\nAnother value makes another program." : "");
+                          param.is_static ? "\nEach value compiles another shader." : "");
     ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.42f);
     ImGui::SetNextItemWidth(-34);
     if (widget(param, value) && shader::is_valid(param, value)) {
@@ -108,7 +108,7 @@ void param_row(State& state, const Param& param, bool on) {
     ImGui::SameLine();
     if (ImGui::SmallButton("x"))
         state.set_effects(without_values(state.document.scene.effects, param.address));
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Back to the default");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Reset to the default");
     ImGui::PopID();
 }
 
@@ -148,7 +148,7 @@ void effect_row(State& state, const effect::Effect& effect) {
     if (open) {
         for (const Param& param : effect.params())
             if (!param.is_host) param_row(state, param, is_on);
-        if (!effect.params().empty() && ImGui::SmallButton("All values back to their defaults"))
+        if (!effect.params().empty() && ImGui::SmallButton("Reset all values"))
             state.set_effects(without_values(state.document.scene.effects, effect.id()));
         ImGui::TreePop();
     }
@@ -191,9 +191,9 @@ void preset_choice(State& state) {
 
 void effects_panel(State& state) {
     preset_choice(state);
-    ImGui::Checkbox("Compare with what is on now", &state.compare_is_wanted);
+    ImGui::Checkbox("Compare with the current settings", &state.compare_is_wanted);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("The left of the line stays as it is, the right follows. Drag the line.");
+        ImGui::SetTooltip("The left side stays, the right side follows. Drag the line.");
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##search", "search effects and parameters", &state.search);
     // Rows may make another model, whose effects are other objects.

@@ -127,10 +127,10 @@ void MainWindow::of_scene(Command command) {
             return;
         case Command::Undo:
             end_step();
-            history_.can_undo() ? go_to(history_.undo()) : tell("there is nothing to undo");
+            history_.can_undo() ? go_to(history_.undo()) : tell("nothing to undo");
             return;
         case Command::Redo:
-            history_.can_redo() ? go_to(history_.redo()) : tell("there is nothing to redo");
+            history_.can_redo() ? go_to(history_.redo()) : tell("nothing to redo");
             return;
         default:
             move(command);
@@ -203,14 +203,14 @@ void MainWindow::keep_view() {
         saved_view(state_.document, state_.land, fmt::format("View {}", state_.views.size() + 1));
     state_.views.push_back(view);
     tell(state_.views.size() < 10
-             ? fmt::format("{} is kept; key {} goes back to it", view.name, state_.views.size())
-             : fmt::format("{} is kept, in the menu View", view.name));
+             ? fmt::format("saved as {}; key {} goes to it", view.name, state_.views.size())
+             : fmt::format("saved as {}, in the menu View", view.name));
     remember_views();
 }
 
 void MainWindow::go_to_view(std::size_t i) {
     if (i >= state_.views.size()) {
-        tell(fmt::format("this DEM has no kept view {}; B keeps one", i + 1));
+        tell(fmt::format("this DEM has no saved view {}; B saves one", i + 1));
         return;
     }
     const SavedView& view = state_.views[i];

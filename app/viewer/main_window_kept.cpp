@@ -66,7 +66,7 @@ scene::Scene MainWindow::whole() const {
 
 void MainWindow::copy_command() {
     window_->copy(capture_command(whole(), free_picture_name()));
-    tell("the command that takes this picture is on the clipboard" + overlay_note());
+    tell("the command for this picture is on the clipboard" + overlay_note());
 }
 
 bool MainWindow::is_answered() const {

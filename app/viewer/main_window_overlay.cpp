@@ -97,11 +97,11 @@ void MainWindow::save_overlay() {
     saves_when_whole_ = overlay_waits();
     if (saves_when_whole_) return;
     if (!asked_overlay_ || asked_overlay_->file) {
-        state_.message = "there is no overlay of the sun to be saved; O shows the day's sun hours";
+        state_.message = "there is no sun overlay to export; O shows the day's sun hours";
         return;
     }
     if (overlay_save_) {
-        state_.message = "a raster is being written already";
+        state_.message = "an export is running already";
         return;
     }
     const bool is_there = overlay_rests() && state_.overlay->error.empty();
@@ -130,7 +130,7 @@ void MainWindow::watch_saving() {
         const std::string name = overlay_save_->result();
         const OverlayWanted& of = overlay_save_->wanted();
         saved_overlays_.push_back({of, absolute_names({name}).front(), name});
-        done(fmt::format("{} has {}, as relevo {} writes it; scenes and commands have it, too",
+        done(fmt::format("{}: {}, as written by relevo {}; scenes and commands include it",
                          absolute_names({name}).front(), of.title, verb_of(of.raster.figure)));
     });
     overlay_save_.reset();
@@ -140,7 +140,7 @@ void MainWindow::watch_saving() {
 
 void MainWindow::give_up_saving() {
     saves_when_whole_ = false;
-    if (overlay_save_) tell("the raster was given up; nothing of it is left");
+    if (overlay_save_) tell("export cancelled; no file was written");
     discard_.take(std::move(overlay_save_));
 }
 
@@ -161,7 +161,7 @@ void MainWindow::put_overlay(scene::Scene& scene) const {
 std::string MainWindow::overlay_note() const {
     const bool is_missing =
         overlay_waits() || (asked_overlay_ && !asked_overlay_->file && !saved_overlay());
-    return is_missing ? ", without the overlay: it is in no file yet, Ctrl+E writes one" : "";
+    return is_missing ? ", without the overlay: Ctrl+E exports it to a file first" : "";
 }
 
 }  // namespace relevo::viewer

@@ -154,7 +154,7 @@ void MainWindow::go_back(std::string why) {
 
 void MainWindow::give_up_opening() {
     const std::string name = printable(state_.document.scene.dems.front());
-    go_back("opening " + name + " was given up");
+    go_back("opening " + name + " was cancelled");
 }
 
 void MainWindow::start(std::shared_ptr<const Opened> opened) {
@@ -278,7 +278,7 @@ void MainWindow::open_neighbour(int by) {
     if (const std::string next = neighbour_in_folder(tried_, by); !next.empty())
         state_.files_to_open = {next};
     else
-        state_.message = "there is no other DEM in its folder";
+        state_.message = "no other DEM in this folder";
 }
 
 void MainWindow::ask_for_dem() {
@@ -297,7 +297,7 @@ void MainWindow::watch_files() {
         if (is_open()) state_.document.scene.view = view_of(state_.document.pose, state_.land);
         has_gone_back_ = has_failed_ = false;
         reads_again_ = true;
-        tell("the DEM was written again, and read again");
+        tell("the DEM changed and was reloaded");
         open();
     }
 }

@@ -66,7 +66,7 @@ std::string short_name(const std::vector<std::string>& dems) {
 }
 
 void recent_files(State& state) {
-    if (!ImGui::BeginMenu("Open again", !state.recent.empty())) return;
+    if (!ImGui::BeginMenu("Open recent", !state.recent.empty())) return;
     for (std::size_t i = 0; i < state.recent.size(); ++i) {
         const std::vector<std::string>& dems = state.recent[i].files;
         if (ImGui::MenuItem(fmt::format("{}##{}", short_name(dems), i).c_str()))
@@ -78,20 +78,20 @@ void recent_files(State& state) {
 
 void file_menu(State& state) {
     if (!ImGui::BeginMenu("File")) return;
-    item(state, "Open a DEM ...", "Ctrl+O", Command::Open);
+    item(state, "Open...", "Ctrl+O", Command::Open);
     recent_files(state);
-    item(state, "Next in its folder", "Ctrl+Page down", Command::NextFile);
-    item(state, "Previous in its folder", "Ctrl+Page up", Command::PreviousFile);
-    item(state, "Read effects again", "F5", Command::ReadAgain);
+    item(state, "Next DEM in the folder", "Ctrl+Page down", Command::NextFile);
+    item(state, "Previous DEM in the folder", "Ctrl+Page up", Command::PreviousFile);
+    item(state, "Reload effects", "F5", Command::ReadAgain);
     ImGui::Separator();
-    item(state, "Take the picture", "F12", Command::TakePicture);
-    item(state, "Copy the command that takes it", "Ctrl+C", Command::CopyCommand);
-    item(state, "Save the scene", "Ctrl+S", Command::SaveScene);
-    item(state, "Save the sun overlay as GeoTIFF", "Ctrl+E", Command::SaveOverlay, false,
+    item(state, "Save picture", "F12", Command::TakePicture);
+    item(state, "Copy command", "Ctrl+C", Command::CopyCommand);
+    item(state, "Save scene", "Ctrl+S", Command::SaveScene);
+    item(state, "Export overlay as GeoTIFF", "Ctrl+E", Command::SaveOverlay, false,
          state.document.overlay.kind > OverlayKind::File);
     item(state, "Save the day as a job", "Ctrl+J", Command::SaveJob);
     ImGui::Separator();
-    item(state, "End", "Ctrl+Q", Command::Quit);
+    item(state, "Quit", "Ctrl+Q", Command::Quit);
     ImGui::EndMenu();
 }
 
@@ -111,7 +111,7 @@ void saved_views(State& state) {
         state.views_changed = state.views_changed || ImGui::IsItemDeactivatedAfterEdit();
         ImGui::SameLine();
         if (ImGui::SmallButton("x")) gone = i;
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("Forget this view");
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("Delete this view");
         if (i < 9) {
             ImGui::SameLine();
             ImGui::TextDisabled("%d", static_cast<int>(i) + 1);
@@ -135,16 +135,16 @@ void go_to_place(State& state) {
 
 void view_menu(State& state) {
     if (!ImGui::BeginMenu("View")) return;
-    item(state, "The whole DEM", "Home", Command::Whole);
+    item(state, "Whole DEM", "Home", Command::Whole);
     item(state, "North up", "N", Command::NorthUp);
-    item(state, "From above", "T", Command::FromAbove);
+    item(state, "Top view", "T", Command::FromAbove);
     item(state, "Walk at eye height", "G", Command::Walk);
     go_to_place(state);
     ImGui::Separator();
     item(state, "Undo", "Ctrl+Z", Command::Undo);
     item(state, "Redo", "Ctrl+Y", Command::Redo);
     ImGui::Separator();
-    item(state, "Keep this view", "B", Command::SaveView);
+    item(state, "Save view", "B", Command::SaveView);
     saved_views(state);
     ImGui::EndMenu();
 }
@@ -158,9 +158,9 @@ void show_menu(State& state) {
          state.document.overlay.kind == OverlayKind::Day);
     item(state, "Comparison", "C", Command::Compare, state.compare_is_wanted);
     ImGui::Separator();
-    if (ImGui::MenuItem("Light style", nullptr, settings.light_style))
+    if (ImGui::MenuItem("Light theme", nullptr, settings.light_style))
         settings.light_style = !settings.light_style;
-    if (ImGui::BeginMenu("Text size")) {
+    if (ImGui::BeginMenu("Font size")) {
         for (const int px : {13, 16, 20, 24, 28})
             if (ImGui::MenuItem(fmt::format("{}", px).c_str(), nullptr, settings.text_px == px))
                 settings.text_px = px;

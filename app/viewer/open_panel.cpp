@@ -66,7 +66,7 @@ void OpenPanel::list() {
         if (ImGui::Selectable((printable(name) + "/").c_str())) return go_to(folder_ / name);
     for (const std::string& name : dems_)
         if (ImGui::Selectable(printable(name).c_str())) return choose(folder_ / name);
-    if (dems_.empty()) ImGui::TextDisabled("no file here has a name that a DEM has");
+    if (dems_.empty()) ImGui::TextDisabled("no DEM in this folder");
 }
 
 void OpenPanel::draw(glm::vec2 size_px) {

@@ -10,6 +10,7 @@
 #include <imgui.h>
 
 #include "base/units.h"
+#include "geo/format.h"
 #include "geo/geodetic.h"
 
 namespace relevo::viewer {
@@ -133,7 +134,7 @@ void profile_panel(const Profile& profile) {
         "down, between {:.0f} and {:.0f} m",
         length_text(profile.level_m), std::fmod(degrees(profile.azimuth_rad) + 360, 360),
         height_text(profile.heights_m.front()), height_text(profile.heights_m.back()),
-        length_text(profile.surface_m), profile.has_holes ? " without holes" : "", profile.up_m,
+        length_text(profile.surface_m), profile.has_holes ? " without voids" : "", profile.up_m,
         profile.down_m, low_m, high_m);
     ImGui::PushTextWrapPos();
     ImGui::TextUnformatted(text.c_str());
@@ -190,39 +191,46 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     list.AddText({end.x - wide / 2 - extent.x / 2, end.y - tall + 3}, kInk, text.c_str());
 }
 
+std::string slope_text(double slope_deg, double aspect_deg) {
+    if (std::isnan(slope_deg)) return "";
+    if (std::isnan(aspect_deg)) return fmt::format("{:.1f} degrees", slope_deg);
+    return fmt::format("{:.1f} degrees, facing {}", slope_deg,
+                       geo::compass_point(std::fmod(aspect_deg + 360, 360)));
+}
+
 void key_sheet() {
     static constexpr std::array<std::array<const char*, 2>, 31> kKeys = {{
         {"Left drag", "move the ground"},
         {"Right drag, Shift + drag", "turn about the ground under the cursor"},
         {"Middle drag", "look around"},
-        {"Wheel, two fingers", "nearer to the ground under the cursor, and farther"},
+        {"Wheel, two fingers", "zoom to the ground under the cursor"},
         {"Shift + wheel", "move the ground"},
-        {"Drag the sun", "along its way of the day"},
-        {"Arrows", "turn about the middle"},
-        {"Page up, Page down", "nearer, farther"},
+        {"Drag the sun", "along its path of the day"},
+        {"Arrows", "turn about the centre"},
+        {"Page up, Page down", "zoom in, zoom out"},
         {"W A S D, Q E", "fly, down and up; faster with Shift"},
         {"G", "walk at eye height, and fly again"},
-        {"Home, N, T", "the whole DEM, north up, from above"},
+        {"Home, N, T", "whole DEM, north up, top view"},
         {"[ ]", "half an hour earlier, later; with Shift a day"},
-        {"Space", "let the time pass, and pause"},
-        {"Click", "the ground's sun of the day, its horizon and year"},
+        {"Space", "play and pause the time"},
+        {"Click", "direct sun of the day at a point, its horizon and year"},
         {"P", "horizon and year on and off"},
-        {"M", "measure from there to the cursor, till M or a click"},
-        {"C", "compare: the left stays as it is, the right follows; drag the line"},
-        {"O", "sun hours of the day on the ground, and off"},
-        {"F12", "take the picture"},
-        {"Ctrl + C", "copy the command that takes it"},
+        {"M", "measure from the point to the cursor, until M or a click"},
+        {"C", "compare: the left side stays, the right side follows; drag the line"},
+        {"O", "sun hours of the day on the ground, on and off"},
+        {"F12", "save a picture"},
+        {"Ctrl + C", "copy the command for this picture"},
         {"Ctrl + S", "save the scene"},
-        {"Ctrl + E", "save the overlay of the sun as GeoTIFF"},
+        {"Ctrl + E", "export the sun overlay as GeoTIFF"},
         {"Ctrl + J", "save the day's hours as a job"},
         {"Ctrl + O", "open a DEM; files can be dropped too"},
-        {"Ctrl + Page down, Page up", "the next DEM of the folder, the one before"},
-        {"B, then 1 to 9", "keep this view; go to one that was kept"},
-        {"F5", "read effects again, which happens by itself when their files are written"},
+        {"Ctrl + Page down, Page up", "next, previous DEM of the folder"},
+        {"B, then 1 to 9", "save the view; go to a saved view"},
+        {"F5", "reload effects (automatic if their files change)"},
         {"Ctrl + Z, Ctrl + Y", "undo, redo"},
         {"Tab", "panels and menu on and off"},
-        {"H, Esc", "this sheet; Esc also gives up opening a DEM"},
-        {"Ctrl + Q", "end"},
+        {"H, Esc", "this sheet; Esc also cancels opening a DEM"},
+        {"Ctrl + Q", "quit"},
     }};
     ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x / 2, ImGui::GetIO().DisplaySize.y / 2},
                             ImGuiCond_Always, {0.5f, 0.5f});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -28,6 +29,11 @@ struct Profile {
 void draw_measured(const std::vector<glm::dvec3>& points, const std::optional<Profile>& profile,
                    const Picture& picture, glm::vec2 size_px);
 void profile_panel(const Profile& profile);
+
+/// "2.9 degrees, facing S".
+/// @param slope_deg   NaN: the text is empty
+/// @param aspect_deg  downhill, from true north; NaN on level ground
+std::string slope_text(double slope_deg, double aspect_deg);
 
 /// What is on which side of a comparison's line.
 /// @param line_px  from the left edge

@@ -16,11 +16,11 @@ namespace relevo::viewer {
 namespace {
 
 constexpr std::array<const char*, 7> kNames = {"none",
-                                               "of the scene",
+                                               "from the scene",
                                                "sun hours of the day",
                                                "sun hours of the week",
                                                "sun hours of the year",
-                                               "direct sun at the moment",
+                                               "direct sun at this time",
                                                "sky view"};
 
 /// What a choice is called; the scene's has its file's name.
@@ -48,7 +48,7 @@ void choice(State& state) {
 void opacity(State& state) {
     auto percent = static_cast<int>(std::lround(100 * state.document.overlay.opacity));
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::SliderInt("##opacity", &percent, 10, 100, "hides %d %% of the ground"))
+    if (ImGui::SliderInt("##opacity", &percent, 10, 100, "opacity %d %%"))
         state.document.overlay.opacity = percent / 100.0;
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
 }
@@ -57,12 +57,13 @@ void opacity(State& state) {
 void work(const State& state) {
     const ImVec2 size{-1, ImGui::GetTextLineHeight()};
     if (state.stands_in)
-        ImGui::TextDisabled("waits for all posts to be read ...");
+        ImGui::TextDisabled("waiting until all posts are read ...");
     else if (state.overlay_progress)
-        ImGui::ProgressBar(static_cast<float>(*state.overlay_progress), size, "finer ...");
+        ImGui::ProgressBar(static_cast<float>(*state.overlay_progress), size, "refining ...");
     else if (state.overlay && state.overlay->raster && !state.overlay->is_whole())
         ImGui::TextWrapped(
-            "Of one in %.1f posts each way: memory has no more. A saved GeoTIFF has all.",
+            "Every %.1f-th post in each direction, limited by --memory. The exported GeoTIFF has "
+            "all posts.",
             state.overlay->every);
 }
 
@@ -71,13 +72,13 @@ void save(State& state) {
         ImGui::ProgressBar(static_cast<float>(*state.saving_progress),
                            {-90, ImGui::GetTextLineHeight()}, "writing ...");
         ImGui::SameLine();
-        if (ImGui::SmallButton("Give up")) state.commands.push_back(Command::GiveUpSaving);
+        if (ImGui::SmallButton("Cancel")) state.commands.push_back(Command::GiveUpSaving);
         return;
     }
-    if (ImGui::Button("Save as GeoTIFF (Ctrl+E)")) state.commands.push_back(Command::SaveOverlay);
+    if (ImGui::Button("Export as GeoTIFF (Ctrl+E)")) state.commands.push_back(Command::SaveOverlay);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip(
-            "The very file that relevo sun writes. Scenes and commands have it then.");
+            "The same file as relevo sun writes. Scenes and commands include it then.");
     if (!state.saved_overlay.empty()) ImGui::TextDisabled("in %s", state.saved_overlay.c_str());
 }
 
@@ -99,7 +100,7 @@ void overlay_panel(State& state) {
 
 std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& place) {
     const double value = overlay.value_at(place);
-    if (std::isnan(value)) return overlay.raster ? "no figure of the overlay here" : "";
+    if (std::isnan(value)) return overlay.raster ? "no overlay value here" : "";
     switch (overlay.of.raster.figure) {
         case session::SunFigure::Shadow:
             return value > 0 ? "in the sun" : "in shade";

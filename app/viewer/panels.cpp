@@ -61,7 +61,7 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     if (ImGui::CollapsingHeader("Point", kOpen)) roomy_point_panel(state);
     if (state.profile && ImGui::CollapsingHeader("Profile", kOpen)) profile_panel(*state.profile);
     if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state);
-    if (ImGui::CollapsingHeader("Take it away", kOpen)) take_away_panel(state);
+    if (ImGui::CollapsingHeader("Export", kOpen)) take_away_panel(state);
     ImGui::End();
 }
 
@@ -84,16 +84,15 @@ void status_line(const State& state, bool is_drawing) {
         text = coordinates_text(at.place, state.settings.coordinates) + "   " +
                (std::isnan(at.place.height_m) ? "no height"
                                               : fmt::format("{:.1f} m", at.place.height_m));
-        if (!std::isnan(at.slope_deg)) text += fmt::format("   slope {:.1f}°", at.slope_deg);
-        if (!std::isnan(at.slope_deg) && !std::isnan(at.aspect_deg))
-            text += fmt::format(" to {:.0f}°", at.aspect_deg);
+        if (const std::string slope = slope_text(at.slope_deg, at.aspect_deg); !slope.empty())
+            text += "   " + slope;
         if (state.overlay)
             if (const std::string words = overlay_words(*state.overlay, at.place); !words.empty())
                 text += "   " + words;
     } else {
         text = "H: keys";
     }
-    if (state.stands_in) text += "   reading all posts; ground and shadows are coarser till then";
+    if (state.stands_in) text += "   reading all posts; terrain and shadows are coarse until then";
     if (is_drawing) text += "   drawing ...";
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
@@ -114,7 +113,7 @@ void waiting_text(const State& state, bool has_failed, bool can_give_up) {
         ImGui::TextWrapped("%s", state.message.c_str());
     else
         ImGui::Text("opening %s ...%s", printable(state.document.scene.dems.front()).c_str(),
-                    can_give_up ? "   Esc gives up" : "");
+                    can_give_up ? "   Esc cancels" : "");
     ImGui::End();
 }
 

@@ -37,9 +37,8 @@ ImVec4 colour_of(bool lit, bool on_light) {
 std::string light_words(const PointLight& point, sun::Instant now, const sun::Zone& zone) {
     const auto next = point.next_change(now);
     if (point.is_lit(now))
-        return next ? "in the sun, till it leaves at " + clock_text(*next, zone)
-                    : "in the sun, till the day ends";
-    if (next) return "in shade, sun comes at " + clock_text(*next, zone);
+        return next ? "in the sun until " + clock_text(*next, zone) : "in the sun until midnight";
+    if (next) return "in shade until " + clock_text(*next, zone);
     std::string text = point.lit.empty() ? "no sun today" : "no more sun today";
     if (point.tomorrow)
         text += ", tomorrow from " + clock_text(*point.tomorrow, zone);
@@ -57,9 +56,9 @@ std::string span_text(const LitSpan& span) {
 
 /// "no sun at all on 34 days, 30 of them from 8 Dec to 6 Jan"
 std::string dark_text(const YearPicture& year) {
-    if (year.dark_days == 0) return "sun on every day of the year";
+    if (year.dark_days == 0) return "direct sun on every day of the year";
     std::string text =
-        fmt::format("no sun at all on {} day{}", year.dark_days, year.dark_days == 1 ? "" : "s");
+        fmt::format("no direct sun on {} day{}", year.dark_days, year.dark_days == 1 ? "" : "s");
     if (year.dark_row < year.dark_days) text += fmt::format(", {} of them", year.dark_row);
     const auto& [first, last] = year.dark;
     return text + (first == last ? ", " + day_label(first)
@@ -69,7 +68,7 @@ std::string dark_text(const YearPicture& year) {
 /// What the DEM leaves open.
 void doubts(const PointLight& point) {
     if (point.not_known_s > 0)
-        ImGui::TextWrapped("%s of it are not known, for holes of the DEM.",
+        ImGui::TextWrapped("%s of it are not known because of voids in the DEM.",
                            duration_text(point.not_known_s).c_str());
     if (point.open_deg.empty()) return;
     std::string where;
@@ -77,7 +76,7 @@ void doubts(const PointLight& point) {
         where += fmt::format("{}{:.0f}°", where.empty() ? "" : ", ", open.x);
         if (std::lround(open.x) != std::lround(open.y)) where += fmt::format(" to {:.0f}°", open.y);
     }
-    ImGui::TextWrapped("Ridges beyond the DEM may hide more: azimuth %s.", where.c_str());
+    ImGui::TextWrapped("Mountains outside the DEM may hide more: azimuth %s.", where.c_str());
 }
 
 void light_of(State& state, const PointLight& point) {
@@ -95,7 +94,7 @@ void light_of(State& state, const PointLight& point) {
     if (has_first) go_to_edge(state, "First light", point.lit.front().begin);
     if (has_last) go_to_edge(state, "Last light", point.lit.back().end);
     if (has_first || has_last) ImGui::NewLine();
-    ImGui::Text("%s of sun, %s over a level horizon", duration_text(point.lit_s).c_str(),
+    ImGui::Text("%s of direct sun, %s over a level horizon", duration_text(point.lit_s).c_str(),
                 duration_text(point.flat_s).c_str());
     if (point.year)
         ImGui::Text("%.0f h in %d, %.0f h over a level horizon", point.year->lit_s / 3600,
@@ -108,7 +107,7 @@ void light_of(State& state, const PointLight& point) {
 
 void point_panel(State& state) {
     if (!state.chosen) {
-        ImGui::TextDisabled("Click the ground: its sun of the day, here.");
+        ImGui::TextDisabled("Click the ground to see its direct sun of the day.");
         return;
     }
     const geo::Geodetic& place = *state.chosen;
@@ -119,9 +118,9 @@ void point_panel(State& state) {
     if (state.point && !state.point->error.empty())
         ImGui::TextWrapped("%s", state.point->error.c_str());
     else if (state.stands_in)
-        ImGui::TextDisabled("waits for all posts to be read ...");
+        ImGui::TextDisabled("waiting until all posts are read ...");
     else if (!state.point || state.point->of.date != state.day.date)
-        ImGui::TextDisabled("looking at its horizon ...");
+        ImGui::TextDisabled("computing its horizon ...");
     else
         light_of(state, *state.point);
     ImGui::Checkbox("Horizon and year (P)", &state.settings.charts);

@@ -45,7 +45,7 @@ double milliseconds_since(Clock::time_point began) {
 std::string text_of(const std::exception& error) {
     if (dynamic_cast<const std::bad_alloc*>(&error) ||
         dynamic_cast<const std::length_error*>(&error))
-        return "out of memory; a smaller window, a smaller --memory or fewer effects may do";
+        return "out of memory; use a smaller window, a smaller --memory or fewer effects";
     return error.what();
 }
 

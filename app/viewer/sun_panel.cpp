@@ -150,7 +150,7 @@ std::string sun_figures(const State& state) {
     const SunPoint sun = sun_at(state.document.utc, state.centre, state.air);
     double azimuth_deg = degrees(std::atan2(sun.direction.x, sun.direction.y));
     if (azimuth_deg < 0) azimuth_deg += 360;
-    return fmt::format("azimuth {:.2f}°, height {:.2f}°", azimuth_deg, sun.elevation_deg);
+    return fmt::format("azimuth {:.2f}°, elevation {:.2f}°", azimuth_deg, sun.elevation_deg);
 }
 
 void sun_panel(State& state) {

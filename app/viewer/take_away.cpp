@@ -65,7 +65,7 @@ scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 
 
 std::string save_scene(const scene::Scene& scene) {
     const std::string name = save_json(scene::scene_text(scene, ""));
-    return name + " has the scene; relevo view --scene opens it";
+    return name + ": scene saved; relevo view --scene opens it";
 }
 
 std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone) {
@@ -79,7 +79,7 @@ std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zo
                                .step = "1h",
                                .output = "{dem}_{time:%Y%m%dT%H%M}.png"};
     const std::string name = save_json(scene::day_job_text(scene, of_day, ""));
-    return fmt::format("{} draws every hour of this day{}: relevo run {}", name,
+    return fmt::format("{}: every hour of this day{}; run it with relevo run {}", name,
                        by_sun ? " from sunrise to sunset" : "", name);
 }
 
@@ -115,7 +115,7 @@ std::string save_picture(const Picture& picture, const scene::Scene& scene, cons
         image::write(file, image, metadata);
         file.finish();
     });
-    std::string told = name + " has the picture";
+    std::string told = name + ": picture saved";
     for (const std::string& note : notes)
         told += "; " + note;
     return told;

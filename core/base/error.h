@@ -17,8 +17,8 @@ enum class ErrorCode {
 
 /// An operation cannot continue. Caught once, in main.
 ///
-/// The message reads `who: subject: what, expected E but got G; remedy`, for example
-/// `dem::load: alps.tif: no coordinate reference system; pass --crs EPSG:n`.
+/// The message reads `subject: what, expected E but got G; remedy`, for example
+/// `alps.tif: no coordinate reference system; pass --crs EPSG:n`.
 class Error : public std::runtime_error {
   public:
     Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

@@ -1,12 +1,16 @@
 #include "base/log.h"
 
 #include <mutex>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "base/held_notices.h"
 #include "base/text.h"
 
 namespace relevo::log {
@@ -19,6 +23,7 @@ struct State {
     Level level = Level::Info;
     std::function<void(Level, std::string_view)> sink;
     std::function<void()> before;
+    std::optional<std::vector<std::string>> held;  // notices, while a HeldNotices lives
     std::shared_ptr<spdlog::logger> logger;
 
     State() {
@@ -73,6 +78,10 @@ void write(Level level, std::string_view message) {
     State& s = state();
     const std::lock_guard lock(s.mutex);
     if (level < s.level) return;
+    if (level == Level::Info && s.held) {
+        s.held->emplace_back(message);
+        return;
+    }
     if (s.sink) {
         s.sink(level, message);
         return;
@@ -135,6 +144,35 @@ void set_sink(std::function<void(Level, std::string_view)> sink) {
     State& s = state();
     const std::lock_guard lock(s.mutex);
     s.sink = std::move(sink);
+}
+
+HeldNotices::HeldNotices() {
+    State& s = state();
+    const std::lock_guard lock(s.mutex);
+    if (s.level > Level::Debug) s.held.emplace();
+}
+
+HeldNotices::~HeldNotices() {
+    try {
+        release();
+    } catch (...) {
+        // What cannot be written is no reason to end.
+    }
+}
+
+void HeldNotices::release() {
+    std::vector<std::string> notices;
+    {
+        State& s = state();
+        const std::lock_guard lock(s.mutex);
+        if (s.held) notices = std::move(*s.held);
+        s.held.reset();
+    }
+    if (notices.empty()) return;
+    const std::size_t more = notices.size() - 1;
+    info(more == 0 ? notices.front()
+                   : fmt::format("{}; {} more notice{} with -v", notices.front(), more,
+                                 more == 1 ? "" : "s"));
 }
 
 }  // namespace relevo::log

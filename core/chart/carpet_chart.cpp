@@ -132,7 +132,7 @@ void add_frame(Drawing& drawing, const Plot& area, bool is_panel) {
     if (is_panel) return;
     drawing.text({area.x - 11, bottom + kLevel}, "level horizon",
                  {.size = 12, .color = kSoft, .anchor = Anchor::End});
-    drawing.text({kMargin + 14, area.y + area.height / 2}, "time of day, by the clock",
+    drawing.text({kMargin + 14, area.y + area.height / 2}, "local time",
                  {.size = 12, .color = kSoft, .anchor = Anchor::Middle, .turn_deg = -90});
 }
 
@@ -155,8 +155,9 @@ std::vector<std::string> title_lines(const CarpetChart& chart) {
                     carpet.lit_s / 3600, carpet.level_s / 3600,
                     carpet.level_s > 0 ? 100 * carpet.lit_s / carpet.level_s : 0)};
     if (carpet.not_known_s > 0)
-        lines.back() += fmt::format("; {:.3g} hours of direct sun not known for holes of the DEM",
-                                    carpet.not_known_s / 3600);
+        lines.back() +=
+            fmt::format("; {:.3g} hours of direct sun not known because of voids in the DEM",
+                        carpet.not_known_s / 3600);
     return lines;
 }
 

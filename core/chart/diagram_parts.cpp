@@ -127,7 +127,7 @@ std::string light_text(const light::LightDay& day, const SunPaths& paths) {
         text = "Direct sun all day";
     text += text.empty() ? "No direct sun" : " (" + duration_text(day.lit_s) + ")";
     if (day.not_known_s > 0)
-        text += fmt::format(", {} of it not known for holes of the DEM",
+        text += fmt::format(", {} of it not known because of voids in the DEM",
                             day.not_known_s < 30 ? "seconds" : duration_text(day.not_known_s));
     return text + "; over a level horizon " + duration_text(day.flat.day_length_s);
 }

@@ -51,7 +51,7 @@ Array2d<float> filled_window(const Array2d<float>& height_m, const Window& w) {
             GDALCreate(GDALGetDriverByName("MEM"), "", w.columns, w.rows, 1, type, nullptr);
         if (dataset && GDALRasterIO(GDALGetRasterBand(dataset, 1), GF_Write, 0, 0, w.columns,
                                     w.rows, texels, w.columns, w.rows, type, 0, 0) != CE_None)
-            failed("dem::fill_small_holes: GDAL refuses a raster in memory");
+            failed("voids: GDAL refuses a raster in memory");
         return dataset;
     };
     const GDALDatasetH to = raster(GDT_Float32, heights.data());
@@ -65,7 +65,7 @@ Array2d<float> filled_window(const Array2d<float>& height_m, const Window& w) {
                      w.columns, w.rows, GDT_Float32, 0, 0) == CE_None;
     if (to) GDALClose(to);
     if (mask) GDALClose(mask);
-    if (!done) failed("dem::fill_small_holes: GDAL cannot fill a hole");
+    if (!done) failed("voids: GDAL cannot fill a void");
     return heights;
 }
 
@@ -87,7 +87,7 @@ std::string FilledHoles::text(Holes holes) const {
         return 100 * static_cast<double>(some) / static_cast<double>(posts);
     };
     std::string text =
-        fmt::format("{:.3g} % of the posts have no height: ", share(filled_posts + cut_posts));
+        fmt::format("{:.3g} % of the posts are voids: ", share(filled_posts + cut_posts));
     if (filled_posts > 0)
         text += fmt::format("{}{} drawn filled{}",
                             cut_posts > 0 ? fmt::format("{:.3g} % ", share(filled_posts)) : "",

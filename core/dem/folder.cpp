@@ -176,7 +176,7 @@ void tell_of_others(const std::string& folder, const Contents& found) {
     constexpr std::size_t kMaxNamed = 3;
     const auto named =
         left_out.begin() + static_cast<std::ptrdiff_t>(std::min(left_out.size(), kMaxNamed));
-    log::info(fmt::format("{}: {} of its files {} and left out: {}{}", folder, left_out.size(),
+    log::info(fmt::format("{}: {} of its files {} and skipped: {}{}", folder, left_out.size(),
                           left_out.size() == 1 ? "is no raster" : "are no rasters",
                           fmt::join(left_out.begin(), named, ", "),
                           left_out.size() > kMaxNamed ? ", ..." : ""));

@@ -106,7 +106,7 @@ bool like_degrees(const Affine& cells, int columns, int rows) {
 /// @param affine  the file's; none where --bounds replaces it
 geo::Crs crs_of(const std::string& path, GDALDatasetH dataset, const std::optional<Affine>& affine,
                 const LoadOptions& options, Description& about) {
-    const std::string who = fmt::format("dem::load: {}", path);
+    const std::string& who = path;
     const FileCrs in_file = crs_in(path, dataset);
     if (!options.crs.empty()) {
         geo::Crs crs = geo::Crs::parse(options.crs, who);
@@ -125,8 +125,8 @@ geo::Crs crs_of(const std::string& path, GDALDatasetH dataset, const std::option
                    fmt::format("no coordinate reference system{}; pass --crs EPSG:n",
                                in_file.reason.empty() ? "" : fmt::format(" ({})", in_file.reason)));
         guess(about,
-              "the CRS is WGS 84: the file names none, and its coordinates are like degrees; --crs "
-              "sets another");
+              "the CRS is WGS 84: the file names none, and its coordinates look like degrees; "
+              "--crs sets another");
     }
     return {};
 }
@@ -147,7 +147,7 @@ Georeference place_by_name(const std::string& path, GDALDatasetH dataset,
           "the place is that of the web map tile that the path names, zoom/x/y with y from "
           "the north");
     return {affine_of(*tile, GDALGetRasterXSize(dataset), GDALGetRasterYSize(dataset)),
-            geo::Crs::parse("EPSG:3857", fmt::format("dem::load: {}", path))};
+            geo::Crs::parse("EPSG:3857", path)};
 }
 
 }  // namespace
@@ -173,8 +173,8 @@ Georeference georeference(const std::string& path, GDALDatasetH dataset, const L
                         b.west_deg, b.east_deg, b.south_deg, b.north_deg));
     } else if (!crs.is_geographic() && like_degrees(*affine, columns, rows) &&
                std::abs(affine->x_column) < 0.05) {
-        refuse(path, fmt::format("its coordinates are like degrees, but {} counts in {}; pass the "
-                                 "right CRS with --crs, perhaps EPSG:4326",
+        refuse(path, fmt::format("its coordinates look like degrees, but the unit of {} is {}; "
+                                 "pass the right CRS with --crs, perhaps EPSG:4326",
                                  crs.name(), crs.unit_name()));
     }
     return {*affine, std::move(crs)};

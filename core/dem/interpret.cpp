@@ -210,17 +210,16 @@ void settle_vertical_datum(GDALDatasetH dataset, const geo::Crs& crs, Descriptio
         // SRTM Collection User Guide, USGS 2015, "Vertical datum"; others keep to it.
         about.vertical_datum = "EGM96";
         about.assumptions.emplace_back(
-            "heights are above mean sea level by EGM96, as in all .hgt files though none can say "
-            "so, and are placed as ellipsoidal ones: the geoid is not added");
+            "heights are above mean sea level (EGM96, as in all .hgt files) and are taken as "
+            "ellipsoidal: the geoid is not added");
         return;
     }
     about.assumptions.push_back(
         about.vertical_datum.empty()
-            ? std::string("heights are placed as ellipsoidal ones: the file does not say what they "
-                          "are above")
-            : fmt::format("heights are above {} and are placed as ellipsoidal ones: the geoid is "
-                          "not added",
-                          about.vertical_datum));
+            ? std::string("heights are taken as ellipsoidal: the file names no vertical datum")
+            : fmt::format(
+                  "heights are above {} and are taken as ellipsoidal: the geoid is not added",
+                  about.vertical_datum));
 }
 
 }  // namespace relevo::dem

@@ -19,7 +19,7 @@ using Dataset = std::unique_ptr<void, CloseDataset>;
 /// Notes a choice that the file did not make itself, and that is a guess.
 void guess(Description& about, const std::string& sentence);
 
-/// @throws Error (BadInput) `dem::load: path: what`
+/// @throws Error (BadInput) `path: what`
 [[noreturn]] void refuse(const std::string& path, const std::string& what);
 
 /// What to do about a reason that GDAL or the system gives, as the end of a message: "; the file is

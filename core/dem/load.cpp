@@ -55,9 +55,9 @@ std::string stored_text(const Description& about, double stored) {
 void report_heights(const Source& source, Description& about, const std::optional<Collar>& collar) {
     const Statistics& s = about.statistics;
     if (s.valid == 0)
-        bad_input(fmt::format(
-            "dem::load: {}: not one valid height, all {} posts are holes{}", about.path, s.holes,
-            about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
+        bad_input(
+            fmt::format("{}: no valid height: all {} posts are voids{}", about.path, s.holes,
+                        about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
     const auto guess = [&](const std::string& sentence) {
         about.assumptions.push_back(sentence);
         about.guesses.push_back(sentence);
@@ -65,14 +65,13 @@ void report_heights(const Source& source, Description& about, const std::optiona
     };
     if (s.outliers > 0)
         guess(
-            fmt::format("{} heights are below -11500 m or above 9000 m, which the Earth has not, "
-                        "and are drawn as they are; --nodata V makes V a hole, --unit {}",
+            fmt::format("{} heights are below -11500 m or above 9000 m, impossible on Earth; "
+                        "--nodata V marks them as voids, --unit {}",
                         s.outliers, unit_advice(about)));
     if (collar)
         guess(
-            fmt::format("the edge is {:g} m all around and the ground beside it {:.0f} m off, "
-                        "perhaps what is left around a turned raster; --nodata {} makes it a "
-                        "hole",
+            fmt::format("the whole edge is {:g} m high and differs from its neighbours by {:.0f} "
+                        "m, perhaps fill of a rotated raster; --nodata {} marks it as void",
                         collar->height_m, collar->step_m, stored_text(about, source.stored(0, 0))));
 }
 
@@ -87,10 +86,9 @@ Heightfield load(std::span<const std::string> paths, const LoadOptions& options)
 void refuse_endless_sides(const Source& source) {
     const Grid& grid = source.grid();
     if (std::max(grid.columns(), grid.rows()) > kMaxPostsASide)
-        bad_input(
-            fmt::format("dem::load: {}: {} x {} posts, expected at most {} a side; cut it up "
-                        "with gdal_translate",
-                        source.description().path, grid.columns(), grid.rows(), kMaxPostsASide));
+        bad_input(fmt::format(
+            "{}: {} x {} posts, expected at most {} a side; crop it with gdal_translate",
+            source.description().path, grid.columns(), grid.rows(), kMaxPostsASide));
 }
 
 namespace {
@@ -145,9 +143,8 @@ Heightfield load(const Source& source, std::int64_t max_posts) {
     if (posts > max_posts) {
         const double wanted = std::ceil(4.0 * static_cast<double>(posts) / kMiB);
         bad_input(fmt::format(
-            "dem::load: {}: memory for its heights, expected at most {:.0f} MiB but got {:.0f}: "
-            "{} x {} posts are too narrow for means; pass --memory {:.0f}, or cut it up with "
-            "gdal_translate",
+            "{}: memory for its heights, expected at most {:.0f} MiB but got {:.0f}: {} x {} posts "
+            "are too narrow for means; pass --memory {:.0f}, or crop it with gdal_translate",
             path, 4.0 * static_cast<double>(max_posts) / kMiB, wanted, full.columns(), full.rows(),
             wanted));
     }
@@ -156,8 +153,7 @@ Heightfield load(const Source& source, std::int64_t max_posts) {
         Heightfield field = read_reduced(source, reduction);
         if (reduction > 1)
             field.about.assumptions.push_back(fmt::format(
-                "reduced from {} x {} to {} x {} posts, means of {} x {}, to keep within the "
-                "memory allowed",
+                "reduced from {} x {} to {} x {} posts, means of {} x {}, to stay within --memory",
                 full.columns(), full.rows(), columns, rows, reduction, reduction));
         report_heights(
             source, field.about,
@@ -165,7 +161,7 @@ Heightfield load(const Source& source, std::int64_t max_posts) {
         return field;
     } catch (const std::bad_alloc&) {
         failed(
-            fmt::format("dem::load: {}: no memory for {} x {} heights ({:.0f} MiB); pass a "
+            fmt::format("{}: no memory for {} x {} heights ({:.0f} MiB); pass a "
                         "smaller --memory, now {:.0f}",
                         path, columns, rows, 4.0 * columns * rows / kMiB,
                         4.0 * static_cast<double>(max_posts) / kMiB));

@@ -148,7 +148,7 @@ void say_if_scattered(const std::vector<Piece>& pieces, double covered, Descript
     constexpr double kMistake = 0.005;
     if (covered >= kThin) return;
     const std::string sentence = fmt::format(
-        "the files cover {:.2g} % of the DEM that they make, the rest is one hole", 100 * covered);
+        "the files cover {:.2g} % of their common extent, the rest is a void", 100 * covered);
     const Furthest far = furthest(pieces);
     if (covered >= kMistake || !far.from) {
         guess(about, sentence);
@@ -237,7 +237,7 @@ void describe_differences(const std::vector<Piece>& pieces, Description& about) 
     };
     if (const std::string nodata = differing(pieces, nodata_text); !nodata.empty())
         about.assumptions.push_back(
-            fmt::format("holes are marked by {}: in each file by its own", nodata));
+            fmt::format("voids are marked by {}: each file has its own value", nodata));
 }
 
 }  // namespace

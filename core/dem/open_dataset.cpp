@@ -25,7 +25,7 @@ void CloseDataset::operator()(void* dataset) const {
 }
 
 void refuse(const std::string& path, const std::string& what) {
-    bad_input(fmt::format("dem::load: {}: {}", path, what));
+    bad_input(fmt::format("{}: {}", path, what));
 }
 
 void guess(Description& about, const std::string& sentence) {

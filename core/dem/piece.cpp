@@ -117,12 +117,12 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
     if (options.no_nodata) {
         if (declared)
             about.assumptions.push_back(
-                fmt::format("{} marks no hole, as given", about.nodata_text()));
+                fmt::format("{} marks no void, as given", about.nodata_text()));
         about.nodata.reset();
         band_scale.beyond = std::numeric_limits<double>::infinity();
     } else if (options.nodata) {
         about.nodata = options.nodata;
-        about.assumptions.push_back(fmt::format("{} marks a hole, as given", *options.nodata));
+        about.assumptions.push_back(fmt::format("{} marks voids, as given", *options.nodata));
         piece.knows_holes = piece.knows_holes && declared;
         holes_by("option");
     } else if (declared) {
@@ -131,12 +131,12 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
         const Undeclared found = find_undeclared(sample_of(band, sampled_pieces), band_scale.scale);
         if (found.beyond)
             guess(about,
-                  "numbers too large for any height mark holes, though the file does not "
-                  "say so; --nodata none takes them as heights");
+                  "numbers too large for heights are taken as voids (not declared); --nodata none "
+                  "keeps them");
         about.nodata = found.nodata;
         if (found.nodata)
-            guess(about, fmt::format("{:g} marks holes, though the file does not say so: no height "
-                                     "is near it; --nodata none takes it as a height",
+            guess(about, fmt::format("{:g} is taken as a void (not declared, far from all "
+                                     "heights); --nodata none keeps it",
                                      *found.nodata));
         piece.knows_holes = !found.nodata && !found.beyond;
         if (!piece.knows_holes) holes_by("found");

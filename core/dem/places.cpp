@@ -220,8 +220,7 @@ class Columns {
 };
 
 [[noreturn]] void refuse_many(const Asked& asked) {
-    asked.refuse(
-        fmt::format("more than {} places; leave out some, or cut the file up", kMostPlaces));
+    asked.refuse(fmt::format("more than {} places; split the file", kMostPlaces));
 }
 
 std::vector<NamedPlace> read_csv(const Asked& asked, const std::string& crs) {
@@ -282,7 +281,7 @@ std::vector<NamedTime> read_times(const std::string& path, std::string_view who,
         if (times.back().time.empty())
             asked.refuse(fmt::format("line {}: no time in it", lines.number()));
         if (times.size() > most)
-            asked.refuse(fmt::format("more than {} times; cut the file up", most));
+            asked.refuse(fmt::format("more than {} times; split the file", most));
     }
     if (times.empty())
         asked.refuse("no times, expected a first line \"time\" and a line for each below it");

@@ -400,14 +400,14 @@ void settle_earth(const Grid& grid, Description& about, bool& leaves_earth) {
                                        grid.crs().name(), kRemedy));
     const glm::dvec2 spacing_m = grid.post_spacing_m();
     if (!std::isfinite(spacing_m.x + spacing_m.y))
-        refuse(about.path, fmt::format("cells so large that beside its middle is no place on the "
-                                       "Earth in {}; {}",
-                                       grid.crs().name(), kRemedy));
+        refuse(about.path,
+               fmt::format("cells so large that the centre has no neighbour on the Earth in {}; {}",
+                           grid.crs().name(), kRemedy));
     if (!(spacing_m.x > 0 && spacing_m.y > 0))
-        refuse(about.path, "cells so small that posts beside each other are at one place");
+        refuse(about.path, "cells so small that neighbouring posts are at the same place");
     if (!leaves_earth) return;
     about.holes_by.emplace_back("earth");
-    guess(about, fmt::format("some of its posts are not on the Earth in {}, and are holes",
+    guess(about, fmt::format("some of its posts are not on the Earth in {} and are voids",
                              grid.crs().name()));
 }
 
@@ -423,7 +423,7 @@ Source Source::open(const std::string& path, const LoadOptions& options) {
 }
 
 Source Source::open(std::span<const std::string> given, const LoadOptions& options) {
-    if (given.empty()) bad_input("dem::load: no DEM, expected one file or more");
+    if (given.empty()) bad_input("no DEM given; name one or more files");
     std::vector<std::string> paths;
     std::vector<std::string> folders;  // that they are from, empty for what was named itself
     for (const std::string& name : given)

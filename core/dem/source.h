@@ -50,7 +50,7 @@ class Source {
     /// @param path  a file, a folder that is one raster (Esri grids), a folder of rasters, an
     ///              archive of one, or another name that GDAL opens ("/vsizip/alps.zip/alps.tif",
     ///              "NETCDF:a.nc:topo")
-    /// @throws Error (BadInput) `dem::load: PATH: what, expected E but got G; remedy`
+    /// @throws Error (BadInput) `PATH: what, expected E but got G; remedy`
     static Source open(const std::string& path, const LoadOptions& options = {});
 
     /// The same for one file or more.

@@ -198,11 +198,10 @@ std::string to_text(const Summary& s) {
                                 distance_text(s.post_spacing_m.y)));
     line("heights", fmt::format("{:.1f} to {:.1f} m", s.min_m, s.max_m));
     line("holes", fmt::format("{:.4g} %{}", 100 * s.nodata_share, holes_text(s)));
-    if (s.outliers > 0)
-        line("outliers", fmt::format("{} heights that the Earth has not", s.outliers));
+    if (s.outliers > 0) line("outliers", fmt::format("{} heights impossible on Earth", s.outliers));
     if (s.worst_spike)
-        line("spikes", fmt::format("{} posts stand more than {:.0f} m out of all their neighbours, "
-                                   "the worst by {:.0f} m at {}",
+        line("spikes", fmt::format("{} spikes: posts more than {:.0f} m above or below all their "
+                                   "neighbours, the worst by {:.0f} m at {}",
                                    s.spikes.count, s.spikes.limit_m, s.spikes.worst_m,
                                    geo::degrees_text(*s.worst_spike)));
     line("unit", fmt::format("{} ({})", s.unit, s.unit_source));

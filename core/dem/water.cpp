@@ -135,8 +135,8 @@ class WaterFinder {
         constexpr float kNoise_m = -10;  // of radar over water
         if (static_cast<double>(found.zeros) < 0.05 * posts && found.lowest_m > kLowestLand_m)
             water_.assumptions.push_back(fmt::format(
-                "{} connected posts at or below 0 m, down to {:.1f} m, are drawn as sea, because "
-                "they reach the edge of the DEM or a hole in it; --disable sea draws them as land",
+                "{} connected posts at or below 0 m, down to {:.1f} m, are drawn as sea: they "
+                "reach the edge of the DEM or a void; --disable sea draws land",
                 found.posts, found.lowest_m));
         return found.lowest_m < kNoise_m && !flat ? WaterKind::SeaFloor : WaterKind::Sea;
     }

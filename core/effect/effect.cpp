@@ -10,7 +10,7 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "effect::load";
+constexpr std::string_view kWho = "plugin";
 /// Of one file. Drivers take minutes for longer ones.
 constexpr std::size_t kMaxGlslBytes = std::size_t{1} << 20;
 
@@ -172,7 +172,7 @@ void check_displace(const Effect& effect) {
     }
     if (manifest.displaces)
         fail(manifest.file.string(), manifest.displaces->line,
-             fmt::format("displaces: no hook moves the ground; define {}, or leave this out",
+             fmt::format("displaces: no hook moves the ground; define {}, or remove this",
                          function));
 }
 

@@ -13,7 +13,7 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "effect::load";
+constexpr std::string_view kWho = "plugin";
 constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
@@ -235,7 +235,7 @@ class ManifestReader {
         });
         if (manifest_.module.empty() && !manifest_.texts.empty())
             object.fail(object.line_of("texts"), "texts",
-                        "expected a \"module\" beside them: nothing else reads texts");
+                        "expected a \"module\" too: only modules read texts");
     }
 
     shader::TextParam text(const std::string& name, const Json& value) {

@@ -94,7 +94,7 @@ std::span<const std::string_view> ground_words();
 
 /// Reads `folder/plugin.json`.
 /// @param data_dir  where `data:ground/rock.png` is: `share_dir() / "data"`
-/// @throws Error (BadInput) `effect::load: folder/plugin.json:line: ...`
+/// @throws Error (BadInput) `plugin: folder/plugin.json:line: ...`
 Manifest load_manifest(const std::filesystem::path& folder, const std::filesystem::path& data_dir);
 
 }  // namespace relevo::effect

@@ -171,7 +171,7 @@ std::string try_module(const std::filesystem::path& library, const std::string& 
                        const std::filesystem::path& folder, const shader::ParamStore& values) {
     const std::filesystem::path program = module_dir() / "try_module";
     const auto cannot = [&](std::string_view why) {
-        bad_input(fmt::format("effect::load: {}: it cannot be tried: {}", library.string(), why));
+        bad_input(fmt::format("plugin: {}: it cannot be tried: {}", library.string(), why));
     };
     std::array<int, 2> ends{-1, -1};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) cannot(std::strerror(errno));

@@ -14,7 +14,7 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "effect::load";
+constexpr std::string_view kWho = "plugin";
 
 [[noreturn]] void fail(const std::filesystem::path& library, std::string_view what) {
     bad_input(fmt::format("{}: {}: {}", kWho, library.string(), what));

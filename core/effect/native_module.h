@@ -21,7 +21,7 @@ class NativeModule {
     /// Tries the module in a process of its own, which calls each of its functions with services
     /// that have no device behind them, and loads it here if it lived.
     /// @param values  what the module reads and writes in the trial
-    /// @throws Error (BadInput) `effect::load: FILE: ...`: a library that is not there or cannot be
+    /// @throws Error (BadInput) `plugin: FILE: ...`: a library that is not there or cannot be
     ///         loaded, a symbol that is missing, a wrong version, a registration that fails, a
     ///         function that throws, crashes or ends the process, and functions that together take
     ///         more than half of patience(). That one fails in good order is not held against it:

@@ -13,7 +13,7 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "effect::load_preset";
+constexpr std::string_view kWho = "preset";
 
 std::filesystem::path presets_dir() {
     return share_dir() / "presets";

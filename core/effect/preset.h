@@ -53,7 +53,7 @@ std::optional<std::string> value_text(const Json& value);
 bool is_preset_file(const std::string& name_or_path);
 
 /// Reads a preset: `share_dir()/presets/NAME.json`, or a path if there is a slash or `.json` in it.
-/// @throws Error (BadInput) `effect::load_preset: file:line: ...`
+/// @throws Error (BadInput) `preset: file:line: ...`
 Preset load_preset(const std::string& name_or_path);
 
 /// Names of the presets that came with the program.

@@ -30,15 +30,14 @@ std::string name_of(const std::filesystem::path& folder) {
 std::vector<std::filesystem::path> plugin_folders(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::is_directory(path, error))
-        bad_input(fmt::format("effect::load: {}: no such folder", path.string()));
+        bad_input(fmt::format("plugin: {}: no such folder", path.string()));
     if (is_plugin(path)) return {path};
     std::vector<std::filesystem::path> folders;
     for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end;
          entry.increment(error))
         if (is_plugin(entry->path())) folders.push_back(entry->path());
     if (error)
-        bad_input(
-            fmt::format("effect::load: {}: cannot be read, {}", path.string(), error.message()));
+        bad_input(fmt::format("plugin: {}: cannot be read, {}", path.string(), error.message()));
     // A folder's own order is the file system's.
     std::sort(folders.begin(), folders.end());
     return folders;
@@ -57,7 +56,7 @@ Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
                 id = effect.id();
                 if (const Effect* first = registry.find(id))
                     bad_input(fmt::format(
-                        "effect::load: {}: the id {} is taken by {}; one of the "
+                        "plugin: {}: the id {} is taken by {}; one of the "
                         "two has to go",
                         effect.manifest.file.string(), id, first->manifest.file.string()));
                 registry.effects_.push_back(std::move(effect));
@@ -66,7 +65,7 @@ Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
             } catch (const std::bad_alloc&) {
                 registry.broken_.push_back(
                     {id, folder,
-                     fmt::format("effect::load: {}: there is not enough memory to read it",
+                     fmt::format("plugin: {}: there is not enough memory to read it",
                                  folder.string())});
             }
         }

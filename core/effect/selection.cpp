@@ -13,7 +13,7 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "effect::select";
+constexpr std::string_view kWho = "effects";
 
 bool contains(const std::vector<std::string>& words, std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
@@ -212,7 +212,7 @@ class Selector {
             bad_input(fmt::format("{}: {}: it cannot be switched on: {}; take it out of {}", kWho,
                                   id, reason, only ? "--only" : "--enable"));
         warnings_.push_back(
-            fmt::format("{} is off: {}; --disable {} leaves it out", id, reason, id));
+            fmt::format("{} is off: {}; --disable {} silences this", id, reason, id));
     }
 
     // ---- words of which there may be one
@@ -394,7 +394,7 @@ std::vector<std::string> apply_settings(shader::ParamStore& store, const Registr
                 store.set(setting.address, text_of(setting, store));
             } catch (const Error& error) {
                 const std::string_view what = error.what();
-                throw Error(error.code(), fmt::format("effect::apply_settings: {}: {}", place,
+                throw Error(error.code(), fmt::format("effects: {}: {}", place,
                                                       what.substr(what.find(": ") + 2)));
             }
         }

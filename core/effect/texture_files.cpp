@@ -11,7 +11,7 @@
 namespace relevo::effect {
 namespace {
 
-constexpr std::string_view kWho = "effect::load";
+constexpr std::string_view kWho = "plugin";
 
 [[noreturn]] void fail(const std::filesystem::path& file, std::string_view what) {
     bad_input(fmt::format("{}: {}: {}", kWho, file.string(), what));

@@ -18,7 +18,7 @@ struct LoadedTexture {
 };
 
 /// Reads a texture's files. KTX 2 files are mapped as they lie; pictures are decoded.
-/// @throws Error (BadInput) `effect::load: FILE: ...` for a file that is missing or broken, is of
+/// @throws Error (BadInput) `plugin: FILE: ...` for a file that is missing or broken, is of
 ///         another kind than the manifest says, or does not fit the other layers
 LoadedTexture load_texture(const TextureSpec& spec);
 
@@ -29,7 +29,7 @@ struct TextureLimits {
     int layers = 0;          ///< of an array
 };
 
-/// @throws Error (BadInput) `effect::load: FILE: ...` for a texture that is larger
+/// @throws Error (BadInput) `plugin: FILE: ...` for a texture that is larger
 void check_limits(const LoadedTexture& texture, const TextureLimits& limits);
 
 }  // namespace relevo::effect

@@ -40,7 +40,7 @@ struct Transformation {
         copy.context.reset(proj_context_clone(context.get()));
         proj_log_level(copy.context.get(), PJ_LOG_NONE);
         copy.pj.reset(proj_clone(copy.context.get(), pj.get()));
-        if (!copy.pj) failed("geo::Crs: a PROJ transformation could not be copied");
+        if (!copy.pj) failed("CRS: a PROJ transformation could not be copied");
         return copy;
     }
 };

@@ -45,7 +45,7 @@ class Crs {
 
     /// From what a user may write: `EPSG:31287` and other authorities' codes, WKT of any kind, a
     /// PROJ string, a URN, or the exact name of a CRS.
-    /// @param who  what errors begin with, for example "--crs" or "dem::load: alps.tif"
+    /// @param who  what errors begin with, for example "--crs" or "alps.tif"
     /// @throws Error (BadInput) where PROJ does not know it, or where it is not bound to the Earth:
     ///         local, vertical only, geocentric, of another planet
     static Crs parse(std::string_view text, std::string_view who);

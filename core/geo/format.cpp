@@ -69,4 +69,10 @@ std::string degrees_text(const Geodetic& place) {
                        place.lon_rad < 0 ? 'W' : 'E');
 }
 
+const char* compass_point(double azimuth_deg) {
+    constexpr const char* kPoints[] = {"N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE",
+                                       "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"};
+    return kPoints[static_cast<int>(azimuth_deg / 22.5 + 0.5) % 16];
+}
+
 }  // namespace relevo::geo

@@ -27,4 +27,8 @@ std::string dms_text(const Geodetic& place);
 /// Decimal degrees as people write them: `47.41700 N 11.43708 E`, rounded to 1e-5 (1 m).
 std::string degrees_text(const Geodetic& place);
 
+/// The nearest of 16 compass points: `SSW` for 200.
+/// @param azimuth_deg  0 or more, clockwise from north
+const char* compass_point(double azimuth_deg);
+
 }  // namespace relevo::geo

@@ -20,7 +20,7 @@ unsigned create(std::size_t size, const void* bytes, std::string_view label) {
     if (error != GL_NO_ERROR && size > 0) {
         glDeleteBuffers(1, &name);
         failed(
-            fmt::format("gl::Buffer: {}: the device has no {:.1f} MiB for it ({}); take a device "
+            fmt::format("GL buffer: {}: the device has no {:.1f} MiB for it ({}); take a device "
                         "with more",
                         label, static_cast<double>(size) / (1 << 20), error_name(error)));
     }

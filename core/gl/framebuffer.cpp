@@ -45,8 +45,8 @@ Framebuffer::Framebuffer(std::span<const Texture* const> colours, const Texture*
     }
     const GLenum status = glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE)
-        failed(fmt::format("gl::Framebuffer: {}: this device cannot draw to it, status 0x{:04x}",
-                           label, status));
+        failed(fmt::format("framebuffer: {}: this device cannot draw to it, status 0x{:04x}", label,
+                           status));
 }
 
 Framebuffer::Framebuffer(const Texture& colour, int level, int layer, std::string_view label) {
@@ -62,8 +62,8 @@ Framebuffer::Framebuffer(const Texture& colour, int level, int layer, std::strin
                std::max(colour.extent().height >> level, 1), 1};
     const GLenum status = glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE)
-        failed(fmt::format("gl::Framebuffer: {}: this device cannot draw to it, status 0x{:04x}",
-                           label, status));
+        failed(fmt::format("framebuffer: {}: this device cannot draw to it, status 0x{:04x}", label,
+                           status));
 }
 
 void Framebuffer::bind() const {

@@ -122,13 +122,13 @@ void check_storage(TextureKind kind, Format format, Extent extent, int levels,
     if (error == GL_NO_ERROR) return;
     if (error != GL_OUT_OF_MEMORY)
         failed(
-            fmt::format("gl::Texture: {}: expected a texture of up to {} and a whole chain of "
+            fmt::format("texture: {}: expected a texture of up to {} and a whole chain of "
                         "levels but got {} in {} levels ({})",
                         label, largest(kind), size_text(extent), levels, error_name(error)));
     const double mib = double{1.0 / (1 << 20)} * layout_of(format).bytes() * extent.width *
                        extent.height * extent.depth;
     failed(
-        fmt::format("gl::Texture: {}: the device has no {:.0f} MiB for {}; "
+        fmt::format("texture: {}: the device has no {:.0f} MiB for {}; "
                     "take a smaller picture or a device with more",
                     label, mib, size_text(extent)));
 }
@@ -161,7 +161,7 @@ Texture::Texture(TextureKind kind, Format format, Extent extent, int levels, std
     // GL would leave a texture without storage, and say so only to a debug context.
     if (levels_ > full_chain(kind, extent))
         failed(fmt::format(
-            "gl::Texture: {}: expected at most {} levels of {} x {} x {} texels but "
+            "texture: {}: expected at most {} levels of {} x {} x {} texels but "
             "got {}",
             label, full_chain(kind, extent), extent.width, extent.height, extent.depth, levels_));
     expect_no_error(label);

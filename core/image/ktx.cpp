@@ -122,7 +122,7 @@ class Reader {
         : path_(path), bytes_(bytes) {}
 
     [[noreturn]] void bad(const std::string& what) const {
-        bad_input(fmt::format("image::read_ktx: {}: {}", path_.string(), what));
+        bad_input(fmt::format("texture: {}: {}", path_.string(), what));
     }
 
     template <typename T>
@@ -331,7 +331,7 @@ void TextureData::Unmap::operator()(const std::byte* bytes) const {
 }
 
 TextureData read_ktx(const std::filesystem::path& path) {
-    const InputFile file(path, "image::read_ktx");
+    const InputFile file(path, "texture");
     const auto size = static_cast<std::size_t>(file.size());
 
     TextureData texture;
@@ -339,7 +339,7 @@ TextureData read_ktx(const std::filesystem::path& path) {
     if (size > 0) {
         void* memory = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
         if (memory == MAP_FAILED)
-            bad_input(fmt::format("image::read_ktx: {}: cannot be read, {}", path.string(),
+            bad_input(fmt::format("texture: {}: cannot be read, {}", path.string(),
                                   std::strerror(errno)));
         texture.mapped_ = {static_cast<const std::byte*>(memory), TextureData::Unmap{size}};
         bytes = {texture.mapped_.get(), size};
@@ -393,7 +393,7 @@ void write_ktx(const std::filesystem::path& path, const TextureData& texture) {
         offset += size;
     }
 
-    OutputFile file(path, /*overwrite=*/true, "image::write_ktx");
+    OutputFile file(path, /*overwrite=*/true, "texture");
     const auto write = [&](const void* bytes, std::size_t size) {
         file.write({static_cast<const std::byte*>(bytes), size});
     };

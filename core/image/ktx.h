@@ -79,12 +79,12 @@ class TextureData {
 ///
 /// The texture is the file: it must not be shortened while it is in use. write_ktx() never does
 /// that, it replaces the file as a whole.
-/// @throws Error (BadInput) `image::read_ktx: path: what; remedy` for a file that is not so
+/// @throws Error (BadInput) `texture: path: what; remedy` for a file that is not so
 TextureData read_ktx(const std::filesystem::path& path);
 
 /// Writes a KTX 2 file that appears under its name only when whole.
 /// Key/value pairs are stored as given; `KTXwriter` is added where it is absent.
-/// @throws Error `image::write_ktx: path: what` as OutputFile
+/// @throws Error `texture: path: what` as OutputFile
 void write_ktx(const std::filesystem::path& path, const TextureData& texture);
 
 }  // namespace relevo::image

@@ -99,11 +99,11 @@ Alignments alignments(const TerrainHorizon& from, const geo::Geodetic& target, s
                       sun::Date last, const sun::Zone& zone, const AlignmentOptions& options,
                       const sun::EarthRotation& rotation) {
     if (last < first)
-        bad_input(fmt::format("light::alignments: from {} to {}: ends before it begins",
+        bad_input(fmt::format("sun when: from {} to {}: ends before it begins",
                               sun::to_string(first), sun::to_string(last)));
     if (!(options.tolerance_rad > 0 && options.tolerance_rad <= radians(45)))
         bad_input(
-            fmt::format("light::alignments: tolerance {:.10g} degrees: no use, expected more "
+            fmt::format("sun when: tolerance {:.10g} degrees: no use, expected more "
                         "than 0 and up to 45",
                         degrees(options.tolerance_rad)));
     Alignments result;

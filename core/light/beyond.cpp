@@ -142,9 +142,18 @@ std::optional<GridPair> way_of(const SunSky& sky, const dem::Grid& grid) {
 
 std::string Beyond::text(const std::string& would) const {
     return fmt::format(
-        "terrain beyond the DEM may matter at some {:.0f} % of the posts: above {:.0f} m it would "
-        "{}, as far as {:.0f} km from the edge if it is up to {:.0f} m high",
-        std::max(1.0, 100 * share), least_m, would, needed_m / 1000, highest_m);
+        "mountains outside the DEM could {} at {:.0f} % of the posts: those above {:.0f} m, up to "
+        "{:.0f} km from the edge, if none is higher than {:.0f} m",
+        would, std::max(1.0, 100 * share), least_m, needed_m / 1000, highest_m);
+}
+
+std::string Beyond::advice() const {
+    const long percent = std::lround(std::max(1.0, 100 * share));
+    return fmt::format(
+        "mountains outside this DEM could change {} values; use a DEM {:.0f} km larger on each "
+        "side, or bound them with --highest",
+        percent == 100 ? "all" : fmt::format("{} % of the", percent),
+        std::max(1.0, needed_m / 1000));
 }
 
 std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window& part,

@@ -20,9 +20,10 @@ struct Beyond {
     /// A sentence without its full stop.
     /// @param would  what such terrain would do: kHides or kStandsOver
     std::string text(const std::string& would) const;
+    /// The warning: how many values such terrain could change, and what to do.
+    std::string advice() const;
 };
-inline constexpr const char *kHides = "hide sun that is taken to shine",
-                            *kStandsOver = "stand over these horizons";
+inline constexpr const char *kHides = "hide the sun", *kStandsOver = "raise horizons";
 
 /// Terrain that would hide a sun which the DEM's own ground leaves to shine.
 ///

@@ -24,12 +24,12 @@ sun::ParsedTime parse_time(std::string_view text, const std::optional<sun::Date>
     const sun::Date of = time.date ? *time.date : *date;
     const LightDay day = DirectLight(horizon).day(of, *zone);
     if (day.lit.empty())
-        bad_input(fmt::format("light::parse_time: {}: the sun does not reach that point on {}",
-                              time.text, sun::to_string(of)));
+        bad_input(fmt::format("time: {}: the sun does not reach that point on {}", time.text,
+                              sun::to_string(of)));
     const LightEdge& edge = time.last ? day.lit.back().end : day.lit.front().begin;
     if (edge.midnight)
         bad_input(
-            fmt::format("light::parse_time: {}: no {} light on {}, the sun shines there at "
+            fmt::format("time: {}: no {} light on {}, the sun shines there at "
                         "midnight",
                         time.text, time.last ? "last" : "first", sun::to_string(of)));
     sun::ParsedTime result;

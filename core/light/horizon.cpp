@@ -180,20 +180,18 @@ std::string nearest_height_text(const dem::Posts& posts, const glm::dvec2& post)
 }
 
 /// The column and row of a place, snapped, and its height.
-/// @throws Error (BadInput) `light::horizon: LAT,LON: what`
+/// @throws Error (BadInput) `horizon: LAT,LON: what`
 std::pair<glm::dvec2, double> ground_at(const dem::Posts& posts, const geo::Geodetic& place) {
     const dem::Grid& grid = posts.grid();
     glm::dvec2 post = grid.post(place);
     post = {snapped(post.x), snapped(post.y)};
     if (!(post.x >= 0 && post.y >= 0 && post.x <= grid.columns() - 1 && post.y <= grid.rows() - 1))
-        bad_input(fmt::format("light::horizon: {}: outside of the DEM, expected a point within {}",
+        bad_input(fmt::format("horizon: {}: outside of the DEM, expected a point within {}",
                               place_text(place), cover_text(grid)));
     const double height_m = posts.height_at(post.x, post.y);
     if (std::isnan(height_m))
-        bad_input(
-            fmt::format("light::horizon: {}: no height there, the point lies in a hole of "
-                        "the DEM{}",
-                        place_text(place), nearest_height_text(posts, post)));
+        bad_input(fmt::format("horizon: {}: the point is in a void of the DEM{}", place_text(place),
+                              nearest_height_text(posts, post)));
     return {post, height_m};
 }
 
@@ -413,8 +411,8 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
     : posts_(&posts), options_(options) {
     if (!(options.refraction >= -1 && options.refraction <= 0.9))
         bad_input(
-            fmt::format("light::horizon: refraction {:.10g}: no air bends light so, expected "
-                        "-1 to 0.9 of the Earth's curvature; 0.13 is the mean",
+            fmt::format("horizon: refraction {:.10g}: impossible, expected -1 to 0.9 of the "
+                        "Earth's curvature; 0.13 is the mean",
                         options.refraction));
     std::tie(post_, ground_m_) = ground_at(posts, place);
     const dem::Grid& grid = posts.grid();
@@ -422,20 +420,19 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
     place_.height_m = ground_m_;
     if (!(ground_m_ >= kDeepest_m && ground_m_ <= kHighestGround_m))
         bad_input(
-            fmt::format("light::horizon: {}: the ground is at {:.0f} m there, expected a height of "
+            fmt::format("horizon: {}: the ground is at {:.0f} m there, expected a height of "
                         "the Earth; pass --unit cm where the DEM's heights are centimetres, or "
                         "--nodata V where V is no height",
                         place_text(place_), ground_m_));
     eye_m_ = options.eye_above_ground ? ground_m_ + options.eye_height_m : options.eye_height_m;
     if (!(eye_m_ - ground_m_ <= kHighestEye_m))
-        bad_input(
-            fmt::format("light::horizon: {}: the eye at {:.10g} m, expected at most {:.0f} m above "
-                        "the ground, which is at {:.1f} m there; higher up lines of sight bend "
-                        "otherwise",
-                        place_text(place_), eye_m_, kHighestEye_m, ground_m_));
+        bad_input(fmt::format(
+            "horizon: {}: the eye at {:.10g} m, expected at most {:.0f} m above the ground, which "
+            "is at {:.1f} m there; the refraction model does not hold above",
+            place_text(place_), eye_m_, kHighestEye_m, ground_m_));
     if (eye_m_ < ground_m_)
         bad_input(
-            fmt::format("light::horizon: {}: the eye at {:.1f} m is under the ground, which "
+            fmt::format("horizon: {}: the eye at {:.1f} m is under the ground, which "
                         "is at {:.1f} m there; a height above the ground is written as 2agl",
                         place_text(place_), eye_m_, ground_m_));
     outside_m_ = options.outside_height_m.value_or(posts.lowest_m());
@@ -450,7 +447,7 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
     } else {
         if (grid.crs().is_geographic())
             bad_input(
-                fmt::format("light::horizon: {}: a map in degrees cannot be taken as flat "
+                fmt::format("horizon: {}: a map in degrees cannot be taken as flat "
                             "ground; expected a projected CRS",
                             grid.crs().name()));
         map_unit_m_ = grid.crs().unit_si();
@@ -685,10 +682,10 @@ std::vector<Sector> sectors_of(const std::vector<bool>& holds) {
 
 Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
     if (!(target.height_m >= kDeepest_m && target.height_m <= kHighestTarget_m))
-        bad_input(fmt::format(
-            "light::horizon: {}: the target at {:.10g} m, expected {:.0f} to {:.0f}; no "
-            "landscape has such a height",
-            place_text(target), target.height_m, kDeepest_m, kHighestTarget_m));
+        bad_input(
+            fmt::format("horizon: {}: the target at {:.10g} m, expected {:.0f} to {:.0f}; no "
+                        "landscape has such a height",
+                        place_text(target), target.height_m, kDeepest_m, kHighestTarget_m));
     Sight sight;
     if (fan_) {
         const geo::Geodesic way = geo::geodesic(place_, target);
@@ -701,10 +698,10 @@ Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
         sight.distance_m = glm::length(way) * map_unit_m_;
     }
     if (!(sight.distance_m <= kFarthestSeen_m))
-        bad_input(fmt::format(
-            "light::horizon: {}: the target is {:.0f} km away, expected at most {:.0f}; "
-            "nothing on Earth is seen from so far",
-            place_text(target), sight.distance_m / 1000, kFarthestSeen_m / 1000));
+        bad_input(
+            fmt::format("horizon: {}: the target is {:.0f} km away, expected at most {:.0f}; "
+                        "nothing on Earth is seen from so far",
+                        place_text(target), sight.distance_m / 1000, kFarthestSeen_m / 1000));
     const glm::dvec2 spacing_m = posts_->grid().post_spacing_m();
     Scan scan;
     scan.until_m = sight.distance_m - kNear_posts * std::max(spacing_m.x, spacing_m.y);
@@ -745,7 +742,7 @@ std::string TerrainHorizon::description() const {
         text +=
             fmt::format("; nowhere below {:.4g} degrees", degrees(options_.least_elevation_rad));
     else if (outside_m_ > -kInfinity)
-        text += fmt::format("; beyond the DEM smooth ground at {:.0f} m", outside_m_);
+        text += fmt::format("; outside the DEM smooth ground at {:.0f} m", outside_m_);
     return text;
 }
 

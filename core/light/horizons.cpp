@@ -43,7 +43,7 @@ struct Ground {
 std::string surroundings(const dem::Posts& posts, double refraction) {
     return fmt::format(
         "ground of the DEM alone, on the WGS 84 ellipsoid with terrestrial refraction k = {:.4g}; "
-        "beyond the DEM smooth ground at {:.0f} m",
+        "outside the DEM smooth ground at {:.0f} m",
         refraction, double{posts.lowest_m()});
 }
 
@@ -117,8 +117,8 @@ Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, doub
 
 SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
     if (options.directions < kLeastDirections || options.directions > kMostDirections)
-        bad_input(fmt::format("light::sky_view: {} directions: expected {} to {}",
-                              options.directions, kLeastDirections, kMostDirections));
+        bad_input(fmt::format("sky view: {} directions: expected {} to {}", options.directions,
+                              kLeastDirections, kMostDirections));
     const Ground ground(posts, options.refraction);
     const SweepWindow part = window_of(options.part, posts.grid());
     SkyView result;

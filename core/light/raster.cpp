@@ -28,7 +28,7 @@ using Dataset = std::unique_ptr<GDALDataset, Close>;
 
 GDALDriver* driver(const char* name) {
     GDALDriver* const found = GetGDALDriverManager()->GetDriverByName(name);
-    if (!found) failed(fmt::format("light::raster: GDAL has no driver {}", name));
+    if (!found) failed(fmt::format("raster: GDAL has no driver {}", name));
     return found;
 }
 

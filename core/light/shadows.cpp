@@ -118,9 +118,9 @@ Shadows shadows(const dem::Posts& posts, const SunOverDem& sun, const ShadowOpti
     count_posts({result.lit.data(), result.lit.size()}, result);
     result.definition = fmt::format(
         "{}, at the height of the ground; ground of the DEM alone shades, on the WGS 84 ellipsoid "
-        "with terrestrial refraction k = {:.4g}; beyond the DEM smooth ground at {:.0f} m",
-        options.soft ? "share of the sun's disc over the terrain, cut by a level line"
-                     : "1 where the centre of the sun stands over the terrain, 0 in the shade",
+        "with terrestrial refraction k = {:.4g}; outside the DEM smooth ground at {:.0f} m",
+        options.soft ? "visible fraction of the solar disc over the terrain, cut by a level line"
+                     : "1 where the centre of the sun is above the terrain, 0 in shadow",
         options.refraction, double{posts.lowest_m()});
     return result;
 }

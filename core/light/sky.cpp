@@ -52,7 +52,7 @@ glm::dvec2 moved(const dem::Grid& grid, const geo::Geodetic& from, double azimut
 
 [[noreturn]] void no_tile(const dem::Grid& grid) {
     bad_input(
-        fmt::format("light::divide: {}: the sun's direction on this grid changes by more than 0.05 "
+        fmt::format("sun: {}: the sun's direction on this grid changes by more than 0.05 "
                     "degrees within {} posts; "
                     "expected a map on which it does not, such as UTM: gdalwarp -t_srs",
                     grid.crs().name(), kLeastTile));
@@ -241,10 +241,10 @@ DemSky::DemSky(const dem::Posts& posts, const ShadowOptions& options)
       relief_m_(double{posts.highest_m()} - posts.lowest_m()),
       floor_m_(floor_under(posts.lowest_m(), relief_m_, curvature_, options.soft)) {
     if (!(options.refraction >= -1 && options.refraction <= 0.9))
-        bad_input(fmt::format(
-            "light::DemSky: refraction {:.10g}: no air bends light so, expected -1 to 0.9 of the "
-            "Earth's curvature; 0.13 is the mean",
-            options.refraction));
+        bad_input(
+            fmt::format("horizon: refraction {:.10g}: impossible, expected -1 to 0.9 of the "
+                        "Earth's curvature; 0.13 is the mean",
+                        options.refraction));
     if (!options.air) return;
     for (const float height_m : {posts.lowest_m(), posts.highest_m()}) {
         geo::Geodetic place = grid().center();

@@ -1201,16 +1201,15 @@ double level_hours(const DemSky& dem, const Moments& moments) {
 
 void check(sun::Instant begin, sun::Instant end, const SunHoursOptions& options) {
     if (!(end > begin))
-        bad_input(
-            fmt::format("light::sun_hours: from {} to {}: expected an end after the beginning",
-                        sun::to_iso(begin), sun::to_iso(end)));
+        bad_input(fmt::format("sun hours: from {} to {}: expected an end after the beginning",
+                              sun::to_iso(begin), sun::to_iso(end)));
     if (!(options.step_s >= 1 && options.step_s <= kHour_s))
-        bad_input(fmt::format("light::sun_hours: step {:.10g} s: expected 1 s to an hour",
-                              options.step_s));
+        bad_input(
+            fmt::format("sun hours: step {:.10g} s: expected 1 s to an hour", options.step_s));
     if (options.spells && end - begin > SunHoursOptions::kMostDays * kDay_s)
-        bad_input(fmt::format(
-            "light::sun_hours: {:.1f} days: first and last light are known of {} days at most",
-            (end - begin) / kDay_s, SunHoursOptions::kMostDays));
+        bad_input(
+            fmt::format("sun hours: {:.1f} days: first and last light are known of {} days at most",
+                        (end - begin) / kDay_s, SunHoursOptions::kMostDays));
     sun::check_year(begin);
     sun::check_year(end);
 }
@@ -1301,9 +1300,8 @@ SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end
     result.level_hours = level_hours(dem, times);
     result.definition = fmt::format(
         "hours that the centre of the sun stands over the terrain, at the height of the ground, "
-        "{}; "
-        "ground of the DEM alone shades, on the WGS 84 ellipsoid with terrestrial refraction k = "
-        "{:.4g}; beyond the DEM smooth ground at {:.0f} m; no clouds",
+        "{}; ground of the DEM alone shades, on the WGS 84 ellipsoid with terrestrial refraction k "
+        "= {:.4g}; outside the DEM smooth ground at {:.0f} m; no clouds",
         few ? fmt::format("from suns {:.10g} s apart, {:.10g} s near the horizon, in directions "
                           "within {:.2g} degrees of theirs",
                           options.step_s, options.step_s / kFiner, degrees(kOnePath_rad) / 2)

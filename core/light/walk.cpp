@@ -37,8 +37,8 @@ constexpr int kDirections = 1440;  // of ridges that may lie beyond the DEM
 
 Walk::Walk(std::vector<geo::Geodetic> places) : places_(std::move(places)) {
     if (places_.size() < 2)
-        bad_input(fmt::format("light::walk: {} point{}: no way, expected two or more",
-                              places_.size(), places_.size() == 1 ? "" : "s"));
+        bad_input(fmt::format("walk: {} point{}: no way, expected two or more", places_.size(),
+                              places_.size() == 1 ? "" : "s"));
     distance_m_.push_back(0);
     for (std::size_t i = 1; i < places_.size(); ++i)
         distance_m_.push_back(distance_m_.back() +
@@ -48,7 +48,7 @@ Walk::Walk(std::vector<geo::Geodetic> places) : places_(std::move(places)) {
 void Walk::check_duration() const {
     if (duration_s() > kLongest_s)
         bad_input(fmt::format(
-            "light::walk: {:.1f} km take {:.1f} days, expected at most {:.0f}; walk faster, or cut "
+            "walk: {:.1f} km take {:.1f} days, expected at most {:.0f}; walk faster, or cut "
             "the track up",
             length_m() / 1000, duration_s() / 86400, kLongest_s / 86400));
 }
@@ -56,12 +56,11 @@ void Walk::check_duration() const {
 Walk Walk::at_speed(std::vector<geo::Geodetic> places, sun::Instant start, double speed_m_s) {
     Walk walk(std::move(places));
     if (!(speed_m_s > 0) || std::isinf(speed_m_s))
-        bad_input(
-            fmt::format("light::walk: a speed of {:.10g} m/s, expected one above 0", speed_m_s));
+        bad_input(fmt::format("walk: a speed of {:.10g} m/s, expected one above 0", speed_m_s));
     if (!(walk.length_m() > 0))
-        bad_input("light::walk: all points are at the same place, expected a way with a length");
+        bad_input("walk: all points are at the same place, expected a way with a length");
     if (!(walk.length_m() / speed_m_s <= 1e9))  // beyond it an instant may not hold it
-        bad_input(fmt::format("light::walk: {:.1f} km at {:.3g} km/h take a lifetime",
+        bad_input(fmt::format("walk: {:.1f} km at {:.3g} km/h take a lifetime",
                               walk.length_m() / 1000, speed_m_s * 3.6));
     for (const double distance_m : walk.distance_m_)
         walk.utc_.push_back(start + distance_m / speed_m_s);
@@ -75,11 +74,11 @@ Walk Walk::timed(std::vector<geo::Geodetic> places, std::vector<sun::Instant> ti
     for (std::size_t i = 1; i < walk.utc_.size(); ++i)
         if (walk.utc_[i] < walk.utc_[i - 1])
             bad_input(
-                fmt::format("light::walk: point {}: its time, {}, is before that of the "
+                fmt::format("walk: point {}: its time, {}, is before that of the "
                             "point before, {}; expected times in order",
                             i + 1, sun::to_iso(walk.utc_[i]), sun::to_iso(walk.utc_[i - 1])));
     if (!(walk.duration_s() > 0))
-        bad_input("light::walk: all points have the same time, expected a walk that takes some");
+        bad_input("walk: all points have the same time, expected a walk that takes some");
     walk.check_duration();
     return walk;
 }
@@ -184,7 +183,7 @@ void check_inside(const dem::Grid& grid, const std::vector<WalkMoment>& moments)
     }
     if (count == 0) return;
     bad_input(fmt::format(
-        "light::walk: {}{} of {:.3f} km: outside of the DEM, {}; take a DEM that has all of the "
+        "walk: {}{} of {:.3f} km: outside of the DEM, {}; take a DEM that has all of the "
         "way, or cut the track",
         fmt::join(parts, ", "),
         count > kTold ? fmt::format(" and {} more parts", count - kTold) : "",
@@ -373,8 +372,8 @@ struct Looks {
     Looks(const Walk& walk, double spacing_m) : way(walk, spacing_m) {
         if (!(way.looks() <= kMostLooks))
             bad_input(fmt::format(
-                "light::walk: {:.1f} km in {:.1f} h would be looked at {:.3g} "
-                "times, expected at most {:.0f}; thin the track, or cut it up",
+                "walk: {:.1f} km in {:.1f} h need {:.3g} samples, expected at most {:.0f}; thin or "
+                "split the track",
                 walk.length_m() / 1000, walk.duration_s() / 3600, way.looks(), kMostLooks));
         count = std::max(1, static_cast<int>(std::ceil(way.looks())));
         for (int i = 0; i <= count; ++i)
@@ -421,7 +420,7 @@ void look_along(const Looks& looks, const Looker& looker, LightAlong& result) {
 std::string definition_of(const HorizonOptions& horizon, double spacing_m) {
     return fmt::format(
         "sun: its centre stands over the terrain horizon as seen from {}; terrain: behind it, over "
-        "the level horizon; night: under that; looked at every {:.3g} m and {:.0f} s or closer, "
+        "the level horizon; night: below it; sampled every {:.3g} m and {:.0f} s or closer, "
         "changes to {} s and {} m; distances on the map; terrestrial refraction k = {:.4g}",
         horizon.eye_height_m > 0 ? fmt::format("{:.4g} m above the ground", horizon.eye_height_m)
                                  : "the ground",

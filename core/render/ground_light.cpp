@@ -237,7 +237,8 @@ std::shared_ptr<const SkyFound> find_sky(const dem::Heightfield& field, double e
         found->share = light::sky_view(*found->ground.posts, options).share;
     } catch (const Error& error) {
         if (error.code() != ErrorCode::BadInput) throw;
-        log::info(fmt::format("render: the ground hides no sky: {}", error.what()));
+        log::info("sky shading is off: this grid is too near the pole");
+        log::debug(error.what());
         found->share = {grid.columns(), grid.rows(), 1};
     }
     return found;
@@ -345,7 +346,8 @@ struct GroundLight::Impl {
         } catch (const Error& error) {
             if (error.code() != ErrorCode::BadInput) throw;
             has_sun = false;
-            log::info(fmt::format("render: no shadows are cast: {}", error.what()));
+            log::info("shadows are off: this grid is too near the pole");
+            log::debug(error.what());
         }
         return has_sun;
     }
@@ -381,10 +383,9 @@ struct GroundLight::Impl {
     void tell(double error_rad) {
         if (error_rad <= told_error_rad) return;
         told_error_rad = error_rad;
-        log::info(
-            fmt::format("render: shadows: this DEM is so wide for its posts that the sun of "
-                        "a part of it is off by up to {:.1f} degrees somewhere in the part",
-                        degrees(error_rad)));
+        log::info(fmt::format(
+            "shadows: on this wide DEM the sun's direction is off by up to {:.1f} degrees",
+            degrees(error_rad)));
     }
 };
 

@@ -65,7 +65,7 @@ shader::Define height_steps_define(const shader::Stitched& geometry) {
     if (geometry.varying_targets >= kMaxStored)
         bad_input(
             fmt::format("render: height_dx_m and height_dy_m: expected varyings of up to {} floats "
-                        "beside them but got {} textures of four; switch an effect off",
+                        "in addition but got {} textures of four; switch an effect off",
                         4 * (kMaxStored - 1), geometry.varying_targets));
     return {kHeightStepsDefine, std::to_string(1 + geometry.varying_targets)};
 }

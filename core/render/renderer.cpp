@@ -262,10 +262,10 @@ struct Renderer::Impl {
         const bool vertex_normals = input.values && input.values->find(kNormalAddress) &&
                                     input.values->value(kNormalAddress)[0] == 1;
         if (vertex_normals && options.draped)
-            bad_input(fmt::format(
-                "render: {}: expected fragment, with which rasters lie on the ground, but got "
-                "vertex; leave the overlay out or pass --set {}=fragment",
-                kNormalAddress, kNormalAddress));
+            bad_input(
+                fmt::format("render: {}: expected fragment, with which rasters lie on the ground, "
+                            "but got vertex; remove the overlay or pass --set {}=fragment",
+                            kNormalAddress, kNormalAddress));
         std::vector<ProgramText> texts = stitch_programs(core, input,
                                                          {.vertex_normals = vertex_normals,
                                                           .depth = !effects.modules.empty(),

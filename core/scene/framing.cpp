@@ -157,7 +157,8 @@ Aspect aspect_from(const GroundNet& net, double azimuth_deg, double elevation_de
 
 std::string Framing::reason() const {
     return fmt::format(
-        "the DEM is seen from azimuth {:.0f}, {:.0f} degrees high: {:.0f} % of it in sight",
+        "view: from azimuth {:.0f}, {:.0f} degrees high, chosen for relief: {:.0f} % of the DEM is "
+        "visible",
         orbit.azimuth_deg.value(), orbit.elevation_deg.value(), 100 * aspect.in_sight);
 }
 

@@ -443,9 +443,8 @@ class Expansion {
         moments();
         if (result_.shots.empty())
             bad_input(fmt::format(
-                "{}: {}: no picture is left, as none of its moments happens; the "
-                "first: {}",
-                kWho, job_.file, result_.left_out.empty() ? "" : result_.left_out.front()));
+                "{}: {}: no picture is left: none of its events happens; the first: {}", kWho,
+                job_.file, result_.left_out.empty() ? "" : result_.left_out.front()));
         name_all(names);
         return std::move(result_);
     }
@@ -581,10 +580,9 @@ class Expansion {
         Moment& moment = scene.moment;
         std::string text = draft.time.empty() ? moment.time : draft.time;
         if (draft.date && text.empty())
-            bad_input(
-                fmt::format("{}: {}: dates need a time of day or an event; give \"at\" beside "
-                            "them, or time.at",
-                            kWho, job_.file));
+            bad_input(fmt::format(
+                "{}: {}: dates need a time of day or an event; add \"at\" to them, or time.at",
+                kWho, job_.file));
         const std::string own_date = is_whole(moment.time) ? moment.time.substr(0, 10) : "";
         const std::string date = draft.date             ? sun::to_string(*draft.date)
                                  : !moment.date.empty() ? moment.date
@@ -644,8 +642,8 @@ class Expansion {
             const auto [other, fresh] = taken.emplace(shot.output, shot.number);
             if (fresh) continue;
             const std::string what = fmt::format(
-                "\"{}\" names {} twice, for pictures {} and {}; add {{n}} to it, or what "
-                "tells them apart",
+                "\"{}\" names {} twice, for pictures {} and {}; add {{n}} or another field that "
+                "differs",
                 job_.output, printable(shot.output.string()), other->second, shot.number);
             if (!job_.output_given)
                 bad_input(fmt::format("{}: {}: output: {}", kWho, job_.file, what));

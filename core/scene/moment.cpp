@@ -42,15 +42,12 @@ double cost(double elevation_deg, double aside_deg) {
 
 std::string DefaultMoment::reason() const {
     if (globe)
-        return fmt::format(
-            ", so {} was taken, at an hour when most of the globe's near side is lit",
-            sun::to_iso(utc).substr(0, 10));
+        return fmt::format("time: {}, chosen because most of the visible side of the globe is lit",
+                           sun::to_iso(utc));
     return fmt::format(
-        ", so {} was taken, at an hour when the sun stands {:.0f} degrees high and {:.0f} "
-        "degrees {} of the camera's side, {}",
-        sun::to_iso(utc).substr(0, 10), elevation_deg, std::abs(aside_deg),
-        aside_deg < 0 ? "right" : "left",
-        within_bounds ? "where it shows relief" : "the nearest to 20 to 35 and 50 to 100 there is");
+        "time: {}, chosen for relief: sun {:.0f} degrees high, {:.0f} degrees {} of the camera{}",
+        sun::to_iso(utc), elevation_deg, std::abs(aside_deg), aside_deg < 0 ? "right" : "left",
+        within_bounds ? "" : " (wanted: 20 to 35 and 50 to 100)");
 }
 
 DefaultDay::DefaultDay(const geo::Geodetic& place, bool globe)

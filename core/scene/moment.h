@@ -22,7 +22,7 @@ struct DefaultMoment {
     bool within_bounds = false;
     bool globe = false;  ///< whose far side is dark at any hour: there are no bounds
 
-    /// ", so 2026-06-21 was taken, at an hour when the sun stands 28 degrees high and ...".
+    /// "time: 2026-06-21T22:50:00Z, chosen for relief: sun 31 degrees high, ...".
     std::string reason() const;
 };
 

@@ -26,8 +26,8 @@ glm::dvec3 position_of(const Standpoint& standpoint, std::string_view option,
         const double ground_m = ground_height_m(place);
         if (std::isnan(ground_m))
             bad_input(fmt::format(
-                "{}: {}: outside of the DEM or in a hole of it, no ground to count "
-                "the height from; give one above the DEM's zero, as in {:.10g},{:.10g},500",
+                "{}: {}: outside the DEM or in a void, so there is no ground height; give one "
+                "above the DEM's zero, as in {:.10g},{:.10g},500",
                 option, geo::degrees_text(place), degrees(place.lat_rad), degrees(place.lon_rad)));
         place.height_m += ground_m * exaggeration;
     } else {

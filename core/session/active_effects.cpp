@@ -148,7 +148,7 @@ std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, 
     const std::vector<std::string>& disable = effects.switches.disable;
     for (const effect::BrokenEffect& broken : active->registry.broken())
         if (std::find(disable.begin(), disable.end(), broken.id) == disable.end())
-            log::warning(fmt::format("{}; --disable {} leaves it out", broken.error, broken.id));
+            log::warning(fmt::format("{}; --disable {} silences this", broken.error, broken.id));
     say(active->loaded.selection);
     for (const std::string& notice : notices)
         log::info(notice);

@@ -95,7 +95,7 @@ std::string Moments::zone_of_middle(const std::string& words, Dem& dem) {
     const auto [known, fresh] = dem.zones.try_emplace(words);
     if (!fresh) return known->second;
     const sun::ChosenZone chosen = sun::choose_zone(words, dem.open().grid().center());
-    const std::string notice = chosen.assumption + "; --tz overrides it";
+    const std::string notice = chosen.assumption + "; --tz sets another";
     if (notice != std::exchange(told_, notice) && !chosen.assumption.empty())
         chosen.missing ? log::warning(notice) : log::info(notice);
     // Mean solar time has a name that no database has.

@@ -75,7 +75,9 @@ Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double op
 chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
                        const std::string& unit) {
     const auto [low, high] = range_of(values);
-    if (name == "direct sun" || name == "share of the sun's disc")
+    // The last is the name in files of earlier versions.
+    if (name == "direct sun" || name == "visible fraction of the solar disc" ||
+        name == "share of the sun's disc")
         return chart::named_ramp("shade", 0, 1);
     if (name == "sky-view factor") return chart::named_ramp("steel", std::min(low, 0.5), 1);
     if (unit == "h") return chart::named_ramp("sun", 0, std::max(high, 1.0));

@@ -522,7 +522,7 @@ struct Session::Impl {
             const auto& invents = effect->manifest.invents;
             if (!invents || pixel_posts >= invents->pixel_posts) continue;
             if (drawn.effects->values.value(invents->address)[0] > 0)
-                told.push_back(fmt::format("{}: {}; --set {}=0 takes it away", effect->manifest.id,
+                told.push_back(fmt::format("{}: {}; --set {}=0 removes it", effect->manifest.id,
                                            invents->what, invents->address));
         }
         return told;

@@ -57,7 +57,7 @@ class Stamper {
         if (!seen_) return stamps;
         if (!middle_) {
             notes_.emplace_back(
-                "stamp: scale, north and graticule are left out: no ground is in the picture");
+                "stamp: scale, north and graticule are omitted: the picture shows no ground");
             return stamps;
         }
         if (wanted_.scale) stamps.scale = scale();
@@ -99,7 +99,7 @@ class Stamper {
         const glm::dvec2 way = seen_->moved(point, frame.axes(place.lat_rad, place.lon_rad).north);
         if (length(way) >= kLeastNorth * seen_->px_per_m(seen_->depth_m(middle_->x, middle_->y)))
             return normalize(way);
-        notes_.emplace_back("stamp: north is left out: it lies along the line of sight");
+        notes_.emplace_back("stamp: north is omitted: it lies along the line of sight");
         return std::nullopt;
     }
 
@@ -160,9 +160,8 @@ std::vector<std::string> add_stamps(Stamped stamped, const std::vector<chart::Le
     stamper.add_graticule(picture, stamps);
     for (const std::string& name : chart::stamp(stamps, picture))
         stamper.notes_.push_back(
-            fmt::format("stamp: {}: no room in a picture of {} x {} pixels, "
-                        "left out",
-                        name, picture.width, picture.height));
+            fmt::format("stamp: {}: no room in a picture of {} x {} pixels; omitted", name,
+                        picture.width, picture.height));
     return std::move(stamper.notes_);
 }
 

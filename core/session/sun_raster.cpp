@@ -110,7 +110,7 @@ light::RasterBand sun_hours_band() {
 }
 
 light::RasterBand shadow_band(bool soft) {
-    return {soft ? "share of the sun's disc" : "direct sun", "1"};
+    return {soft ? "visible fraction of the solar disc" : "direct sun", "1"};
 }
 
 light::RasterBand sky_view_band() {

@@ -57,7 +57,7 @@ std::optional<geo::Geodetic> place_of_zone(const ReadMoment& moment,
 
 sun::ChosenZone zone_of(const std::string& words, const geo::Geodetic& place) {
     sun::ChosenZone chosen = sun::choose_zone(words, place);
-    const std::string notice = chosen.assumption + "; --tz overrides it";
+    const std::string notice = chosen.assumption + "; --tz sets another";
     if (chosen.missing)
         log::warning(notice);
     else if (!chosen.assumption.empty())

@@ -184,7 +184,7 @@ class ParamReader {
         if (param_.is_static && param_.is_host)
             fail("it cannot be both static, a constant, and host, written for every frame");
         if (param_.is_host && param_.role == ParamRole::Angle)
-            fail("a host parameter is written in the shader's own radians; leave angle out");
+            fail("a host parameter is written in the shader's own radians; remove angle");
         if (!param_.words.empty() && param_.range) fail("an enum has its words and no range");
         if (param_.role == ParamRole::Angle && param_.unit.empty()) param_.unit = "deg";
         if (param_.role == ParamRole::Angle && param_.unit != "deg")

@@ -54,7 +54,7 @@ void ParamStore::refuse_unknown(std::string_view address) const {
     for (const auto& [known, text] : text_params_)
         addresses.push_back(known);
     const std::optional<std::string> near = nearest(address, addresses);
-    bad_input(fmt::format("shader::ParamStore: {}: no such parameter{}", address,
+    bad_input(fmt::format("parameter: {}: no such parameter{}", address,
                           near ? fmt::format("; did you mean {}?", *near) : ""));
 }
 
@@ -85,8 +85,7 @@ std::vector<const TextParam*> ParamStore::texts() const {
 
 std::string ParamStore::text(std::string_view address) const {
     const TextParam* const known = find_text(address);
-    if (find(address))
-        bad_input(fmt::format("shader::ParamStore: {}: a value, not a text", address));
+    if (find(address)) bad_input(fmt::format("parameter: {}: a value, not a text", address));
     if (!known) refuse_unknown(address);
     const auto found = texts_.find(address);
     return found == texts_.end() ? known->initial : found->second;
@@ -96,15 +95,14 @@ const Param& ParamStore::settable(std::string_view address) const {
     const Param& known = param(address);
     if (known.is_host)
         bad_input(fmt::format(
-            "shader::ParamStore: {}: written by the program for every frame; it cannot be set",
-            address));
+            "parameter: {}: written by the program for every frame; it cannot be set", address));
     return known;
 }
 
 void ParamStore::set(std::string_view address, std::string_view text) {
     if (find_text(address)) {
         if (text.find('\0') != std::string_view::npos)
-            bad_input(fmt::format("shader::ParamStore: {}: expected a text without NUL", address));
+            bad_input(fmt::format("parameter: {}: expected a text without NUL", address));
         texts_.insert_or_assign(std::string(address), std::string(text));
         return;
     }
@@ -116,8 +114,7 @@ void ParamStore::set(std::string_view address, const ParamValue& value) {
     const Param& known = settable(address);
     if (!is_valid(known, value))
         bad_input(fmt::format(
-            "shader::ParamStore: {}: expected {} but got {}", address,
-            expected_values(known, value),
+            "parameter: {}: expected {} but got {}", address, expected_values(known, value),
             fmt::join(value.begin(), value.begin() + component_count(known.type), ",")));
     values_.insert_or_assign(known.address, Entry{known.type, value});
 }
@@ -132,12 +129,11 @@ void ParamStore::reset(std::string_view address) {
 void ParamStore::write_host(std::string_view address, const ParamValue& value) {
     const Param& known = param(address);
     if (!known.is_host)
-        bad_input(fmt::format("shader::ParamStore: {}: not a host parameter; only people set it",
-                              address));
+        bad_input(fmt::format("parameter: {}: not a host parameter; only people set it", address));
     // Without a range, but to be sent as a whole number.
     const bool whole = known.type == ParamType::Int || known.type == ParamType::Bool;
     if (whole && !is_valid(known, value))
-        bad_input(fmt::format("shader::ParamStore: {}: expected {} but got {}", address,
+        bad_input(fmt::format("parameter: {}: expected {} but got {}", address,
                               describe_values(known), value[0]));
     values_.insert_or_assign(known.address, Entry{known.type, value});
 }

@@ -158,7 +158,7 @@ bool is_valid(const Param& param, const ParamValue& value) {
 ParamValue parse_value(const Param& param, std::string_view text) {
     const std::optional<ParamValue> value = read_value(param, trimmed(text));
     if (!value || !is_valid(param, *value))
-        bad_input(fmt::format("shader::parse_value: {}: expected {} but got \"{}\"", param.address,
+        bad_input(fmt::format("parameter: {}: expected {} but got \"{}\"", param.address,
                               expected_values(param, value.value_or(ParamValue{})), text));
     return *value;
 }

@@ -43,7 +43,7 @@ struct Snippet {
 /// - `//@ include lib/NAME.glsl` asks for core's shared functions.
 /// @param id    `[a-z][a-z0-9]*`
 /// @param file  as messages shall name it
-/// @throws Error (BadInput) `shader::parse: file:line: what is wrong`
+/// @throws Error (BadInput) `shader: file:line: what is wrong`
 Snippet parse_snippet(std::string_view id, std::string_view file, std::string_view text);
 
 }  // namespace relevo::shader

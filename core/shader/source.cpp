@@ -211,8 +211,7 @@ class Parser {
         const std::string_view name = source_.str(words[0]);
         if (name == "version" || name == "extension")
             fail(line, fmt::format("#{} is core's: every program is plain GLSL 4.50 core", name));
-        if (name == "line")
-            fail(line, "#line would lose the file's own line numbers; leave it out");
+        if (name == "line") fail(line, "#line would lose the file's own line numbers; remove it");
         if (!is_one_of(name, kDirectives))
             fail(line, fmt::format("#{} is not for here; there are #define, #undef and #if", name));
         if (name == "define" || name == "undef") {
@@ -261,8 +260,7 @@ class Parser {
             add(Item::Kind::Interface, first, {}, line);
             return;
         }
-        if (is(at_, "precision"))
-            fail(line, "precision does nothing in desktop GLSL; leave it out");
+        if (is(at_, "precision")) fail(line, "precision does nothing in desktop GLSL; remove it");
         if (is(at_, "struct")) {
             structure(first);
             return;

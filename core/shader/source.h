@@ -80,7 +80,7 @@ struct Source {
 
 /// Takes a file apart.
 /// @param owner  a plugin's id for a snippet, whose globals must then begin `<owner>_`; "core" else
-/// @throws Error (BadInput) `shader::parse: file:line: ...`
+/// @throws Error (BadInput) `shader: file:line: ...`
 Source parse_source(SourceKind kind, std::string_view owner, std::string_view file,
                     std::string_view text);
 

@@ -80,7 +80,7 @@ void Stage::add_unit(UnitRole role, const Source* source, std::string title) {
 
 void Stage::add_core(UnitRole role, SourceKind kind, const std::string& name) {
     const Source* const source = library_.find(kind, name);
-    if (!source) failed(fmt::format("shader::stitch: {}: core has no such shader file", name));
+    if (!source) failed(fmt::format("shader: {}: core has no such shader file", name));
     add_unit(role, source, name);
 }
 
@@ -89,12 +89,11 @@ void Stage::add_includes(const Source& source, std::vector<std::string>& pending
     for (const Include& include : source.includes) {
         const Source* const lib = library_.find(SourceKind::Lib, include.name);
         if (!lib)
-            throw AuthorError(source.owner,
-                              fmt::format("shader::stitch: {}:{}: {}: core has no such file",
-                                          source.file, include.line, include.name));
+            throw AuthorError(source.owner, fmt::format("shader: {}:{}: {}: core has no such file",
+                                                        source.file, include.line, include.name));
         if (std::find(pending.begin(), pending.end(), include.name) != pending.end())
-            failed(fmt::format("shader::stitch: {}:{}: {} includes itself", source.file,
-                               include.line, include.name));
+            failed(fmt::format("shader: {}:{}: {} includes itself", source.file, include.line,
+                               include.name));
         pending.push_back(include.name);
         add_includes(*lib, pending);
         pending.pop_back();
@@ -152,8 +151,8 @@ void Stage::lift(const std::string& name, Lifted lifted) {
         lifted.sampler->type == other.sampler->type)
         return;
     throw AuthorError(lifted.owner,
-                      fmt::format("shader::stitch: {}:{}: {} is declared already, in {}:{}",
-                                  lifted.file, lifted.line, name, other.file, other.line));
+                      fmt::format("shader: {}:{}: {} is declared already, in {}:{}", lifted.file,
+                                  lifted.line, name, other.file, other.line));
 }
 
 // ---- look-ups
@@ -178,7 +177,7 @@ const Stage::Place& Stage::definition(const std::string& function) const {
 void Stage::fail(const Place& place, std::string_view message) const {
     const Source& source = *unit_of(place).source;
     const std::string text =
-        fmt::format("shader::stitch: {}:{}: {}", source.file, item(place).name_line, message);
+        fmt::format("shader: {}:{}: {}", source.file, item(place).name_line, message);
     if (source.kind == SourceKind::Snippet) throw AuthorError(source.owner, text);
     failed(text);
 }
@@ -261,7 +260,7 @@ std::vector<std::string> Stage::providers(const Hook& hook) const {
     }
     if (hook.kind != HookKind::Chain && ids.size() > 1)
         bad_input(
-            fmt::format("shader::stitch: {}: expected one provider of this exclusive hook "
+            fmt::format("shader: {}: expected one provider of this exclusive hook "
                         "but got {}",
                         hook.name, fmt::join(ids, " and ")));
     return ids;
@@ -291,7 +290,7 @@ void Stage::reach(std::vector<const Stage*> readers) {
         }
     }
     if (places_.count("main") == 0)
-        failed(fmt::format("shader::stitch: {}: no main()", unit(UnitRole::Main).source->file));
+        failed(fmt::format("shader: {}: no main()", unit(UnitRole::Main).source->file));
     need("main", "");
     while (!queue_.empty()) {
         const Place place = queue_.front();

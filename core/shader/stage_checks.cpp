@@ -39,7 +39,7 @@ void Stage::check_default(const std::string& function, const Hook& hook) const {
     const std::string& file = unit(UnitRole::Defaults).source->file;
     const auto places = places_.find(function);
     if (places == places_.end())
-        failed(fmt::format("shader::stitch: {}: no {}, the default of the hook {}", file, function,
+        failed(fmt::format("shader: {}: no {}, the default of the hook {}", file, function,
                            hook.name));
     Signature expected = parse_signature(hook.signature);
     expected.name = function;

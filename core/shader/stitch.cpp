@@ -95,7 +95,7 @@ class Stitcher {
             if (loads() && reader.owner_of(read->name) != "core") continue;
             const Varying* const written = vertex_.find_varying(read->name);
             const std::string where =
-                fmt::format("shader::stitch: {}:{}: {}", read->file, read->line, read->name);
+                fmt::format("shader: {}:{}: {}", read->file, read->line, read->name);
             if (!written || !vertex_.reaches(read->name))
                 throw AuthorError(
                     reader.owner_of(read->name),

@@ -99,7 +99,7 @@ class AuthorError : public Error {
 /// A text is laid out as: version, a define for each capability and each word of `wants`,
 /// lib/types.glsl, the frame block, the block of parameters, samplers, varyings, prototypes of
 /// services, included files, defaults, snippets, the functions `hook_<name>` that call them, main.
-/// @throws AuthorError (BadInput) `shader::stitch: file:line: ...`
+/// @throws AuthorError (BadInput) `shader: file:line: ...`
 /// @throws Error (BadInput) for two providers of an exclusive hook
 /// @throws Error (Failed) for core's own texts, and for more textures than units
 Stitched stitch(const CoreTexts& core, const ProgramRecipe& program, const StitchInput& input);

@@ -18,11 +18,10 @@ int components(const Varying& varying, const std::string& owner) {
     if (varying.type == "float" || varying.type == "int" || varying.type == "uint") return 1;
     if (varying.type.size() == 4 && varying.type.substr(0, 3) == "vec")
         return varying.type[3] - '0';
-    throw AuthorError(
-        owner,
-        fmt::format("shader::stitch: {}:{}: {}: expected a varying of type float, int, uint, "
-                    "vec2, vec3 or vec4 but got {}",
-                    varying.file, varying.line, varying.name, varying.type));
+    throw AuthorError(owner,
+                      fmt::format("shader: {}:{}: {}: expected a varying of type float, int, uint, "
+                                  "vec2, vec3 or vec4 but got {}",
+                                  varying.file, varying.line, varying.name, varying.type));
 }
 
 std::string swizzle(const StoredVaryings::Stored& stored) {
@@ -56,7 +55,7 @@ StoredVaryings::StoredVaryings(const Stage& shading, const std::string& program)
     for (const auto& [owner, count] : shares)
         texts.push_back(fmt::format("{} {}", owner, count));
     failed(
-        fmt::format("shader::stitch: {}: expected varyings that fit into {} textures of 4 "
+        fmt::format("shader: {}: expected varyings that fit into {} textures of 4 "
                     "floats but got {}; switch a plugin off (floats: {})",
                     program, kMaxTargets, targets_, fmt::join(texts, ", ")));
 }

@@ -64,11 +64,11 @@ void TextureUnits::add(const Read& read) {
     }
     const Sampler& first = *same->samplers.front();
     if (sampler.type != first.type)
-        throw AuthorError(
-            read.owner, fmt::format("shader::stitch: {}:{}: {}: expected a {} for the texture {}, "
-                                    "as in {}:{}, but got a {}",
-                                    sampler.file, sampler.line, sampler.name, first.type,
-                                    first.resource, first.file, first.line, sampler.type));
+        throw AuthorError(read.owner,
+                          fmt::format("shader: {}:{}: {}: expected a {} for the texture {}, "
+                                      "as in {}:{}, but got a {}",
+                                      sampler.file, sampler.line, sampler.name, first.type,
+                                      first.resource, first.file, first.line, sampler.type));
     const bool known =
         std::any_of(same->samplers.begin(), same->samplers.end(),
                     [&](const Sampler* other) { return other->name == sampler.name; });
@@ -91,7 +91,7 @@ void TextureUnits::check(const std::string& program, int max_units) const {
                                 ? ""
                                 : fmt::format(", also {}", fmt::join(texture.unit.also, ", ")));
     failed(
-        fmt::format("shader::stitch: {}: expected at most {} textures, as many as this "
+        fmt::format("shader: {}: expected at most {} textures, as many as this "
                     "device has units, but got {}; switch a plugin off:{}",
                     program, max_units, textures_.size(), list));
 }

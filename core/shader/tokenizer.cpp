@@ -209,7 +209,7 @@ std::string unix_lines(std::string_view text) {
 }
 
 void source_error(std::string_view file, int line, std::string_view message) {
-    bad_input(fmt::format("shader::parse: {}:{}: {}", file, line, message));
+    bad_input(fmt::format("shader: {}:{}: {}", file, line, message));
 }
 
 }  // namespace relevo::shader

@@ -58,7 +58,7 @@ inline std::string_view text_of(std::string_view text, const Comment& comment) {
     return text.substr(comment.offset, comment.length);
 }
 
-/// Throws `Error(BadInput, "shader::parse: file:line: message")`.
+/// Throws `Error(BadInput, "shader: file:line: message")`.
 [[noreturn]] void source_error(std::string_view file, int line, std::string_view message);
 
 }  // namespace relevo::shader

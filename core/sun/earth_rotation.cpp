@@ -80,10 +80,9 @@ EarthRotation EarthRotation::load_finals2000a(const std::filesystem::path& path)
     EarthRotation rotation;
     int line_number = 0;
     const auto fail = [&](const std::string& what) {
-        bad_input(
-            fmt::format("sun::EarthRotation: {}: line {}: {}", path.string(), line_number, what));
+        bad_input(fmt::format("Earth rotation: {}: line {}: {}", path.string(), line_number, what));
     };
-    const std::string text = read_text(path, "sun::EarthRotation");
+    const std::string text = read_text(path, "Earth rotation");
     for (const std::string& line : split(text, '\n')) {
         ++line_number;
         // Columns of the "finals" format: MJD 8-15, pole 19-27 and 38-46, flag 58, UT1-UTC 59-68.

@@ -16,7 +16,7 @@ namespace relevo::sun {
 
 namespace {
 
-constexpr const char* kWho = "sun::parse_event_time";
+constexpr const char* kWho = "time";
 constexpr double kLongestOffset_s = 366 * kDay_s;
 
 struct Name {
@@ -143,7 +143,7 @@ TimeSpan day_of(const EventTime& time, const std::optional<Date>& given,
 ParsedTime resolve(const EventTime& time, const std::optional<Date>& given,
                    const std::optional<Zone>& zone) {
     const TimeSpan span = day_of(time, given, zone);
-    if (!time.event) refuse(time.text, "first and last light hang on the terrain; expected a DEM");
+    if (!time.event) refuse(time.text, "first and last light depend on the terrain; name a DEM");
     if (!time.place)
         refuse(time.text, "no place, expected one after an @ such as sunrise@46.55,8.56");
     const Day day =

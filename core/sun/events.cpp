@@ -236,7 +236,7 @@ Day day_events(const PositionTable& table, const TimeSpan& span, const Observer&
     if (!(options.golden_from_rad < options.golden_to_rad &&
           options.blue_from_rad < options.blue_to_rad))
         bad_input(
-            fmt::format("sun::day_events: golden hour {:.4g} to {:.4g}, blue hour {:.4g} to "
+            fmt::format("sun: golden hour {:.4g} to {:.4g}, blue hour {:.4g} to "
                         "{:.4g} degrees: empty, expected the lower elevation first",
                         degrees(options.golden_from_rad), degrees(options.golden_to_rad),
                         degrees(options.blue_from_rad), degrees(options.blue_to_rad)));
@@ -283,8 +283,8 @@ Day day_events(Date date, const Zone& zone, const geo::Geodetic& place, const Da
 std::vector<Day> day_events(Date first, Date last, const Zone& zone, const geo::Geodetic& place,
                             const DayOptions& options, const EarthRotation& rotation) {
     if (last < first)
-        bad_input(fmt::format("sun::day_events: from {} to {}: ends before it begins",
-                              to_string(first), to_string(last)));
+        bad_input(fmt::format("sun: from {} to {}: ends before it begins", to_string(first),
+                              to_string(last)));
     const Observer observer(place);
     std::vector<Day> days;
     for (Date date = first; date <= last; date = add_days(date, 1)) {

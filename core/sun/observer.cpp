@@ -17,15 +17,15 @@ void check_place(const geo::Geodetic& place) {
     // A pole in radians may come out an ulp beyond.
     if (!(std::abs(place.lat_rad) <= kPi / 2 + 1e-12))
         bad_input(
-            fmt::format("sun::position: latitude {:.10g}: no such place, expected -90 to 90 "
+            fmt::format("sun: latitude {:.10g}: no such place, expected -90 to 90 "
                         "degrees; latitude comes before longitude",
                         lat_deg));
     if (!std::isfinite(place.lon_rad))
-        bad_input(fmt::format("sun::position: longitude {}: no such place, expected degrees east",
-                              place.lon_rad));
+        bad_input(
+            fmt::format("sun: longitude {}: no such place, expected degrees east", place.lon_rad));
     if (!(place.height_m >= -12e3 && place.height_m <= 100e3))
         bad_input(
-            fmt::format("sun::position: height {:.10g} m: no place on Earth, expected -12000 "
+            fmt::format("sun: height {:.10g} m: no place on Earth, expected -12000 "
                         "to 100000 m above the ellipsoid",
                         place.height_m));
 }

@@ -71,7 +71,7 @@ void check_year(Instant instant) {
     static const Instant first = Instant::from_utc({{kFirstYear, 1, 1}}) - kSlack_s;
     static const Instant last = Instant::from_utc({{kLastYear + 1, 1, 1}}) + kSlack_s;
     if (instant < first || instant >= last)
-        bad_input(fmt::format("sun::position: {}: the sun is computed for the years {} to {}",
+        bad_input(fmt::format("sun: {}: the sun is computed for the years {} to {}",
                               to_iso(instant), kFirstYear, kLastYear));
 }
 

@@ -30,8 +30,8 @@ std::int64_t day_of(Instant instant) {
 PositionTable::PositionTable(Instant from, Instant to, const EarthRotation& rotation)
     : from_(from), to_(to), first_day_(day_of(from)) {
     if (to < from)
-        bad_input(fmt::format("sun::PositionTable: from {} to {}: ends before it begins",
-                              to_iso(from), to_iso(to)));
+        bad_input(
+            fmt::format("sun: from {} to {}: ends before it begins", to_iso(from), to_iso(to)));
     check_year(from);
     check_year(to);
     const std::int64_t last_day = day_of(to);
@@ -51,8 +51,8 @@ PositionTable::PositionTable(Instant from, Instant to, const EarthRotation& rota
 
 glm::dvec3 PositionTable::vector_au(Instant utc, const Observer& observer) const {
     if (utc < from_ || utc > to_)
-        failed(fmt::format("sun::PositionTable: {}: outside the table, which is from {} to {}",
-                           to_iso(utc), to_iso(from_), to_iso(to_)));
+        failed(fmt::format("sun: {}: outside the table, which is from {} to {}", to_iso(utc),
+                           to_iso(from_), to_iso(to_)));
     const std::int64_t utc_us = utc.unix_us();
     const std::int64_t first_us = first_day_ * kDay_us;
     const std::int64_t index = (utc_us - first_us) / kDay_us;

@@ -30,12 +30,12 @@ constexpr double kHighestAir_m = 31'000;  // 10 hPa: a hundredth of the air lies
 void check_air(const Air& air) {
     if (!(air.pressure_hpa >= 10 && air.pressure_hpa <= 1200))
         bad_input(
-            fmt::format("sun::Refraction: pressure {:.10g} hPa: no air on Earth, expected 10 "
+            fmt::format("refraction: pressure {:.10g} hPa: no air on Earth, expected 10 "
                         "to 1200; give the pressure at the place",
                         air.pressure_hpa));
     if (!(air.temperature_c >= -100 && air.temperature_c <= 70))
         bad_input(
-            fmt::format("sun::Refraction: temperature {:.10g} C: no air on Earth, expected "
+            fmt::format("refraction: temperature {:.10g} C: no air on Earth, expected "
                         "-100 to 70 degrees Celsius",
                         air.temperature_c));
 }
@@ -230,12 +230,12 @@ Refraction Refraction::integrated(const Atmosphere& atmosphere) {
     check_air(atmosphere.air);
     if (!(atmosphere.height_m >= -12e3 && atmosphere.height_m <= 32e3))
         bad_input(
-            fmt::format("sun::Refraction: height {:.10g} m: no air to integrate, expected "
+            fmt::format("refraction: height {:.10g} m: no air to integrate, expected "
                         "-12000 to 32000; use no refraction",
                         atmosphere.height_m));
     if (!(atmosphere.lapse_k_per_m >= 0.003 && atmosphere.lapse_k_per_m <= 0.01))
         bad_input(
-            fmt::format("sun::Refraction: lapse {:.10g} K/m: not a troposphere, expected 0.003 "
+            fmt::format("refraction: lapse {:.10g} K/m: not a troposphere, expected 0.003 "
                         "to 0.01",
                         atmosphere.lapse_k_per_m));
     const Shells shells(atmosphere);

@@ -12,7 +12,7 @@ namespace relevo::sun {
 
 Seasons seasons(int year) {
     if (year < kFirstYear || year > kLastYear)
-        bad_input(fmt::format("sun::seasons: {}: the sun is computed for the years {} to {}", year,
+        bad_input(fmt::format("seasons: {}: the sun is computed for the years {} to {}", year,
                               kFirstYear, kLastYear));
     const auto when = [](Instant near, double longitude_rad) {
         constexpr double kRate_rad_s = 2 * kPi / (365.2422 * kDay_s);

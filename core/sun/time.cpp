@@ -26,15 +26,15 @@ constexpr std::int64_t kFarthest_us = 253'402'300'799'999'999;  // the end of th
 
 void check_year(std::int64_t year) {
     if (year < kFirstWritten || year > kLastWritten)
-        bad_input(fmt::format("sun::Date: year {}: the sun is computed for the years {} to {}",
-                              year, kFirstYear, kLastYear));
+        bad_input(fmt::format("date: year {}: the sun is computed for the years {} to {}", year,
+                              kFirstYear, kLastYear));
 }
 
 /// Nearer to 1970 than the years that can be written; the first of them end the same way.
 void check_moment(std::int64_t us) {
     if (us > kFarthest_us || us < -kFarthest_us)
         bad_input(
-            fmt::format("sun::Instant: {:.4g} s from 1970: the sun is computed for the years "
+            fmt::format("time: {:.4g} s from 1970: the sun is computed for the years "
                         "{} to {}",
                         static_cast<double>(us) * 1e-6, kFirstYear, kLastYear));
 }
@@ -116,7 +116,7 @@ Instant operator+(Instant instant, double seconds) {
     if (!(std::abs(seconds) <= kLongest_s) ||
         __builtin_add_overflow(instant.unix_us_, std::llround(seconds * 1e6), &sum_us))
         bad_input(
-            fmt::format("sun::Instant: {:.4g} s later: the sun is computed for the years {} "
+            fmt::format("time: {:.4g} s later: the sun is computed for the years {} "
                         "to {}",
                         seconds, kFirstYear, kLastYear));
     return Instant::from_unix_us(sum_us);
@@ -205,7 +205,7 @@ std::optional<Date> FieldReader::date() {
 }
 
 Date parse_date(std::string_view text) {
-    FieldReader reader(text, "sun::parse_date");
+    FieldReader reader(text, "date");
     const auto date = reader.date();
     if (!date || !reader.rest().empty())
         reader.fail("not a date, expected YYYY-MM-DD such as 2026-06-21");

@@ -96,7 +96,7 @@ Zone Zone::mean_solar(double lon_rad) {
 
 Zone Zone::named(std::string_view text) {
     const std::string_view trimmed_text = trimmed(text);
-    FieldReader reader(trimmed_text, "sun::Zone");
+    FieldReader reader(trimmed_text, "time zone");
     if (trimmed_text.empty())
         reader.fail("no time zone, expected a name such as Europe/Zurich or an offset");
     const char first_letter = trimmed_text.front();
@@ -209,7 +209,7 @@ std::optional<TimeSpan> Zone::find_day(Date date) const {
 
 TimeSpan Zone::day(Date date) const {
     if (const auto span = find_day(date)) return *span;
-    bad_input(fmt::format("sun::Zone: {}: there was no such day in {}, its clocks skipped it",
+    bad_input(fmt::format("time zone: {}: there was no such day in {}, its clocks skipped it",
                           to_string(date), name_));
 }
 
@@ -334,7 +334,7 @@ ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone, in
         if (zone) result.zone = *zone;
         return result;
     }
-    FieldReader reader(whole, "sun::parse_time");
+    FieldReader reader(whole, "time");
     const WrittenTime time = read_time(reader, whole);
     if (time.offset_s) return with_offset(reader, time, *time.offset_s, zone);
     if (!zone)
@@ -347,7 +347,7 @@ ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone, in
 bool is_wall_time(std::string_view text) {
     const std::string_view whole = trimmed(text);
     if (whole == kNow) return false;
-    FieldReader reader(whole, "sun::parse_time");
+    FieldReader reader(whole, "time");
     return !read_time(reader, whole).offset_s;
 }
 

@@ -15,7 +15,7 @@ namespace relevo::sun {
 
 namespace {
 
-constexpr const char* kWho = "sun::ZoneMap";
+constexpr const char* kWho = "time zone";
 constexpr const char* kRemedy = "; install Relevo again, or pass --tz Europe/Zurich";
 constexpr const char* kAuto = "auto";
 constexpr const char* kSolar = "solar";
@@ -160,14 +160,14 @@ ChosenZone zone_at(const geo::Geodetic& place, const ZoneMap& map) {
             name.starts_with("Etc/")
                 ? fmt::format(" ({})", offset_text(zone->local(Instant()).utc_offset_s))
                 : "";
-        return {*zone, fmt::format("time zone {}{}, by the place", name, offset)};
+        return {*zone, fmt::format("time zone {}{} of the place", name, offset)};
     }
     constexpr double kHour_deg = 15;
     const double lon_deg = geo::normalized_lon_deg(degrees(place.lon_rad));
     const Zone fixed = Zone::fixed(static_cast<int>(std::lround(lon_deg / kHour_deg)) * 3600);
     return {fixed,
-            fmt::format("time zone {}, by the longitude alone, as the time zone database of this "
-                        "computer (version {}) has no {}",
+            fmt::format("time zone {}, by longitude only: the time zone database of this computer "
+                        "(version {}) has no {}",
                         fixed.name(), zone_database_version(), name),
             true};
 }

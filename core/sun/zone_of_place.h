@@ -18,7 +18,7 @@ namespace relevo::sun {
 class ZoneMap {
   public:
     /// @param path  a file of tools/make_time_zones.py
-    /// @throws Error (BadInput) `sun::ZoneMap: path: ...` where it is missing or damaged
+    /// @throws Error (BadInput) `time zone: path: ...` where it is missing or damaged
     static ZoneMap read(const std::filesystem::path& path);
     /// The one that Relevo comes with. Takes 0.5 ms (tests/sun/test_zone_of_place.cpp).
     static ZoneMap shipped();

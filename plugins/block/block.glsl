@@ -8,7 +8,7 @@
 //@ include lib/ground.glsl
 
 uniform vec3 block_side = vec3(0.34, 0.31, 0.28); //@ colour label("Sides") description("Reflectance of the cut")
-uniform float block_sun = 0.45; //@ range(0, 2) label("Sun on the sides") description("As a multiple of the sun's: below 1 the ground stays what is looked at")
+uniform float block_sun = 0.45; //@ range(0, 2) label("Sun on the sides") description("Factor on the sunlight on the cut sides: below 1 the ground stays brighter")
 uniform float block_sky = 1.8; //@ range(0, 10) label("Light of the surroundings") description("On the sides, as a multiple of the sky's: what is bright around a block lights it")
 uniform vec3 block_above = vec3(0.60, 0.62, 0.64); //@ colour label("Backdrop above") description("At the picture's upper edge, by day")
 uniform vec3 block_below = vec3(0.43, 0.43, 0.42); //@ colour label("Backdrop below") description("And at its lower edge")

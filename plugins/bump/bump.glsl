@@ -11,7 +11,7 @@ uniform sampler2DArray bump_normals;
 uniform float bump_strength = 1.0; //@ range(0, 4) label("Strength") description("Factor on the slopes of the bumps")
 uniform int bump_correction = 2; //@ enum(none, abrupt, smooth) static label("Correction") description("Light only where ground and bump both face the sun: not at all, the paper's figure 3a, and 3b")
 uniform float bump_softness = 0.12; //@ range(0.001, 1) label("Softness") description("Cosine of the sun's angle of incidence from which on ground is fully lit; of the smooth correction")
-uniform float bump_relief = 1.0; //@ range(0, 4) label("Relief between posts") description("Invented slopes smaller than the DEM's posts, on ground that is near; 0: none")
+uniform float bump_relief = 1.0; //@ range(0, 4) label("Relief between posts") description("Synthetic detail between the DEM's posts, on ground near the camera; 0: none")
 
 const float bump_coarsest_m = 25.0;  // cells of the relief's coarsest noise: what is wider passes for the DEM's own
 const float bump_finest_m = 0.8;     // below it is what the materials' maps have

@@ -4,7 +4,7 @@
 
 //@ include lib/water.glsl
 
-uniform vec4 infill_colour = vec4(0.92, 0.1, 0.55, 0.75); //@ range(0, 1) label("Colour") description("Of filled holes, and how much it covers")
+uniform vec4 infill_colour = vec4(0.92, 0.1, 0.55, 0.75); //@ range(0, 1) label("Colour") description("Colour of filled voids, and its opacity")
 
 void infill_on_display(in Surface s, inout vec4 overlay) {
     float filled = infill_colour.a * smoothstep(0.3, 0.7, water_of(s).a);

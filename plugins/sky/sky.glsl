@@ -28,8 +28,8 @@ uniform float sky_disc_edge = 8.0; //@ range(1, 100) label("Edge of the disc") d
 uniform float sky_stars = 1.0; //@ range(0, 1000) label("Stars") description("Brightness, as a multiple of the true one; 0 switches them off")
 
 uniform bool sky_earth = true; //@ static label("Earth") description("Below the horizon the Earth: plain ground, lit as the terrain is, seen through its air. Else the colour of the horizon, as in the paper")
-uniform vec3 sky_earth_albedo = vec3(0.19, 0.18, 0.15); //@ range(0, 1) label("Albedo of the Earth") description("Of the ground beyond the DEM, and around a slope")
-uniform float sky_earth_depth = 0.12; //@ range(0, 10) label("Air above the Earth") description("Optical depth of the air over the ground beyond the DEM, straight down")
+uniform vec3 sky_earth_albedo = vec3(0.19, 0.18, 0.15); //@ range(0, 1) label("Albedo of the Earth") description("Albedo of the ground outside the DEM, and around a slope")
+uniform float sky_earth_depth = 0.12; //@ range(0, 10) label("Air above the Earth") description("Vertical optical depth of the air over the ground outside the DEM")
 
 uniform bool sky_slopes = true; //@ static label("Light by direction") description("A slope gets the light of the part of the sky that it faces, and of the ground around it; else all ground gets the same")
 

@@ -7,7 +7,7 @@
 
 //@ include lib/ground.glsl
 
-uniform int tint_by = 0; //@ enum(height, slope, aspect, plain) static label("By") description("What the colour tells")
+uniform int tint_by = 0; //@ enum(height, slope, aspect, plain) static label("By") description("What the colour shows")
 uniform bool tint_lit = true; //@ static label("Lit") description("The sun shines on it; off, colours are those of the legend")
 uniform float tint_low_m = 0.0; //@ range(-12000, 9000) unit(m) label("Lowest") description("Height of the first colour of land; where it is not below the highest, the DEM's own range")
 uniform float tint_high_m = 0.0; //@ range(-12000, 9000) unit(m) label("Highest") description("Height of the last colour")

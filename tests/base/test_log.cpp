@@ -16,18 +16,18 @@ TEST(Log, LeavesMessagesAsTheyAre) {
 }
 
 TEST(Log, NoNameEndsAMessageAndBeginsAnother) {
-    EXPECT_EQ(written("dem::load: a.tif\nrelevo: error: b.tif: gone"),
-              "relevo: error: dem::load: a.tif\\nrelevo: error: b.tif: gone\n");
+    EXPECT_EQ(written("a.tif\nrelevo: error: b.tif: gone"),
+              "relevo: error: a.tif\\nrelevo: error: b.tif: gone\n");
     EXPECT_EQ(written("a\r\x1b[2Krelevo: b\x07\xc2\x9b\xff\x7f"),
               "relevo: error: a\\r\\x1b[2Krelevo: b\\x07\\xc2\\x9b\\xff\\x7f\n");
 }
 
 TEST(Log, WarningsAndNoticesAreOneLine) {
     testing::internal::CaptureStderr();
-    log::warning("dem::load: a\nb.tif: no unit");
+    log::warning("a\nb.tif: no unit");
     log::info("a\tb\nc");
     EXPECT_EQ(testing::internal::GetCapturedStderr(),
-              "relevo: warning: dem::load: a\\nb.tif: no unit\nrelevo: a\\tb\\nc\n");
+              "relevo: warning: a\\nb.tif: no unit\nrelevo: a\\tb\\nc\n");
 }
 
 TEST(Log, WhatIsTooLongToReadLosesItsMiddle) {

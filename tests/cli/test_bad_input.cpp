@@ -50,14 +50,13 @@ TEST(BadDem, EachHasItsMessage) {
          {Case{"/nowhere/alps.tif", "cannot be read, no such file"},
           Case{(dir() / "notes.txt").string(), "not a raster in any format that GDAL reads"},
           Case{written("no_crs.tif", no_crs), "no coordinate reference system; pass --crs EPSG:n"},
-          Case{written("empty.tif", empty), "not one valid height, all 24 posts are holes"},
+          Case{written("empty.tif", empty), "no valid height: all 24 posts are voids"},
           Case{written("one_post.tif", one_post),
                "size, expected at least 2 x 2 posts but got 1 x 1"},
           Case{written("one_row.tif", one_row),
                "size, expected at least 2 x 2 posts but got 6 x 1"}}) {
-        expect_no_picture({"capture", c.path, "-o", out_png()}, 3,
-                          "dem::load: " + c.path + ": " + c.message);
-        expect_no_picture({"info", c.path}, 3, "dem::load: " + c.path + ": " + c.message);
+        expect_no_picture({"capture", c.path, "-o", out_png()}, 3, c.path + ": " + c.message);
+        expect_no_picture({"info", c.path}, 3, c.path + ": " + c.message);
     }
     const Result run = relevo({"capture", cut, "-o", out_png()});
     EXPECT_EQ(run.status, 3);
@@ -79,16 +78,16 @@ TEST(BadTime, EachHasItsMessage) {
         return arguments;
     };
     expect_no_picture(without_dem({"--time", "2026-06-21T25:30"}), 3,
-                      "sun::parse_time: 2026-06-21T25:30: no such hour, expected hour 0 to 23 but "
+                      "time: 2026-06-21T25:30: no such hour, expected hour 0 to 23 but "
                       "got 25");
     expect_no_picture(without_dem({"--time", "sunrise"}), 3,
-                      "sun::parse_event_time: sunrise: no date; write 2026-06-21 sunrise or pass "
+                      "time: sunrise: no date; write 2026-06-21 sunrise or pass "
                       "--date");
     expect_no_picture(without_dem({"--time", "2026-06-21T18:30", "--date", "2026-06-21"}), 2,
                       "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
                       "day is written 2026-06-21T18:30");
     expect_no_picture(capture_at({"--time", "2026-06-21T18:30", "--tz", "Europe/Zurick"}), 3,
-                      "sun::Zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
+                      "time zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
     // Without --time they would be left out of account, and the picture be of another day.
     expect_no_picture(capture_at({"--date", "2026-12-21"}), 2,
                       "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
@@ -110,7 +109,7 @@ TEST(BadValue, LineBreaksInItStandAsTheirNames) {
         "all top, north, north-east, east, ... north-west, but got "
         "\"az=1\\nrelevo: done\"");
     expect_no_picture(with("--time", "1\n2"), 3,
-                      "sun::parse_time: 1\\n2: not a time, expected YYYY-MM-DDThh:mm with Z or an "
+                      "time: 1\\n2: not a time, expected YYYY-MM-DDThh:mm with Z or an "
                       "offset, such as 2026-06-21T18:30+02:00");
     const Result device = relevo(with("--device", "a\nb"));
     EXPECT_EQ(device.status, 4);
@@ -137,9 +136,8 @@ TEST(BadPlace, AnEyeWithoutGroundUnderIt) {
     const Result run = relevo({"-q", "capture", bundled_dem(), "-o", out_png(), "--eye", "10.5,7"});
     EXPECT_EQ(run.status, 3);
     EXPECT_EQ(run.err,
-              "relevo: error: --eye: 10.50000 N 7.00000 E: outside of the DEM or in a hole of it, "
-              "no ground to count the height from; give one above the DEM's zero, as in "
-              "10.5,7,500\n");
+              "relevo: error: --eye: 10.50000 N 7.00000 E: outside the DEM or in a void, so there "
+              "is no ground height; give one above the DEM's zero, as in 10.5,7,500\n");
     EXPECT_FALSE(std::filesystem::exists(out_png()));
 }
 
@@ -152,14 +150,12 @@ TEST(BadEffect, EachHasItsMessage) {
     const Result unknown = relevo(with({"--enable", "xyzzy"}));
     EXPECT_EQ(unknown.status, 3);
     EXPECT_TRUE(
-        unknown.err.starts_with("relevo: error: effect::select: xyzzy: no such plugin; there are "))
+        unknown.err.starts_with("relevo: error: effects: xyzzy: no such plugin; there are "))
         << unknown.err;
-    expect_no_picture(
-        with({"--set", "terrain.norm=vertex"}), 3,
-        "shader::ParamStore: terrain.norm: no such parameter; did you mean terrain.normal?");
-    expect_no_picture(
-        with({"--set", "terrain.normal=7"}), 3,
-        "shader::parse_value: terrain.normal: expected one of fragment, vertex but got \"7\"");
+    expect_no_picture(with({"--set", "terrain.norm=vertex"}), 3,
+                      "parameter: terrain.norm: no such parameter; did you mean terrain.normal?");
+    expect_no_picture(with({"--set", "terrain.normal=7"}), 3,
+                      "parameter: terrain.normal: expected one of fragment, vertex but got \"7\"");
     expect_no_picture(with({"--set", "terrain.normal"}), 2,
                       "--set: expected PLUGIN.PARAMETER=VALUE but got \"terrain.normal\"");
 }

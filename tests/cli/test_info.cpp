@@ -23,28 +23,17 @@ TEST(InfoVerb, SaysEverythingInLines) {
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(run.out,
               "file       " + bundled_dem() +
-                  "\n"
-                  "format     GTiff, Int16\n"
-                  "posts      403 x 344\n"
-                  "crs        EPSG:4326 (WGS 84)\n"
-                  "center     36.30292 N 84.24583 W (UTM 16N 747302 E 4021068 N, MGRS "
-                  "16SGF4730221067)\n"
-                  "extent     30.1 km east, 31.7 km north\n"
-                  "spacing    74.85 m x 92.47 m\n"
-                  "heights    236.0 to 1076.0 m\n"
-                  "holes      0 %\n"
-                  "unit       m (band)\n"
-                  "above      unknown\n"
-                  "assumed    heights are placed as ellipsoidal ones: the file does not say what "
-                  "they are above\n"
-                  "water      0 % sea, 0.798 % lakes (2), as pictures have it\n"
-                  "sun        azimuth 114.27, elevation 65.12 (65.13 with refraction) at "
-                  "2026-06-21T16:00:00Z\n"
-                  "climate    January 1.4, July 22.8 degC at 656 m, 1250 mm of rain a year\n"
-                  "ground     trees up to 2650 m, permanent ice from 3480 m, snow from 2950 m on "
-                  "2026-06-21\n"
-                  "net        pieces of 64 posts are drawn within 0.00024 m of where they are, "
-                  "3.2e-06 of the post spacing\n");
+                  "\nformat     GTiff, Int16\nposts      403 x 344\ncrs        EPSG:4326 (WGS "
+                  "84)\ncenter     36.30292 N 84.24583 W (UTM 16N 747302 E 4021068 N, MGRS "
+                  "16SGF4730221067)\nextent     30.1 km east, 31.7 km north\nspacing    74.85 m x "
+                  "92.47 m\nheights    236.0 to 1076.0 m\nholes      0 %\nunit       m "
+                  "(band)\nabove      unknown\nassumed    heights are taken as ellipsoidal: the "
+                  "file names no vertical datum\nwater      0 % sea, 0.798 % lakes (2), as "
+                  "pictures have it\nsun        azimuth 114.27, elevation 65.12 (65.13 with "
+                  "refraction) at 2026-06-21T16:00:00Z\nclimate    January 1.4, July 22.8 degC at "
+                  "656 m, 1250 mm of rain a year\nground     trees up to 2650 m, permanent ice "
+                  "from 3480 m, snow from 2950 m on 2026-06-21\nnet        pieces of 64 posts are "
+                  "drawn within 0.00024 m of where they are, 3.2e-06 of the post spacing\n");
 }
 
 TEST(InfoVerb, JsonHasTheSunAndTheNet) {
@@ -85,8 +74,7 @@ TEST(InfoVerb, SaysGuessesOnStandardError) {
     raster.value = [](int column, int row, int) { return column == 3 ? -9999.0 : 500 + row; };
     const std::string path = write_raster(dir() / "undeclared.tif", raster);
     const std::string said =
-        "-9999 marks holes, though the file does not say so: no height is near it; --nodata none "
-        "takes it as a height";
+        "-9999 is taken as a void (not declared, far from all heights); --nodata none keeps it";
     const Result run = relevo({"info", path, "--json"});
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.err, "relevo: " + path + ": " + said + "\n");
@@ -113,10 +101,11 @@ TEST(InfoVerb, ReportsSpikesAndOutliers) {
     const std::string path = write_raster(dir() / "spike.tif", raster);
     const Result run = relevo({"-q", "info", path, "--nodata", "none"});
     EXPECT_EQ(run.status, 0);
-    EXPECT_NE(run.out.find("outliers   1 heights that the Earth has not\n"
-                           "spikes     1 posts stand more than 180 m out of all their neighbours, "
-                           "the worst by 8995 m at 46.95231 N 9.00138 E\n"),
-              std::string::npos)
+    EXPECT_NE(
+        run.out.find(
+            "outliers   1 heights impossible on Earth\nspikes     1 spikes: posts more than 180 m "
+            "above or below all their neighbours, the worst by 8995 m at 46.95231 N 9.00138 E\n"),
+        std::string::npos)
         << run.out;
 }
 
@@ -205,8 +194,8 @@ TEST(InfoVerb, FilesThatClaimMuchCostLittle) {
         {"-q", "capture", nothing, "-o", (dir() / "nothing.png").string(), "--device", "software"},
         3, 60);
     EXPECT_EQ(drawn.status, 3);
-    EXPECT_EQ(drawn.err, "relevo: error: dem::load: " + nothing +
-                             ": 2147483647 x 3 posts, expected at most 4194304 a side; cut it up "
+    EXPECT_EQ(drawn.err, "relevo: error: " + nothing +
+                             ": 2147483647 x 3 posts, expected at most 4194304 a side; crop it "
                              "with gdal_translate\n");
 }
 
@@ -294,9 +283,8 @@ TEST(DemOptions, ClaimsAreDrawnOrRefusedSoon) {
     };
     const auto refused = [](const std::string& path, const char* posts) {
         return fmt::format(
-            "dem::load: {}: {} posts, expected at most 4194304 a side; cut it up "
-            "with gdal_translate",
-            path, posts);
+            "{}: {} posts, expected at most 4194304 a side; crop it with gdal_translate", path,
+            posts);
     };
     const std::string many = refused(vrt.string(), "2147483647 x 2147483647");
     const std::string wide = refused(narrow, "300000000 x 2");
@@ -377,15 +365,15 @@ TEST(DemOptions, WrongOnesHaveTheirMessages) {
          "--unit: furlong: a unit of height, expected m, ft, us-ft, cm, mm, dm or km"},
         {{"--crs", "EPSG:999999"},
          3,
-         "dem::load: " + bundled_dem() +
+         bundled_dem() +
              ": EPSG:999999: not a coordinate reference system that PROJ knows, crs not found; "
              "write EPSG:n, WKT or a PROJ string"},
         {{"--band", "7"},
          3,
-         "dem::load: " + bundled_dem() + ": band, expected 1 to 1 but got 7; --band counts from 1"},
+         bundled_dem() + ": band, expected 1 to 1 but got 7; --band counts from 1"},
         {{"--encoding", "terrarium"},
          3,
-         "dem::load: " + bundled_dem() +
+         bundled_dem() +
              ": --encoding terrarium, expected red, green and blue bands of 8 bits but got one "
              "band of Int16"},
     };
@@ -417,7 +405,7 @@ TEST(DemOptions, PicturesAreNoDems) {
     const Result run = relevo({"capture", path, "-o", (dir() / "out.png").string()});
     EXPECT_EQ(run.status, 3);
     EXPECT_EQ(run.err,
-              "relevo: error: dem::load: " + path +
+              "relevo: error: " + path +
                   ": a picture (red, green and blue bands of 8 bits), expected heights; if its "
                   "colours encode heights pass --encoding terrain-rgb or terrarium, if one band "
                   "holds them --band N\n");

@@ -395,9 +395,9 @@ TEST_F(Output, NamesThatAreNoTextBreakNeitherJsonNorMessages) {
     EXPECT_EQ(info.status, 0) << info.err;
     EXPECT_EQ(nlohmann::json::parse(info.out)["path"], path("a\xef\xbf\xbd\x1b\nb.tif"));
     const std::string forged = path("none\nrelevo: error: /etc/passwd: all is well");
-    expect_failure({"info", forged}, 3,
-                   "dem::load: " + path("none\\nrelevo: error: /etc/passwd: all is well") +
-                       ": cannot be read, no such file");
+    expect_failure(
+        {"info", forged}, 3,
+        path("none\\nrelevo: error: /etc/passwd: all is well") + ": cannot be read, no such file");
     expect_failure({"capture", bundled_dem(), "-o", path("a\x1b[2J\nrelevo: done.gif")}, 3,
                    "image: " + path("a\\x1b[2J\\nrelevo: done.gif") +
                        ": not the name of a picture, expected an ending of png, jpg, webp, tif or "

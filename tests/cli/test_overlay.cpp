@@ -153,15 +153,15 @@ TEST_F(OverlayOption, WhatIsNoneIsRefused) {
               "relevo: error: --overlay-range: 5,5: expected LOW,HIGH, the second over the first, "
               "such as 0,14\n");
     EXPECT_EQ(said({"--overlay", bundled_dem(), "--overlay-band", "2"}),
-              "relevo: error: dem::load: " + bundled_dem() + ": band 2: expected 1 to 1\n");
+              "relevo: error: " + bundled_dem() + ": band 2: expected 1 to 1\n");
     const std::string elsewhere = (source_dir() / "data" / "dem" / "vancouver-island.tif").string();
     EXPECT_EQ(said({"--overlay", elsewhere}),
-              "relevo: error: dem::load: " + elsewhere +
+              "relevo: error: " + elsewhere +
                   ": has no value over the DEM, expected a raster that lies there\n");
-    EXPECT_EQ(said({"--overlay", bundled_dem(), "--preset", "paper"}),
-              "relevo: error: render: terrain.normal: expected fragment, with which rasters lie on "
-              "the ground, but got vertex; leave the overlay out or pass --set "
-              "terrain.normal=fragment\n");
+    EXPECT_EQ(
+        said({"--overlay", bundled_dem(), "--preset", "paper"}),
+        "relevo: error: render: terrain.normal: expected fragment, with which rasters lie on the "
+        "ground, but got vertex; remove the overlay or pass --set terrain.normal=fragment\n");
 }
 
 }  // namespace

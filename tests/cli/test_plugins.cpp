@@ -85,16 +85,16 @@ TEST_F(Plugins, ABrokenTextureLeavesThePluginOutAndThePictureWhole) {
     image::write_ktx(own() / "a.ktx2", TextureData(PixelFormat::R8, 64, 64, 1, 1, 7));
     image::write_ktx(own() / "b.ktx2", TextureData(PixelFormat::R8, 64, 64, 1, 1, 1));
     const std::string reason =
-        "effect::load: plugins/odd/b.ktx2: expected 64 x 64 texels of 1 bytes in 7 levels as in "
+        "plugin: plugins/odd/b.ktx2: expected 64 x 64 texels of 1 bytes in 7 levels as in "
         "plugins/odd/a.ktx2 but got 64 x 64 texels of 1 bytes in 1 levels";
     const Result run = capture();
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.err,
-              "relevo: warning: odd is off: " + reason + "; --disable odd leaves it out\n");
+              "relevo: warning: odd is off: " + reason + "; --disable odd silences this\n");
     EXPECT_TRUE(drawn());
     const Result named = capture({"--enable", "odd"});
     EXPECT_EQ(named.status, 3);
-    EXPECT_EQ(named.err, "relevo: error: effect::select: odd: it cannot be switched on: " + reason +
+    EXPECT_EQ(named.err, "relevo: error: effects: odd: it cannot be switched on: " + reason +
                              "; take it out of --enable\n");
     EXPECT_FALSE(drawn());
     EXPECT_EQ(capture({"--disable", "odd"}).err, "");
@@ -106,7 +106,7 @@ TEST_F(Plugins, ATextureThatTheDeviceDoesNotTakeLeavesThePluginOut) {
     image::write(own() / "a.png", image::Image8(32768, 1, 1));
     const Result run = capture();
     EXPECT_EQ(run.status, 0);
-    EXPECT_THAT(run.err, StartsWith("relevo: warning: odd is off: effect::load: "
+    EXPECT_THAT(run.err, StartsWith("relevo: warning: odd is off: plugin: "
                                     "plugins/odd/a.png: expected at most "));
     EXPECT_TRUE(drawn());
     EXPECT_EQ(capture({"--only", "odd"}).status, 3);
@@ -130,7 +130,7 @@ TEST_F(Plugins, WhatTheStitcherRefusesSaysHowToGoOn) {
     make("void odd_on_albedo(inout Surface s) { s.diffuse *= float(gl_VertexID); }\n");
     const Result run = capture();
     EXPECT_EQ(run.status, 3);
-    EXPECT_THAT(run.err, StartsWith("relevo: error: shader::stitch: plugins/odd/odd.glsl:1: "));
+    EXPECT_THAT(run.err, StartsWith("relevo: error: shader: plugins/odd/odd.glsl:1: "));
     EXPECT_TRUE(run.err.ends_with("; --disable odd goes on without it\n")) << run.err;
 }
 
@@ -139,9 +139,9 @@ TEST_F(Plugins, DiscardIsRefused) {
     const Result run = capture();
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.err,
-              "relevo: warning: shader::parse: plugins/odd/odd.glsl:2: discard: every pixel has to "
-              "be written, or it keeps what another frame left there; leave the arguments as they "
-              "are instead; --disable odd leaves it out\n");
+              "relevo: warning: shader: plugins/odd/odd.glsl:2: discard: every pixel has to be "
+              "written, or it keeps what another frame left there; leave the arguments as they are "
+              "instead; --disable odd silences this\n");
 }
 
 /// Statements that keep a device busy. llvmpipe leaves every loop after 65535 turns in all, which
@@ -190,18 +190,18 @@ TEST_F(Plugins, AnEndlessLoopOfAVertexHookEndsTheProgram) {
 TEST_F(Plugins, AModuleThatFailsItsTrialIsOffAloud) {
     make_native();
     const std::string reason =
-        "effect::load: plugins/native/native.so: its prepare() ended in a segmentation fault";
+        "plugin: plugins/native/native.so: its prepare() ended in a segmentation fault";
     const std::vector<std::string> fault{"RELEVO_TEST_FAULT=prepare crash"};
     const Result run = capture({}, fault);
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.err,
-              "relevo: warning: native is off: " + reason + "; --disable native leaves it out\n");
+              "relevo: warning: native is off: " + reason + "; --disable native silences this\n");
     EXPECT_TRUE(drawn());
     for (const char* option : {"--only", "--enable"}) {
         const Result named = capture({option, "native"}, fault);
         EXPECT_EQ(named.status, 3);
-        EXPECT_EQ(named.err, "relevo: error: effect::select: native: it cannot be switched on: " +
-                                 reason + "; take it out of " + option + "\n");
+        EXPECT_EQ(named.err, "relevo: error: effects: native: it cannot be switched on: " + reason +
+                                 "; take it out of " + option + "\n");
         EXPECT_FALSE(drawn());
     }
 }

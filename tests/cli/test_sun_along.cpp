@@ -193,7 +193,7 @@ TEST(SunAlongVerb, WhatIsMissingOrWrongIsSaid) {
                                   "lat,lon,time\n36.30,-84.24,2026-02-10T12:00Z\n"
                                   "36.31,-84.24,2026-02-10T11:00Z\n");
     expect_failure({"-q", "sun", "along", bundled_dem(), back}, 3,
-                   "light::walk: point 2: its time, 2026-02-10T11:00:00Z, is before that of the "
+                   "walk: point 2: its time, 2026-02-10T11:00:00Z, is before that of the "
                    "point before, 2026-02-10T12:00:00Z; expected times in order");
     const std::string odd = file("odd.csv",
                                  "lat,lon,time\n36.30,-84.24,2026-02-10T12:00Z\n"
@@ -204,7 +204,7 @@ TEST(SunAlongVerb, WhatIsMissingOrWrongIsSaid) {
     EXPECT_NE(run.err.find("noonish"), std::string::npos) << run.err;
     const std::string off = file("off.csv", "lat,lon\n36.30,-84.24\n36.30,-84.00\n");
     expect_failure(along(off, {"--start", "2026-02-10T12:00Z", "--speed", "4"}), 3,
-                   "light::walk: km 14.527 to 21.557 of 21.557 km: outside of the DEM, up to 7.04 "
+                   "walk: km 14.527 to 21.557 of 21.557 km: outside of the DEM, up to 7.04 "
                    "km beyond its edge; take a DEM that has all of the way, or cut the track");
     expect_failure(along(gpx, {"-o", gpx, "--overwrite"}), 2,
                    fmt::format("-o: {}: no format that this command writes, expected a name that "

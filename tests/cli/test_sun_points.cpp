@@ -114,16 +114,14 @@ TEST(SunPoints, AFailureIsToldOnceAndTheFileIsWhole) {
     EXPECT_EQ(run.status, 3);
     EXPECT_EQ(run.out, "");
     // No word of progress where nobody watches.
-    EXPECT_EQ(
-        run.err,
-        "relevo: each point by the clocks of its own place; --tz names others\n"
-        "relevo: warning: 2 of 4 points: the blocking ridge may lie beyond the DEM; --at with "
-        "one of them says where, and --highest how high terrain is there at most\n"
-        "relevo: error: --points: " +
-            points +
-            ": 1 of 4 points have no figures; the first, \"Far\": light::horizon: 40,-84: "
-            "outside of the DEM, expected a point within latitudes 36.1600 to 36.4458 and "
-            "longitudes -84.4133 to -84.0783\n");
+    EXPECT_EQ(run.err,
+              "relevo: times are local times of each point; --tz sets another zone\nrelevo: "
+              "warning: 2 of 4 points: mountains outside the DEM could change the result; --at for "
+              "one of them says where, --highest bounds them\nrelevo: error: --points: " +
+                  points +
+                  ": 1 of 4 points have no figures; the first, \"Far\": horizon: 40,-84: "
+                  "outside of the DEM, expected a point within latitudes 36.1600 to 36.4458 and "
+                  "longitudes -84.4133 to -84.0783\n");
     EXPECT_EQ(json::parse(read_text(out, "test")).size(), 4U);
     const Result fine = relevo(
         {"-q", "sun", "day", "--points", points, "--date", "2026-02-10", "-o", out, "--overwrite"});

@@ -66,7 +66,7 @@ TEST(SunHours, HasAsManyBandsAsAreAskedFor) {
     const Result run = relevo({"sun", "hours", walled(), "--date", "2026-03-20", "--tz", "UTC",
                                "--bands", "hours,first,last,spells", "-o", out("day.tif")});
     ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_NE(run.err.find("the DEM has 1 holes: they get no figure, and hide nothing"),
+    EXPECT_NE(run.err.find("the DEM has 1 voids: they get no value and cast no shadow"),
               std::string::npos)
         << run.err;
     EXPECT_TRUE(run.out.starts_with(
@@ -80,7 +80,7 @@ TEST(SunHours, HasAsManyBandsAsAreAskedFor) {
     EXPECT_STREQ(day->GetMetadataItem("HOLES"), "1");
     EXPECT_STREQ(day->GetRasterBand(1)->GetUnitType(), "h");
     EXPECT_STREQ(day->GetRasterBand(2)->GetUnitType(), "min");
-    EXPECT_STREQ(day->GetRasterBand(4)->GetDescription(), "spells of light");
+    EXPECT_STREQ(day->GetRasterBand(4)->GetDescription(), "sunshine periods");
     // 100 m before the wall in the west the sun comes over it 45 degrees high, three hours after it
     // rises in the east of it.
     const double rises_min = value_at(*day, 2, 118, 20);
@@ -362,8 +362,8 @@ TEST(SunRasters, TellOfTerrainBeyondTheDemThatCouldMatter) {
     // The sun in the east, 10 degrees high: 100 m over the plain reach 567 m from the edge on.
     const std::string dem = walled();
     const std::string tells =
-        "terrain beyond the DEM may matter at some 46 % of the posts: above 504 m it would hide "
-        "sun that is taken to shine, as far as 1 km from the edge if it is up to 600 m high";
+        "mountains outside the DEM could hide the sun at 46 % of the posts: those above 504 m, up "
+        "to 1 km from the edge, if none is higher than 600 m";
     const auto shadow = [&](const std::vector<std::string>& more) {
         std::vector<std::string> arguments{"sun",        "shadow", dem,          "--sun",
                                            "grid:90,10", "-o",     out("b.tif"), "--overwrite"};
@@ -372,15 +372,17 @@ TEST(SunRasters, TellOfTerrainBeyondTheDemThatCouldMatter) {
         EXPECT_EQ(run.status, 0) << run.err;
         return run.err;
     };
-    EXPECT_NE(shadow({}).find("relevo: warning: " + tells +
-                              "; use a DEM that goes so far with --clip, or --highest with the "
-                              "height that terrain has there at most\n"),
-              std::string::npos);
+    EXPECT_NE(
+        shadow({}).find("relevo: warning: mountains outside this DEM could change 46 % of the "
+                        "values; use a DEM 1 km larger on each side, or bound them with "
+                        "--highest\n"),
+        std::string::npos);
+    EXPECT_NE(shadow({"-v"}).find("relevo: " + tells + "\n"), std::string::npos);
     EXPECT_EQ(opened(out("b.tif"))->GetMetadataItem("BEYOND_DEM"), tells);
-    EXPECT_EQ(shadow({"--highest", "500"}).find("beyond"), std::string::npos);
+    EXPECT_EQ(shadow({"--highest", "500"}).find("outside"), std::string::npos);
     EXPECT_EQ(opened(out("b.tif"))->GetMetadataItem("BEYOND_DEM"), nullptr);
     EXPECT_NE(relevo({"sun", "sky-view", dem, "-o", out("v.tif")})
-                  .err.find("it would stand over these horizons"),
+                  .err.find("mountains outside this DEM could change "),
               std::string::npos);
 }
 
@@ -401,7 +403,7 @@ TEST(SunRasters, WhatMeansNothingIsRefused) {
     expect_failure(hours({"--date", "2026-03-20", "--bands", "first,first"}), 2,
                    "--bands: first is named twice");
     expect_failure(hours({"--year", "2026", "--bands", "first"}), 2,
-                   "--bands: first, last and spells are known of 4 days at most");
+                   "--bands: first, last and spells are available for at most 4 days");
     expect_failure(hours({"--year", "2026", "--linke", "4"}), 2,
                    "--linke: goes with --bands global, beam, diffuse or reflected");
     expect_failure(hours({"--year", "2026", "--bands", "beam", "--albedo", "2"}), 2,

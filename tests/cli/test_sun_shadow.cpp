@@ -57,7 +57,7 @@ TEST(SunShadow, WritesAMaskOnTheGridOfTheDem) {
     const std::string dem = walled();
     const Result run = relevo({"sun", "shadow", dem, "--sun", "grid:90,10", "-o", out("mask.tif")});
     ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_NE(run.err.find("the DEM has 1 holes: they get no figure, and hide nothing"),
+    EXPECT_NE(run.err.find("the DEM has 1 voids: they get no value and cast no shadow"),
               std::string::npos)
         << run.err;
     const Dataset mask = opened(out("mask.tif")), ground = opened(dem);
@@ -192,13 +192,13 @@ TEST(SunShadow, TablesThatAreNoneAreRefused) {
     std::string text = "time\n";
     for (int k = 0; k <= 10'000; ++k)
         text += "2026-01-10T13:30Z\n";
-    expect_refused(table("long.csv", text), "long.csv: more than 10000 times; cut the file up");
+    expect_refused(table("long.csv", text), "long.csv: more than 10000 times; split the file");
     const std::string times = table("one.csv", "time\n2026-01-10T13:30Z\n");
     expect_failure({"sun", "shadow", dem, "--times", times, "--sun", "90,10", "-o", out("x.tif")},
                    2, "--times and --sun exclude each other; give one of them");
     expect_failure(
         {"sun", "shadow", dem, "--times", times, "--time", "2026-01-10T13:30Z", "-o", out("x.tif")},
-        2, "--times: has its times and their days itself; leave out --time and --date");
+        2, "--times: excludes --time and --date; remove them");
     expect_failure({"sun", "shadow", dem, "--times", times, "--overwrite", "-o", times}, 2,
                    fmt::format("-o: {}: no format that this command writes, expected a name that "
                                "ends in tif, tiff",

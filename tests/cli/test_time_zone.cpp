@@ -29,7 +29,7 @@ Words joined(Words words, const Words& more) {
 }
 
 std::string notice_of(const std::string& zone) {
-    return "relevo: time zone " + zone + ", by the place; --tz overrides it\n";
+    return "relevo: time zone " + zone + "; --tz sets another\n";
 }
 
 /// A run says on standard output what it says with the zone named, and what it has assumed on
@@ -176,7 +176,7 @@ TEST(TimeZone, SolarIsTheMeridiansMeanTime) {
     expect_failure(
         {"sun", "position", "--at", "0,-90", "--time", "2026-06-21T18:30+01:00", "--tz", "solar"},
         3,
-        "sun::parse_time: 2026-06-21T18:30+01:00: offset +01:00 contradicts LMT-06:00, "
+        "time: 2026-06-21T18:30+01:00: offset +01:00 contradicts LMT-06:00, "
         "expected -06:00 (LMT); give only one of the two");
 }
 
@@ -194,7 +194,7 @@ TEST(TimeZone, IsLookedUpOnlyWhereOneIsNeeded) {
     const Result missing = relevo(joined(position, {"2026-06-21T18:30"}), nowhere);
     EXPECT_EQ(missing.status, 3);
     EXPECT_EQ(missing.out, "");
-    EXPECT_EQ(missing.err, "relevo: error: sun::ZoneMap: " +
+    EXPECT_EQ(missing.err, "relevo: error: time zone: " +
                                (dir() / "nowhere/data/timezones/timezones.bin").string() +
                                ": cannot be read, No such file or directory; install Relevo "
                                "again, or pass --tz Europe/Zurich\n");
@@ -212,9 +212,9 @@ TEST(TimeZone, ThatTheComputerLacksIsTheHourOfTheLongitudeAndAWarning) {
         {"-q", "sun", "position", "--at", "46.55,8.56", "--time", "2026-06-21T12:00"}, share_here);
     EXPECT_EQ(run.status, 0);
     EXPECT_NE(run.out.find("2026-06-21T12:00:00+01:00"), std::string::npos) << run.out;
-    EXPECT_TRUE(run.err.starts_with(
-        "relevo: warning: time zone +01:00, by the longitude alone, as the time zone database of "
-        "this computer (version "))
+    EXPECT_TRUE(
+        run.err.starts_with("relevo: warning: time zone +01:00, by longitude only: the time zone "
+                            "database of this computer (version "))
         << run.err;
     EXPECT_TRUE(run.err.ends_with(") has no Mars/Olympus; --tz overrides it\n")) << run.err;
 }

@@ -94,10 +94,9 @@ TEST(BandOver, WhatItCannotReadIsRefused) {
     const std::string far =
         write_raster(folder() / "far.tif", {.geotransform = {{600000, 30, 0, 5200000, 0, -30}}});
     EXPECT_EQ(error_of([&] { read_band_over(grid(), far, 1); }),
-              "exit 3: dem::load: " + far +
-                  ": has no value over the DEM, expected a raster that lies there");
+              "exit 3: " + far + ": has no value over the DEM, expected a raster that lies there");
     EXPECT_EQ(error_of([&] { read_band_over(grid(), far, 2); }),
-              "exit 3: dem::load: " + far + ": band 2: expected 1 to 1");
+              "exit 3: " + far + ": band 2: expected 1 to 1");
 }
 
 }  // namespace

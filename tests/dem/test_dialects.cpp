@@ -76,9 +76,8 @@ TEST(Dialect, UndeclaredHugeNumbersAreHoles) {
     const Raster raster = with_mark("Float32", -3.4028234663852886e38);
     const Heightfield f = loaded("huge.tif", raster);
     EXPECT_EQ(f.about.statistics, (Statistics{1003, 1209, 394, 6, 0}));
-    EXPECT_THAT(f.about.assumptions,
-                Contains("numbers too large for any height mark holes, though the file does not "
-                         "say so; --nodata none takes them as heights"));
+    EXPECT_THAT(f.about.assumptions, Contains("numbers too large for heights are taken as voids "
+                                              "(not declared); --nodata none keeps them"));
     EXPECT_EQ(load((folder() / "huge.tif").string(), {.no_nodata = true}).about.statistics.holes,
               0);
 }
@@ -123,7 +122,7 @@ TEST(Dialect, NodataNoneTakesTheDeclaredValueToo) {
     EXPECT_EQ(loaded("declared.tif", raster).about.statistics.holes, 6);
     const Heightfield f = load((folder() / "declared.tif").string(), {.no_nodata = true});
     EXPECT_EQ(f.about.statistics.holes, 0);
-    EXPECT_THAT(f.about.assumptions, Contains("0 marks no hole, as given"));
+    EXPECT_THAT(f.about.assumptions, Contains("0 marks no void, as given"));
 }
 
 TEST(Dialect, TheSeaIsNoHole) {
@@ -279,13 +278,13 @@ TEST(Dialect, EsriAsciiWithAndWithoutPrj) {
     EXPECT_EQ(loaded("with.asc", raster).grid.crs().name(), "WGS 84 / UTM zone 32N");
     raster.crs = "";
     EXPECT_EQ(test::error_of([&] { loaded("without.asc", raster); }),
-              "exit 3: dem::load: " + (folder() / "without.asc").string() +
+              "exit 3: " + (folder() / "without.asc").string() +
                   ": no coordinate reference system; pass --crs EPSG:n");
     raster.geotransform = {{11, 0.001, 0, 47, 0, -0.001}};
     const Heightfield degrees_of = loaded("degrees.asc", raster);
     EXPECT_EQ(degrees_of.grid.crs().code(), "EPSG:4326");
     EXPECT_THAT(degrees_of.about.guesses,
-                ElementsAre("the CRS is WGS 84: the file names none, and its coordinates are like "
+                ElementsAre("the CRS is WGS 84: the file names none, and its coordinates look like "
                             "degrees; --crs sets another"));
     // Metres of a model's own origin are no degrees.
     raster.geotransform = {{0, 1, 0, 4, 0, -1}};
@@ -336,7 +335,7 @@ TEST(Dialect, ArchiveOfSeveralRastersNamesOne) {
         0);
     const std::string path = (folder() / "two.zip").string();
     EXPECT_EQ(test::error_of([&] { load(path); }),
-              "exit 3: dem::load: " + path +
+              "exit 3: " + path +
                   ": an archive of 2 rasters, expected one; name those that are meant, as in "
                   "'/vsizip/" +
                   path + "/x.tif'");

@@ -20,7 +20,7 @@ using test::folder;
 
 std::string refusal(const std::string& path) {
     const std::string message = test::error_of([&] { load(path); });
-    const std::string begin = "exit 3: dem::load: " + path + ": ";
+    const std::string begin = "exit 3: " + path + ": ";
     return message.starts_with(begin) ? message.substr(begin.size()) : "!" + message;
 }
 
@@ -93,10 +93,10 @@ TEST(OffTheGlobe, WhatHasNoGroundIsRefusedByName) {
               std::string("none of its posts is on the Earth in WGS 84") + kRemedy);
     huge.columns = huge.rows = 3;
     huge.geotransform = {{-1500, 1000, 0, 1500, 0, -1000}};
-    EXPECT_EQ(refusal(write_raster(folder() / "middle.tif", huge)),
-              std::string("cells so large that beside its middle is no place on the Earth in WGS "
-                          "84") +
-                  kRemedy);
+    EXPECT_EQ(
+        refusal(write_raster(folder() / "middle.tif", huge)),
+        std::string("cells so large that the centre has no neighbour on the Earth in WGS 84") +
+            kRemedy);
 }
 
 TEST(OffTheGlobe, GridsOnTheEarthHaveNoSuchHoles) {

@@ -19,10 +19,10 @@ using test::write_raster;
 
 using test::folder;
 
-/// The message without its beginning, "exit 3: dem::load: PATH: ", which is checked.
+/// The message without its beginning, "exit 3: PATH: ", which is checked.
 std::string refusal(const std::string& path, const LoadOptions& options = {}) {
     const std::string message = test::error_of([&] { load(path, options); });
-    const std::string begin = "exit 3: dem::load: " + path + ": ";
+    const std::string begin = "exit 3: " + path + ": ";
     return message.starts_with(begin) ? message.substr(begin.size()) : "!" + message;
 }
 
@@ -40,8 +40,7 @@ TEST(LoadError, MissingFile) {
     EXPECT_EQ(refusal("/nowhere/alps.tif"), "cannot be read, no such file");
     EXPECT_EQ(refusal("NETCDF:/nowhere/alps.nc:z"), "cannot be read, no such file");
     EXPECT_EQ(refusal("/vsizip//nowhere/alps.zip/alps.tif"), "cannot be read, no such file");
-    EXPECT_EQ(test::error_of([] { load(""); }),
-              "exit 3: dem::load: \"\": cannot be read, no such file");
+    EXPECT_EQ(test::error_of([] { load(""); }), "exit 3: \"\": cannot be read, no such file");
 }
 
 TEST(LoadError, NotARaster) {
@@ -171,10 +170,10 @@ TEST(LoadError, NoValidHeight) {
     raster.nodata = -9999;
     raster.value = [](int, int, int) { return -9999.0; };
     EXPECT_EQ(refusal("all_holes.tif", raster),
-              "not one valid height, all 24 posts are holes (nodata -9999)");
+              "no valid height: all 24 posts are voids (nodata -9999)");
     raster.nodata.reset();
     raster.value = [](int, int, int) { return std::nan(""); };
-    EXPECT_EQ(refusal("all_nan.tif", raster), "not one valid height, all 24 posts are holes");
+    EXPECT_EQ(refusal("all_nan.tif", raster), "no valid height: all 24 posts are voids");
 }
 
 TEST(LoadError, TooFewPosts) {
@@ -219,7 +218,7 @@ TEST(LoadError, NumbersThatMakeNoHeights) {
         raster.offset = offset;
         const std::string path = write_raster(folder() / "scaled.tif", raster);
         const std::string message = test::error_of([&] { load(path); });
-        const std::string begin = "exit 3: dem::load: " + path + ": ";
+        const std::string begin = "exit 3: " + path + ": ";
         return message.starts_with(begin) ? message.substr(begin.size()) : message;
     };
     const auto what = [](const char* scale, const char* offset) {
@@ -244,8 +243,7 @@ TEST(LoadError, NumbersThatMakeNoHeights) {
     raster.geotransform = {{7, 1e-17, 0, 46, 0, -1e-17}};
     const std::string path = write_raster(folder() / "small_cells.tif", raster);
     EXPECT_EQ(test::error_of([&] { load(path); }),
-              "exit 3: dem::load: " + path +
-                  ": cells so small that posts beside each other are at one place");
+              "exit 3: " + path + ": cells so small that neighbouring posts are at the same place");
 }
 
 TEST(LoadError, Picture) {
@@ -314,8 +312,8 @@ TEST(LoadError, DegreesInACrsOfMetres) {
     Raster raster;
     raster.geotransform = {{11, 0.001, 0, 47, 0, -0.001}};
     EXPECT_EQ(refusal("degrees.tif", raster),
-              "its coordinates are like degrees, but WGS 84 / UTM zone 32N counts in metre; pass "
-              "the right CRS with --crs, perhaps EPSG:4326");
+              "its coordinates look like degrees, but the unit of WGS 84 / UTM zone 32N is metre; "
+              "pass the right CRS with --crs, perhaps EPSG:4326");
     EXPECT_NO_THROW(load((folder() / "degrees.tif").string(), {.crs = "EPSG:4326"}));
 }
 

@@ -74,9 +74,11 @@ TEST(Folder, WhatIsLeftOutIsSaid) {
     write_raster(dir / "a.tif", tile(0));
     for (const char* name : {"LICENSE", "index.html", "notes.txt", "z.csv"})
         std::ofstream(dir / name) << "Heights of the Alps, to be measured.\n";
-    EXPECT_THAT(Opened(dir).said,
-                ElementsAre(dir.string() + ": 4 of its files are no rasters and left out: LICENSE, "
-                                           "index.html, notes.txt, ..."));
+    EXPECT_THAT(
+        Opened(dir).said,
+        ElementsAre(
+            dir.string() +
+            ": 4 of its files are no rasters and skipped: LICENSE, index.html, notes.txt, ..."));
 }
 
 TEST(Folder, WhatBelongsToARasterIsNone) {
@@ -128,12 +130,12 @@ TEST(Folder, WhatCannotBeOneDemHasItsMessage) {
         return test::error_of([&] { load(dir.string()); });
     };
     const std::filesystem::path empty = made("empty");
-    EXPECT_EQ(refusal(empty), "exit 3: dem::load: " + empty.string() +
+    EXPECT_EQ(refusal(empty), "exit 3: " + empty.string() +
                                   ": a folder without a raster in it, expected a raster or a "
                                   "folder of rasters");
     const std::filesystem::path outer = made("outer");
     made("outer/inner");
-    EXPECT_EQ(refusal(outer), "exit 3: dem::load: " + outer.string() +
+    EXPECT_EQ(refusal(outer), "exit 3: " + outer.string() +
                                   ": a folder without a raster in it, expected a raster or a "
                                   "folder of rasters; name the folder in it that is meant");
     const std::filesystem::path dir = made("with_picture");
@@ -145,7 +147,7 @@ TEST(Folder, WhatCannotBeOneDemHasItsMessage) {
     picture.value = [](int column, int row, int band) { return column * 40 + row * 9 + band; };
     const std::string name = write_raster(dir / "preview.tif", picture);
     EXPECT_EQ(refusal(dir),
-              "exit 3: dem::load: " + name +
+              "exit 3: " + name +
                   ": a picture (red, green and blue bands of 8 bits), expected heights; if its "
                   "colours encode heights pass --encoding terrain-rgb or terrarium, if one band "
                   "holds them --band N; it is one of 2 in " +
@@ -163,7 +165,7 @@ TEST(Folder, PipesInItAreNotWaitedFor) {
     write_raster(dir / "a.tif", tile(0));
     ASSERT_EQ(mkfifo((dir / "b.tif").c_str(), 0600), 0);
     EXPECT_THAT(Opened(dir).said,
-                ElementsAre(dir.string() + ": 1 of its files is no raster and left out: b.tif"));
+                ElementsAre(dir.string() + ": 1 of its files is no raster and skipped: b.tif"));
 }
 
 }  // namespace

@@ -26,10 +26,10 @@ using test::write_raster;
 
 using test::folder;
 
-/// The message without its beginning, "exit 3: dem::load: PATH: ", which is checked.
+/// The message without its beginning, "exit 3: PATH: ", which is checked.
 std::string refusal(const std::string& path, const LoadOptions& options = {}) {
     const std::string message = test::error_of([&] { load(path, options); });
-    const std::string begin = "exit 3: dem::load: " + path + ": ";
+    const std::string begin = "exit 3: " + path + ": ";
     return message.starts_with(begin) ? message.substr(begin.size()) : "!" + message;
 }
 
@@ -65,9 +65,8 @@ TEST(Guard, NoFileReadsTheProgramsMemory) {
         std::system(
             ("cd " + folder().string() + " && python3 -m zipfile -c m.zip memory.vrt").c_str()),
         0);
-    EXPECT_EQ(
-        test::error_of([&] { load((folder() / "m.zip").string()); }),
-        "exit 3: dem::load: /vsizip/" + (folder() / "m.zip/memory.vrt").string() + ": " + what);
+    EXPECT_EQ(test::error_of([&] { load((folder() / "m.zip").string()); }),
+              "exit 3: /vsizip/" + (folder() / "m.zip/memory.vrt").string() + ": " + what);
     std::string inner;
     for (const char c :
          "<VRTDataset rasterXSize=\"6\" rasterYSize=\"4\"><VRTRasterBand "

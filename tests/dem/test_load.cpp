@@ -22,7 +22,7 @@ using testing::HasSubstr;
 constexpr const char* kUnitAssumed =
     "heights are in metres, as neither the band nor a vertical CRS says; --unit sets another unit";
 constexpr const char* kDatumAssumed =
-    "heights are placed as ellipsoidal ones: the file does not say what they are above";
+    "heights are taken as ellipsoidal: the file names no vertical datum";
 
 using test::folder;
 
@@ -113,8 +113,8 @@ TEST(Load, FeetOfTheVerticalCrsBecomeMetres) {
     EXPECT_EQ(f.about.unit_source, UnitSource::VerticalCrs);
     EXPECT_EQ(f.about.vertical_datum, "NAVD88 height (ftUS) (EPSG:6360)");
     EXPECT_THAT(f.about.assumptions,
-                Contains("heights are above NAVD88 height (ftUS) (EPSG:6360) and are placed as "
-                         "ellipsoidal ones: the geoid is not added"));
+                Contains("heights are above NAVD88 height (ftUS) (EPSG:6360) and are taken as "
+                         "ellipsoidal: the geoid is not added"));
 }
 
 TEST(Load, BandUnitGoesBeforeTheVerticalCrs) {
@@ -235,7 +235,7 @@ TEST(Load, NodataOptionReplacesTheDeclaredOne) {
     const Heightfield f = loaded("nodata_option.tif", raster, {.nodata = 135});
     EXPECT_EQ(f.height_m.at(0, 0), 100);
     EXPECT_TRUE(std::isnan(f.height_m.at(5, 3)));
-    EXPECT_THAT(f.about.assumptions, Contains("135 marks a hole, as given"));
+    EXPECT_THAT(f.about.assumptions, Contains("135 marks voids, as given"));
 }
 
 TEST(Load, MaskOfTheFileMarksHoles) {
@@ -311,9 +311,10 @@ TEST(Load, LargerThanTheMemoryAllowedIsReduced) {
     // The mean of a plane over a cell is the plane in its middle.
     EXPECT_FLOAT_EQ(f.height_m.at(10, 7), 20.5F + 1000 * 14.5F);
     EXPECT_EQ(f.grid.affine()(0, 0), glm::dvec2(500030, 5199970));
-    EXPECT_THAT(f.about.assumptions,
-                Contains("reduced from 100 x 60 to 50 x 30 posts, means of 2 x 2, to keep within "
-                         "the memory allowed"));
+    EXPECT_THAT(
+        f.about.assumptions,
+        Contains(
+            "reduced from 100 x 60 to 50 x 30 posts, means of 2 x 2, to stay within --memory"));
 }
 
 TEST(Load, HeightsThatTheEarthHasNotAreMentioned) {
@@ -323,8 +324,8 @@ TEST(Load, HeightsThatTheEarthHasNotAreMentioned) {
     EXPECT_EQ(f.about.statistics.outliers, 4);
     EXPECT_THAT(f.about.assumptions,
                 Contains(testing::StartsWith(
-                    "4 heights are below -11500 m or above 9000 m, which the Earth has not, and "
-                    "are drawn as they are; --nodata V makes V a hole, --unit sets the unit")));
+                    "4 heights are below -11500 m or above 9000 m, impossible on Earth; --nodata V "
+                    "marks them as voids, --unit sets the unit")));
 }
 
 TEST(Load, OtherFormats) {
@@ -354,7 +355,7 @@ TEST(Load, OtherFormats) {
 
 TEST(Load, InputsOfACommandLineAreNotNone) {
     EXPECT_EQ(test::error_of([&] { load(std::span<const std::string>{}); }),
-              "exit 3: dem::load: no DEM, expected one file or more");
+              "exit 3: no DEM given; name one or more files");
 }
 
 TEST(Load, HeightsThatTheEarthHasNotMayBeInAnotherUnit) {
@@ -441,9 +442,8 @@ TEST(Load, HgtIsAboveEgm96) {
     const Heightfield f = load(path.string());
     EXPECT_EQ(f.about.vertical_datum, "EGM96");
     EXPECT_THAT(f.about.assumptions,
-                Contains("heights are above mean sea level by EGM96, as in all .hgt files though "
-                         "none can say so, and are placed as ellipsoidal ones: the geoid is not "
-                         "added"));
+                Contains("heights are above mean sea level (EGM96, as in all .hgt files) and are "
+                         "taken as ellipsoidal: the geoid is not added"));
 }
 
 }  // namespace

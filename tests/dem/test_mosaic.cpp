@@ -92,7 +92,7 @@ TEST(Mosaic, EachFileKeepsItsOwnUnitAndNodata) {
     EXPECT_EQ(f.about.statistics.holes, 8);
     EXPECT_THAT(f.about.guesses, ElementsAre("heights are in ft, m: each file in its own"));
     EXPECT_THAT(f.about.assumptions,
-                Contains("holes are marked by -32768, -9999: in each file by its own"));
+                Contains("voids are marked by -32768, -9999: each file has its own value"));
 }
 
 TEST(Mosaic, OtherGridsAreResampledToTheFinest) {
@@ -192,8 +192,7 @@ TEST(Mosaic, GapsAreHolesAndSaid) {
     EXPECT_EQ(f.grid.rows(), 54);
     EXPECT_EQ(f.about.statistics.valid, 48);
     EXPECT_THAT(f.about.guesses,
-                ElementsAre("the files cover 0.84 % of the DEM that they make, the rest is one "
-                            "hole"));
+                ElementsAre("the files cover 0.84 % of their common extent, the rest is a void"));
 }
 
 TEST(Mosaic, FilesOnDifferentContinentsAreWarnedOf) {
@@ -218,8 +217,8 @@ TEST(Mosaic, FilesOnDifferentContinentsAreWarnedOf) {
     const std::string here = write_raster(folder() / "alps.tif", alps);
     const std::string there = write_raster(folder() / "andes.tif", andes);
     const std::string said = here + " and " + there +
-                             " are 11727 km apart: the files cover 0.002 % of the DEM that they "
-                             "make, the rest is one hole; are they meant to be one DEM?";
+                             " are 11727 km apart: the files cover 0.002 % of their common extent, "
+                             "the rest is a void; are they meant to be one DEM?";
     EXPECT_THAT(warnings({here, there}), ElementsAre(said));
     EXPECT_THAT(Source::open(Paths{here, there}).description().assumptions, Contains(said));
     // Of three, those two.
@@ -285,7 +284,7 @@ TEST(Mosaic, WhatCannotBeJoinedHasItsMessage) {
     EXPECT_EQ(test::error_of([&] {
                   load(Paths{one, "/nowhere/b.tif"});
               }),
-              "exit 3: dem::load: /nowhere/b.tif: cannot be read, no such file");
+              "exit 3: /nowhere/b.tif: cannot be read, no such file");
     Raster turned = tile(0, 0, 6, 4);
     turned.geotransform = {{500000, 26, 15, 5200000, 15, -26}};
     Raster turned_more = turned;
@@ -295,7 +294,7 @@ TEST(Mosaic, WhatCannotBeJoinedHasItsMessage) {
     EXPECT_EQ(test::error_of([&] {
                   load(Paths{a, b});
               }),
-              "exit 3: dem::load: " + a +
+              "exit 3: " + a +
                   ": cannot be joined with the others: their grids differ and none of them runs "
                   "east and south; bring them to one grid with gdalwarp");
     // A turned one goes to the grid of another.
@@ -308,7 +307,7 @@ TEST(Mosaic, WhatCannotBeJoinedHasItsMessage) {
     EXPECT_EQ(test::error_of([&] {
                   load(Paths{kenya, write_raster(folder() / "there.tif", there)});
               }),
-              "exit 3: dem::load: " + (folder() / "there.tif").string() +
+              "exit 3: " + (folder() / "there.tif").string() +
                   ": cannot be resampled to the grid of " + kenya +
                   ": parts of it are not within WGS 84 / UTM zone 32N; bring them to one CRS with "
                   "gdalwarp");
@@ -323,7 +322,7 @@ TEST(Mosaic, WhatCannotBeJoinedHasItsMessage) {
     EXPECT_EQ(test::error_of([&] {
                   load(Paths{p, q}, {.encoding = Encoding::TerrainRgb});
               }),
-              "exit 3: dem::load: " + p + ": cannot be joined with " + q +
+              "exit 3: " + p + ": cannot be joined with " + q +
                   ": pictures of encoded heights must be on one grid, tiles of one zoom");
 }
 

@@ -245,11 +245,8 @@ TEST(Places, MoreThanAMillionAreRefused) {
         for (int i = 0; i < 101; ++i)
             out << rows;
     }
-    EXPECT_EQ(
-        error_of([&] { read_line(path, "t"); }),
-        fmt::format("exit 3: t: {}: more than 1000000 places; leave out some, or cut the file "
-                    "up",
-                    path));
+    EXPECT_EQ(error_of([&] { read_line(path, "t"); }),
+              fmt::format("exit 3: t: {}: more than 1000000 places; split the file", path));
 }
 
 }  // namespace

@@ -239,8 +239,7 @@ TEST(Posts, SayWhatLooksWrongAsAWholeDemDoes) {
     empty.value = [](int, int, int) { return 7.0; };
     const std::string nothing = write_raster(folder() / "empty.tif", empty);
     EXPECT_EQ(error_of([&] { Posts::load(std::span(&nothing, 1), few); }),
-              "exit 3: dem::load: " + nothing +
-                  ": not one valid height, all 360000 posts are holes (nodata 7)");
+              "exit 3: " + nothing + ": no valid height: all 360000 posts are voids (nodata 7)");
 }
 
 TEST(Posts, OfADamagedFileAreAnErrorAndNotAPart) {
@@ -249,8 +248,7 @@ TEST(Posts, OfADamagedFileAreAnErrorAndNotAPart) {
     LoadOptions few;
     few.max_posts = kFew;
     const std::string error = error_of([&] { Posts::load(std::span(&path, 1), few); });
-    EXPECT_TRUE(error.starts_with("exit 3: dem::load: " + path + ": its heights cannot be read, "))
-        << error;
+    EXPECT_TRUE(error.starts_with("exit 3: " + path + ": its heights cannot be read, ")) << error;
 }
 
 TEST(TileCache, KeepsNoMoreThanItIsAllowed) {

@@ -223,7 +223,7 @@ TEST(RealDem, WithoutACrsOneMustBeGiven) {
     SKIP_WITHOUT_TEST_DATA(data);
     const std::string path = (data / "dem" / "avaGar.asc").string();
     EXPECT_EQ(test::error_of([&] { load(path); }),
-              "exit 3: dem::load: " + path + ": no coordinate reference system; pass --crs EPSG:n");
+              "exit 3: " + path + ": no coordinate reference system; pass --crs EPSG:n");
     const Heightfield f = load(path, {.crs = "EPSG:31287"});
     EXPECT_NEAR(f.grid.post_spacing_m().x, 4.9977, 0.002);  // 0.03 % of scale
 }
@@ -299,7 +299,7 @@ TEST(RealDem, PicturesAreRefused) {
         const std::string path = (data / "dem" / file).string();
         EXPECT_EQ(
             test::error_of([&] { load(path); }),
-            "exit 3: dem::load: " + path +
+            "exit 3: " + path +
                 ": a picture (red, green and blue bands of 8 bits), expected heights; if its "
                 "colours encode heights pass --encoding terrain-rgb or terrarium, if one band "
                 "holds them --band N");
@@ -341,11 +341,10 @@ TEST(RealDem, SaysWhatItAssumed) {
     SKIP_WITHOUT_TEST_DATA(data);
     const Heightfield f = load((data / "dem" / "SainteHelens.dem").string());
     EXPECT_EQ(f.grid.crs().name(), "Transverse Mercator on NAD27");
-    EXPECT_EQ(
-        f.about.assumptions,
-        (std::vector<std::string>{
-            "heights are placed as ellipsoidal ones: the file does not say what they are above",
-            "taken to WGS 84 by NAD27 to WGS 84 (6), good to 7 m"}));
+    EXPECT_EQ(f.about.assumptions,
+              (std::vector<std::string>{
+                  "heights are taken as ellipsoidal: the file names no vertical datum",
+                  "taken to WGS 84 by NAD27 to WGS 84 (6), good to 7 m"}));
     const Heightfield dted = load((data / "dem" / "n00_e006_3arc_v2.dt1").string());
     EXPECT_EQ(dted.about.vertical_datum, "EGM96");
 }

@@ -142,22 +142,13 @@ TEST(Summary, TextForPeople) {
     summary.path = "text.tif";
     EXPECT_EQ(
         to_text(summary),
-        "file       text.tif\n"
-        "format     GTiff, Int16\n"
-        "posts      101 x 51\n"
-        "crs        EPSG:32632 (WGS 84 / UTM zone 32N)\n"
-        "center     46.94664 N 9.01991 E (UTM 32N 501515 E 5199235 N, MGRS "
-        "32TNS0151499235)\n"
-        "extent     3002 m east, 1501 m north\n"
-        "spacing    30.01 m x 30.01 m\n"
-        "heights    1001.0 to 1200.0 m\n"
-        "holes      0.01941 % (nodata -9999)\n"
-        "unit       m (assumed)\n"
-        "above      unknown\n"
-        "assumed    heights are in metres, as neither the band nor a vertical CRS says; --unit "
-        "sets another unit\n"
-        "assumed    heights are placed as ellipsoidal ones: the file does not say what they "
-        "are above\n");
+        "file       text.tif\nformat     GTiff, Int16\nposts      101 x 51\ncrs        EPSG:32632 "
+        "(WGS 84 / UTM zone 32N)\ncenter     46.94664 N 9.01991 E (UTM 32N 501515 E 5199235 N, "
+        "MGRS 32TNS0151499235)\nextent     3002 m east, 1501 m north\nspacing    30.01 m x 30.01 "
+        "m\nheights    1001.0 to 1200.0 m\nholes      0.01941 % (nodata -9999)\nunit       m "
+        "(assumed)\nabove      unknown\nassumed    heights are in metres, as neither the band nor "
+        "a vertical CRS says; --unit sets another unit\nassumed    heights are taken as "
+        "ellipsoidal: the file names no vertical datum\n");
 }
 
 }  // namespace

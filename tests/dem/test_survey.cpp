@@ -147,7 +147,7 @@ TEST(Survey, WhatAFileCannotHoldIsRefused) {
            "ySize=\"4\"/><DstRect xOff=\"0\" yOff=\"0\" xSize=\"2147483647\" ySize=\"4000\"/>"
            "</SimpleSource></VRTRasterBand></VRTDataset>";
     EXPECT_THAT(test::error_of([&] { Source::open(path.string()); }),
-                testing::MatchesRegex("exit 3: dem::load: " + path.string() +
+                testing::MatchesRegex("exit 3: " + path.string() +
                                       ": promises 2147483647 x 4000 posts, expected far fewer in "
                                       "[0-9]+ bytes of files"));
 }
@@ -164,24 +164,23 @@ TEST(Survey, BlocksLargerThanMemoryAreRefused) {
         test::write_sparse_raster(folder() / "long_rows.tif", raster, {{5, 1, 7}});
     EXPECT_EQ(
         test::error_of([&] { Source::open(path, {.max_posts = 64 << 18}); }),
-        "exit 3: dem::load: " + path +
+        "exit 3: " + path +
             ": is stored in blocks of 30000000 x 1 posts, 114 MiB each, expected at most 64 "
             "MiB; pass --memory 115, or make tiles of them with gdal_translate -co TILED=YES");
     const Source source = Source::open(path, {.max_posts = 120 << 18});
     EXPECT_EQ(survey(source, 120 << 18).statistics.max_m, 7);
-    EXPECT_EQ(test::error_of([&] { load(source, 120 << 18); }),
-              "exit 3: dem::load: " + path +
-                  ": 30000000 x 2 posts, expected at most 4194304 a side; cut it up with "
-                  "gdal_translate");
+    EXPECT_EQ(
+        test::error_of([&] { load(source, 120 << 18); }),
+        "exit 3: " + path +
+            ": 30000000 x 2 posts, expected at most 4194304 a side; crop it with gdal_translate");
     // Means would need four rows or more.
     raster.columns = 4'000'000;
     const std::string narrow =
         test::write_sparse_raster(folder() / "narrow.tif", raster, {{5, 1, 7}});
     EXPECT_EQ(test::error_of([&] { load(Source::open(narrow), 20 << 18); }),
-              "exit 3: dem::load: " + narrow +
-                  ": memory for its heights, expected at most 20 MiB but got 31: 4000000 x 2 "
-                  "posts are too narrow for means; pass --memory 31, or cut it up with "
-                  "gdal_translate");
+              "exit 3: " + narrow +
+                  ": memory for its heights, expected at most 20 MiB but got 31: 4000000 x 2 posts "
+                  "are too narrow for means; pass --memory 31, or crop it with gdal_translate");
 }
 
 }  // namespace

@@ -124,10 +124,10 @@ TEST(Manifest, SaysWhatItInvents) {
     EXPECT_EQ(invents->address, "haze.grey");
     EXPECT_EQ(invents->pixel_posts, 0.05);
     EXPECT_EQ(plugins.relative(error_of([&] { add("kind"); })),
-              "exit 3: effect::load: plugins/haze/plugin.json:1: invents: expected a parameter of "
+              "exit 3: plugin: plugins/haze/plugin.json:1: invents: expected a parameter of "
               "type float, not host, but got \"haze.kind\", which is of type int");
     EXPECT_EQ(plugins.relative(error_of([&] { add("green"); })),
-              "exit 3: effect::load: plugins/haze/plugin.json:1: invents: expected a parameter of "
+              "exit 3: plugin: plugins/haze/plugin.json:1: invents: expected a parameter of "
               "type float, not host, but got \"haze.green\", which is none of the plugin's");
 }
 
@@ -152,7 +152,7 @@ TEST(Manifest, ANativePluginNeedsNoGlsl) {
 struct Bad {
     const char* name;
     std::string json;
-    const char* message;  ///< behind "exit 3: effect::load: plugins/haze/plugin.json:"
+    const char* message;  ///< behind "exit 3: plugin: plugins/haze/plugin.json:"
 };
 
 class ManifestError : public testing::TestWithParam<Bad> {};
@@ -164,7 +164,7 @@ TEST_P(ManifestError, NamesFileAndLine) {
     plugins.write("plugins/haze/plugin.json", GetParam().json);
     EXPECT_EQ(plugins.relative(
                   error_of([&] { load_effect(plugins.plugins() / "haze", plugins.data()); })),
-              std::string("exit 3: effect::load: plugins/haze/plugin.json:") + GetParam().message);
+              std::string("exit 3: plugin: plugins/haze/plugin.json:") + GetParam().message);
 }
 
 /// The head, and in the second line what is wrong.
@@ -265,7 +265,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"TextName", with(R"("module": "haze", "texts": {"No": {}})"),
             "2: texts: expected words of a-z, 0-9 and _ but got \"No\""},
         Bad{"TextsOfNobody", with(R"("texts": {"track": {}})"),
-            "2: texts: expected a \"module\" beside them: nothing else reads texts"},
+            "2: texts: expected a \"module\" too: only modules read texts"},
         Bad{"TextKind", text(R"("kind": "path")"),
             "2: texts.track.kind: expected one of text, file but got \"path\""},
         Bad{"TextFile", text(R"("kind": "file", "default": "../a.gpx")"),
@@ -288,7 +288,7 @@ INSTANTIATE_TEST_SUITE_P(
             "2: displaces.to_m: expected metres from -100000 to 100000, or a parameter such as "
             "\"haze.height_m\", but got true"},
         Bad{"DisplacesNothing", with(R"("displaces": {"up_m": 5})"),
-            "2: displaces: no hook moves the ground; define haze_on_displace, or leave this out"},
+            "2: displaces: no hook moves the ground; define haze_on_displace, or remove this"},
         Bad{"DisplacesByNone", with(R"("displaces": {"up_m": "haze.tall_m"})"),
             "2: displaces: expected a parameter of type float, not host, but got \"haze.tall_m\", "
             "which is none of the plugin's"}),
@@ -335,7 +335,7 @@ TEST(Manifest, FilesThatAreLinksOutOfTheFolderAreRefused) {
                   std::string("{") + kHead + ",\n\"glsl\": [\"link.glsl\"]}");
     EXPECT_EQ(plugins.relative(
                   error_of([&] { load_manifest(plugins.plugins() / "haze", plugins.data()); })),
-              "exit 3: effect::load: plugins/haze/plugin.json:2: glsl: expected a file of the "
+              "exit 3: plugin: plugins/haze/plugin.json:2: glsl: expected a file of the "
               "plugin's own folder but got link.glsl");
     // A folder that is a link itself is where its plugin is.
     plugins.add("bump");
@@ -350,14 +350,14 @@ TEST(Manifest, FilesThatAreNoneAreRefused) {
     ASSERT_EQ(mkfifo((plugins.plugins() / "haze/pipe.glsl").c_str(), 0600), 0);
     EXPECT_EQ(plugins.relative(
                   error_of([&] { load_manifest(plugins.plugins() / "haze", plugins.data()); })),
-              "exit 3: effect::load: plugins/haze/plugin.json:1: glsl: plugins/haze/pipe.glsl: it "
+              "exit 3: plugin: plugins/haze/plugin.json:1: glsl: plugins/haze/pipe.glsl: it "
               "is not a regular file");
     std::filesystem::remove(plugins.plugins() / "haze/plugin.json");
     ASSERT_EQ(mkfifo((plugins.plugins() / "haze/plugin.json").c_str(), 0600), 0);
     const Registry registry = plugins.load();
     ASSERT_EQ(registry.broken().size(), 1u);
     EXPECT_EQ(plugins.relative(registry.broken()[0].error),
-              "effect::load: plugins/haze/plugin.json: cannot be read, it is not a regular file");
+              "plugin: plugins/haze/plugin.json: cannot be read, it is not a regular file");
 }
 
 TEST(Manifest, LongGlslIsRefused) {
@@ -365,7 +365,7 @@ TEST(Manifest, LongGlslIsRefused) {
     plugins.add("haze", "", kHook + std::string(1 << 20, '\n'));
     EXPECT_EQ(plugins.relative(
                   error_of([&] { load_effect(plugins.plugins() / "haze", plugins.data()); })),
-              "exit 3: effect::load: plugins/haze/haze.glsl: expected at most 1024 KiB but got "
+              "exit 3: plugin: plugins/haze/haze.glsl: expected at most 1024 KiB but got "
               "1025");
 }
 
@@ -416,7 +416,7 @@ TEST(Manifest, NoIdIsWhatCoresNamesBeginWith) {
         plugins.add(word);
         EXPECT_EQ(plugins.relative(
                       error_of([&] { load_manifest(plugins.plugins() / word, plugins.data()); })),
-                  fmt::format("exit 3: effect::load: plugins/{0}/plugin.json:1: id: {0} is a word "
+                  fmt::format("exit 3: plugin: plugins/{0}/plugin.json:1: id: {0} is a word "
                               "of core's; choose another",
                               word));
         EXPECT_NE(listed.find(" " + word), std::string::npos) << word;
@@ -450,41 +450,40 @@ constexpr const char* kNoise =
 INSTANTIATE_TEST_SUITE_P(
     All, EffectError,
     testing::Values(
-        Mismatch{
-            "Glsl", "", "\nvoid haze_on_albedo(Surface s) {}",
-            "shader::parse: plugins/haze/haze.glsl:2: haze_on_albedo: wrong signature, expected "
-            "void haze_on_albedo(inout Surface) but got void haze_on_albedo(in Surface)"},
+        Mismatch{"Glsl", "", "\nvoid haze_on_albedo(Surface s) {}",
+                 "shader: plugins/haze/haze.glsl:2: haze_on_albedo: wrong signature, expected "
+                 "void haze_on_albedo(inout Surface) but got void haze_on_albedo(in Surface)"},
         Mismatch{"DoesNothing", "", "float haze_f() { return 1.0; }",
-                 "effect::load: plugins/haze/plugin.json: no hook and no module, so it does "
+                 "plugin: plugins/haze/plugin.json: no hook and no module, so it does "
                  "nothing; define a function such as haze_on_albedo"},
         Mismatch{"NotWanted", R"("wants": ["shadow"])",
                  "void haze_on_albedo(inout Surface s) {\n#if HAS_sky\n#endif\n}",
-                 "effect::load: plugins/haze/haze.glsl:2: HAS_sky: plugins/haze/plugin.json does "
+                 "plugin: plugins/haze/haze.glsl:2: HAS_sky: plugins/haze/plugin.json does "
                  "not want it; add \"sky\" to its \"wants\""},
         Mismatch{"NoTexture", kNoise, "uniform sampler3D haze_nois;\n" + kHook,
-                 "effect::load: plugins/haze/haze.glsl:1: haze_nois: plugins/haze/plugin.json has "
+                 "plugin: plugins/haze/haze.glsl:1: haze_nois: plugins/haze/plugin.json has "
                  "no texture nois; did you mean noise?"},
         Mismatch{"WrongSampler", kNoise, "\nuniform sampler2D haze_noise;\n" + kHook,
-                 "effect::load: plugins/haze/haze.glsl:2: haze_noise: expected a sampler3D for the "
+                 "plugin: plugins/haze/haze.glsl:2: haze_noise: expected a sampler3D for the "
                  "texture noise of plugins/haze/plugin.json:1 but got a sampler2D"},
         Mismatch{"DisplacesWithoutABound", "",
                  "\nvoid haze_on_displace(in VertexFrame v, inout vec3 p) { p += v.up; }",
-                 "effect::load: plugins/haze/haze.glsl:2: haze_on_displace: "
+                 "plugin: plugins/haze/haze.glsl:2: haze_on_displace: "
                  "plugins/haze/plugin.json does not say how far it moves the ground; add "
                  "\"displaces\": {\"down_m\": D, \"up_m\": U} with the most metres down and up, or "
                  "\"displaces\": {\"to_m\": H} where ground ends between its own height and H"},
         Mismatch{"DisplacesByAWord", R"("displaces": {"up_m": "haze.tall_m"})",
                  "uniform int haze_tall_m = 9; //@ range(0, 50)\n"
                  "void haze_on_displace(in VertexFrame v, inout vec3 p) { p += v.up; }",
-                 "effect::load: plugins/haze/plugin.json:1: displaces: expected a parameter of "
+                 "plugin: plugins/haze/plugin.json:1: displaces: expected a parameter of "
                  "type float, not host, but got \"haze.tall_m\", which is of type int"},
         Mismatch{"DisplacesByAHostsValue", R"("displaces": {"up_m": "haze.tall_m"})",
                  "uniform float haze_tall_m = 9.0; //@ host\n"
                  "void haze_on_displace(in VertexFrame v, inout vec3 p) { p += v.up; }",
-                 "effect::load: plugins/haze/plugin.json:1: displaces: expected a parameter of "
+                 "plugin: plugins/haze/plugin.json:1: displaces: expected a parameter of "
                  "type float, not host, but got \"haze.tall_m\", which is host"},
         Mismatch{"HookInTwoFiles", R"("glsl": ["more.glsl", "haze.glsl"])", "\n" + kHook,
-                 "effect::load: plugins/haze/haze.glsl:2: haze_on_albedo: defined already in "
+                 "plugin: plugins/haze/haze.glsl:2: haze_on_albedo: defined already in "
                  "plugins/haze/more.glsl:1"}),
     [](const auto& test) { return test.param.name; });
 

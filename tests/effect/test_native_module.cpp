@@ -74,7 +74,7 @@ TEST(NativeModule, EveryFaultIsAMessageThatNamesTheFile) {
     for (const auto& [name, message] : cases) {
         const Native plugins(name);
         EXPECT_EQ(plugins.error(),
-                  fmt::format("exit 3: effect::load: plugins/native/native.so: {}", message))
+                  fmt::format("exit 3: plugin: plugins/native/native.so: {}", message))
             << name;
     }
 }
@@ -82,7 +82,7 @@ TEST(NativeModule, EveryFaultIsAMessageThatNamesTheFile) {
 TEST(NativeModule, OneThatIsNotThereIsSaidToBeMissing) {
     const Native plugins("");
     EXPECT_EQ(plugins.error(),
-              fmt::format("exit 3: effect::load: plugins/native/plugin.json: module native is in "
+              fmt::format("exit 3: plugin: plugins/native/plugin.json: module native is in "
                           "neither plugins/native/native.so nor {}; build it",
                           (module_dir() / "plugins/native.so").string()));
 }
@@ -91,7 +91,7 @@ TEST(NativeModule, WhatIsNoLibraryIsNotLoaded) {
     const Native plugins("");
     plugins.write("plugins/native/native.so", "not a library\n");
     EXPECT_EQ(plugins.error(),
-              "exit 3: effect::load: plugins/native/native.so: it cannot be loaded: "
+              "exit 3: plugin: plugins/native/native.so: it cannot be loaded: "
               "plugins/native/native.so: file too short");
 }
 
@@ -113,10 +113,10 @@ TEST(NativeModule, ABadOneIsOffAndSoIsWhatRequiresIt) {
     EXPECT_TRUE(chosen.selection.notices.empty());
     ASSERT_EQ(chosen.selection.warnings.size(), 2u);
     EXPECT_EQ(plugins.relative(chosen.selection.warnings[0]),
-              "native is off: effect::load: plugins/native/native.so: its registration ended in a "
-              "segmentation fault; --disable native leaves it out");
+              "native is off: plugin: plugins/native/native.so: its registration ended in a "
+              "segmentation fault; --disable native silences this");
     EXPECT_EQ(chosen.selection.warnings[1],
-              "glow is off: it requires magic, native is off; --disable glow leaves it out");
+              "glow is off: it requires magic, native is off; --disable glow silences this");
 }
 
 TEST(NativeModule, ABadOneThatIsAskedForByNameIsAnError) {
@@ -129,14 +129,14 @@ TEST(NativeModule, ABadOneThatIsAskedForByNameIsAnError) {
             relevo::test::error_of([&] { select_and_load(registry, {}, switches, {}); }));
     };
     const std::string reason =
-        "exit 3: effect::select: native: it cannot be switched on: effect::load: "
+        "exit 3: effects: native: it cannot be switched on: plugin: "
         "plugins/native/native.so: its registration threw an exception: no good today; take it out "
         "of ";
     using Words = std::vector<std::string>;
     EXPECT_EQ(error({.only = Words{"native", "plain"}}), reason + "--only");
     EXPECT_EQ(error({.enable = {"native"}}), reason + "--enable");
     EXPECT_EQ(error({.only = Words{"glow"}}),
-              "exit 3: effect::select: glow: it cannot be switched on: it requires magic, native "
+              "exit 3: effects: glow: it cannot be switched on: it requires magic, native "
               "is off; take it out of --only");
     EXPECT_EQ(error({.only = Words{"plain"}}), "no error");
     const Preset preset{"winter", "winter.json", "", {.only = Words{"native", "plain"}}, {}};

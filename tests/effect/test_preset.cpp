@@ -67,15 +67,15 @@ TEST(Preset, IsFoundByItsName) {
     const Plugins plugins;
     const Share share(plugins.folder());
     EXPECT_EQ(error_of([] { load_preset("paper"); }),
-              "exit 3: effect::load_preset: paper: no such preset; there are none");
+              "exit 3: preset: paper: no such preset; there are none");
     plugins.write("presets/paper.json", R"({"description": "The paper."})");
     plugins.write("presets/winter.json", "{}");
     EXPECT_THAT(preset_names(), ElementsAre("paper", "winter"));
     EXPECT_EQ(load_preset("paper").description, "The paper.");
     EXPECT_EQ(error_of([] { load_preset("papers"); }),
-              "exit 3: effect::load_preset: papers: no such preset; did you mean paper?");
+              "exit 3: preset: papers: no such preset; did you mean paper?");
     EXPECT_EQ(error_of([] { load_preset("contours"); }),
-              "exit 3: effect::load_preset: contours: no such preset; there are paper, winter");
+              "exit 3: preset: contours: no such preset; there are paper, winter");
 }
 
 TEST(Registry, InstalledPluginsComeFirst) {
@@ -104,7 +104,7 @@ TEST_P(PresetError, NamesFileAndLine) {
     plugins.write("bad.json", GetParam().text);
     EXPECT_EQ(
         plugins.relative(error_of([&] { load_preset((plugins.folder() / "bad.json").string()); })),
-        std::string("exit 3: effect::load_preset: bad.json:") + GetParam().message);
+        std::string("exit 3: preset: bad.json:") + GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(PresetErrors, AMissingFileIsNamed) {
     EXPECT_EQ(error_of([] { load_preset("nowhere/winter.json"); }),
-              "exit 3: effect::load_preset: nowhere/winter.json: cannot be read, No such file or "
+              "exit 3: preset: nowhere/winter.json: cannot be read, No such file or "
               "directory");
 }
 

@@ -67,10 +67,10 @@ TEST(Registry, ABrokenPluginTakesNoOtherDown) {
     EXPECT_EQ(registry.broken()[0].id, "haze");
     EXPECT_EQ(registry.broken()[0].folder, plugins.plugins() / "haze");
     EXPECT_EQ(plugins.relative(registry.broken()[0].error),
-              "shader::parse: plugins/haze/haze.glsl:1: { is never closed");
+              "shader: plugins/haze/haze.glsl:1: { is never closed");
     EXPECT_EQ(registry.broken()[1].id, "snow");
     EXPECT_EQ(plugins.relative(registry.broken()[1].error),
-              "effect::load: plugins/snow/plugin.json:1: syntax error while parsing object key - "
+              "plugin: plugins/snow/plugin.json:1: syntax error while parsing object key - "
               "unexpected end of input; expected string literal");
 }
 
@@ -83,7 +83,7 @@ TEST(Registry, ABrokenPluginMayBeDisabled) {
     EXPECT_FALSE(registry.is_broken("bump"));
     EXPECT_EQ(select(registry, {}, {.disable = {"haze"}}).effects.size(), 1u);
     EXPECT_EQ(plugins.relative(error_of([&] { select(registry, {}, {.enable = {"haze"}}); })),
-              "exit 3: effect::select: haze: this plugin could not be loaded: shader::parse: "
+              "exit 3: effects: haze: this plugin could not be loaded: shader: "
               "plugins/haze/haze.glsl:1: } closes nothing");
 }
 
@@ -96,10 +96,9 @@ TEST(Registry, OneByteThatIsNoUtf8BreaksItsPluginAlone) {
     const Registry registry = plugins.load();
     EXPECT_THAT(ids(registry), ElementsAre("bump"));
     ASSERT_EQ(registry.broken().size(), 1u);
-    EXPECT_EQ(
-        plugins.relative(registry.broken()[0].error),
-        "effect::load: plugins/haze/plugin.json:1: syntax error while parsing value - invalid "
-        "string: ill-formed UTF-8 byte; last read: '\"N\\xe4h'");
+    EXPECT_EQ(plugins.relative(registry.broken()[0].error),
+              "plugin: plugins/haze/plugin.json:1: syntax error while parsing value - invalid "
+              "string: ill-formed UTF-8 byte; last read: '\"N\\xe4h'");
 }
 
 TEST(Registry, OfTwoWithOneIdTheFirstStays) {
@@ -114,7 +113,7 @@ TEST(Registry, OfTwoWithOneIdTheFirstStays) {
     EXPECT_EQ(registry.effects()[0].manifest.name, "haze");
     ASSERT_EQ(registry.broken().size(), 1u);
     EXPECT_EQ(plugins.relative(registry.broken()[0].error),
-              "effect::load: more/mist/plugin.json: the id haze is taken by "
+              "plugin: more/mist/plugin.json: the id haze is taken by "
               "plugins/haze/plugin.json; one of the two has to go");
 }
 
@@ -129,13 +128,13 @@ TEST(Registry, ErrorsNameWhatIsNotThere) {
     EXPECT_EQ(error_of([&] { registry.effect("contours", "who"); }),
               "exit 3: who: contours: no such plugin; there are bump, haze");
     EXPECT_EQ(plugins.relative(error_of([&] { registry.effect("snow", "who"); })),
-              "exit 3: who: snow: this plugin could not be loaded: shader::parse: "
+              "exit 3: who: snow: this plugin could not be loaded: shader: "
               "plugins/snow/snow.glsl:1: } closes nothing");
     EXPECT_EQ(error_of([] { Registry().effect("haze", "who"); }),
               "exit 3: who: haze: no such plugin; there are none");
     EXPECT_EQ(plugins.relative(error_of(
                   [&] { Registry::load({plugins.folder() / "nowhere"}, plugins.data()); })),
-              "exit 3: effect::load: nowhere: no such folder");
+              "exit 3: plugin: nowhere: no such folder");
 }
 
 TEST(Registry, KnowsAllParameters) {

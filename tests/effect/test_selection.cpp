@@ -356,7 +356,7 @@ TEST(SelectionError, BothProvidersOfAnExclusiveWordAreAskedForAtOnce) {
     EXPECT_EQ(error_of([&] {
                   select(registry, {}, {.only = Words{"maps", "sweep"}});
               }),
-              "exit 3: effect::select: shadow: expected one provider of it but got maps and sweep; "
+              "exit 3: effects: shadow: expected one provider of it but got maps and sweep; "
               "add --disable maps or --disable sweep");
 }
 
@@ -369,7 +369,7 @@ TEST(SelectionError, ACircleNamesItsSides) {
     plugins.add("aaa", R"("after": ["air"])");
     const Registry registry = plugins.load();
     EXPECT_EQ(plugins.relative(error_of([&] { select(registry, {}, {}); })),
-              "exit 3: effect::select: haze and bump: they wait for each other: haze after bump "
+              "exit 3: effects: haze and bump: they wait for each other: haze after bump "
               "(relief), bump after haze (air); change \"after\" in plugins/haze/plugin.json or "
               "plugins/bump/plugin.json");
     EXPECT_THAT(ids(select(registry, {}, {.disable = {"bump"}})), ElementsAre("haze", "aaa"));
@@ -381,7 +381,7 @@ TEST(SelectionError, TwoProvidersOfAnExclusiveHookAndTheMend) {
     plugins.add("neutral", "", "void neutral_on_tonemap(inout vec3 c) {}");
     const Registry registry = plugins.load();
     EXPECT_EQ(error_of([&] { select(registry, {}, {}); }),
-              "exit 3: effect::select: tonemap: expected one provider of this exclusive hook but "
+              "exit 3: effects: tonemap: expected one provider of this exclusive hook but "
               "got filmic and neutral; add --disable filmic or --disable neutral");
     EXPECT_THAT(ids(select(registry, {}, {.disable = {"neutral"}})), ElementsAre("filmic"));
 }
@@ -393,10 +393,9 @@ TEST(SelectionError, TwoProvidersOfAService) {
                     std::string("vec3 ") + id +
                         "_on_background_radiance(vec3 d, bool disc) { return vec3(1); }");
     const Registry registry = plugins.load();
-    EXPECT_EQ(
-        error_of([&] { select(registry, {}, {}); }),
-        "exit 3: effect::select: background_radiance: expected one provider of this exclusive "
-        "hook but got dome and sky; add --disable dome or --disable sky");
+    EXPECT_EQ(error_of([&] { select(registry, {}, {}); }),
+              "exit 3: effects: background_radiance: expected one provider of this exclusive "
+              "hook but got dome and sky; add --disable dome or --disable sky");
 }
 
 TEST(SelectionError, UnknownNamesOnTheCommandLine) {
@@ -404,7 +403,7 @@ TEST(SelectionError, UnknownNamesOnTheCommandLine) {
     add_ground(plugins);
     const Registry registry = plugins.load();
     constexpr const char* kMessage =
-        "exit 3: effect::select: layerin: no such plugin; did you mean layering?";
+        "exit 3: effects: layerin: no such plugin; did you mean layering?";
     EXPECT_EQ(error_of([&] { select(registry, {}, {.only = Words{"layerin"}}); }), kMessage);
     EXPECT_EQ(error_of([&] { select(registry, {}, {.enable = {"layerin"}}); }), kMessage);
     EXPECT_EQ(error_of([&] { select(registry, {}, {.disable = {"layerin"}}); }), kMessage);
@@ -415,7 +414,7 @@ TEST(SelectionError, BothOnAndOff) {
     add_ground(plugins);
     const Registry registry = plugins.load();
     constexpr const char* kMessage =
-        "exit 3: effect::select: wet: expected it either on or off but got both";
+        "exit 3: effects: wet: expected it either on or off but got both";
     EXPECT_EQ(error_of([&] { select(registry, {}, {.enable = {"wet"}, .disable = {"wet"}}); }),
               kMessage);
     EXPECT_EQ(error_of([&] { select(registry, {}, {.only = Words{"wet"}, .disable = {"wet"}}); }),
@@ -496,30 +495,30 @@ TEST_F(Settings, TextsAreSetAsTheyAreAndFilesCountFromTheirPreset) {
     EXPECT_EQ(error_of([&] {
                   apply({}, {{"way.trak", "a"}});
               }),
-              "exit 3: shader::ParamStore: way.trak: no such parameter; did you mean way.track?");
+              "exit 3: parameter: way.trak: no such parameter; did you mean way.track?");
     EXPECT_EQ(error_of([&] { store_.text("haze.density"); }),
-              "exit 3: shader::ParamStore: haze.density: a value, not a text");
+              "exit 3: parameter: haze.density: a value, not a text");
 }
 
 TEST_F(Settings, ErrorsNameParameterAndPlace) {
     EXPECT_EQ(error_of([&] {
                   apply({preset({}, {{"haze.densty", "1", 3}})}, {});
               }),
-              "exit 3: effect::apply_settings: winter.json:3: haze.densty: no such parameter; did "
+              "exit 3: effects: winter.json:3: haze.densty: no such parameter; did "
               "you mean haze.density?");
     EXPECT_EQ(error_of([&] {
                   apply({preset({}, {{"haze.density", "7", 3}})}, {});
               }),
-              "exit 3: effect::apply_settings: winter.json:3: haze.density: expected a number in "
+              "exit 3: effects: winter.json:3: haze.density: expected a number in "
               "[0, 2] 1/km but got \"7\"");
     EXPECT_EQ(error_of([&] {
                   apply({}, {{"snow.line", "1800"}});
               }),
-              "exit 3: shader::ParamStore: snow.line: no such parameter");
+              "exit 3: parameter: snow.line: no such parameter");
     EXPECT_EQ(error_of([&] {
                   apply({}, {{"haze.density", "much"}});
               }),
-              "exit 3: shader::parse_value: haze.density: expected a number in [0, 2] 1/km but got "
+              "exit 3: parameter: haze.density: expected a number in [0, 2] 1/km but got "
               "\"much\"");
 }
 

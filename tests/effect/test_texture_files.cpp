@@ -59,7 +59,7 @@ TEST(TextureFiles, AnArraysLayersAreAlike) {
         return plugins.error();
     };
     const std::string head =
-        "exit 3: effect::load: plugins/haze/b.ktx2: expected 8 x 8 texels of 4 "
+        "exit 3: plugin: plugins/haze/b.ktx2: expected 8 x 8 texels of 4 "
         "bytes in 4 levels as in plugins/haze/a.ktx2 but got ";
     EXPECT_EQ(error_with(TextureData(PixelFormat::RGBA8, 8, 8, 1, 1, 4)), "no error");
     EXPECT_EQ(error_with(TextureData(PixelFormat::RGBA8, 8, 8, 1, 1, 2)),
@@ -85,7 +85,7 @@ TEST(TextureFiles, AreOfTheKindThatTheManifestSays) {
         plugins.ktx("a.ktx2", data);
         return plugins.error();
     };
-    const std::string head = "exit 3: effect::load: plugins/haze/a.ktx2: expected ";
+    const std::string head = "exit 3: plugin: plugins/haze/a.ktx2: expected ";
     EXPECT_EQ(error_of(flat, "sampler2D", TextureData(PixelFormat::R8, 8, 4, 2, 1, 1)),
               head + "a file of kind 2d for textures.noise but got 3d, 8 x 4 x 2 texels");
     EXPECT_EQ(error_of(flat, "sampler2D", TextureData(PixelFormat::R8, 8, 4, 1, 3, 1)),
@@ -130,8 +130,7 @@ TEST(TextureFiles, SlicesDivideThePicture) {
     const Textured plugins(R"("kind": "3d", "file": "a.png", "slices": 3, "encoding": "linear")",
                            "sampler3D");
     image::write(plugins.own() / "a.png", image::Image8(2, 4, 1));
-    EXPECT_EQ(plugins.error(),
-              "exit 3: effect::load: plugins/haze/a.png: 4 rows do not make 3 slices");
+    EXPECT_EQ(plugins.error(), "exit 3: plugin: plugins/haze/a.png: 4 rows do not make 3 slices");
 }
 
 TEST(TextureFiles, ABrokenOneLeavesItsEffectOutAndWhatRequiresIt) {
@@ -145,14 +144,14 @@ TEST(TextureFiles, ABrokenOneLeavesItsEffectOutAndWhatRequiresIt) {
     EXPECT_THAT(ids(chosen.selection), ElementsAre("plain"));
     EXPECT_THAT(chosen.textures, IsEmpty());
     ASSERT_EQ(chosen.selection.warnings.size(), 2u);
-    EXPECT_EQ(plugins.relative(chosen.selection.warnings[0]),
-              "haze is off: image: plugins/haze/a.png: Not a PNG file; --disable haze leaves it "
-              "out");
+    EXPECT_EQ(
+        plugins.relative(chosen.selection.warnings[0]),
+        "haze is off: image: plugins/haze/a.png: Not a PNG file; --disable haze silences this");
     EXPECT_EQ(chosen.selection.warnings[1],
-              "glow is off: it requires air, haze is off; --disable glow leaves it out");
+              "glow is off: it requires air, haze is off; --disable glow silences this");
     EXPECT_EQ(plugins.relative(relevo::test::error_of(
                   [&] { select_and_load(registry, {}, {.enable = {"haze"}}, {}); })),
-              "exit 3: effect::select: haze: it cannot be switched on: image: "
+              "exit 3: effects: haze: it cannot be switched on: image: "
               "plugins/haze/a.png: Not a PNG file; take it out of --enable");
 }
 
@@ -169,10 +168,9 @@ TEST(TextureFiles, LargerThanTheDeviceTakesLeavesTheEffectOut) {
     chosen = select_and_load(registry, {}, {}, {}, TextureLimits{39, 99, 99}, std::move(chosen));
     EXPECT_THAT(ids(chosen.selection), ElementsAre("plain"));
     ASSERT_EQ(chosen.selection.warnings.size(), 1u);
-    EXPECT_EQ(
-        plugins.relative(chosen.selection.warnings[0]),
-        "haze is off: effect::load: plugins/haze/a.png: expected at most 39 texels a side, as "
-        "this device takes, but got 2d, 40 x 3 texels; --disable haze leaves it out");
+    EXPECT_EQ(plugins.relative(chosen.selection.warnings[0]),
+              "haze is off: plugin: plugins/haze/a.png: expected at most 39 texels a side, as this "
+              "device takes, but got 2d, 40 x 3 texels; --disable haze silences this");
 }
 
 TEST(TextureFiles, VolumesAndLayersHaveLimitsOfTheirOwn) {
@@ -183,7 +181,7 @@ TEST(TextureFiles, VolumesAndLayersHaveLimitsOfTheirOwn) {
     EXPECT_EQ(relevo::test::error_of([&] {
                   check_limits(volume, {99, 8, 99});
               }),
-              "exit 3: effect::load: v.ktx2: expected at most 8 texels a side, as this device "
+              "exit 3: plugin: v.ktx2: expected at most 8 texels a side, as this device "
               "takes, but got 3d, 4 x 4 x 9 texels");
     LoadedTexture array{flat, {}};
     array.spec.kind = TextureSpec::Kind::D2Array;
@@ -192,7 +190,7 @@ TEST(TextureFiles, VolumesAndLayersHaveLimitsOfTheirOwn) {
     EXPECT_EQ(relevo::test::error_of([&] {
                   check_limits(array, {99, 99, 2});
               }),
-              "exit 3: effect::load: v.ktx2: expected at most 2 layers, as this device takes, but "
+              "exit 3: plugin: v.ktx2: expected at most 2 layers, as this device takes, but "
               "got 3");
     EXPECT_EQ(relevo::test::error_of([&] { check_limits(array, {4, 1, 3}); }), "no error");
 }

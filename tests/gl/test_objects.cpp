@@ -59,11 +59,10 @@ TEST_F(GlObjects, TexturesKeepTheirTexels) {
 
 TEST_F(GlObjects, TexturesHaveNoMoreLevelsThanTheirSides) {
     EXPECT_EQ(Texture(TextureKind::D2, Format::R8, {8, 3, 1}, 4, "small").levels(), 4);
-    EXPECT_EQ(
-        test::error_of([] {
-            Texture(TextureKind::D2, Format::R8, {8, 3, 1}, 5, "small");
-        }),
-        "exit 1: gl::Texture: small: expected at most 4 levels of 8 x 3 x 1 texels but got 5");
+    EXPECT_EQ(test::error_of([] {
+                  Texture(TextureKind::D2, Format::R8, {8, 3, 1}, 5, "small");
+              }),
+              "exit 1: texture: small: expected at most 4 levels of 8 x 3 x 1 texels but got 5");
 }
 
 TEST(Texture, LargerThanTheDevicesMemorySaysHowLarge) {
@@ -73,7 +72,7 @@ TEST(Texture, LargerThanTheDevicesMemorySaysHowLarge) {
         Texture(TextureKind::D2Array, Format::RGBA32F, {16384, 16384, layers}, 1, "sky");
     };
     EXPECT_EQ(test::error_of(too_large),
-              fmt::format("exit 1: gl::Texture: sky: the device has no {} MiB for 16384 x 16384 x "
+              fmt::format("exit 1: texture: sky: the device has no {} MiB for 16384 x 16384 x "
                           "{} texels; take a smaller picture or a device with more",
                           4096 * layers, layers));
 }
@@ -85,19 +84,19 @@ TEST(Texture, LargerThanTheDeviceTakesIsAMessage) {
         return test::error_of([&] { Texture(kind, Format::R8, extent, levels, "sky"); });
     };
     EXPECT_EQ(refused(TextureKind::D2, {side + 1, 4, 1}, 1),
-              fmt::format("exit 1: gl::Texture: sky: expected a texture of up to {0} x {0} texels "
+              fmt::format("exit 1: texture: sky: expected a texture of up to {0} x {0} texels "
                           "and a whole chain of levels but got {1} x 4 x 1 texels in 1 levels "
                           "(GL_INVALID_VALUE)",
                           side, side + 1));
     EXPECT_EQ(
         refused(TextureKind::D2Array, {4, 4, context.info().max_array_layers + 1}, 1),
-        fmt::format("exit 1: gl::Texture: sky: expected a texture of up to {0} x {0} texels in "
+        fmt::format("exit 1: texture: sky: expected a texture of up to {0} x {0} texels in "
                     "{1} layers and a whole chain of levels but got 4 x 4 x {2} texels in 1 "
                     "levels (GL_INVALID_VALUE)",
                     side, context.info().max_array_layers, context.info().max_array_layers + 1));
     // More levels than there are halvings.
     EXPECT_EQ(refused(TextureKind::D2, {8, 8, 1}, 99),
-              "exit 1: gl::Texture: sky: expected at most 4 levels of 8 x 8 x 1 texels but got 99");
+              "exit 1: texture: sky: expected at most 4 levels of 8 x 8 x 1 texels but got 99");
 }
 
 TEST(Texture, DoesNotTakeAnEarlierErrorForItsOwn) {
@@ -162,7 +161,7 @@ TEST(Buffer, LargerThanTheDevicesMemorySaysHowLarge) {
     const Context context{ContextOptions{}};
     const std::string message = test::error_of([] { Buffer(std::size_t{1} << 52, "everything"); });
     EXPECT_EQ(message,
-              "exit 1: gl::Buffer: everything: the device has no 4294967296.0 MiB for it "
+              "exit 1: GL buffer: everything: the device has no 4294967296.0 MiB for it "
               "(GL_OUT_OF_MEMORY); take a device with more");
 }
 

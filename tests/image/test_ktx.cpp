@@ -136,7 +136,7 @@ TEST_P(BrokenKtx, IsRejectedWithItsReason) {
         bytes[GetParam().offset + i] = static_cast<char>(GetParam().bytes[i]);
     write_bytes(path, bytes);
     EXPECT_EQ(test::error_of([&] { read_ktx(path); }),
-              fmt::format("exit 3: image::read_ktx: {}: {}", path.string(), GetParam().message));
+              fmt::format("exit 3: texture: {}: {}", path.string(), GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -232,12 +232,12 @@ TEST(Ktx, AFileCutAnywhereIsRejected) {
     }
     write_bytes(path, {});
     EXPECT_EQ(test::error_of([&] { read_ktx(path); }),
-              fmt::format("exit 3: image::read_ktx: {}: file too short, expected at least 80 bytes "
+              fmt::format("exit 3: texture: {}: file too short, expected at least 80 bytes "
                           "but got 0",
                           path.string()));
     write_bytes(path, {whole.begin(), whole.begin() + 100});
     EXPECT_EQ(test::error_of([&] { read_ktx(path); }),
-              fmt::format("exit 3: image::read_ktx: {}: file too short for the index of its 4 "
+              fmt::format("exit 3: texture: {}: file too short for the index of its 4 "
                           "levels, expected at least 176 bytes but got 100",
                           path.string()));
 }
@@ -271,21 +271,20 @@ TEST(Ktx, WhatIsNoFileSaysSo) {
     const auto dir = test::scratch_dir("ktx_none");
     const auto missing = dir / "missing.ktx2";
     EXPECT_EQ(test::error_of([&] { read_ktx(missing); }),
-              fmt::format("exit 3: image::read_ktx: {}: cannot be read, No such file or directory",
+              fmt::format("exit 3: texture: {}: cannot be read, No such file or directory",
                           missing.string()));
-    EXPECT_EQ(test::error_of([&] { read_ktx(dir); }),
-              fmt::format("exit 3: image::read_ktx: {}: cannot be read, it is not a regular file",
-                          dir.string()));
+    EXPECT_EQ(
+        test::error_of([&] { read_ktx(dir); }),
+        fmt::format("exit 3: texture: {}: cannot be read, it is not a regular file", dir.string()));
     const auto pipe = dir / "pipe.ktx2";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
     EXPECT_EQ(test::error_of([&] { read_ktx(pipe); }),
-              fmt::format("exit 3: image::read_ktx: {}: cannot be read, it is not a regular file",
+              fmt::format("exit 3: texture: {}: cannot be read, it is not a regular file",
                           pipe.string()));
     const auto nowhere = dir / "missing" / "texture.ktx2";
-    EXPECT_EQ(
-        test::error_of([&] { write_ktx(nowhere, counted(PixelFormat::R8, 2, 2, 1, 1)); }),
-        fmt::format("exit 3: image::write_ktx: {}: the folder {} does not exist; make it first",
-                    nowhere.string(), nowhere.parent_path().string()));
+    EXPECT_EQ(test::error_of([&] { write_ktx(nowhere, counted(PixelFormat::R8, 2, 2, 1, 1)); }),
+              fmt::format("exit 3: texture: {}: the folder {} does not exist; make it first",
+                          nowhere.string(), nowhere.parent_path().string()));
 }
 
 TEST(Ktx, AFailedWriteLeavesTheOldFile) {
@@ -293,7 +292,7 @@ TEST(Ktx, AFailedWriteLeavesTheOldFile) {
     const auto path = dir / "texture.ktx2";
     std::filesystem::create_directories(path / "in_the_way");
     EXPECT_EQ(test::error_of([&] { write_ktx(path, counted(PixelFormat::R8, 2, 2, 1, 1)); }),
-              fmt::format("exit 3: image::write_ktx: {}: is a folder", path.string()));
+              fmt::format("exit 3: texture: {}: is a folder", path.string()));
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir), {}), 1);
 }
 

@@ -158,14 +158,14 @@ TEST(Alignments, TargetsThatNoLandscapeHasAreErrors) {
                                   static_cast<double>(NAN)}) {
         target.height_m = height_m;
         const std::string error = error_of([&] { here.sight(target); });
-        EXPECT_TRUE(error.starts_with("exit 3: light::horizon: 46.98233,9: the target at ") &&
+        EXPECT_TRUE(error.starts_with("exit 3: horizon: 46.98233,9: the target at ") &&
                     error.ends_with(", expected -12000 to 20000; no landscape has such a height"))
             << error;
     }
     target.height_m = 20'000;
     EXPECT_TRUE(here.sight(target).visible);
     EXPECT_EQ(error_of([&] { here.sight(geo::geodetic_deg(-33.9, 18.4, 1000)); }),
-              "exit 3: light::horizon: -33.9,18.4: the target is 9009 km away, expected at most "
+              "exit 3: horizon: -33.9,18.4: the target is 9009 km away, expected at most "
               "1000; nothing on Earth is seen from so far");
 }
 
@@ -176,18 +176,18 @@ TEST(Alignments, ErrorsSayWhatIsWrong) {
     EXPECT_EQ(error_of([&] {
                   alignments(here, target, {2026, 6, 22}, {2026, 6, 21}, kZurich);
               }),
-              "exit 3: light::alignments: from 2026-06-22 to 2026-06-21: ends before it begins");
+              "exit 3: sun when: from 2026-06-22 to 2026-06-21: ends before it begins");
     EXPECT_EQ(error_of([&] {
                   alignments(here, target, {2150, 6, 22}, {2150, 6, 23}, kZurich);
               }),
-              "exit 3: sun::position: 2150-06-21T23:00:00Z: the sun is computed for the years 1900 "
+              "exit 3: sun: 2150-06-21T23:00:00Z: the sun is computed for the years 1900 "
               "to 2100");
     AlignmentOptions options;
     options.tolerance_rad = 0;
     EXPECT_EQ(error_of([&] {
                   alignments(here, target, {2026, 6, 21}, {2026, 6, 21}, kZurich, options);
               }),
-              "exit 3: light::alignments: tolerance 0 degrees: no use, expected more than 0 and up "
+              "exit 3: sun when: tolerance 0 degrees: no use, expected more than 0 and up "
               "to 45");
 }
 

@@ -427,16 +427,16 @@ TEST(DirectLight, SaysHowItWasMadeAndWhatIsWrong) {
     EXPECT_EQ(test::error_of([&] {
                   light.days({2026, 6, 22}, {2026, 6, 21}, kZurich);
               }),
-              "exit 3: sun::day_events: from 2026-06-22 to 2026-06-21: ends before it begins");
+              "exit 3: sun: from 2026-06-22 to 2026-06-21: ends before it begins");
     EXPECT_EQ(test::error_of([&] {
                   light.day({1899, 6, 22}, kZurich);
               }),
-              "exit 3: sun::position: 1899-06-21T23:00:00Z: the sun is computed for the years 1900 "
+              "exit 3: sun: 1899-06-21T23:00:00Z: the sun is computed for the years 1900 "
               "to 2100");
     EXPECT_EQ(test::error_of([&] {
                   light.day({2011, 12, 30}, Zone::named("Pacific/Apia"));
               }),
-              "exit 3: sun::Zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
+              "exit 3: time zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
               "skipped it");
 }
 

@@ -99,13 +99,13 @@ TEST(EventTime, FirstLightErrorsSayWhatIsWrong) {
     const dem::Posts posts(field);
     const TerrainAccess dem = access(posts);
     EXPECT_EQ(error_of([&] { parse_time("first-light@36.42,-84.25", date, zone); }),
-              "exit 3: sun::parse_event_time: first-light@36.42,-84.25: first and last light hang "
-              "on the terrain; expected a DEM");
+              "exit 3: time: first-light@36.42,-84.25: first and last light depend on the terrain; "
+              "name a DEM");
     EXPECT_EQ(error_of([&] { parse_time("first-light@36.42,-84.25", std::nullopt, zone, dem); }),
-              "exit 3: sun::parse_event_time: first-light@36.42,-84.25: no date; write 2026-06-21 "
+              "exit 3: time: first-light@36.42,-84.25: no date; write 2026-06-21 "
               "first-light@36.42,-84.25 or pass --date");
     EXPECT_EQ(error_of([&] { parse_time("first-light@40,-84.25", date, zone, dem); }),
-              "exit 3: light::horizon: 40,-84.25: outside of the DEM, expected a point within "
+              "exit 3: horizon: 40,-84.25: outside of the DEM, expected a point within "
               "latitudes 36.1600 to 36.4458 and longitudes -84.4133 to -84.0783");
     const dem::Heightfield arctic = test::field_of(101, 101, {15, 0.002, 0, 78.3, 0, -0.0005},
                                                    "EPSG:4326", [](int, int) { return 10.0; });
@@ -115,12 +115,12 @@ TEST(EventTime, FirstLightErrorsSayWhatIsWrong) {
     EXPECT_EQ(error_of([&] {
                   parse_time("2026-12-21 first-light@78.275,15.1", std::nullopt, oslo, there);
               }),
-              "exit 3: light::parse_time: 2026-12-21 first-light@78.275,15.1: the sun does not "
+              "exit 3: time: 2026-12-21 first-light@78.275,15.1: the sun does not "
               "reach that point on 2026-12-21");
     EXPECT_EQ(error_of([&] {
                   parse_time("2026-06-21 last-light@78.275,15.1", std::nullopt, oslo, there);
               }),
-              "exit 3: light::parse_time: 2026-06-21 last-light@78.275,15.1: no last light on "
+              "exit 3: time: 2026-06-21 last-light@78.275,15.1: no last light on "
               "2026-06-21, the sun shines there at midnight");
 }
 

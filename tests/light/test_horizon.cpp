@@ -512,24 +512,22 @@ TEST(TerrainHorizon, ErrorsSayWhatIsWrong) {
     const dem::Heightfield field = plain(
         [](int column, int row) { return std::hypot(column - 20, row - 20) < 5 ? kNaN : 100.0; });
     EXPECT_EQ(error_of([&] { TerrainHorizon(field, geo::geodetic_deg(46.5, 9)); }),
-              "exit 3: light::horizon: 46.5,9: outside of the DEM, expected a point within "
+              "exit 3: horizon: 46.5,9: outside of the DEM, expected a point within "
               "latitudes 46.9715 to 47.0255 and longitudes 8.9605 to 9.0395");
     EXPECT_EQ(error_of([&] { TerrainHorizon(field, field.grid.place(20, 20)); }),
-              "exit 3: light::horizon: 47.02012,8.96842: no height there, the point lies in a "
-              "hole of the DEM; a "
-              "post with a height is at 47.0212,8.96684");
+              "exit 3: horizon: 47.02012,8.96842: the point is in a void of the DEM; a post with a "
+              "height is at 47.0212,8.96684");
     HorizonOptions options;
     options.eye_above_ground = false;
     options.eye_height_m = 99;
     EXPECT_EQ(error_of([&] { TerrainHorizon(field, middle(field), options); }),
-              "exit 3: light::horizon: 46.99852,9: the eye at 99.0 m is under the ground, which is "
+              "exit 3: horizon: 46.99852,9: the eye at 99.0 m is under the ground, which is "
               "at 100.0 m there; a height above the ground is written as 2agl");
     options.eye_height_m = 1e9;
     EXPECT_EQ(
         error_of([&] { TerrainHorizon(field, middle(field), options); }),
-        "exit 3: light::horizon: 46.99852,9: the eye at 1000000000 m, expected at most 10000 m "
-        "above the ground, which is at 100.0 m there; higher up lines of sight bend "
-        "otherwise");
+        "exit 3: horizon: 46.99852,9: the eye at 1000000000 m, expected at most 10000 m above the "
+        "ground, which is at 100.0 m there; the refraction model does not hold above");
     for (const double height_m : {10'100.1, 1e308, kInfinity, kNaN}) {
         options.eye_height_m = height_m;
         EXPECT_NE(error_of([&] {
@@ -542,32 +540,31 @@ TEST(TerrainHorizon, ErrorsSayWhatIsWrong) {
     EXPECT_EQ(TerrainHorizon(field, middle(field), options).eye_m(), 10'100);
     const dem::Heightfield centimetres = plain([](int, int) { return 112'300; });
     EXPECT_EQ(error_of([&] { TerrainHorizon(centimetres, middle(centimetres)); }),
-              "exit 3: light::horizon: 46.99852,9: the ground is at 112300 m there, expected a "
+              "exit 3: horizon: 46.99852,9: the ground is at 112300 m there, expected a "
               "height of the Earth; pass --unit cm where the DEM's heights are centimetres, or "
               "--nodata V where V is no height");
     options = {};
     options.refraction = 1.5;
     EXPECT_EQ(error_of([&] { TerrainHorizon(field, middle(field), options); }),
-              "exit 3: light::horizon: refraction 1.5: no air bends light so, expected -1 to 0.9 "
-              "of the Earth's curvature; 0.13 is the mean");
+              "exit 3: horizon: refraction 1.5: impossible, expected -1 to 0.9 of the Earth's "
+              "curvature; 0.13 is the mean");
     options = {};
     options.earth = EarthModel::MapOnPlane;
     EXPECT_EQ(error_of([&] {
                   const dem::Heightfield degrees_field = bundled("jacksboro.tif");
                   TerrainHorizon(degrees_field, middle(degrees_field), options);
               }),
-              "exit 3: light::horizon: WGS 84: a map in degrees cannot be taken as flat ground; "
+              "exit 3: horizon: WGS 84: a map in degrees cannot be taken as flat ground; "
               "expected a projected CRS");
 }
 
 TEST(TerrainHorizon, SaysHowItWasMade) {
     const dem::Heightfield field = plain();
     HorizonOptions options;
-    EXPECT_EQ(
-        TerrainHorizon(field, middle(field), options).description(),
-        "terrain horizon: highest crossing with the rows and columns of the DEM, on the WGS "
-        "84 ellipsoid with terrestrial refraction k = 0.13; eye at ground level, on ground at "
-        "100.0 m; beyond the DEM smooth ground at 100 m");
+    EXPECT_EQ(TerrainHorizon(field, middle(field), options).description(),
+              "terrain horizon: highest crossing with the rows and columns of the DEM, on the WGS "
+              "84 ellipsoid with terrestrial refraction k = 0.13; eye at ground level, on ground "
+              "at 100.0 m; outside the DEM smooth ground at 100 m");
     options.earth = EarthModel::MapOnPlane;
     options.eye_height_m = 1.6;
     options.least_elevation_rad = 0;

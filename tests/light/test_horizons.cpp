@@ -282,10 +282,10 @@ TEST(Horizons, HolesHideNothingAndHaveNone) {
     EXPECT_TRUE(std::isnan(east.elevation_rad[0].at(40, 30)));
     EXPECT_NEAR(degrees(east.elevation_rad[0].at(30, 20)), degrees(std::atan(0.5)), 0.1);
     EXPECT_NEAR(degrees(east.elevation_rad[0].at(30, 30)), 0, 0.1);
-    EXPECT_EQ(east.definition,
-              "elevation of the horizon as seen from the ground; ground of the DEM alone, on the "
-              "WGS 84 ellipsoid with terrestrial refraction k = 0.13; beyond the DEM smooth ground "
-              "at 0 m");
+    EXPECT_EQ(
+        east.definition,
+        "elevation of the horizon as seen from the ground; ground of the DEM alone, on the WGS 84 "
+        "ellipsoid with terrestrial refraction k = 0.13; outside the DEM smooth ground at 0 m");
 }
 
 TEST(SkyView, AgreesWithTopocalc) {
@@ -341,7 +341,7 @@ TEST(SkyView, FewerDirectionsAreNotFarOff) {
     test::print_accuracy("sky view of 36 directions against 360", errors, "", 0.02);
     EXPECT_LE(quantile(errors, 0.99), 0.01);
     EXPECT_EQ(test::error_of([&] { sky_view(posts, {.directions = 3}); }),
-              "exit 3: light::sky_view: 3 directions: expected 4 to 3600");
+              "exit 3: sky view: 3 directions: expected 4 to 3600");
 }
 
 TEST(QuickMath, ArcTangent) {

@@ -292,16 +292,15 @@ TEST(Shadows, WhatItCannotDoIsRefused) {
     const dem::Heightfield field = wall(100);
     EXPECT_EQ(
         test::error_of([&] { shadows(dem::Posts(field), sun_at(90, 10), {.refraction = 1.5}); }),
-        "exit 3: light::DemSky: refraction 1.5: no air bends light so, expected -1 to 0.9 of "
-        "the Earth's curvature; 0.13 is the mean");
+        "exit 3: horizon: refraction 1.5: impossible, expected -1 to 0.9 of the Earth's curvature; "
+        "0.13 is the mean");
     // Meridians run together: at 89.99 degrees a post is 0.02 degrees of longitude.
     const dem::Heightfield pole = test::field_of(400, 40, {0, 0.9, 0, 89.999, 0, -0.0001},
                                                  "EPSG:4326", [](int c, int) { return c % 7; });
-    EXPECT_EQ(
-        test::error_of([&] { shadows(dem::Posts(pole), sun_at(90, 10)); }),
-        "exit 3: light::divide: WGS 84: the sun's direction on this grid changes by more than "
-        "0.05 degrees within 2 posts; expected a map on which it does not, such as UTM: "
-        "gdalwarp -t_srs");
+    EXPECT_EQ(test::error_of([&] { shadows(dem::Posts(pole), sun_at(90, 10)); }),
+              "exit 3: sun: WGS 84: the sun's direction on this grid changes by more than "
+              "0.05 degrees within 2 posts; expected a map on which it does not, such as UTM: "
+              "gdalwarp -t_srs");
 }
 
 }  // namespace

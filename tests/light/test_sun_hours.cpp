@@ -281,13 +281,13 @@ TEST(SunHours, WhatItCannotDoIsRefused) {
     const dem::Posts posts(field);
     const Instant begin = utc("2026-03-20T00:00Z");
     EXPECT_EQ(test::error_of([&] { sun_hours(posts, begin, begin); }),
-              "exit 3: light::sun_hours: from 2026-03-20T00:00:00Z to 2026-03-20T00:00:00Z: "
+              "exit 3: sun hours: from 2026-03-20T00:00:00Z to 2026-03-20T00:00:00Z: "
               "expected an end after the beginning");
     EXPECT_EQ(test::error_of([&] { sun_hours(posts, begin, begin + 60.0, {.step_s = 0}); }),
-              "exit 3: light::sun_hours: step 0 s: expected 1 s to an hour");
+              "exit 3: sun hours: step 0 s: expected 1 s to an hour");
     EXPECT_EQ(
         test::error_of([&] { sun_hours(posts, begin, begin + 5 * 86400.0, {.spells = true}); }),
-        "exit 3: light::sun_hours: 5.0 days: first and last light are known of 4 days at most");
+        "exit 3: sun hours: 5.0 days: first and last light are known of 4 days at most");
 }
 
 }  // namespace

@@ -231,33 +231,30 @@ TEST(Walk, WhatIsNoWalkIsSaid) {
     const geo::Geodetic a = geo::geodetic_deg(36.30, -84.24), b = geo::geodetic_deg(36.36, -84.26);
     const Instant t = at("2026-02-10T12:00Z");
     EXPECT_EQ(error_of([&] { Walk::at_speed({a}, t, 1); }),
-              "exit 3: light::walk: 1 point: no way, expected two or more");
-    EXPECT_EQ(
-        error_of([&] {
-            Walk::at_speed({a, a}, t, 1);
-        }),
-        "exit 3: light::walk: all points are at the same place, expected a way with a length");
+              "exit 3: walk: 1 point: no way, expected two or more");
+    EXPECT_EQ(error_of([&] {
+                  Walk::at_speed({a, a}, t, 1);
+              }),
+              "exit 3: walk: all points are at the same place, expected a way with a length");
     for (const double speed : {0.0, -1.0, std::nan("")})
-        EXPECT_EQ(
-            error_of([&] {
-                Walk::at_speed({a, b}, t, speed);
-            }),
-            fmt::format("exit 3: light::walk: a speed of {} m/s, expected one above 0", speed));
+        EXPECT_EQ(error_of([&] {
+                      Walk::at_speed({a, b}, t, speed);
+                  }),
+                  fmt::format("exit 3: walk: a speed of {} m/s, expected one above 0", speed));
     EXPECT_EQ(error_of([&] {
                   Walk::at_speed({a, b}, t, 0.0001);
               }),
-              "exit 3: light::walk: 6.9 km take 798.1 days, expected at most 31; walk faster, or "
+              "exit 3: walk: 6.9 km take 798.1 days, expected at most 31; walk faster, or "
               "cut the track up");
     EXPECT_EQ(error_of([&] {
                   Walk::timed({a, b, a}, {t, t + 10, t + 5});
               }),
-              "exit 3: light::walk: point 3: its time, 2026-02-10T12:00:05Z, is before that of the "
+              "exit 3: walk: point 3: its time, 2026-02-10T12:00:05Z, is before that of the "
               "point before, 2026-02-10T12:00:10Z; expected times in order");
-    EXPECT_EQ(
-        error_of([&] {
-            Walk::timed({a, b}, {t, t});
-        }),
-        "exit 3: light::walk: all points have the same time, expected a walk that takes some");
+    EXPECT_EQ(error_of([&] {
+                  Walk::timed({a, b}, {t, t});
+              }),
+              "exit 3: walk: all points have the same time, expected a walk that takes some");
 }
 
 TEST(Walk, OutsideOfTheDemIsSaidWithWhereAndHowFar) {
@@ -268,10 +265,9 @@ TEST(Walk, OutsideOfTheDemIsSaidWithWhereAndHowFar) {
                        at("2026-02-10T12:00Z"), 2);
     const std::string message = error_of([&] { light_along(dem.posts, walk, options()); });
     // The DEM ends at 84.0783 W, which is 14.53 km from 84.24 W and 7.04 km from 84.00 W.
-    EXPECT_EQ(
-        message,
-        "exit 3: light::walk: km 14.535 to 28.691 of 46.205 km: outside of the DEM, up to 7.04 "
-        "km beyond its edge; take a DEM that has all of the way, or cut the track");
+    EXPECT_EQ(message,
+              "exit 3: walk: km 14.535 to 28.691 of 46.205 km: outside of the DEM, up to 7.04 "
+              "km beyond its edge; take a DEM that has all of the way, or cut the track");
     // A single corner that stands out between two looks is found too.
     const double edge_deg = degrees(dem.field.grid.place(402, 100).lon_rad);
     const double lat_deg = degrees(dem.field.grid.place(402, 100).lat_rad);
@@ -289,12 +285,12 @@ TEST(Walk, MoreLooksThanAMillionAreRefused) {
     std::vector<geo::Geodetic> places;
     for (int i = 0; i < 8000; ++i)
         places.push_back(geo::geodetic_deg(36.30, i % 2 == 0 ? -84.24 : -84.10));
-    EXPECT_EQ(
-        error_of([&] {
-            light_along(dem.posts, Walk::at_speed(places, at("2026-02-10T12:00Z"), 300), options());
-        }),
-        "exit 3: light::walk: 100586.9 km in 93.1 h would be looked at 1.34e+06 times, expected "
-        "at most 1000000; thin the track, or cut it up");
+    EXPECT_EQ(error_of([&] {
+                  light_along(dem.posts, Walk::at_speed(places, at("2026-02-10T12:00Z"), 300),
+                              options());
+              }),
+              "exit 3: walk: 100586.9 km in 93.1 h need 1.34e+06 samples, expected at most "
+              "1000000; thin or split the track");
 }
 
 }  // namespace

@@ -299,7 +299,7 @@ TEST(HeightSteps, NeedRoomBesideTheVaryings) {
         "void much_on_albedo(inout Surface s) { s.diffuse = vec3(" + sum + " + s.height_dx_m); }\n";
     EXPECT_EQ(test::error_of([&] { stitched({shader::parse_snippet("much", "much.glsl", glsl)}); }),
               "exit 3: render: height_dx_m and height_dy_m: expected varyings of up to 24 floats "
-              "beside them but got 7 textures of four; switch an effect off");
+              "in addition but got 7 textures of four; switch an effect off");
 }
 
 }  // namespace

@@ -91,8 +91,9 @@ TEST(Framing, OfNothingIsFromTheSouth) {
 
 TEST(Framing, SaysWhatItChose) {
     const GroundNet net = net_of([](double, double) { return 0.0; });
-    EXPECT_EQ(frame_ground({}, net, day_at(46)).reason(),
-              "the DEM is seen from azimuth 195, 28 degrees high: 100 % of it in sight");
+    EXPECT_EQ(
+        frame_ground({}, net, day_at(46)).reason(),
+        "view: from azimuth 195, 28 degrees high, chosen for relief: 100 % of the DEM is visible");
 }
 
 TEST(Framing, TakesAFewMilliseconds) {

@@ -197,7 +197,7 @@ TEST_F(JobFile, SweepsThatSayNothingAreRefused) {
               "2: sweep[1].effects: expected 2 values, as sweep[0].cameras has, but got 1; "
               "\"combine\": \"zip\" takes axes of one length");
     EXPECT_EQ(error(with("\"sweep\": [{\"dates\": [\"2026-01-01\"]}]")),
-              " dates need a time of day or an event; give \"at\" beside them, or time.at");
+              " dates need a time of day or an event; add \"at\" to them, or time.at");
 }
 
 TEST_F(JobFile, AMillionPicturesAreRefusedBeforeTheyAreDrawnUp) {
@@ -216,8 +216,8 @@ TEST_F(JobFile, AMillionPicturesAreRefusedBeforeTheyAreDrawnUp) {
 TEST_F(JobFile, AFileNamedTwiceIsRefused) {
     EXPECT_EQ(error(with("\"time\": {\"at\": \"2026-01-01T00:00Z\"},"
                          "\"sweep\": [{\"cameras\": [{}, {}]}], \"output\": \"a.png\"")),
-              fmt::format("2: output: \"a.png\" names {} twice, for pictures 1 and 2; add {{n}} to "
-                          "it, or what tells them apart",
+              fmt::format("2: output: \"a.png\" names {} twice, for pictures 1 and 2; add {{n}} or "
+                          "another field that differs",
                           (dir_ / "a.png").string()));
     EXPECT_EQ(
         error(with("\"output\": \"{camra}.png\", \"sweep\": [{\"cameras\": [{}]}]")),
@@ -237,10 +237,10 @@ TEST_F(JobFile, EventsThatDoNotHappenLeaveTheirPictureOut) {
     ASSERT_EQ(drawn.shots.size(), 1u);
     EXPECT_EQ(drawn.shots[0].number, 1u);
     EXPECT_THAT(drawn.left_out, ElementsAre("sun: no sunset on 2026-12-01"));
-    EXPECT_EQ(error(with("\"sweep\": [{\"dates\": {\"from\": \"2026-12-01\", \"to\": "
-                         "\"2026-12-02\", \"at\": \"sunset\"}}]")),
-              " no picture is left, as none of its moments happens; the first: sun: no sunset "
-              "on 2026-12-01");
+    EXPECT_EQ(
+        error(with("\"sweep\": [{\"dates\": {\"from\": \"2026-12-01\", \"to\": "
+                   "\"2026-12-02\", \"at\": \"sunset\"}}]")),
+        " no picture is left: none of its events happens; the first: sun: no sunset on 2026-12-01");
 }
 
 TEST(NameTemplate, HasTheMomentByTheClocksOfItsZone) {

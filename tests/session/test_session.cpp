@@ -172,8 +172,7 @@ TEST(Session, FiguresHaveHolesWhateverIsDrawn) {
         EXPECT_GT(dem.field.about.statistics.holes, 100);
         EXPECT_EQ(dem.drawn.is_filled.empty(), holes == dem::Holes::Cut);
         ASSERT_EQ(session.ground_notes().size(), 1u);
-        EXPECT_NE(session.ground_notes()[0].find("% of the posts have no height"),
-                  std::string::npos);
+        EXPECT_NE(session.ground_notes()[0].find("% of the posts are voids"), std::string::npos);
         pictures[i] = session.picture().values;
     }
     EXPECT_EQ(bits[0], bits[1]);
@@ -187,10 +186,10 @@ TEST(Session, RefusesWhatNeedsAnotherProgram) {
     EXPECT_EQ(test::error_of([&] { session.set("paint.slope", "false"); }),
               "exit 3: session: paint.slope: it is static: another value is another program");
     EXPECT_EQ(test::error_of([&] { session.set("film.density", "-1"); }),
-              "exit 3: shader::parse_value: film.density: expected a number in [0, 1] 1/km but got "
+              "exit 3: parameter: film.density: expected a number in [0, 1] 1/km but got "
               "\"-1\"");
     EXPECT_EQ(test::error_of([&] { session.set("film.densty", "1"); }),
-              "exit 3: shader::ParamStore: film.densty: no such parameter; did you mean "
+              "exit 3: parameter: film.densty: no such parameter; did you mean "
               "film.density?");
     // The last good values stay.
     session.draw();
@@ -256,18 +255,18 @@ TEST(Words, AreReadBeforeAnythingIsLoaded) {
         return test::error_of([&] { needs_dem(moment); });
     };
     EXPECT_EQ(error({"2026-06-21T18:30", "", "Europe/Zurick"}),
-              "exit 3: sun::Zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
+              "exit 3: time zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
     EXPECT_EQ(error({"2026-06-21T18", "", ""}),
-              "exit 3: sun::parse_time: 2026-06-21T18: not a time, expected YYYY-MM-DDThh:mm with "
+              "exit 3: time: 2026-06-21T18: not a time, expected YYYY-MM-DDThh:mm with "
               "Z or an offset, such as 2026-06-21T18:30+02:00");
     EXPECT_EQ(error({"sunrise", "", ""}),
-              "exit 3: sun::parse_event_time: sunrise: no date; write 2026-06-21 sunrise or pass "
+              "exit 3: time: sunrise: no date; write 2026-06-21 sunrise or pass "
               "--date");
     EXPECT_EQ(error({"2026-06-21 sunrise", "2026-06-22", ""}),
-              "exit 3: sun::parse_event_time: 2026-06-21 sunrise: contradicts --date 2026-06-22; "
+              "exit 3: time: 2026-06-21 sunrise: contradicts --date 2026-06-22; "
               "give only one of the two");
     EXPECT_EQ(error({"2011-12-30 sunrise", "", "Pacific/Apia"}),
-              "exit 3: sun::Zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
+              "exit 3: time zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
               "skipped it");
 }
 
@@ -289,13 +288,13 @@ TEST(Words, TakeTheZoneOfTheNearestPlaceThatIsNamed) {
     EXPECT_EQ(test::error_of([] {
                   parse({"noon@-13.83,-171.76", "2011-12-30", ""});
               }),
-              "exit 3: sun::Zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
+              "exit 3: time zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
               "skipped it");
     // Where there is no place there is no zone.
     EXPECT_EQ(test::error_of([] {
                   parse({"2026-06-21T18:30", "", ""});
               }),
-              "exit 3: sun::parse_time: 2026-06-21T18:30: no time zone; write 2026-06-21T18:30Z "
+              "exit 3: time: 2026-06-21T18:30: no time zone; write 2026-06-21T18:30Z "
               "for UTC or 2026-06-21T18:30+02:00, or pass --tz Europe/Zurich");
 }
 

@@ -195,7 +195,7 @@ TEST(Stamps, AreOnPicturesOfScenesThatWantThem) {
     scene.height_px = 36;
     const auto [tiny, notes] = picture();
     ASSERT_FALSE(notes.empty());
-    EXPECT_EQ(notes.front(), "stamp: title: no room in a picture of 48 x 36 pixels, left out");
+    EXPECT_EQ(notes.front(), "stamp: title: no room in a picture of 48 x 36 pixels; omitted");
 }
 
 TEST(Stamps, FollowASceneThatIsShownNext) {

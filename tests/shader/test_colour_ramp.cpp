@@ -14,7 +14,7 @@ ColourRamp ramp_of(const std::string& glsl) {
 
 std::string error(const std::string& glsl) {
     const std::string what = test::error_of([&] { parse_snippet("haze", "haze.glsl", glsl); });
-    const std::string begin = "exit 3: shader::parse: haze.glsl:";
+    const std::string begin = "exit 3: shader: haze.glsl:";
     EXPECT_EQ(what.substr(0, begin.size()), begin);
     return what.substr(begin.size());
 }

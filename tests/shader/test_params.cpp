@@ -120,7 +120,7 @@ TEST(ParamValues, BeyondAFloatSayWhy) {
     const auto error = [](const char* declaration, const char* text) {
         return error_of([&] { parse_value(param(declaration), text); });
     };
-    const std::string head = "exit 3: shader::parse_value: haze.a: expected ";
+    const std::string head = "exit 3: parameter: haze.a: expected ";
     EXPECT_EQ(error(kDirection, "1e99,0,0"),
               head +
                   "a direction, three numbers east,north,up that are not all zero, none beyond "
@@ -132,12 +132,11 @@ TEST(ParamValues, BeyondAFloatSayWhy) {
     EXPECT_EQ(error(kFloat, "1e99"), head + "a number in [0, 2] 1/km but got \"1e99\"");
     EXPECT_EQ(error(kFloat, "2.0000000000000004"),
               head + "a number in [0, 2] 1/km but got \"2.0000000000000004\"");
-    EXPECT_EQ(
-        error_of([] { param("uniform float haze_a = 5e98; //@ range(0, 1e99)"); }),
-        "exit 3: shader::parse: haze.glsl:1: haze_a: expected a range within -3.402823466e+38 "
-        "and 3.402823466e+38, as a float can hold, but got range(0, 1e99)");
+    EXPECT_EQ(error_of([] { param("uniform float haze_a = 5e98; //@ range(0, 1e99)"); }),
+              "exit 3: shader: haze.glsl:1: haze_a: expected a range within -3.402823466e+38 "
+              "and 3.402823466e+38, as a float can hold, but got range(0, 1e99)");
     EXPECT_EQ(error_of([] { param("uniform int haze_a = 5; //@ range(0, 1e10)"); }),
-              "exit 3: shader::parse: haze.glsl:1: haze_a: expected a range within -2147483647 and "
+              "exit 3: shader: haze.glsl:1: haze_a: expected a range within -2147483647 and "
               "2147483647, as an int can hold, but got range(0, 1e10)");
 }
 
@@ -147,7 +146,7 @@ TEST(ParamStore, WritesWholeNumbersOnlyWhereTheyFit) {
     store.write_host("haze.a", {7});
     for (const double bad : {1e99, 0.5, std::nan("")})
         EXPECT_EQ(error_of([&] { store.write_host("haze.a", {bad}); }),
-                  fmt::format("exit 3: shader::ParamStore: haze.a: expected a whole number but got "
+                  fmt::format("exit 3: parameter: haze.a: expected a whole number but got "
                               "{}",
                               bad));
     EXPECT_EQ(store.value("haze.a")[0], 7);
@@ -171,46 +170,44 @@ INSTANTIATE_TEST_SUITE_P(
     All, ParamValueError,
     testing::Values(
         BadValue{"OutOfRange", kFloat, "5",
-                 "exit 3: shader::parse_value: haze.a: expected a number in [0, 2] 1/km but got "
+                 "exit 3: parameter: haze.a: expected a number in [0, 2] 1/km but got "
                  "\"5\""},
         BadValue{"NotANumber", kFloat, "much",
-                 "exit 3: shader::parse_value: haze.a: expected a number in [0, 2] 1/km but got "
+                 "exit 3: parameter: haze.a: expected a number in [0, 2] 1/km but got "
                  "\"much\""},
         BadValue{"Nan", kFloat, "nan",
-                 "exit 3: shader::parse_value: haze.a: expected a number in [0, 2] 1/km but got "
+                 "exit 3: parameter: haze.a: expected a number in [0, 2] 1/km but got "
                  "\"nan\""},
         BadValue{"NotWhole", kInt, "1.5",
-                 "exit 3: shader::parse_value: haze.a: expected a whole number in [1, 64] but got "
+                 "exit 3: parameter: haze.a: expected a whole number in [1, 64] but got "
                  "\"1.5\""},
         BadValue{"Bool", kBool, "maybe",
-                 "exit 3: shader::parse_value: haze.a: expected true or false but got \"maybe\""},
+                 "exit 3: parameter: haze.a: expected true or false but got \"maybe\""},
         BadValue{"Word", kEnum, "cubic",
-                 "exit 3: shader::parse_value: haze.a: expected one of linear, square but got "
+                 "exit 3: parameter: haze.a: expected one of linear, square but got "
                  "\"cubic\""},
-        BadValue{
-            "NumberWithoutWord", kEnum, "2",
-            "exit 3: shader::parse_value: haze.a: expected one of linear, square but got \"2\""},
+        BadValue{"NumberWithoutWord", kEnum, "2",
+                 "exit 3: parameter: haze.a: expected one of linear, square but got \"2\""},
         BadValue{"TooMany", kVec2, "1,1,1",
-                 "exit 3: shader::parse_value: haze.a: expected two numbers with commas between in "
+                 "exit 3: parameter: haze.a: expected two numbers with commas between in "
                  "[-1, 1] but got \"1,1,1\""},
         BadValue{"OneComponentOutside", kVec2, "0,2",
-                 "exit 3: shader::parse_value: haze.a: expected two numbers with commas between in "
+                 "exit 3: parameter: haze.a: expected two numbers with commas between in "
                  "[-1, 1] but got \"0,2\""},
         BadValue{"Hex", kColour, "#12345",
-                 "exit 3: shader::parse_value: haze.a: expected a colour, #rrggbb or three numbers "
+                 "exit 3: parameter: haze.a: expected a colour, #rrggbb or three numbers "
                  "in [0, 1] but got \"#12345\""},
         BadValue{"AlphaForThree", kColour, "#11223344",
-                 "exit 3: shader::parse_value: haze.a: expected a colour, #rrggbb or three numbers "
+                 "exit 3: parameter: haze.a: expected a colour, #rrggbb or three numbers "
                  "in [0, 1] but got \"#11223344\""},
-        BadValue{
-            "Angle", kAngle, "200",
-            "exit 3: shader::parse_value: haze.a: expected an angle in [-180, 180] deg but got "
-            "\"200\""},
+        BadValue{"Angle", kAngle, "200",
+                 "exit 3: parameter: haze.a: expected an angle in [-180, 180] deg but got "
+                 "\"200\""},
         BadValue{"Nowhere", kDirection, "0,0,0",
-                 "exit 3: shader::parse_value: haze.a: expected a direction, three numbers "
+                 "exit 3: parameter: haze.a: expected a direction, three numbers "
                  "east,north,up that are not all zero but got \"0,0,0\""},
         BadValue{"Empty", kFloat, "",
-                 "exit 3: shader::parse_value: haze.a: expected a number in [0, 2] 1/km but got "
+                 "exit 3: parameter: haze.a: expected a number in [0, 2] 1/km but got "
                  "\"\""}),
     [](const auto& test) { return test.param.name; });
 
@@ -307,17 +304,17 @@ TEST(ParamStore, ErrorsNameTheParameter) {
         params("uniform float haze_density = 1; //@ range(0, 2)\n"
                "uniform float haze_drift = 0; //@ host"));
     EXPECT_EQ(error_of([&] { store.set("haze.densty", "1"); }),
-              "exit 3: shader::ParamStore: haze.densty: no such parameter; did you mean "
+              "exit 3: parameter: haze.densty: no such parameter; did you mean "
               "haze.density?");
     EXPECT_EQ(error_of([&] { store.set("snow", "1"); }),
-              "exit 3: shader::ParamStore: snow: no such parameter");
+              "exit 3: parameter: snow: no such parameter");
     EXPECT_EQ(error_of([&] { store.set("haze.density", ParamValue{3}); }),
-              "exit 3: shader::ParamStore: haze.density: expected a number in [0, 2] but got 3");
+              "exit 3: parameter: haze.density: expected a number in [0, 2] but got 3");
     EXPECT_EQ(error_of([&] { store.set("haze.drift", "1"); }),
-              "exit 3: shader::ParamStore: haze.drift: written by the program for every frame; it "
+              "exit 3: parameter: haze.drift: written by the program for every frame; it "
               "cannot be set");
     EXPECT_EQ(error_of([&] { store.write_host("haze.density", {1}); }),
-              "exit 3: shader::ParamStore: haze.density: not a host parameter; only people set it");
+              "exit 3: parameter: haze.density: not a host parameter; only people set it");
     store.write_host("haze.drift", {7});
     EXPECT_EQ(store.value("haze.drift"), ParamValue{7});
 }

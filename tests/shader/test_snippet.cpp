@@ -129,14 +129,14 @@ TEST(Snippet, AcceptsWhatGlslHas) {
 struct Bad {
     const char* name;
     const char* text;
-    const char* message;  ///< behind "exit 3: shader::parse: haze.glsl:"
+    const char* message;  ///< behind "exit 3: shader: haze.glsl:"
 };
 
 class SnippetError : public testing::TestWithParam<Bad> {};
 
 TEST_P(SnippetError, NamesFileAndLine) {
     EXPECT_EQ(error_of([] { parse(GetParam().text); }),
-              std::string("exit 3: shader::parse: haze.glsl:") + GetParam().message);
+              std::string("exit 3: shader: haze.glsl:") + GetParam().message);
 }
 
 constexpr const char* kAmongHooks =
@@ -272,12 +272,11 @@ TEST(Snippet, AnnotationsAreUtf8WithoutControlCharacters) {
     EXPECT_EQ(
         parse("uniform bool haze_a = true; //@\tlabel(\"Nebelstärke\")").source.params.at(0).label,
         "Nebelstärke");
-    EXPECT_EQ(
-        error_of([] { parse("\nuniform bool haze_a = true; //@ label(\"\xe4\")"); }),
-        "exit 3: shader::parse: haze.glsl:2: //@ label(\"\\xe4\"): expected UTF-8 without control "
-        "characters");
+    EXPECT_EQ(error_of([] { parse("\nuniform bool haze_a = true; //@ label(\"\xe4\")"); }),
+              "exit 3: shader: haze.glsl:2: //@ label(\"\\xe4\"): expected UTF-8 without control "
+              "characters");
     EXPECT_EQ(error_of([] { parse("uniform bool haze_a = true; //@ label(\"\x1b[2J\")"); }),
-              "exit 3: shader::parse: haze.glsl:1: //@ label(\"\\x1b[2J\"): expected UTF-8 without "
+              "exit 3: shader: haze.glsl:1: //@ label(\"\\x1b[2J\"): expected UTF-8 without "
               "control characters");
 }
 
@@ -304,7 +303,7 @@ INSTANTIATE_TEST_SUITE_P(
             "1: #version is core's: every program is plain GLSL 4.50 core"},
         Bad{"Extension", "#extension GL_ARB_gpu_shader5 : enable",
             "1: #extension is core's: every program is plain GLSL 4.50 core"},
-        Bad{"Line", "#line 7", "1: #line would lose the file's own line numbers; leave it out"},
+        Bad{"Line", "#line 7", "1: #line would lose the file's own line numbers; remove it"},
         Bad{"Pragma", "#pragma optimize(off)",
             "1: #pragma is not for here; there are #define, #undef and #if"},
         Bad{"MisspeltDirective", "#defin haze_A",
@@ -338,7 +337,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"Block", "uniform haze_Block { float haze_x; };",
             "1: haze_Block is a block, which is core's; a plugin declares parameters one by one"},
         Bad{"Precision", "precision highp float;",
-            "1: precision does nothing in desktop GLSL; leave it out"},
+            "1: precision does nothing in desktop GLSL; remove it"},
         Bad{"Include", "//@ include noise.glsl",
             "1: expected //@ include lib/NAME.glsl but got //@ include noise.glsl"},
         Bad{"IncludeFromElsewhere", "//@ include lib/../../secret.glsl",
@@ -429,7 +428,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"StaticHost", "uniform float haze_a = 1.0; //@ static host",
             "1: haze_a: it cannot be both static, a constant, and host, written for every frame"},
         Bad{"HostAngle", "uniform float haze_a = 1.0; //@ angle host",
-            "1: haze_a: a host parameter is written in the shader's own radians; leave angle out"},
+            "1: haze_a: a host parameter is written in the shader's own radians; remove angle"},
         Bad{"TwoRoles", "uniform vec3 haze_a = vec3(1); //@ colour direction",
             "1: haze_a: it can be only one of colour, angle and direction"},
         Bad{"OpenQuote", "uniform bool haze_a = true; //@ label(\"A)",

@@ -483,16 +483,15 @@ TEST(Varyings, OfADeferredProgramFillTargetsWithoutGaps) {
 }
 
 TEST(Varyings, OfADeferredProgramHaveALimit) {
-    EXPECT_EQ(
-        stitch_error(many_varyings(std::vector<std::string>(8, "vec4")), geometry_program()),
-        "exit 1: shader::stitch: terrain.vert.glsl + geometry.frag.glsl: expected varyings that "
-        "fit into 7 textures of 4 floats but got 8; switch a plugin off (floats: haze 32)");
+    EXPECT_EQ(stitch_error(many_varyings(std::vector<std::string>(8, "vec4")), geometry_program()),
+              "exit 1: shader: terrain.vert.glsl + geometry.frag.glsl: expected varyings that "
+              "fit into 7 textures of 4 floats but got 8; switch a plugin off (floats: haze 32)");
     EXPECT_EQ(stitch_error(plugins({{"haze",
                                      "\nout mat3 haze_m;\nvoid haze_on_vertex(in VertexFrame v) { "
                                      "haze_m = mat3(1.0); }\nvoid haze_on_atmosphere(in Surface s, "
                                      "in vec3 view, inout vec3 r) { r = haze_m * r; }\n"}}),
                            geometry_program()),
-              "exit 3: shader::stitch: haze.glsl:2: haze_m: expected a varying of type float, int, "
+              "exit 3: shader: haze.glsl:2: haze_m: expected a varying of type float, int, "
               "uint, vec2, vec3 or vec4 but got mat3");
 }
 
@@ -548,7 +547,7 @@ TEST(TextureUnits, TooManyAreListedWithTheirPlugins) {
     EXPECT_NO_THROW(stitch(Texts(), terrain_program(), input));
     input.max_texture_units = 3;
     EXPECT_EQ(error_of([&] { stitch(Texts(), terrain_program(), input); }),
-              "exit 1: shader::stitch: terrain.vert.glsl + terrain.frag.glsl: expected at most 3 "
+              "exit 1: shader: terrain.vert.glsl + terrain.frag.glsl: expected at most 3 "
               "textures, as many as this device has units, but got 4; switch a plugin off:\n"
               "  unit 0: elevation_m of core\n"
               "  unit 1: ground.noise of ground\n"
@@ -613,44 +612,44 @@ INSTANTIATE_TEST_SUITE_P(
             {{"haze", "void haze_on_tonemap(inout vec3 c) {}"},
              {"snow", "void snow_on_tonemap(inout vec3 c) {}"}},
             post_program(),
-            "exit 3: shader::stitch: tonemap: expected one provider of this exclusive hook but got "
+            "exit 3: shader: tonemap: expected one provider of this exclusive hook but got "
             "haze and snow"},
         Bad{"AnotherPluginsFunction",
             {{"haze", "\nvoid haze_on_albedo(inout Surface s) { snow_f(); }"},
              {"snow", "void snow_f() {}"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:2: haze_on_albedo uses snow_f, which is the plugin "
+            "exit 3: shader: haze.glsl:2: haze_on_albedo uses snow_f, which is the plugin "
             "snow's; a plugin uses only itself, core and services"},
         Bad{"AnotherPluginsParameter",
             {{"haze", "void haze_on_albedo(inout Surface s) { s.diffuse *= snow_a; }"},
              {"snow", "uniform float snow_a = 1.0; //@ range(0, 1)"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:1: haze_on_albedo uses snow_a, which is the plugin "
+            "exit 3: shader: haze.glsl:1: haze_on_albedo uses snow_a, which is the plugin "
             "snow's; a plugin uses only itself, core and services"},
         Bad{"LibraryNotAskedFor",
             {{"snow", "//@ include lib/noise.glsl\n"},
              {"haze", "void haze_on_albedo(inout Surface s) { s.diffuse *= hash(vec2(1)); }"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:1: haze_on_albedo uses hash of lib/noise.glsl; add "
+            "exit 3: shader: haze.glsl:1: haze_on_albedo uses hash of lib/noise.glsl; add "
             "//@ include lib/noise.glsl"},
         Bad{"MainsFunction",
             {{"haze",
               "void haze_on_displace(in VertexFrame v, inout vec3 p) { p = frame_at(p.xy).up; "
               "}"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:1: haze_on_displace uses frame_at, which is "
+            "exit 3: shader: haze.glsl:1: haze_on_displace uses frame_at, which is "
             "terrain.vert.glsl's own; a plugin uses only itself, shaders/lib and services"},
         Bad{"NoSuchLibrary",
             {{"haze", "\n//@ include lib/nose.glsl"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:2: lib/nose.glsl: core has no such file"},
+            "exit 3: shader: haze.glsl:2: lib/nose.glsl: core has no such file"},
         Bad{"Recursion",
             {{"haze",
               "float haze_a(float x);\nfloat haze_b(float x) { return haze_a(x); }\n"
               "float haze_a(float x) { return haze_b(x); }\n"
               "void haze_on_albedo(inout Surface s) { s.shininess = haze_a(1.0); }"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:3: haze_a calls itself (haze_a -> haze_b -> "
+            "exit 3: shader: haze.glsl:3: haze_a calls itself (haze_a -> haze_b -> "
             "haze_a); "
             "GLSL has no recursion"},
         Bad{"RecursionThroughAService",
@@ -658,7 +657,7 @@ INSTANTIATE_TEST_SUITE_P(
               "vec3 haze_on_background_radiance(in vec3 d, in bool disc) { return "
               "background_radiance(d, false); }"}},
             sky_program(),
-            "exit 3: shader::stitch: haze.glsl:1: haze_on_background_radiance calls itself "
+            "exit 3: shader: haze.glsl:1: haze_on_background_radiance calls itself "
             "(background_radiance -> haze_on_background_radiance -> background_radiance); GLSL has "
             "no recursion"},
         Bad{"DerivativeInTheVertexSide",
@@ -667,12 +666,12 @@ INSTANTIATE_TEST_SUITE_P(
               "void haze_on_displace(in VertexFrame v, inout vec3 p) { p *= haze_width(p); "
               "}"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:2: haze_width uses fwidth, which only the fragment "
+            "exit 3: shader: haze.glsl:2: haze_width uses fwidth, which only the fragment "
             "side has, but the vertex side reaches it (main -> hook_displace -> haze_on_displace)"},
         Bad{"VertexIdInTheFragmentSide",
             {{"haze", "void haze_on_albedo(inout Surface s) { s.diffuse *= float(gl_VertexID); }"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:1: haze_on_albedo uses gl_VertexID, which only the "
+            "exit 3: shader: haze.glsl:1: haze_on_albedo uses gl_VertexID, which only the "
             "vertex side has, but the fragment side reaches it (main -> hook_albedo)"},
         Bad{"VaryingThatNobodyFills",
             {{"haze",
@@ -681,7 +680,7 @@ INSTANTIATE_TEST_SUITE_P(
               "vec3(haze_strength); }\n"
               "void haze_on_vertex(in VertexFrame v) { haze_strength = 1.0; }"}},
             sky_program(),
-            "exit 3: shader::stitch: haze.glsl:3: haze_strength: the fragment side reads it (main "
+            "exit 3: shader: haze.glsl:3: haze_strength: the fragment side reads it (main "
             "-> background_radiance -> haze_on_background_radiance), but nothing that "
             "fullscreen.vert.glsl calls writes it"},
         Bad{"VaryingInDisplace",
@@ -691,7 +690,7 @@ INSTANTIATE_TEST_SUITE_P(
               "void haze_on_displace(in VertexFrame v, inout vec3 p) { p *= haze_f(); }\n"
               "void haze_on_lit(in Surface s, inout vec3 r) { r *= haze_strength; }"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:2: haze_f uses the varying haze_strength; varyings "
+            "exit 3: shader: haze.glsl:2: haze_f uses the varying haze_strength; varyings "
             "are filled in haze_on_vertex, displace runs in depth passes too"},
         Bad{"SharedTextureOfTwoTypes",
             {{"haze",
@@ -701,16 +700,16 @@ INSTANTIATE_TEST_SUITE_P(
               "\nuniform sampler3D snow_map;\nvoid snow_on_albedo(inout Surface s) { "
               "s.diffuse = texture(snow_map, vec3(0)).rgb; }"}},
             terrain_program(),
-            "exit 3: shader::stitch: snow.glsl:2: snow_map: expected a sampler2D for the texture "
+            "exit 3: shader: snow.glsl:2: snow_map: expected a sampler2D for the texture "
             "snow.map, as in haze.glsl:1, but got a sampler3D"},
         Bad{"NameOfTwoKinds",
             {{"haze", "uniform bool haze_a = true;"}, {"haze", "\nfloat haze_a() { return 1.0; }"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:2: haze_a is declared already, in haze.glsl:1"},
+            "exit 3: shader: haze.glsl:2: haze_a is declared already, in haze.glsl:1"},
         Bad{"ParameterOfTwoFiles",
             {{"haze", "uniform bool haze_a = true;"}, {"haze", "\nuniform bool haze_a = true;"}},
             terrain_program(),
-            "exit 3: shader::stitch: haze.glsl:2: haze_a is declared already, in haze.glsl:1"}),
+            "exit 3: shader: haze.glsl:2: haze_a is declared already, in haze.glsl:1"}),
     [](const auto& test) { return test.param.name; });
 
 struct BadCore {
@@ -731,51 +730,51 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadCore{"NoMain",
                 {{"terrain.frag.glsl", "const float x = 1.0;"}},
-                "exit 1: shader::stitch: shaders/terrain.frag.glsl: no main()"},
+                "exit 1: shader: shaders/terrain.frag.glsl: no main()"},
         BadCore{"NoSuchHook",
                 {{"terrain.frag.glsl", "\nvoid main() { hook_albdo(); }"}},
-                "exit 1: shader::stitch: shaders/terrain.frag.glsl:2: hook_albdo: there is no such "
+                "exit 1: shader: shaders/terrain.frag.glsl:2: hook_albdo: there is no such "
                 "hook"},
         BadCore{"HookOfTheOtherSide",
                 {{"terrain.vert.glsl", "void main() { hook_albedo(); }"}},
-                "exit 1: shader::stitch: shaders/terrain.vert.glsl:1: hook_albedo is called from "
+                "exit 1: shader: shaders/terrain.vert.glsl:1: hook_albedo is called from "
                 "the vertex side, which does not have it"},
         BadCore{"NoDefault",
                 {{"defaults.glsl", ""}},
-                "exit 1: shader::stitch: shaders/defaults.glsl: no core_on_brdf, the default of "
+                "exit 1: shader: shaders/defaults.glsl: no core_on_brdf, the default of "
                 "the hook brdf"},
         BadCore{"WrongDefault",
                 {{"defaults.glsl", "\nvec3 core_on_brdf(in Surface s) { return vec3(0); }"}},
-                "exit 1: shader::stitch: shaders/defaults.glsl:2: core_on_brdf: wrong signature, "
+                "exit 1: shader: shaders/defaults.glsl:2: core_on_brdf: wrong signature, "
                 "expected vec3 core_on_brdf(in Surface, in vec3, in vec3) but got vec3 "
                 "core_on_brdf(in Surface)"},
         BadCore{"VaryingNotWritten",
                 {{"terrain.frag.glsl",
                   "in vec2 screen;\nlayout(location = 0) out vec4 c;\nvoid main() { c = "
                   "screen.xyxy; }"}},
-                "exit 3: shader::stitch: shaders/terrain.frag.glsl:1: screen: the fragment side "
+                "exit 3: shader: shaders/terrain.frag.glsl:1: screen: the fragment side "
                 "reads it (main), but nothing that terrain.vert.glsl calls writes it"},
         BadCore{"VaryingOfAnotherType",
                 {{"terrain.frag.glsl",
                   "in vec2 ground_position_m;\nlayout(location = 0) out vec4 c;\nvoid main() { c = "
                   "ground_position_m.xyxy; }"}},
-                "exit 1: shader::stitch: shaders/terrain.frag.glsl:1: ground_position_m: expected "
+                "exit 1: shader: shaders/terrain.frag.glsl:1: ground_position_m: expected "
                 "vec3 as in shaders/lib/terrain.glsl:3 but got vec2"},
         BadCore{"OutputWithoutLocation",
                 {{"terrain.frag.glsl", "out vec4 c;\nvoid main() {}"}},
-                "exit 3: shader::parse: shaders/terrain.frag.glsl:1: c: inputs of a vertex main "
+                "exit 3: shader: shaders/terrain.frag.glsl:1: c: inputs of a vertex main "
                 "and outputs of a fragment main have a layout(location = N)"},
         BadCore{"CircleOfIncludes",
                 {{"lib/math.glsl", "//@ include lib/noise.glsl"},
                  {"lib/noise.glsl", "//@ include lib/math.glsl"}},
-                "exit 1: shader::stitch: shaders/lib/noise.glsl:1: lib/math.glsl includes itself"}),
+                "exit 1: shader: shaders/lib/noise.glsl:1: lib/math.glsl includes itself"}),
     [](const auto& test) { return test.param.name; });
 
 TEST(CoreErrors, CoreAndAPluginCannotShareAName) {
     EXPECT_EQ(
         stitch_error(plugins({{"haze", "\nfloat haze_f() { return 1.0; }"}}), terrain_program(),
                      core_with({{"lib/math.glsl", "float haze_f() { return 2.0; }"}})),
-        "exit 3: shader::stitch: haze.glsl:2: haze_f is declared by core too, in "
+        "exit 3: shader: haze.glsl:2: haze_f is declared by core too, in "
         "shaders/lib/math.glsl:1");
 }
 
@@ -783,7 +782,7 @@ TEST(CoreErrors, AMissingMainIsNamed) {
     EXPECT_EQ(error_of([] {
                   stitch(Texts(), {.vertex_main = "terain.vert.glsl", .fragment_main = "x"}, {});
               }),
-              "exit 1: shader::stitch: terain.vert.glsl: core has no such shader file");
+              "exit 1: shader: terain.vert.glsl: core has no such shader file");
 }
 
 }  // namespace

@@ -90,15 +90,13 @@ TEST_P(TokenizerError, SaysWhere) {
 INSTANTIATE_TEST_SUITE_P(
     All, TokenizerError,
     testing::Values(
-        Bad{"UnclosedComment", "a\n/* b\n", "exit 3: shader::parse: a.glsl:2: /* is never closed"},
+        Bad{"UnclosedComment", "a\n/* b\n", "exit 3: shader: a.glsl:2: /* is never closed"},
         Bad{"Quote", "\n\n\"a\"",
-            "exit 3: shader::parse: a.glsl:3: the character \" has no place in GLSL"},
-        Bad{"At", "float a @ b;",
-            "exit 3: shader::parse: a.glsl:1: the character @ has no place in GLSL"},
+            "exit 3: shader: a.glsl:3: the character \" has no place in GLSL"},
+        Bad{"At", "float a @ b;", "exit 3: shader: a.glsl:1: the character @ has no place in GLSL"},
         Bad{"Umlaut", "float h\xC3\xB6he;",
-            "exit 3: shader::parse: a.glsl:1: the byte 0xC3 may stand in comments only"},
-        Bad{"LateHash", "a #define",
-            "exit 3: shader::parse: a.glsl:1: # must be first on its line"}),
+            "exit 3: shader: a.glsl:1: the byte 0xC3 may stand in comments only"},
+        Bad{"LateHash", "a #define", "exit 3: shader: a.glsl:1: # must be first on its line"}),
     [](const auto& test) { return test.param.name; });
 
 }  // namespace

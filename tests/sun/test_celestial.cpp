@@ -88,7 +88,7 @@ TEST(CelestialFrame, RejectsWhatIsNoPlace) {
     EXPECT_EQ(test::error_of([&] {
                   celestial_frame(epoch, {.lat_rad = radians(91), .lon_rad = 0, .height_m = 0});
               }),
-              "exit 3: sun::position: latitude 91: no such place, expected -90 to 90 degrees; "
+              "exit 3: sun: latitude 91: no such place, expected -90 to 90 degrees; "
               "latitude comes before longitude");
 }
 

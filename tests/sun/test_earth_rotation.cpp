@@ -139,7 +139,7 @@ TEST(EarthRotation, WhatIsNotBulletinAIsAnError) {
     EXPECT_EQ(error(bulletin("broken", 0, 2, broken + "\n")),
               ": line 3: no number in columns 59 to 68; expected the finals2000A format");
     EXPECT_EQ(test::error_of([] { EarthRotation::load_finals2000a("/nowhere/finals"); }),
-              "exit 3: sun::EarthRotation: /nowhere/finals: cannot be read, No such file or "
+              "exit 3: Earth rotation: /nowhere/finals: cannot be read, No such file or "
               "directory");
 }
 

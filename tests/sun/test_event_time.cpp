@@ -72,51 +72,48 @@ TEST(EventTime, ErrorsSayWhatIsWrong) {
                             std::optional<Zone> zone = kZurich) {
         return error_of([&] { resolve(parse_event_time(text), date, zone); });
     };
-    EXPECT_EQ(
-        message("sunrize@46.55,8.56"),
-        "exit 3: sun::parse_event_time: sunrize@46.55,8.56: no such event as \"sunrize\"; did "
-        "you mean sunrise?");
+    EXPECT_EQ(message("sunrize@46.55,8.56"),
+              "exit 3: time: sunrize@46.55,8.56: no such event as \"sunrize\"; did "
+              "you mean sunrise?");
     EXPECT_EQ(message("tea-time@46.55,8.56"),
-              "exit 3: sun::parse_event_time: tea-time@46.55,8.56: no such event as \"tea-time\", "
+              "exit 3: time: tea-time@46.55,8.56: no such event as \"tea-time\", "
               "expected one of sunrise, sunset, noon, midnight, civil-dawn, civil-dusk, "
               "nautical-dawn, nautical-dusk, astronomical-dawn, astronomical-dusk, first-light, "
               "last-light");
-    EXPECT_EQ(
-        message("sunrise-30@46.55,8.56"),
-        "exit 3: sun::parse_event_time: sunrise-30@46.55,8.56: offset \"-30\", expected hours, "
-        "minutes or seconds such as -30min, +1h30min or +45s");
+    EXPECT_EQ(message("sunrise-30@46.55,8.56"),
+              "exit 3: time: sunrise-30@46.55,8.56: offset \"-30\", expected hours, "
+              "minutes or seconds such as -30min, +1h30min or +45s");
     EXPECT_EQ(message("sunrise"),
-              "exit 3: sun::parse_event_time: sunrise: no place, expected one after an @ such as "
+              "exit 3: time: sunrise: no place, expected one after an @ such as "
               "sunrise@46.55,8.56");
     EXPECT_EQ(
         message("sunrise@100,8.56"),
         "exit 2: --time: 100,8.56: latitude, expected -90 to 90 degrees but got 100; latitude "
         "comes first, perhaps 8.56,100");
     EXPECT_EQ(message("2026-06-21@46.55,8.56"),
-              "exit 3: sun::parse_event_time: 2026-06-21@46.55,8.56: no event after the date, "
+              "exit 3: time: 2026-06-21@46.55,8.56: no event after the date, "
               "expected one such as 2026-06-21 sunrise@46.55,8.56");
     EXPECT_EQ(message("sunrise@46.55,8.56", std::nullopt),
-              "exit 3: sun::parse_event_time: sunrise@46.55,8.56: no date; write 2026-06-21 "
+              "exit 3: time: sunrise@46.55,8.56: no date; write 2026-06-21 "
               "sunrise@46.55,8.56 or pass --date");
     EXPECT_EQ(message("sunrise@46.55,8.56", kMidsummer, std::nullopt),
-              "exit 3: sun::parse_event_time: sunrise@46.55,8.56: no time zone to count the day "
+              "exit 3: time: sunrise@46.55,8.56: no time zone to count the day "
               "2026-06-21 by; pass --tz, as in --tz Europe/Zurich");
     EXPECT_EQ(message("2026-06-20 sunrise@46.55,8.56"),
-              "exit 3: sun::parse_event_time: 2026-06-20 sunrise@46.55,8.56: contradicts --date "
+              "exit 3: time: 2026-06-20 sunrise@46.55,8.56: contradicts --date "
               "2026-06-21; give only one of the two");
     EXPECT_EQ(message("sunset@78.2,15.6"),
-              "exit 3: sun::parse_event_time: sunset@78.2,15.6: does not happen on 2026-06-21 in "
+              "exit 3: time: sunset@78.2,15.6: does not happen on 2026-06-21 in "
               "Europe/Zurich, the sun stays above all day");
     EXPECT_EQ(message("2026-12-21 sunrise@78.2,15.6", std::nullopt),
-              "exit 3: sun::parse_event_time: 2026-12-21 sunrise@78.2,15.6: does not happen on "
+              "exit 3: time: 2026-12-21 sunrise@78.2,15.6: does not happen on "
               "2026-12-21 in Europe/Zurich, the sun stays below all day");
     EXPECT_EQ(message("first-light@46.55,8.56"),
-              "exit 3: sun::parse_event_time: first-light@46.55,8.56: first and last light hang on "
-              "the terrain; expected a DEM");
-    EXPECT_EQ(
-        message("2126-06-21 sunrise@46.55,8.56", std::nullopt),
-        "exit 3: sun::parse_event_time: 2126-06-21 sunrise@46.55,8.56: the sun is computed for "
-        "the years 1900 to 2100, but got 2126");
+              "exit 3: time: first-light@46.55,8.56: first and last light depend on the terrain; "
+              "name a DEM");
+    EXPECT_EQ(message("2126-06-21 sunrise@46.55,8.56", std::nullopt),
+              "exit 3: time: 2126-06-21 sunrise@46.55,8.56: the sun is computed for "
+              "the years 1900 to 2100, but got 2126");
 }
 
 }  // namespace

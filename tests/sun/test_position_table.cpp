@@ -58,17 +58,17 @@ TEST(PositionTable, OutsideItIsAnError) {
     const Observer observer({0, 0, 0});
     const PositionTable table(instant_of("2026-06-21T00:00"), instant_of("2026-06-22T00:00"));
     EXPECT_EQ(test::error_of([&] { table.direction(instant_of("2026-06-20T23:59"), observer); }),
-              "exit 1: sun::PositionTable: 2026-06-20T23:59:00Z: outside the table, which is from "
+              "exit 1: sun: 2026-06-20T23:59:00Z: outside the table, which is from "
               "2026-06-21T00:00:00Z to 2026-06-22T00:00:00Z");
     EXPECT_EQ(test::error_of([&] {
                   PositionTable(instant_of("2026-06-21T00:00"), instant_of("2026-06-20T00:00"));
               }),
-              "exit 3: sun::PositionTable: from 2026-06-21T00:00:00Z to 2026-06-20T00:00:00Z: ends "
+              "exit 3: sun: from 2026-06-21T00:00:00Z to 2026-06-20T00:00:00Z: ends "
               "before it begins");
     EXPECT_EQ(test::error_of([&] {
                   PositionTable(instant_of("2090-01-01T00:00"), instant_of("2120-01-01T00:00"));
               }),
-              "exit 3: sun::position: 2120-01-01T00:00:00Z: the sun is computed for the years 1900 "
+              "exit 3: sun: 2120-01-01T00:00:00Z: the sun is computed for the years 1900 "
               "to 2100");
 }
 

@@ -145,26 +145,26 @@ TEST(Refraction, ImpossibleAirIsAnError) {
     EXPECT_EQ(test::error_of([] {
                   Refraction::saemundsson({101325, 10});
               }),
-              "exit 3: sun::Refraction: pressure 101325 hPa: no air on Earth, expected 10 to 1200; "
+              "exit 3: refraction: pressure 101325 hPa: no air on Earth, expected 10 to 1200; "
               "give the pressure at the place");
     EXPECT_EQ(test::error_of([] {
                   Refraction::integrated({{1013, 283.15}});
               }),
-              "exit 3: sun::Refraction: temperature 283.15 C: no air on Earth, expected -100 to 70 "
+              "exit 3: refraction: temperature 283.15 C: no air on Earth, expected -100 to 70 "
               "degrees Celsius");
     EXPECT_EQ(test::error_of([] {
                   Refraction::integrated({{1013, 15}, 50e3});
               }),
-              "exit 3: sun::Refraction: height 50000 m: no air to integrate, expected -12000 to "
+              "exit 3: refraction: height 50000 m: no air to integrate, expected -12000 to "
               "32000; use no refraction");
     EXPECT_EQ(test::error_of([] {
                   Refraction::integrated({{1013, 15}, 0, 0, 0});
               }),
-              "exit 3: sun::Refraction: lapse 0 K/m: not a troposphere, expected 0.003 to 0.01");
+              "exit 3: refraction: lapse 0 K/m: not a troposphere, expected 0.003 to 0.01");
     EXPECT_EQ(test::error_of([] {
                   Refraction::integrated({{NAN, 15}});
               }),
-              "exit 3: sun::Refraction: pressure nan hPa: no air on Earth, expected 10 to 1200; "
+              "exit 3: refraction: pressure nan hPa: no air on Earth, expected 10 to 1200; "
               "give the pressure at the place");
 }
 

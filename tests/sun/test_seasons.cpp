@@ -51,7 +51,7 @@ TEST(Seasons, AreQuartersOfTheSunsLongitude) {
 
 TEST(Seasons, OfOtherYearsAreAnError) {
     EXPECT_EQ(test::error_of([] { seasons(1899); }),
-              "exit 3: sun::seasons: 1899: the sun is computed for the years 1900 to 2100");
+              "exit 3: seasons: 1899: the sun is computed for the years 1900 to 2100");
 }
 
 }  // namespace

@@ -64,32 +64,30 @@ TEST(Date, WhatIsNoDateIsAnError) {
     };
     for (const std::string text : {"", "tomorrow", "21.6.2026", "2026-6-21", "2026-06-21T12:00",
                                    "2026-06-21 ", "20260621", "2026/06/21"})
-        EXPECT_EQ(error(text), "exit 3: sun::parse_date: " + text +
-                                   ": not a date, expected YYYY-MM-DD such as 2026-06-21");
+        EXPECT_EQ(error(text),
+                  "exit 3: date: " + text + ": not a date, expected YYYY-MM-DD such as 2026-06-21");
     EXPECT_EQ(error("2026-02-30"),
-              "exit 3: sun::parse_date: 2026-02-30: no such date, expected day 1 to 28 of 2026-02 "
+              "exit 3: date: 2026-02-30: no such date, expected day 1 to 28 of 2026-02 "
               "but got 30");
     EXPECT_EQ(error("2100-02-29"),
-              "exit 3: sun::parse_date: 2100-02-29: no such date, expected day 1 to 28 of 2100-02 "
+              "exit 3: date: 2100-02-29: no such date, expected day 1 to 28 of 2100-02 "
               "but got 29");
     EXPECT_EQ(error("2026-13-01"),
-              "exit 3: sun::parse_date: 2026-13-01: no such month, expected month 1 to 12 but got "
+              "exit 3: date: 2026-13-01: no such month, expected month 1 to 12 but got "
               "13");
     EXPECT_EQ(error("2026-00-10"),
-              "exit 3: sun::parse_date: 2026-00-10: no such month, expected month 1 to 12 but got "
+              "exit 3: date: 2026-00-10: no such month, expected month 1 to 12 but got "
               "0");
-    EXPECT_EQ(
-        error("1899-12-31"),
-        "exit 3: sun::parse_date: 1899-12-31: the sun is computed for the years 1900 to 2100, "
-        "but got 1899");
-    EXPECT_EQ(
-        error("2101-01-01"),
-        "exit 3: sun::parse_date: 2101-01-01: the sun is computed for the years 1900 to 2100, "
-        "but got 2101");
+    EXPECT_EQ(error("1899-12-31"),
+              "exit 3: date: 1899-12-31: the sun is computed for the years 1900 to 2100, "
+              "but got 1899");
+    EXPECT_EQ(error("2101-01-01"),
+              "exit 3: date: 2101-01-01: the sun is computed for the years 1900 to 2100, "
+              "but got 2101");
     // A year of more than four digits is one, but none that is computed.
     for (const std::string year : {"99999", "12026", "4294969322", "99999999999999999999"})
         EXPECT_EQ(error(year + "-06-21"),
-                  "exit 3: sun::parse_date: " + year +
+                  "exit 3: date: " + year +
                       "-06-21: the sun is computed for the years 1900 to 2100, but got " + year);
 }
 
@@ -98,7 +96,7 @@ TEST(Date, WhatTheCalendarDoesNotHoldIsAnErrorAndNoOtherDate) {
     const std::string years = ": the sun is computed for the years 1900 to 2100";
     // The calendar's own years wrap at 32767: 99999 would be -31073.
     for (const int year : {99999, 10000, 0, -1, 2'147'483'647, -2'147'483'647}) {
-        const std::string expected = "exit 3: sun::Date: year " + std::to_string(year) + years;
+        const std::string expected = "exit 3: date: year " + std::to_string(year) + years;
         EXPECT_EQ(error_of([&] { Instant::from_utc({{year, 6, 21}}); }), expected);
         EXPECT_EQ(error_of([&] { add_days({year, 6, 21}, 1); }), expected);
         EXPECT_EQ(error_of([&] { days_between({2026, 6, 21}, {year, 6, 21}); }), expected);

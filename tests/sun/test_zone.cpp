@@ -150,7 +150,7 @@ TEST(Zone, LocalDaysAreAsLongAsTheClocksMakeThem) {
     EXPECT_EQ(test::error_of([&] {
                   hours("Pacific/Apia", {2011, 12, 30});
               }),
-              "exit 3: sun::Zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
+              "exit 3: time zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
               "skipped it");
 }
 
@@ -176,22 +176,22 @@ TEST(Zone, UnknownZonesAreErrorsWithTheNearestName) {
         return test::error_of([&] { Zone::named(text); });
     };
     for (const std::string text : {"Europe/Zuric", "europe/zurich", "Zurich", "Zürich"})
-        EXPECT_EQ(error(text), "exit 3: sun::Zone: " + text +
+        EXPECT_EQ(error(text), "exit 3: time zone: " + text +
                                    ": no such time zone; did you mean Europe/Zurich?");
     EXPECT_EQ(error("new york"),
-              "exit 3: sun::Zone: new york: no such time zone; did you mean America/New_York?");
+              "exit 3: time zone: new york: no such time zone; did you mean America/New_York?");
     EXPECT_EQ(error("Middle-earth/Shire"),
-              "exit 3: sun::Zone: Middle-earth/Shire: no such time zone, expected a name of the "
+              "exit 3: time zone: Middle-earth/Shire: no such time zone, expected a name of the "
               "IANA database such as Europe/Zurich or an offset such as +02:00");
     EXPECT_EQ(error(""),
-              "exit 3: sun::Zone: : no time zone, expected a name such as Europe/Zurich "
+              "exit 3: time zone: : no time zone, expected a name such as Europe/Zurich "
               "or an offset");
     for (const std::string text : {"+5", "+05:3", "+05:30x", "-", "+ab:00"})
         EXPECT_EQ(error(text),
-                  "exit 3: sun::Zone: " + text + ": bad offset, expected +hh:mm such as +02:00");
+                  "exit 3: time zone: " + text + ": bad offset, expected +hh:mm such as +02:00");
     for (const std::string text : {"+24:00", "-05:60", "+9900"})
         EXPECT_EQ(error(text),
-                  "exit 3: sun::Zone: " + text + ": bad offset, expected at most 23:59 either way");
+                  "exit 3: time zone: " + text + ": bad offset, expected at most 23:59 either way");
 }
 
 TEST(ParseTime, ReadsIso8601) {
@@ -226,61 +226,60 @@ TEST(ParseTime, RemembersTheZoneForShowingResults) {
 }
 
 TEST(ParseTime, ATimeWithoutAZoneIsAnError) {
-    EXPECT_EQ(
-        parse_error("2026-06-21T18:30"),
-        "exit 3: sun::parse_time: 2026-06-21T18:30: no time zone; write 2026-06-21T18:30Z for "
-        "UTC or 2026-06-21T18:30+02:00, or pass --tz Europe/Zurich");
+    EXPECT_EQ(parse_error("2026-06-21T18:30"),
+              "exit 3: time: 2026-06-21T18:30: no time zone; write 2026-06-21T18:30Z for "
+              "UTC or 2026-06-21T18:30+02:00, or pass --tz Europe/Zurich");
     EXPECT_EQ(parse_error(" 2026-06-21 18:30:15.5 "),
-              "exit 3: sun::parse_time: 2026-06-21 18:30:15.5: no time zone; write 2026-06-21 "
+              "exit 3: time: 2026-06-21 18:30:15.5: no time zone; write 2026-06-21 "
               "18:30:15.5Z for UTC or 2026-06-21 18:30:15.5+02:00, or pass --tz Europe/Zurich");
 }
 
 TEST(ParseTime, AnOffsetThatTheZoneDoesNotHaveIsAnError) {
     EXPECT_EQ(parse_error("2026-06-21T18:30+01:00", Zone::named("Europe/Zurich")),
-              "exit 3: sun::parse_time: 2026-06-21T18:30+01:00: offset +01:00 contradicts "
+              "exit 3: time: 2026-06-21T18:30+01:00: offset +01:00 contradicts "
               "Europe/Zurich, expected +02:00 (CEST); give only one of the two");
     EXPECT_EQ(parse_error("2026-06-21T18:30+01:00", Zone::named("+05:30")),
-              "exit 3: sun::parse_time: 2026-06-21T18:30+01:00: offset +01:00 contradicts +05:30, "
+              "exit 3: time: 2026-06-21T18:30+01:00: offset +01:00 contradicts +05:30, "
               "expected +05:30 (+05:30); give only one of the two");
 }
 
 TEST(ParseTime, ImpossibleTimesAreErrors) {
     EXPECT_EQ(parse_error("2026-02-30T12:00Z"),
-              "exit 3: sun::parse_time: 2026-02-30T12:00Z: no such date, expected day 1 to 28 of "
+              "exit 3: time: 2026-02-30T12:00Z: no such date, expected day 1 to 28 of "
               "2026-02 but got 30");
     EXPECT_EQ(parse_error("2026-06-21T24:00Z"),
-              "exit 3: sun::parse_time: 2026-06-21T24:00Z: no such hour, expected hour 0 to 23 but "
+              "exit 3: time: 2026-06-21T24:00Z: no such hour, expected hour 0 to 23 but "
               "got 24");
     EXPECT_EQ(parse_error("2026-06-21T12:60Z"),
-              "exit 3: sun::parse_time: 2026-06-21T12:60Z: no such minute, expected minute 0 to 59 "
+              "exit 3: time: 2026-06-21T12:60Z: no such minute, expected minute 0 to 59 "
               "but got 60");
     EXPECT_EQ(parse_error("2026-06-21T12:00:61Z"),
-              "exit 3: sun::parse_time: 2026-06-21T12:00:61Z: no such second, expected second 0 to "
+              "exit 3: time: 2026-06-21T12:00:61Z: no such second, expected second 0 to "
               "59 but got 61");
     EXPECT_EQ(parse_error("2016-12-31T23:59:60Z"),
-              "exit 3: sun::parse_time: 2016-12-31T23:59:60Z: leap seconds cannot be given; take "
+              "exit 3: time: 2016-12-31T23:59:60Z: leap seconds cannot be given; take "
               "second 59, or 00 of the next minute");
     EXPECT_EQ(parse_error("1899-12-31T12:00Z"),
-              "exit 3: sun::parse_time: 1899-12-31T12:00Z: the sun is computed for the years 1900 "
+              "exit 3: time: 1899-12-31T12:00Z: the sun is computed for the years 1900 "
               "to 2100, but got 1899");
     EXPECT_EQ(parse_error("2101-01-01T00:00Z"),
-              "exit 3: sun::parse_time: 2101-01-01T00:00Z: the sun is computed for the years 1900 "
+              "exit 3: time: 2101-01-01T00:00Z: the sun is computed for the years 1900 "
               "to 2100, but got 2101");
     EXPECT_EQ(parse_error("2026-06-21"),
-              "exit 3: sun::parse_time: 2026-06-21: no time of day, expected one such as T18:30 "
+              "exit 3: time: 2026-06-21: no time of day, expected one such as T18:30 "
               "after it");
     EXPECT_EQ(parse_error("2026-06-21T18:30+2"),
-              "exit 3: sun::parse_time: 2026-06-21T18:30+2: bad offset, expected +hh:mm such as "
+              "exit 3: time: 2026-06-21T18:30+2: bad offset, expected +hh:mm such as "
               "+02:00");
     EXPECT_EQ(parse_error("2026-06-21T18:30+25:00"),
-              "exit 3: sun::parse_time: 2026-06-21T18:30+25:00: bad offset, expected at most 23:59 "
+              "exit 3: time: 2026-06-21T18:30+25:00: bad offset, expected at most 23:59 "
               "either way");
     for (const std::string text :
          {"noon", "21.6.2026 18:30", "18:30", "2026-06-21T18", "2026-06-21T18:3Z",
           "2026-06-21T18:30:5Z", "2026-06-21T18:30:15.Z", "2026-06-21T18:30Zulu",
           "2026-06-21T18:30 CEST", "2026-06-21x18:30Z", "20260621T1830Z", "-2026-06-21T18:30Z"})
         EXPECT_EQ(parse_error(text),
-                  "exit 3: sun::parse_time: " + text +
+                  "exit 3: time: " + text +
                       ": not a time, expected YYYY-MM-DDThh:mm with Z or an offset, such as "
                       "2026-06-21T18:30+02:00");
 }

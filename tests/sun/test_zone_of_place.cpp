@@ -217,7 +217,7 @@ TEST(ZoneOfPlace, WordsMeanAPlacesZoneOrANamedOne) {
     EXPECT_EQ(choose_zone("America/New_York", bern).assumption, "");
     EXPECT_EQ(choose_zone("+05:30", bern).zone.name(), "+05:30");
     EXPECT_EQ(error_of([&] { choose_zone("Europe/Zurick", bern); }),
-              "exit 3: sun::Zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
+              "exit 3: time zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
 }
 
 /// Files that are not as tools/make_time_zones.py makes them.
@@ -233,7 +233,7 @@ class ZoneFile : public testing::Test {
     std::string error(const std::string& bytes) const {
         const std::filesystem::path path = write(bytes);
         std::string message = error_of([&] { ZoneMap::read(path); });
-        const std::string begin = "exit 3: sun::ZoneMap: " + path.string() + ": ";
+        const std::string begin = "exit 3: time zone: " + path.string() + ": ";
         const std::string end = "; install Relevo again, or pass --tz Europe/Zurich";
         EXPECT_TRUE(message.starts_with(begin) && message.ends_with(end)) << message;
         if (message.size() < begin.size() + end.size()) return message;
@@ -263,10 +263,10 @@ TEST_F(ZoneFile, AZoneThatTheComputerLacksIsTheHourOfTheLongitude) {
     const ChosenZone bern = zone_at(geodetic_deg(46.95, 7.44), older);
     EXPECT_TRUE(bern.missing);
     EXPECT_EQ(bern.zone.name(), "UTC");
-    EXPECT_EQ(bern.assumption,
-              "time zone UTC, by the longitude alone, as the time zone database of this computer "
-              "(version " +
-                  zone_database_version() + ") has no Europe/Zurick");
+    EXPECT_EQ(
+        bern.assumption,
+        "time zone UTC, by longitude only: the time zone database of this computer (version " +
+            zone_database_version() + ") has no Europe/Zurick");
     EXPECT_EQ(zone_at(geodetic_deg(46.55, 8.56), older).zone.name(), "+01:00");
     EXPECT_EQ(zone_at(geodetic_deg(-45.03, 168.66), older).zone.name(), "+11:00");
     EXPECT_FALSE(zone_at(geodetic_deg(48.2, 16.4), older).missing);
@@ -274,7 +274,7 @@ TEST_F(ZoneFile, AZoneThatTheComputerLacksIsTheHourOfTheLongitude) {
 
 TEST_F(ZoneFile, WhatIsDamagedIsAnErrorThatNamesIt) {
     EXPECT_EQ(error_of([&] { ZoneMap::read(dir_ / "none.bin"); }),
-              "exit 3: sun::ZoneMap: " + (dir_ / "none.bin").string() +
+              "exit 3: time zone: " + (dir_ / "none.bin").string() +
                   ": cannot be read, No such file or directory; install Relevo again, or pass "
                   "--tz Europe/Zurich");
     EXPECT_EQ(error(""), "damaged");
