@@ -232,7 +232,6 @@ void capture(const Arguments& arguments) {
             session.scene(), std::filesystem::path(arguments.save_scene).parent_path()));
     std::optional<session::ShadowAudit> audit;
     if (arguments.audit) audit = session::audit_shadows(session);
-    if (audit) log::info(audit->text());
     if (sidecar_file)
         sidecar_file->write(session::sidecar_text(session, RELEVO_VERSION,
                                                   output.filename().string(),
@@ -240,6 +239,7 @@ void capture(const Arguments& arguments) {
     timings.write(session, arguments.repeat);
     files.finish_outputs();
     notices.release();
+    if (audit) log::info(audit->text());
     report_chosen(session);
 }
 

@@ -44,7 +44,7 @@ class ZoneMap {
 /// A zone, and how it came about.
 struct ChosenZone {
     Zone zone;
-    /// "time zone Europe/Zurich, by the place"; empty where nothing was assumed.
+    /// "time zone Europe/Zurich of the place"; empty where nothing was assumed.
     std::string assumption;
     bool missing = false;  ///< this computer's database lacks the zone of the place
 };

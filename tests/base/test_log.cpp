@@ -1,3 +1,6 @@
+#include <string>
+
+#include "base/held_notices.h"
 #include "base/log.h"
 #include "support/support.h"
 
@@ -46,6 +49,33 @@ TEST(Log, WhatIsTooLongToReadLosesItsMiddle) {
         EXPECT_LT(text.size(), 2100U);
     }
     EXPECT_EQ(written(""), "relevo: error: \n");
+}
+
+TEST(HeldNotices, AreOneLineAtTheEndOrAllOfThemAtOnceWithV) {
+    const auto said = [](int notices) {
+        testing::internal::CaptureStderr();
+        {
+            const log::HeldNotices held;
+            for (int i = 1; i <= notices; ++i)
+                log::info("notice " + std::to_string(i));
+            log::warning("at once");
+        }
+        log::info("later");
+        return testing::internal::GetCapturedStderr();
+    };
+    EXPECT_EQ(said(0), "relevo: warning: at once\nrelevo: later\n");
+    EXPECT_EQ(said(1), "relevo: warning: at once\nrelevo: notice 1\nrelevo: later\n");
+    EXPECT_EQ(said(2),
+              "relevo: warning: at once\nrelevo: notice 1; 1 more notice with -v\nrelevo: later\n");
+    EXPECT_EQ(said(3),
+              "relevo: warning: at once\nrelevo: notice 1; 2 more notices with -v\nrelevo: "
+              "later\n");
+    log::set_level(log::Level::Debug);
+    EXPECT_EQ(said(2),
+              "relevo: notice 1\nrelevo: notice 2\nrelevo: warning: at once\nrelevo: later\n");
+    log::set_level(log::Level::Warning);
+    EXPECT_EQ(said(2), "relevo: warning: at once\n");
+    log::set_level(log::Level::Info);
 }
 
 }  // namespace

@@ -1,16 +1,23 @@
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
 #include "cli/program.h"
+#include "dem/fixture.h"
 #include "image/image.h"
 #include "support/support.h"
 
 namespace relevo::test {
 namespace {
+
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing::StartsWith;
 
 class Capture : public testing::Test {
   protected:
@@ -51,10 +58,10 @@ TEST_F(Capture, TellsOfTheSunAsTheEyeSeesIt) {
     const std::vector<std::string> eye{"--eye", "36.05,-84.05,3000", "--heading", "300"};
     const std::vector<std::string> time{"--time", "2026-06-21T18:30-04:00"};
     const auto run = [&](std::vector<std::string> more) {
-        more.insert(more.begin(), {"capture", bundled_dem(), "-o", (dir_ / "a.png").string(),
+        more.insert(more.begin(), {"-v", "capture", bundled_dem(), "-o", (dir_ / "a.png").string(),
                                    "--size", "32x32", "--overwrite", "--only", ""});
         more.insert(more.end(), time.begin(), time.end());
-        return relevo(more);
+        return relevo(more).err;
     };
     const nlohmann::json sun = nlohmann::json::parse(
         relevo({"sun", "position", "--at", "36.05,-84.05,3000", time[0], time[1], "--json"}).out);
@@ -65,15 +72,76 @@ TEST_F(Capture, TellsOfTheSunAsTheEyeSeesIt) {
     for (const char* exaggeration : {"1", "3"}) {
         std::vector<std::string> more = eye;
         more.insert(more.end(), {"--exaggerate", exaggeration});
-        EXPECT_EQ(run(more).err, "relevo: 36.05000 N 84.05000 W (the eye), 2026-06-21T22:30:00Z: " +
-                                     expected + "\n");
+        EXPECT_THAT(run(more),
+                    HasSubstr("relevo: 36.05000 N 84.05000 W (the eye), 2026-06-21T22:30:00Z: " +
+                              expected + "\n"));
         EXPECT_EQ(image::read_metadata(dir_ / "a.png").at("Description"),
                   "36.05000 N 84.05000 W (the eye); 2026-06-21T22:30:00Z; " + expected);
     }
-    const std::string orbit = run({}).err;
-    EXPECT_EQ(orbit.substr(0, orbit.find(", elev")),
-              "relevo: 36.30292 N 84.24583 W, 2026-06-21T22:30:00Z: sun at azimuth 280.33");
+    const std::string orbit = run({});
+    EXPECT_THAT(orbit,
+                HasSubstr("relevo: 36.30292 N 84.24583 W, 2026-06-21T22:30:00Z: sun at azimuth "
+                          "280.33, elev"));
     EXPECT_EQ(orbit.find(expected), std::string::npos);
+}
+
+/// What a capture without options of time and view writes, line by line.
+std::vector<std::string> lines_of(const std::string& dem, const std::filesystem::path& picture,
+                                  const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"capture", dem,     "-o",          picture.string(),
+                                   "--size",  "64x48", "--overwrite", "--allow-blank"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Result run = relevo(words);
+    EXPECT_EQ(run.status, 0) << run.err;
+    std::vector<std::string> lines = split(run.err, '\n');
+    EXPECT_EQ(lines.back(), "");
+    lines.pop_back();
+    return lines;
+}
+
+TEST_F(Capture, SaysWhatItChoseInOneLine) {
+    const auto picture = dir_ / "chosen.png";
+    const auto chosen = lines_of(bundled_dem(), picture);
+    ASSERT_EQ(chosen.size(), 1u);
+    EXPECT_THAT(chosen[0], MatchesRegex("relevo: chosen: 21 June 2026 [0-9]+:[0-9]+, seen from the "
+                                        "[NESW]+; --time and --view set others"));
+    const auto time = lines_of(bundled_dem(), picture, {"--view", "az=200,el=30"});
+    ASSERT_EQ(time.size(), 1u);
+    EXPECT_THAT(time[0], MatchesRegex("relevo: chosen: 21 June 2026 [0-9]+:[0-9]+; --time sets "
+                                      "others"));
+    const std::vector<std::string> at{"--time", "2026-06-21T22:30Z"};
+    const auto view = lines_of(bundled_dem(), picture, at);
+    ASSERT_EQ(view.size(), 1u);
+    EXPECT_THAT(view[0], MatchesRegex("relevo: chosen: seen from the [NESW]+; --view sets others"));
+    EXPECT_TRUE(lines_of(bundled_dem(), picture, {at[0], at[1], "--view", "top"}).empty());
+}
+
+// "A normal run says at most one line of assumptions": and one more of what it chose.
+TEST_F(Capture, WithoutOptionsWritesAtMostTwoLines) {
+    // Undeclared voids, no unit, no datum, sea at the edge, holes that are filled and cut.
+    Raster raster;
+    raster.columns = raster.rows = 60;
+    raster.value = [](int column, int row, int) {
+        const bool inside = column == 40 && row == 30, edge = column == 30 && row == 0;
+        return inside || edge ? -9999.0 : std::max(-40.0, 10.0 * column - 100 + row % 3);
+    };
+    std::vector<std::string> dems{write_raster(dir_ / "many_assumptions.tif", raster)};
+    if (const auto data = test_data_dir())
+        for (const char* name : {"N42E001.hgt", "HI_topo_04.nc", "mt_rainier_90m.tif",
+                                 "swellendam/srtm_41_19_4326.tif", "hawaii_rotated20.tif"})
+            dems.push_back((*data / "dem" / name).string());
+    for (const std::string& dem : dems) {
+        const auto lines = lines_of(dem, dir_ / "few.png");
+        EXPECT_LE(lines.size(), 2u) << testing::PrintToString(lines);
+        EXPECT_THAT(lines.back(), StartsWith("relevo: chosen: "));
+    }
+    // The rest is there, one notice a line, for who asks.
+    const auto all = lines_of(dems[0], dir_ / "few.png", {"-v"});
+    EXPECT_GT(all.size(), 4u);
+    const auto few = lines_of(dems[0], dir_ / "few.png");
+    ASSERT_EQ(few.size(), 2u);
+    EXPECT_THAT(few[0], MatchesRegex("relevo: .*-9999 is taken as a void .*; [0-9] more notices? "
+                                     "with -v"));
 }
 
 TEST_F(Capture, IsTheSamePictureEveryTime) {

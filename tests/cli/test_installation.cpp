@@ -31,7 +31,7 @@ TEST(Installation, TakesTheSamePictureFromWhereverItLies) {
     const Result zone = run(dir / "moved/bin/relevo", {"sun", "position", "--at", "46.95,7.44",
                                                        "--time", "2026-06-21T12:00"});
     EXPECT_EQ(zone.status, 0);
-    EXPECT_EQ(zone.err, "relevo: time zone Europe/Zurich; --tz sets another\n");
+    EXPECT_EQ(zone.err, "relevo: time zone Europe/Zurich of the place; --tz sets another\n");
     std::filesystem::remove_all(dir / "moved");  // 70 MB
 }
 

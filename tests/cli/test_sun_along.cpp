@@ -52,7 +52,7 @@ json json_of(const std::string& track, std::vector<std::string> more) {
 TEST(SunAlongVerb, SpeaksJsonAsDocumented) {
     const json walk = json_of(walk_csv(), {"--start", "2026-02-10T07:20", "--speed", "5"});
     EXPECT_EQ(walk["zone"], "America/New_York");
-    EXPECT_EQ(walk["assumptions"], json{"time zone America/New_York, by the place"});
+    EXPECT_EQ(walk["assumptions"], json{"time zone America/New_York of the place"});
     EXPECT_NEAR(walk["length_m"].get<double>(), 7643, 1);
     EXPECT_NEAR(walk["duration_h"].get<double>(), walk["length_m"].get<double>() / 5000, 1e-6);
     EXPECT_LE(walk["spacing_m"].get<double>(), 75);

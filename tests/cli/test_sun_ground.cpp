@@ -95,12 +95,11 @@ TEST(Holes, LightThroughThemIsSaidNotToBeKnown) {
               1)
         << run.out;
     EXPECT_TRUE(
-        run.err.starts_with("relevo: warning: the DEM has holes from azimuth 268 (W) to 272 (W): "
+        run.err.starts_with("relevo: warning: the DEM has voids from azimuth 268 (W) to 272 (W): "
                             "of the direct sun 0:2"))
         << run.err;
-    EXPECT_TRUE(
-        run.err.ends_with(" is not known, as ground in them could hide it; a DEM without "
-                          "them settles it\n"))
+    EXPECT_TRUE(run.err.ends_with(
+        " is not known, as ground in them could hide it; use a DEM without voids\n"))
         << run.err;
     const json object = json_of(day);
     ASSERT_EQ(object["direct_sun"].size(), 2U);
@@ -113,7 +112,7 @@ TEST(Holes, LightThroughThemIsSaidNotToBeKnown) {
     EXPECT_GT(object["not_known_h"], 0.1);
     const std::string csv = relevo(with(day, {"--csv"})).out;
     EXPECT_EQ(count(csv, ",direct_sun,direct_sun_h,not_known,not_known_h\n"), 1) << csv;
-    EXPECT_EQ(count(csv, "# not known: direct sun through holes of the DEM"), 1) << csv;
+    EXPECT_EQ(count(csv, "# not known: direct sun through voids of the DEM"), 1) << csv;
     const std::string days =
         relevo(verb("day", holed(),
                     {"--from", "2026-04-01", "--to", "2026-04-02", "--tz", kZurich, "-q"}))
@@ -140,7 +139,7 @@ TEST(Holes, AreSaidOfHorizonCarpetAndSummit) {
     const Result horizon = relevo(verb("horizon", holed(), {"--highest", "0"}));
     EXPECT_EQ(count(horizon.err,
                     "relevo: warning: the DEM has voids from azimuth 268 (W) to 272 (W): ground in "
-                    "them could stand over this horizon; use a DEM without voids\n"),
+                    "them could raise the horizon; use a DEM without voids\n"),
               1)
         << horizon.err;
     EXPECT_EQ(count(horizon.out, "  not known: a void of the DEM\n"), 1) << horizon.out;
@@ -156,11 +155,11 @@ TEST(Holes, AreSaidOfHorizonCarpetAndSummit) {
     const std::vector<std::string> year{"--year", "2026", "--tz", kZurich, "--step", "1h"};
     const Result carpet = relevo(with(verb("carpet", holed(), year), {"--highest", "0"}));
     EXPECT_EQ(count(carpet.err,
-                    "relevo: warning: the DEM has holes from azimuth 268 (W) to 272 "
-                    "(W): of the direct sun "),
+                    "relevo: warning: the DEM has voids from azimuth 268 (W) to 272 (W): of the "
+                    "direct sun "),
               1)
         << carpet.err;
-    EXPECT_EQ(count(carpet.out, " h of the direct sun, through holes of the DEM from azimuth 268"),
+    EXPECT_EQ(count(carpet.out, " h of the direct sun, through voids of the DEM from azimuth 268"),
               1)
         << carpet.out;
     const json hours = json_of(with(verb("carpet", holed(), year), {"-q"}));
@@ -178,7 +177,11 @@ TEST(Holes, AreSaidOfHorizonCarpetAndSummit) {
         count(when.out, "not known           whether it is visible, through a void of the DEM\n"),
         1)
         << when.out << when.err;
-    EXPECT_EQ(count(when.err, "relevo: warning: the DEM has holes in the way: "), 1) << when.err;
+    EXPECT_EQ(count(when.err,
+                    "relevo: warning: ground in voids of the DEM could hide the summit or the sun; "
+                    "use a DEM without voids"),
+              1)
+        << when.err;
     EXPECT_EQ(json_of(with(verb("when", holed(), over), {"-q"}))["sight"]["hole"], true);
     EXPECT_EQ(relevo(verb("when", whole(), over)).err, "");
 }
@@ -188,19 +191,16 @@ TEST(Edge, MattersWhereTheSunStandsAndHasAHeight) {
     // stand over it everywhere. A December sun keeps to the south.
     const std::vector<std::string> winter{"--date", "2026-12-21", "--tz", kZurich};
     const Result day = relevo(verb("day", whole(), winter));
-    EXPECT_TRUE(
-        day.err.starts_with("relevo: warning: the blocking ridge may lie beyond the DEM, as "
-                            "terrain of up to 520 m would "
-                            "hide sun that is taken to shine: above 1"))
+    EXPECT_TRUE(day.err.starts_with(
+        "relevo: warning: mountains of up to 520 m outside the DEM could hide the sun: above 1"))
         << day.err;
     EXPECT_EQ(count(day.err, " m from azimuth 12"), 1) << day.err;
     EXPECT_EQ(count(day.err, " m from azimuth "), 1) << day.err;
     EXPECT_EQ(count(day.err, " (N) "), 0) << day.err;
     const Result horizon = relevo(verb("horizon", whole(), {}));
     EXPECT_TRUE(
-        horizon.err.starts_with("relevo: warning: the blocking ridge may lie beyond the DEM, as "
-                                "terrain of up to 520 m would "
-                                "stand over this horizon: above 10"))
+        horizon.err.starts_with("relevo: warning: mountains of up to 520 m outside the DEM could "
+                                "raise the horizon: above 10"))
         << horizon.err;
     EXPECT_NE(horizon.err.find(" m from azimuth 321 (NW) to 219 (SW) "), std::string::npos)
         << horizon.err;
@@ -216,9 +216,8 @@ TEST(Edge, MattersWhereTheSunStandsAndHasAHeight) {
                                         kZurich};
     const Result when = relevo(verb("when", whole(), over));
     EXPECT_TRUE(
-        when.err.starts_with("relevo: warning: the blocking ridge may lie beyond the DEM, as "
-                             "terrain of up to 520 m would "
-                             "hide the summit or the sun over it: above 1"))
+        when.err.starts_with("relevo: warning: mountains of up to 520 m outside the DEM could hide "
+                             "the summit or the sun: above 1"))
         << when.err;
     EXPECT_EQ(relevo(with(verb("when", whole(), over), {"--highest", "50"})).err, "");
     // In a polar night no terrain matters.

@@ -29,7 +29,7 @@ Words joined(Words words, const Words& more) {
 }
 
 std::string notice_of(const std::string& zone) {
-    return "relevo: time zone " + zone + "; --tz sets another\n";
+    return "relevo: time zone " + zone + " of the place; --tz sets another\n";
 }
 
 /// A run says on standard output what it says with the zone named, and what it has assumed on
@@ -48,7 +48,7 @@ void expect_zone_of_the_place(const Words& arguments, const std::string& zone) {
     const json object = json::parse(relevo(joined(arguments, {"--json"})).out);
     json expected = json::parse(relevo(joined(arguments, {"--tz", zone, "--json"})).out);
     EXPECT_FALSE(expected.contains("assumptions"));
-    expected["assumptions"] = {"time zone " + zone + ", by the place"};
+    expected["assumptions"] = {"time zone " + zone + " of the place"};
     EXPECT_EQ(object, expected);
 }
 
@@ -101,7 +101,7 @@ TEST(TimeZone, OfTheDemsMiddleIsTheDefaultOfItsVerbs) {
     EXPECT_EQ(run.out, named.out);
     EXPECT_EQ(run.err, notice_of(kNewYork) + named.err);
     const json object = json::parse(relevo(joined(info, {"--json"})).out);
-    EXPECT_EQ(object["assumptions"].back(), "time zone America/New_York, by the place");
+    EXPECT_EQ(object["assumptions"].back(), "time zone America/New_York of the place");
     EXPECT_EQ(object["sun"]["utc"], "2026-06-21T22:30:00Z");
 
     const auto taken_at = [](const Words& words, const std::string& notice) {
@@ -216,7 +216,7 @@ TEST(TimeZone, ThatTheComputerLacksIsTheHourOfTheLongitudeAndAWarning) {
         run.err.starts_with("relevo: warning: time zone +01:00, by longitude only: the time zone "
                             "database of this computer (version "))
         << run.err;
-    EXPECT_TRUE(run.err.ends_with(") has no Mars/Olympus; --tz overrides it\n")) << run.err;
+    EXPECT_TRUE(run.err.ends_with(") has no Mars/Olympus; --tz sets another\n")) << run.err;
 }
 
 }  // namespace

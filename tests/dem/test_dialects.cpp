@@ -59,8 +59,7 @@ TEST(Dialect, UndeclaredNodataIsFoundAndSaid) {
         EXPECT_EQ(f.about.nodata, c.mark);
         const std::string sentence =
             std::string(c.text) +
-            " marks holes, though the file does not say so: no height is near it; --nodata none "
-            "takes it as a height";
+            " is taken as a void (not declared, far from all heights); --nodata none keeps it";
         EXPECT_THAT(f.about.assumptions, Contains(sentence));
         EXPECT_THAT(said, ElementsAre(path + ": " + sentence));
         const Heightfield all = load(path, {.no_nodata = true});
@@ -144,10 +143,10 @@ TEST(Dialect, AFrameAroundATurnedRasterIsMentioned) {
     const Heightfield f = loaded("frame_of_0.tif", raster);
     EXPECT_EQ(f.about.statistics.holes, 0);
     EXPECT_THAT(f.about.assumptions,
-                Contains("the edge is 0 m all around and the ground beside it 70 m off, perhaps "
-                         "what is left around a turned raster; --nodata 0 makes it a hole"));
+                Contains("the whole edge is 0 m high and differs from its neighbours by 70 m, "
+                         "perhaps fill of a rotated raster; --nodata 0 marks it as void"));
     EXPECT_THAT(load((folder() / "frame_of_0.tif").string(), {.nodata = 0}).about.assumptions,
-                Not(Contains(testing::HasSubstr("the edge is"))));
+                Not(Contains(testing::HasSubstr("the whole edge is"))));
 }
 
 TEST(Dialect, AlphaMarksHoles) {

@@ -404,8 +404,8 @@ TEST(Load, TheAdviceOnAFrameIsInStoredNumbers) {
         EXPECT_EQ(f.about.statistics.holes, 0);
         std::string said;
         for (const std::string& sentence : f.about.guesses)
-            if (sentence.starts_with("the edge is ")) said = sentence;
-        const std::string begin = "--nodata ", end = " makes it a hole";
+            if (sentence.starts_with("the whole edge is ")) said = sentence;
+        const std::string begin = "--nodata ", end = " marks it as void";
         const std::size_t at = said.find(begin) + begin.size();
         if (said.empty() || !said.ends_with(end)) return "none: " + said;
         const std::string text = said.substr(at, said.size() - end.size() - at);

@@ -230,9 +230,8 @@ TEST(Posts, SayWhatLooksWrongAsAWholeDemDoes) {
     EXPECT_EQ(parts, whole);
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_EQ(parts[1], path +
-                            ": the edge is 700 m all around and the ground beside it 100 m off, "
-                            "perhaps what is left around a turned raster; --nodata 700 makes it a "
-                            "hole");
+                            ": the whole edge is 700 m high and differs from its neighbours by 100 "
+                            "m, perhaps fill of a rotated raster; --nodata 700 marks it as void");
 
     Raster empty = turned;
     empty.nodata = 7;

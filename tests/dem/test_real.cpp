@@ -238,7 +238,7 @@ TEST(RealDem, AFrameOfZeroesIsMentioned) {
     SKIP_WITHOUT_TEST_DATA(data);
     const std::string path = (data / "dem" / "swellendam/srtm_41_19_4326.tif").string();
     EXPECT_THAT(load(path).about.guesses,
-                testing::ElementsAre(testing::HasSubstr("the edge is 0 m all around")));
+                testing::ElementsAre(testing::HasSubstr("the whole edge is 0 m high")));
     EXPECT_EQ(load(path, {.nodata = 0}).about.statistics.min_m, 4);
 }
 

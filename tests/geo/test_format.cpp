@@ -70,5 +70,13 @@ TEST(MgrsText, HasTheDigitsOfTheMap) {
     EXPECT_EQ(mgrs_text(place, 5), "32TLT8121600901");
 }
 
+TEST(CompassPoint, IsTheNearestOfSixteen) {
+    EXPECT_STREQ(compass_point(0), "N");
+    EXPECT_STREQ(compass_point(200), "SSW");
+    EXPECT_STREQ(compass_point(348.7), "NNW");
+    EXPECT_STREQ(compass_point(348.8), "N");
+    EXPECT_STREQ(compass_point(360), "N");
+}
+
 }  // namespace
 }  // namespace relevo::geo

@@ -91,7 +91,7 @@ double steps(const image::Image8& picture) {
 }
 
 constexpr const char* kSaid =
-    "relevo: bump: near the eye the slopes between the posts are invented";
+    "relevo: bump: slopes between the posts near the camera are synthetic detail";
 
 TEST(NearGround, HasReliefBelowThePostsAndTheLightOfTheDem) {
     if (!std::filesystem::exists(source_dir() / "plugins/bump"))

@@ -54,14 +54,18 @@ TEST(DefaultMoment, IsRatherLitFromTheLeft) {
 }
 
 TEST(DefaultMoment, SaysWhatItIs) {
-    EXPECT_EQ(moment_at(46, 8, 200).reason(),
-              ", so 2026-06-21 was taken, at an hour when the sun stands 29 degrees high and 75 "
-              "degrees left of the camera's side, where it shows relief");
-    EXPECT_EQ(moment_at(0, 0, 90).reason(),
-              ", so 2026-06-21 was taken, at an hour when the sun stands 34 degrees high and 29 "
-              "degrees right of the camera's side, the nearest to 20 to 35 and 50 to 100 there is");
-    EXPECT_EQ(DefaultDay({0, 0, 0}, true).moment(0).reason(),
-              ", so 2026-06-21 was taken, at an hour when most of the globe's near side is lit");
+    const auto text = [](const DefaultMoment& moment, const std::string& after) {
+        return "time: " + sun::to_iso(moment.utc) + ", chosen " + after;
+    };
+    const DefaultMoment alps = moment_at(46, 8, 200), equator = moment_at(0, 0, 90);
+    EXPECT_EQ(alps.reason(),
+              text(alps, "for relief: sun 29 degrees high, 75 degrees left of the camera"));
+    EXPECT_EQ(equator.reason(),
+              text(equator,
+                   "for relief: sun 34 degrees high, 29 degrees right of the camera (wanted: 20 to "
+                   "35 and 50 to 100)"));
+    const DefaultMoment globe = DefaultDay({0, 0, 0}, true).moment(0);
+    EXPECT_EQ(globe.reason(), text(globe, "because most of the visible side of the globe is lit"));
 }
 
 TEST(SideOf, IsWhereTheLowerEdgeOfThePictureLies) {

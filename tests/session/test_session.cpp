@@ -276,7 +276,7 @@ TEST(Words, TakeTheZoneOfTheNearestPlaceThatIsNamed) {
     const auto zone = [&](const std::string& time, const light::TerrainAccess& access,
                           const std::optional<geo::PlaceText>& at) {
         const sun::ParsedTime parsed = parse({time, "", "auto"}, access, at);
-        EXPECT_EQ(parsed.assumption, "time zone " + parsed.zone.name() + ", by the place");
+        EXPECT_EQ(parsed.assumption, "time zone " + parsed.zone.name() + " of the place");
         return parsed.zone.name();
     };
     EXPECT_EQ(zone("2026-06-21T18:30", dem, {}), "America/New_York");

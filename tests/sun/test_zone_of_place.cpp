@@ -101,7 +101,7 @@ TEST(ZoneOfPlace, TheOpenSeaHasTheHourOfItsLongitude) {
         EXPECT_EQ(offset_h(found.zone, 7), std::round((lon_deg + 0.05) / 15)) << lon_deg;
     }
     EXPECT_EQ(zone_at(geodetic_deg(-15, -150), map()).assumption,
-              "time zone Etc/GMT+10 (-10:00), by the place");
+              "time zone Etc/GMT+10 (-10:00) of the place");
     EXPECT_EQ(name_at(0, 0), "Etc/GMT");
 }
 
@@ -211,7 +211,7 @@ TEST(ZoneOfPlace, WordsMeanAPlacesZoneOrANamedOne) {
     for (const char* const words : {"", "auto", "AUTO", " auto "}) {
         const ChosenZone chosen = choose_zone(words, bern);
         EXPECT_EQ(chosen.zone.name(), "Europe/Zurich");
-        EXPECT_EQ(chosen.assumption, "time zone Europe/Zurich, by the place");
+        EXPECT_EQ(chosen.assumption, "time zone Europe/Zurich of the place");
     }
     EXPECT_EQ(choose_zone("America/New_York", bern).zone.name(), "America/New_York");
     EXPECT_EQ(choose_zone("America/New_York", bern).assumption, "");

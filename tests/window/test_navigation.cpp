@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "support/support.h"
 #include "viewer/navigation.h"
+#include "viewer/overlay.h"
 
 namespace relevo::viewer {
 namespace {
@@ -167,6 +168,14 @@ TEST_F(Navigation, FromAboveNorthIsUp) {
     const glm::dvec2 north = seen(above, at(46.06, 8.05, 500));
     EXPECT_NEAR(north.x, 0, 1e-3);
     EXPECT_GT(north.y, 0.5);
+}
+
+TEST(SlopeText, IsSlopeAndAspectInWords) {
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(slope_text(2.94, 180), "2.9 degrees, facing S");
+    EXPECT_EQ(slope_text(31, -46), "31.0 degrees, facing NW");
+    EXPECT_EQ(slope_text(0, none), "0.0 degrees");
+    EXPECT_EQ(slope_text(none, none), "");
 }
 
 }  // namespace
