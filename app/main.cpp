@@ -52,7 +52,7 @@ void check_verb(const CLI::App& app, std::span<const std::string> words) {
     }
     if (word.empty()) {
         if (app.get_require_subcommand_min() == 0) return;
-        relevo::bad_usage(fmt::format("{}: which command? There are {}; each has --help",
+        relevo::bad_usage(fmt::format("{}: no command given; there are {}; each has --help",
                                       app.get_name(), fmt::join(names, ", ")));
     }
     const std::optional<std::string> near = relevo::nearest(word, names);
@@ -159,8 +159,8 @@ struct Failure {
 
 Failure out_of_memory() {
     return {1,
-            "out of memory; use a smaller --size, a smaller --memory, or fewer DEMs, or let the "
-            "program have more (ulimit -v)"};
+            "out of memory; use a smaller --size, a smaller --memory, or fewer DEMs, or raise "
+            "ulimit -v"};
 }
 
 /// Of errors that are not ours: what the system refuses, and our own mistakes.
@@ -174,8 +174,7 @@ Failure failure_of(const std::exception& error) {
         if (system->code() == std::errc::not_enough_memory) return out_of_memory();
         if (system->code() == std::errc::resource_unavailable_try_again)
             return {1,
-                    "the system starts no further thread or process; end others, or let the "
-                    "program have more (ulimit -u)"};
+                    "the system refuses more threads or processes; end others, or raise ulimit -u"};
         return {1, fmt::format("the system refuses a call, {}; run it again with -v",
                                system->code().message())};
     }

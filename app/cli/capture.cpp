@@ -41,8 +41,7 @@ struct Wanted {
 
 Wanted wanted(const Arguments& arguments) {
     if (arguments.from.empty()) return {arguments.scene.scene(), arguments.ab};
-    if (!arguments.scene.file.empty())
-        bad_usage("--scene and --from exclude each other; give one of them");
+    if (!arguments.scene.file.empty()) bad_usage("--scene and --from exclude each other; use one");
     const image::Metadata metadata = image::read_metadata(arguments.from);
     const auto text = metadata.find(session::kSceneKeyword);
     if (text == metadata.end())

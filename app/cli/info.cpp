@@ -89,7 +89,7 @@ nlohmann::ordered_json json_of(const std::optional<dem::Water>& water, const dem
 /// A line with its end; empty where there is no water.
 std::string text_of(const std::optional<dem::Water>& water, const dem::Grid& grid) {
     if (!water || !water->any()) return "";
-    return fmt::format("{:<10} {:.3g} % sea, {:.3g} % lakes ({}), as pictures have it\n", "water",
+    return fmt::format("{:<10} {:.3g} % sea, {:.3g} % lakes ({}), as drawn in pictures\n", "water",
                        100 * share(water->sea_posts, grid), 100 * share(water->lake_posts, grid),
                        water->lakes);
 }
@@ -187,8 +187,8 @@ void add_info(CLI::App& app) {
             const NetError net = net_error(source.grid(), summary.max_m);
             const double spacing_m = std::min(summary.post_spacing_m.x, summary.post_spacing_m.y);
             fmt::print(
-                "{:<10} pieces of {} posts are drawn within {:.2g} m of where they are, "
-                "{:.2g} of the post spacing\n",
+                "{:<10} pieces of {} posts: drawn positions are within {:.2g} m, {:.2g} of the "
+                "post spacing\n",
                 "net", net.posts, net.worst_m, net.worst_m / spacing_m);
         }
     });

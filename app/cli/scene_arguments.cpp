@@ -36,7 +36,7 @@ void OverlayArguments::apply_to(scene::Scene& scene) const {
     if (!file.empty()) scene.overlay = scene::Overlay{.file = file};
     const bool more = band || opacity || !colours.empty() || !range.empty() || !title.empty();
     if (more && !scene.overlay)
-        bad_usage("--overlay: what its colours, range, band, opacity and title are of, is missing");
+        bad_usage("--overlay: missing; its colours, range, band, opacity and title need it");
     if (band) scene.overlay->band = *band;
     if (opacity) scene.overlay->opacity = *opacity;
     if (!colours.empty()) scene.overlay->colours = colours;
@@ -78,9 +78,7 @@ void StampArguments::apply_to(scene::Stamps& result) const {
     if (!attribution.empty()) result.attribution = true;
     if (no_legend) result.legend = false;
     if (result.attribution && result.attribution_text.empty())
-        bad_usage(
-            "--stamp: attribution: the words that name the data's source are missing; expected "
-            "--attribution TEXT");
+        bad_usage("--stamp: attribution: its text is missing; add --attribution TEXT");
 }
 
 void SceneArguments::add_to(CLI::App& verb, bool with_file) {

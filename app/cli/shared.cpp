@@ -93,11 +93,11 @@ void TimeArguments::add_to(CLI::App& verb) {
 bool TimeArguments::given() const {
     if (time.empty() && !date.empty())
         bad_usage(
-            fmt::format("--date: goes with an event in --time, such as sunrise@46.55,8.56; "
-                        "a time of day is written --time {}T18:30",
+            fmt::format("--date: needs an event in --time, such as sunrise@46.55,8.56; write a "
+                        "time of day as --time {}T18:30",
                         date));
     if (time.empty() && !zone.empty())
-        bad_usage("--tz: goes with --time, such as --time 2026-06-21T18:30");
+        bad_usage("--tz: needs --time, such as --time 2026-06-21T18:30");
     return !time.empty();
 }
 
@@ -140,14 +140,13 @@ void ViewArguments::add_to(CLI::App& verb) {
 
 void ViewArguments::apply_to(scene::Scene& scene) const {
     scene::View& result = scene.view;
-    if (!view.empty() && !eye.empty())
-        bad_usage("--view and --eye exclude each other; give one of them");
+    if (!view.empty() && !eye.empty()) bad_usage("--view and --eye exclude each other; use one");
     if (eye.empty() && !scene.view.eye && (!look_at.empty() || heading_deg || pitch_deg))
         bad_usage("--look-at, --heading and --pitch need --eye");
     if (!look_at.empty() && (heading_deg || pitch_deg))
-        bad_usage("--look-at and --heading or --pitch exclude each other; give one of them");
+        bad_usage("--look-at and --heading or --pitch exclude each other; use one");
     if (fov_deg && focal_length_mm)
-        bad_usage("--fov and --focal-length exclude each other; give one of them");
+        bad_usage("--fov and --focal-length exclude each other; use one");
     if (!view.empty() || !eye.empty()) {
         const scene::View before = result;
         result = {};

@@ -146,8 +146,8 @@ void run(const Arguments& arguments) {
     const auto step_s = sun::parse_duration_s(arguments.step);
     if (!step_s || *step_s != std::round(*step_s) || *step_s < 1 || *step_s > 86400)
         bad_usage(
-            fmt::format("--step: {}: no duration, expected whole seconds up to a day such "
-                        "as 3min, 10min or 30s",
+            fmt::format("--step: {}: not a duration, expected whole seconds up to a day such as "
+                        "3min, 10min or 30s",
                         arguments.step));
     const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
     const light::TerrainHorizon& horizon = view->horizon;

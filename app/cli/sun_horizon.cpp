@@ -163,10 +163,9 @@ int directions_of(const Arguments& arguments, const std::string& format) {
                                                                              : 1);
     const double directions = 360 / step_deg;
     if (std::abs(directions - std::round(directions)) > 1e-6)
-        bad_usage(
-            fmt::format("--step: {:.10g} degrees: no even part of a turn, expected one such "
-                        "as 0.1, 0.5 or 1",
-                        step_deg));
+        bad_usage(fmt::format(
+            "--step: {:.10g} degrees: does not divide 360, expected for example 0.1, 0.5 or 1",
+            step_deg));
     return static_cast<int>(std::lround(directions));
 }
 
@@ -175,8 +174,8 @@ void check_format(const Arguments& arguments, const std::string& format) {
     if (!arguments.format.empty() &&
         (output.json || output.is_drawing() || output.ending() == "json"))
         bad_usage(
-            "--format: goes with a table; pass -o with a name that ends in csv, hor, txt, or "
-            "none for standard output");
+            "--format: applies to tables; pass -o with a name that ends in csv, hor, txt, or none "
+            "for standard output");
     if (format != "csv" && !arguments.points.path.empty())
         bad_usage(fmt::format("--points: a file for {} is of one place; pass --at", format));
 }

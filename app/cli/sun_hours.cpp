@@ -91,15 +91,14 @@ void check(const Arguments& arguments) {
             bad_usage(fmt::format("--bands: {} is named twice", bands[i]));
     if ((arguments.linke || arguments.albedo) &&
         std::none_of(bands.begin(), bands.end(), is_energy))
-        bad_usage(fmt::format("{}: goes with --bands global, beam, diffuse or reflected",
+        bad_usage(fmt::format("{}: needs --bands global, beam, diffuse or reflected",
                               arguments.linke ? "--linke" : "--albedo"));
     const auto [begin, end] = time_of(arguments.days.parse({}, false));
     if (end - begin <= 86400 * light::SunHoursOptions::kMostDays) return;
     if (arguments.step_min)
-        bad_usage(
-            fmt::format("--step: is of {:.10g} days at most; a longer time has directions of "
-                        "the sun instead",
-                        light::SunHoursOptions::kMostDays));
+        bad_usage(fmt::format(
+            "--step: for at most {:.10g} days; longer periods use directions of the sun",
+            light::SunHoursOptions::kMostDays));
     if (has_spells(bands))
         bad_usage(
             fmt::format("--bands: first, last and spells are available for at most {:.10g} days",

@@ -63,8 +63,7 @@ DaysArguments::Days DaysArguments::parse(const geo::Geodetic& place, bool tell) 
     const int ways = !date.empty() + (!from.empty() || !to.empty()) + year.has_value();
     if (ways == 0)
         bad_usage("--date: missing; pass --date 2026-06-21, --from and --to, or --year 2026");
-    if (ways > 1)
-        bad_usage("--date, --from with --to, and --year exclude each other; give one of them");
+    if (ways > 1) bad_usage("--date, --from with --to, and --year exclude each other; use one");
     if (from.empty() != to.empty())
         bad_usage(from.empty() ? "--to needs --from" : "--from needs --to");
     Days days;
@@ -118,8 +117,7 @@ sun::Limb limb_of(const std::optional<std::string>& text, sun::Limb otherwise) {
 sun::RiseRule LightArguments::rule(const geo::Geodetic& place,
                                    const std::optional<double>& eye_height_m) const {
     if (!limb && !refraction.given() && !eye_height_m && !dip_deg) return {};
-    if (dip_deg && eye_height_m)
-        bad_usage("--dip and --eye-height exclude each other; give one of them");
+    if (dip_deg && eye_height_m) bad_usage("--dip and --eye-height exclude each other; use one");
     const sun::Limb part = limb_of(limb, sun::Limb::Upper);
     if (dip_deg) return sun::RiseRule::seen_over_dip(part, refraction.at(place), radians(*dip_deg));
     return sun::RiseRule::seen(part, refraction.at(place), eye_height_m.value_or(0));
@@ -150,7 +148,7 @@ void TerrainArguments::add_to(CLI::App& verb) {
 light::HorizonOptions TerrainArguments::horizon(const geo::PlaceText& at,
                                                 const std::optional<double>& eye_height_m) const {
     if (at.has_height && eye_height_m)
-        bad_usage("--eye-height and a height in --at exclude each other; give one of them");
+        bad_usage("--eye-height and a height in --at exclude each other; use one");
     light::HorizonOptions options;
     options.refraction = refraction;
     options.eye_height_m = at.has_height ? at.place.height_m : eye_height_m.value_or(0);

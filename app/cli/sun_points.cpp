@@ -140,7 +140,7 @@ void PointsArguments::add_to(CLI::App& verb) {
 bool PointsArguments::given() const {
     if (path.empty() && at_->count() == 0)
         bad_usage("--at: missing; pass --at 46.55,8.56, or --points FILE for many places");
-    if (path.empty() && !crs.empty()) bad_usage("--points-crs: goes with --points");
+    if (path.empty() && !crs.empty()) bad_usage("--points-crs: needs --points");
     return !path.empty();
 }
 

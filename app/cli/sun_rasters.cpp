@@ -66,7 +66,7 @@ OutputFile& RasterArguments::open(FilesInUse& files) const {
 }
 
 RasterGround RasterArguments::load() const {
-    if (clip.empty() && !clip_crs.empty()) bad_usage("--clip-crs: goes with --clip");
+    if (clip.empty() && !clip_crs.empty()) bad_usage("--clip-crs: needs --clip");
     std::optional<dem::Clip> rectangle;
     if (!clip.empty()) rectangle = dem::parse_clip(clip, "--clip");
     if (!clip_crs.empty()) rectangle->crs = geo::Crs::parse(clip_crs, "--clip-crs");

@@ -171,11 +171,11 @@ void check(const Arguments& arguments) {
     if (!arguments.times.empty() && !(arguments.time.time + arguments.time.date).empty())
         bad_usage("--times: excludes --time and --date; remove them");
     if (timed == !arguments.sun.empty())
-        bad_usage(timed ? fmt::format("{} and --sun exclude each other; give one of them",
+        bad_usage(timed ? fmt::format("{} and --sun exclude each other; use one",
                                       arguments.times.empty() ? "--time" : "--times")
                         : "--time: missing; pass --time 2026-06-21T18:30+02:00, or --sun AZ,EL");
     if (!timed && arguments.refraction.given())
-        bad_usage("--refraction: goes with --time; --sun is where the sun is seen");
+        bad_usage("--refraction: needs --time; --sun is an apparent direction");
 }
 
 /// Puts the light of all suns where it belongs. @return what it is

@@ -43,11 +43,10 @@ json read(const fs::path& file) {
     try {
         return json::parse(read_text(file, "view"));
     } catch (const Error& error) {
-        log::warning(fmt::format("{}; it counts as empty", error.what()));
+        log::warning(fmt::format("{}; treated as empty", error.what()));
         return {};
     } catch (const json::exception&) {
-        log::warning(
-            fmt::format("view: {}: no JSON; it counts as empty", printable(file.string())));
+        log::warning(fmt::format("view: {}: not JSON; treated as empty", printable(file.string())));
         return {};
     }
 }
@@ -57,7 +56,7 @@ void write_whole(const fs::path& file, const ordered_json& content) {
     std::error_code failure;
     fs::create_directories(file.parent_path(), failure);
     if (failure)
-        failed(fmt::format("view: {}: cannot be made, {}; nothing is remembered",
+        failed(fmt::format("view: {}: cannot be made, {}; settings are not saved",
                            printable(file.parent_path().string()), failure.message()));
     // Names of files may be of any bytes.
     write_text(file, content.dump(2, ' ', false, json::error_handler_t::replace) + "\n",

@@ -45,7 +45,7 @@ void end_where_the_display_goes() {
     using Handler = int (*)(void* display);
     const auto set = reinterpret_cast<Handler (*)(Handler)>(dlsym(xlib, "XSetIOErrorHandler"));
     if (!set) return;
-    set([](void*) -> int { end_program("view: the display is gone, and the window with it"); });
+    set([](void*) -> int { end_program("view: the display is gone; the window is closed"); });
 }
 
 /// The letter that is written on a key, whatever the keyboard's layout; else the key itself.

@@ -12,8 +12,9 @@ namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& output, std::string_view who,
                          const std::filesystem::path& input, std::string_view what) {
-    bad_input(fmt::format("{}: {}: is {} {}, which would be lost; give the result another name",
-                          who, printable(output.string()), what, printable(input.string())));
+    bad_input(
+        fmt::format("{}: {}: is {} {}, which would be overwritten; give the result another name",
+                    who, printable(output.string()), what, printable(input.string())));
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ OutputFile FilesInUse::open_alone(const std::filesystem::path& path, bool overwr
     OutputFile opened(path, overwrite, who);
     for (const OutputFile& other : outputs_)
         if (opened.same_as(other))
-            bad_usage(fmt::format("{}: {}: another result goes there; give each a file of its own",
+            bad_usage(fmt::format("{}: {}: another result has this name; give each its own file",
                                   who, printable(path.string())));
     return opened;
 }

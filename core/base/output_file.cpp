@@ -118,7 +118,7 @@ void OutputFile::Impl::open() {
         if (error && error != std::errc::no_such_file_or_directory &&
             error != std::errc::not_a_directory)
             refuse(fmt::format("cannot be written, {}", error.message()));
-        refuse(fmt::format("the folder {} does not exist; make it first",
+        refuse(fmt::format("the folder {} does not exist; create it first",
                            printable(given_folder.string())));
     }
     struct stat target {};
@@ -131,7 +131,7 @@ void OutputFile::Impl::open() {
         if (reason != ENOENT) refuse(fmt::format("cannot be written, {}", std::strerror(reason)));
         // Someone else may have put it there, to have a file made where they may not.
         if (lstat(path.c_str(), &link) == 0)
-            refuse("is a symbolic link that leads nowhere; remove it, or make the file it names");
+            refuse("is a broken symbolic link; remove it, or create its target");
         open_folder(given_folder);
         leaf = name;
         return open_part();
@@ -190,7 +190,7 @@ void OutputFile::Impl::check_replaceable(const struct stat& target) const {
     if (more.stx_attributes & (STATX_ATTR_IMMUTABLE | STATX_ATTR_APPEND))
         refuse("may not be replaced, it is marked as immutable");
     if (more.stx_attributes & more.stx_attributes_mask & STATX_ATTR_MOUNT_ROOT)
-        refuse("is mounted as a file of its own and cannot be replaced; mount its folder instead");
+        refuse("is a mount point and cannot be replaced; mount its folder instead");
 }
 
 void OutputFile::Impl::open_part() {
@@ -334,10 +334,9 @@ void OutputFile::Impl::deliver_special() const {
 /// Says why the name could not be had.
 void OutputFile::Impl::take_name() const {
     if (errno == EEXIST)
-        failed(
-            fmt::format("{}: {}: exists by now, another program has made it; pass --overwrite "
-                        "to replace it",
-                        who, printable(path.string())));
+        failed(fmt::format(
+            "{}: {}: exists now, made by another program; pass --overwrite to replace it", who,
+            printable(path.string())));
     cannot_be_written(errno);
 }
 

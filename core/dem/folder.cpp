@@ -207,7 +207,7 @@ std::vector<std::string> rasters_of(const std::string& path) {
     if (found.rasters.empty())
         refuse(path, fmt::format("a folder without a raster in it, expected a raster or a folder "
                                  "of rasters{}",
-                                 found.folders > 0 ? "; name the folder in it that is meant" : ""));
+                                 found.folders > 0 ? "; name one of its folders" : ""));
     std::vector<std::string> paths;
     for (const RasterFile& one : found.rasters) {
         found.names.insert(without_ending(one));

@@ -212,7 +212,7 @@ std::string remedy_of(int error) {
 }  // namespace
 
 void refuse_unreadable(const std::string& path) {
-    if (path.empty()) refuse("\"\"", "cannot be read, no such file");
+    if (path.empty()) refuse("\"\"", "no such file");
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     const bool may_be_gdals = path.starts_with("/vsi") || path.find(':') != std::string::npos;
@@ -221,7 +221,7 @@ void refuse_unreadable(const std::string& path) {
         if (!may_be_gdals || path.size() > PATH_MAX) {
             const int reason = error.value();
             refuse(path, reason == 0 || reason == ENOENT || reason == ENOTDIR
-                             ? std::string("cannot be read, no such file")
+                             ? std::string("no such file")
                              : fmt::format("cannot be read, {}", std::strerror(reason)));
         }
         file = file_in(path);

@@ -124,9 +124,7 @@ int chosen_band(const std::string& path, GDALDatasetH dataset, const LoadOptions
         const std::string first = first_subdataset(dataset, count);
         if (count == 0) refuse(path, "has no raster band");
         refuse(path,
-               fmt::format("holds {} rasters, expected one; name the one that is meant, as in "
-                           "'{}'",
-                           count, first));
+               fmt::format("holds {} rasters, expected one; name one, as in '{}'", count, first));
     }
     if (wanted < 0 || wanted > bands)
         refuse(path, fmt::format("band, expected 1 to {} but got {}; --band counts from 1", bands,
@@ -149,13 +147,13 @@ int chosen_band(const std::string& path, GDALDatasetH dataset, const LoadOptions
                                              GDALGetRasterBand(dataset, 2)) == GCI_AlphaBand;
         if (bands > 1 && !alpha)
             about.assumptions.push_back(
-                fmt::format("band 1 of {} holds the heights; --band N takes another", bands));
+                fmt::format("band 1 of {} holds the heights; --band N selects another", bands));
     }
     int pages = 0;
     first_subdataset(dataset, pages);
     if (pages > 1)
         about.assumptions.push_back(
-            fmt::format("the first of {} rasters in the file is taken", pages));
+            fmt::format("the first of {} rasters in the file is used", pages));
     about.bands = bands;
     return wanted == 0 ? 1 : wanted;
 }
@@ -188,10 +186,9 @@ void settle_unit(const std::string& path, GDALRasterBandH band, const geo::Crs& 
         about.unit_source = UnitSource::VerticalCrs;
     } else {
         const bool feet = !crs.is_geographic() && crs.unit_si() < 0.5;
-        about.assumptions.push_back(
-            fmt::format("heights are in metres, as neither the band nor a vertical CRS says{}; "
-                        "--unit sets another unit",
-                        feet ? fmt::format(" (distances are in {})", crs.unit_name()) : ""));
+        about.assumptions.push_back(fmt::format(
+            "heights are taken as metres: the file names no unit{}; --unit sets another",
+            feet ? fmt::format(" (distances are in {})", crs.unit_name()) : ""));
     }
 }
 

@@ -115,8 +115,7 @@ Dataset open_archive(std::string& path) {
     CSLDestroy(entries);
     drop_parts(rasters);
     if (rasters.size() > 1)
-        refuse(path, fmt::format("an archive of {} rasters, expected one; name those that are "
-                                 "meant, as in '{}'",
+        refuse(path, fmt::format("an archive of {} rasters, expected one; name one, as in '{}'",
                                  rasters.size(), rasters.front().path.string()));
     if (rasters.empty()) return nullptr;
     path = rasters.front().path.string();
@@ -158,7 +157,7 @@ Dataset open_dataset(std::string& path) {
                                  driver));
     if (reason.find("does not exist") != std::string::npos ||
         reason.find("No such file") != std::string::npos)
-        refuse(path, "cannot be read, no such file");
+        refuse(path, "no such file");
     if (reason.empty() || reason.find("not recognized as") != std::string::npos)
         refuse(path, "not a raster in any format that GDAL reads");
     refuse(path, fmt::format("cannot be opened as a raster, {}{}", reason, remedy_for(reason)));

@@ -200,9 +200,8 @@ void settle_sparse(GDALDatasetH dataset, GDALRasterBandH band, Piece& piece) {
     }
     const double stored = posts * (piece.sparse ? piece.sparse->stored_share() : 1);
     if (posts > kBelievable && stored > kMaxInAByte * static_cast<double>(bytes))
-        refuse(piece.about.path,
-               fmt::format("promises {} x {} posts, expected far fewer in {} bytes of files",
-                           piece.grid.columns(), piece.grid.rows(), bytes));
+        refuse(piece.about.path, fmt::format("claims {} x {} posts, too many for {} bytes of files",
+                                             piece.grid.columns(), piece.grid.rows(), bytes));
 }
 
 std::vector<Resolution> levels_of(GDALRasterBandH band) {
@@ -305,7 +304,7 @@ void settle_place(const std::string& given, const glm::dvec2& middle, const geo:
                                   middle.x, middle.y, crs.name()));
     if (const std::optional<geo::DatumShift> shift = crs.datum_shift(middle.x, middle.y))
         about.assumptions.push_back(
-            fmt::format("taken to WGS 84 by {}, {}", shift->name,
+            fmt::format("converted to WGS 84 by {}, {}", shift->name,
                         shift->accuracy_m ? fmt::format("good to {:g} m", *shift->accuracy_m)
                                           : std::string("whose accuracy is not known")));
 }

@@ -334,11 +334,10 @@ NamedLine read_line(const std::string& path, std::string_view who, const std::st
         asked.refuse(beginning == '<' ? "no line in it, expected a track or a route"
                                       : "no line in it, expected a LineString");
     if (number == 0 && lines > 1)
-        asked.refuse(fmt::format("{} lines in it; pass --track 1 to {} for the one that is meant",
-                                 lines, lines));
+        asked.refuse(fmt::format("{} lines in it; select one with --track 1 to {}", lines, lines));
     if (number > lines)
         asked.refuse(
-            fmt::format("--track {}, expected 1 to {}: so many lines are in it", number, lines));
+            fmt::format("--track {}, expected 1 to {}: the file has that many", number, lines));
     if (line.places.size() < 2)
         asked.refuse(fmt::format("a line of {} point{}, expected two or more", line.places.size(),
                                  line.places.size() == 1 ? "" : "s"));

@@ -442,9 +442,8 @@ Source Source::open(std::span<const std::string> given, const LoadOptions& optio
             impl->pieces.push_back(open_piece(paths[i], options, paths.size(), dataset));
         } catch (const Error& error) {
             if (folders[i].empty()) throw;
-            throw Error(error.code(),
-                        fmt::format("{}; it is one of {} in {}, name those that are meant",
-                                    error.what(), paths.size(), folders[i]));
+            throw Error(error.code(), fmt::format("{}; it is one of {} in {}, name the right ones",
+                                                  error.what(), paths.size(), folders[i]));
         }
         if (i < kMaxIdle) opened[i] = std::move(dataset);
     }

@@ -102,10 +102,9 @@ Alignments alignments(const TerrainHorizon& from, const geo::Geodetic& target, s
         bad_input(fmt::format("sun when: from {} to {}: ends before it begins",
                               sun::to_string(first), sun::to_string(last)));
     if (!(options.tolerance_rad > 0 && options.tolerance_rad <= radians(45)))
-        bad_input(
-            fmt::format("sun when: tolerance {:.10g} degrees: no use, expected more "
-                        "than 0 and up to 45",
-                        degrees(options.tolerance_rad)));
+        bad_input(fmt::format(
+            "sun when: tolerance {:.10g} degrees: out of range, expected more than 0 and up to 45",
+            degrees(options.tolerance_rad)));
     Alignments result;
     result.target = target;
     result.sight = from.sight(target);

@@ -52,10 +52,9 @@ Carpet carpet(const DirectLight& light, int year, const sun::Zone& zone, int ste
               const sun::EarthRotation& rotation) {
     constexpr int kDay_s = 86400;
     if (step_s < 1 || kDay_s % step_s != 0)
-        bad_input(
-            fmt::format("carpet: step {} s: no even part of a day, expected a divisor "
-                        "of 86400 s, such as 600",
-                        step_s));
+        bad_input(fmt::format(
+            "carpet: step {} s: does not divide a day, expected a divisor of 86400 s, such as 600",
+            step_s));
     if (year < sun::kFirstYear || year > sun::kLastYear)
         bad_input(fmt::format("carpet: year {}: the sun is computed for the years {} to {}", year,
                               sun::kFirstYear, sun::kLastYear));

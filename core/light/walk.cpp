@@ -37,7 +37,7 @@ constexpr int kDirections = 1440;  // of ridges that may lie beyond the DEM
 
 Walk::Walk(std::vector<geo::Geodetic> places) : places_(std::move(places)) {
     if (places_.size() < 2)
-        bad_input(fmt::format("walk: {} point{}: no way, expected two or more", places_.size(),
+        bad_input(fmt::format("walk: {} point{}: too few, expected two or more", places_.size(),
                               places_.size() == 1 ? "" : "s"));
     distance_m_.push_back(0);
     for (std::size_t i = 1; i < places_.size(); ++i)
@@ -58,9 +58,9 @@ Walk Walk::at_speed(std::vector<geo::Geodetic> places, sun::Instant start, doubl
     if (!(speed_m_s > 0) || std::isinf(speed_m_s))
         bad_input(fmt::format("walk: a speed of {:.10g} m/s, expected one above 0", speed_m_s));
     if (!(walk.length_m() > 0))
-        bad_input("walk: all points are at the same place, expected a way with a length");
+        bad_input("walk: all points are at the same place, expected a track with a length");
     if (!(walk.length_m() / speed_m_s <= 1e9))  // beyond it an instant may not hold it
-        bad_input(fmt::format("walk: {:.1f} km at {:.3g} km/h take a lifetime",
+        bad_input(fmt::format("walk: {:.1f} km at {:.3g} km/h take too long",
                               walk.length_m() / 1000, speed_m_s * 3.6));
     for (const double distance_m : walk.distance_m_)
         walk.utc_.push_back(start + distance_m / speed_m_s);
@@ -78,7 +78,7 @@ Walk Walk::timed(std::vector<geo::Geodetic> places, std::vector<sun::Instant> ti
                             "point before, {}; expected times in order",
                             i + 1, sun::to_iso(walk.utc_[i]), sun::to_iso(walk.utc_[i - 1])));
     if (!(walk.duration_s() > 0))
-        bad_input("walk: all points have the same time, expected a walk that takes some");
+        bad_input("walk: all points have the same time, expected times that increase");
     walk.check_duration();
     return walk;
 }

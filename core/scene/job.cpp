@@ -490,8 +490,7 @@ class Expansion {
 
     [[noreturn]] void too_many(const std::string& count) const {
         bad_input(
-            fmt::format("{}: {}: these are {} pictures, more than {}; pass --yes if that is "
-                        "meant",
+            fmt::format("{}: {}: the job has {} pictures, more than {}; add --yes to allow them",
                         kWho, job_.file, count, most_));
     }
 

@@ -178,7 +178,7 @@ void SceneReader::check_moment(const ObjectReader& object, const Moment& moment)
     const bool clock = dates_ == Dates::Later && is_clock(moment.time);
     if (!moment.date.empty() && !event && !clock)
         object.fail(object.line_of("date"), "date",
-                    "goes with an event in time.at, such as sunset-30min");
+                    "needs an event in time.at, such as sunset-30min");
     std::optional<sun::Zone> zone;
     std::optional<sun::Date> date;
     check(object, "zone", [&] {

@@ -338,8 +338,9 @@ struct Session::Impl {
             if (!active) continue;
             const shader::Param* const param = active->values.find(address);
             if (param && param->is_static)
-                bad_input(fmt::format("session: {}: it is static: another value is another program",
-                                      address));
+                bad_input(fmt::format(
+                    "session: {}: a static parameter: another value needs another shader",
+                    address));
             active->values.set(address, value);
             renderer->set_values(active->values);
         }

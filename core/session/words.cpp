@@ -30,8 +30,8 @@ ReadMoment read(const scene::Moment& moment) {
     if (!sun::is_event_time(moment.time)) {
         if (!moment.date.empty())
             bad_usage(
-                "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
-                "day is written 2026-06-21T18:30");
+                "--date: needs an event in --time, such as sunrise@46.55,8.56; write a time of day "
+                "as 2026-06-21T18:30");
         result.zone_by_place =
             !named && (sun::is_wall_time(moment.time) || sun::is_solar_zone(moment.zone));
         return result;

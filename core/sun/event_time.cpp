@@ -129,7 +129,7 @@ TimeSpan day_of(const EventTime& time, const std::optional<Date>& given,
                 const std::optional<Zone>& zone) {
     if (time.date && given && *time.date != *given)
         refuse(time.text,
-               fmt::format("contradicts --date {}; give only one of the two", to_string(*given)));
+               fmt::format("contradicts --date {}; use only one of them", to_string(*given)));
     const std::optional<Date> date = time.date ? time.date : given;
     if (!date)
         refuse(time.text, fmt::format("no date; write 2026-06-21 {} or pass --date", time.text));

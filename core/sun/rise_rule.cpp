@@ -33,10 +33,9 @@ RiseRule RiseRule::at_center_elevation(double true_elevation_rad) {
 
 RiseRule RiseRule::seen(Limb limb, const Refraction& refraction, double eye_height_m) {
     if (!(eye_height_m >= 0 && eye_height_m <= 10000))
-        bad_input(
-            fmt::format("sunrise: eye height {:.10g} m: no eye there, expected 0 to 10000 "
-                        "above the sea or plain",
-                        eye_height_m));
+        bad_input(fmt::format(
+            "sunrise: eye height {:.10g} m: impossible, expected 0 to 10000 above the sea or plain",
+            eye_height_m));
     const double dip_rad = seen_dip_rad(eye_height_m, refraction.bends());
     return {limb, refraction, dip_rad,
             eye_height_m > 0
@@ -48,7 +47,7 @@ RiseRule RiseRule::seen(Limb limb, const Refraction& refraction, double eye_heig
 RiseRule RiseRule::seen_over_dip(Limb limb, const Refraction& refraction, double dip_rad) {
     if (!(dip_rad >= 0 && dip_rad <= radians(5)))
         bad_input(
-            fmt::format("sunrise: dip of the horizon {:.10g} degrees: none there, expected 0 to 5",
+            fmt::format("sunrise: dip of the horizon {:.10g} degrees: impossible, expected 0 to 5",
                         degrees(dip_rad)));
     return {limb, refraction, dip_rad,
             fmt::format(" {:.2f} arc-minutes below the level one", degrees(dip_rad) * 60)};

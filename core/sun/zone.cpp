@@ -294,10 +294,9 @@ ParsedTime with_offset(const FieldReader& reader, const WrittenTime& time, int o
     result.utc = Instant::from_utc(time.wall) - offset_s + time.fraction_s;
     const LocalTime there = result.zone.local(result.utc);
     if (offset_s != 0 && there.utc_offset_s != offset_s)
-        reader.fail(
-            fmt::format("offset {} contradicts {}, expected {} ({}); give only one of the two",
-                        offset_text(offset_s), zone->name(), offset_text(there.utc_offset_s),
-                        there.abbreviation));
+        reader.fail(fmt::format("offset {} contradicts {}, expected {} ({}); use only one of them",
+                                offset_text(offset_s), zone->name(),
+                                offset_text(there.utc_offset_s), there.abbreviation));
     return result;
 }
 
@@ -309,14 +308,12 @@ ParsedTime by_clocks(const WrittenTime& time, const Zone& zone, int fold) {
     result.utc = taken.utc + time.fraction_s;
     result.kind = taken.kind;
     if (taken.kind == WallTimeKind::Nonexistent) {
-        result.note = fmt::format(
-            "{}: does not exist in {}, the clocks were put forward over it; taken as {}",
-            time.wall_text, zone.name(), to_iso(result.utc, zone));
+        result.note = fmt::format("{}: does not exist in {} (clocks went forward); taken as {}",
+                                  time.wall_text, zone.name(), to_iso(result.utc, zone));
     } else if (taken.kind == WallTimeKind::Ambiguous) {
         const ResolvedTime other = zone.resolve(time.wall, fold == 0 ? 1 : 0);
         result.note = fmt::format(
-            "{}: comes twice in {}, the clocks were put back over it; taken as the {} ({}), not "
-            "the {} ({})",
+            "{}: is ambiguous in {} (clocks went back); taken as the {} ({}), not the {} ({})",
             time.wall_text, zone.name(), fold == 0 ? "first" : "second",
             offset_text(taken.utc_offset_s), fold == 0 ? "second" : "first",
             offset_text(other.utc_offset_s));

@@ -164,10 +164,9 @@ TEST_P(OutputFiles, LeaveANameAloneThatIsTakenMeanwhile) {
         OutputFile mine(path_, false, "test");
         mine.write("mine");
         std::ofstream(path_) << "theirs";
-        EXPECT_EQ(error_of([&] { mine.finish(); }),
-                  message("exists by now, another program has made it; pass --overwrite to replace "
-                          "it",
-                          1));
+        EXPECT_EQ(
+            error_of([&] { mine.finish(); }),
+            message("exists now, made by another program; pass --overwrite to replace it", 1));
     }
     EXPECT_EQ(read_text(path_, "test"), "theirs");
     EXPECT_EQ(names(), Names{"a.csv"});
@@ -191,9 +190,9 @@ TEST_P(OutputFiles, OfOneRunAppearTogetherOrNotAtAll) {
         meanwhile();
         return error_of([&] { files.finish_outputs(); });
     };
-    const std::string taken = "exit 1: test: " + other.string() +
-                              ": exists by now, another program has made it; pass --overwrite to "
-                              "replace it";
+    const std::string taken =
+        "exit 1: test: " + other.string() +
+        ": exists now, made by another program; pass --overwrite to replace it";
     for (const auto& [first, second] : {std::pair(path_, other), std::pair(other, path_)}) {
         EXPECT_EQ(finish_with(first, second, [&] { std::ofstream(other) << "theirs"; }), taken);
         EXPECT_EQ(names(), Names{"b.json"});
@@ -313,8 +312,7 @@ TEST_P(OutputFiles, FollowSymbolicLinksWhichStay) {
     EXPECT_EQ(read_text(real, "test"), "new");
     std::filesystem::remove(real);
     EXPECT_EQ(error_of([&] { write_text(path_, "new", true, "test"); }),
-              message("is a symbolic link that leads nowhere; remove it, or make the file it "
-                      "names"));
+              message("is a broken symbolic link; remove it, or create its target"));
     EXPECT_FALSE(std::filesystem::exists(real));
 }
 
@@ -377,11 +375,11 @@ TEST_P(OutputFile_, ErrorsSayWhatIsWrong) {
     const auto open = [&] { OutputFile(path_, true, "test"); };
     const std::string none = (dir_ / "none").string();
     path_ = dir_ / "none" / "a.csv";
-    EXPECT_EQ(error_of(open), message("the folder " + none + " does not exist; make it first"));
+    EXPECT_EQ(error_of(open), message("the folder " + none + " does not exist; create it first"));
     std::ofstream(dir_ / "file") << "a file";
     path_ = dir_ / "file" / "a.csv";
-    EXPECT_EQ(error_of(open),
-              message("the folder " + (dir_ / "file").string() + " does not exist; make it first"));
+    EXPECT_EQ(error_of(open), message("the folder " + (dir_ / "file").string() +
+                                      " does not exist; create it first"));
     for (const char* name : {"", "sub/..", "."}) {
         std::filesystem::create_directory(dir_ / "sub");
         path_ = dir_ / name;
@@ -462,9 +460,9 @@ TEST_P(OutputFile_, IsNoFileThatTheRunReads) {
     for (const std::filesystem::path& output : {input, hard, soft, dir_ / "." / "dem.tif"})
         for (const bool overwrite : {false, true}) {
             path_ = output;
-            const std::string expected = message("is the DEM " + input.string() +
-                                                 ", which would be lost; give the result another "
-                                                 "name");
+            const std::string expected =
+                message("is the DEM " + input.string() +
+                        ", which would be overwritten; give the result another name");
             FilesInUse files;
             files.add_input(input, "the DEM");
             EXPECT_EQ(error_of([&] { files.open_output(path_, overwrite, "test"); }), expected);
@@ -489,7 +487,7 @@ TEST_P(OutputFile_, IsNotTheFileOfAnotherResult) {
     files.open_output(path_, false, "test");
     EXPECT_EQ(error_of([&] { files.open_output(dir_ / "same" / "a.csv", false, "--timings"); }),
               "exit 2: --timings: " + (dir_ / "same" / "a.csv").string() +
-                  ": another result goes there; give each a file of its own");
+                  ": another result has this name; give each its own file");
     files.open_output(dir_ / "b.csv", false, "test");
     files.open_output("/dev/null", false, "test");
     files.open_output("/dev/null", false, "test");

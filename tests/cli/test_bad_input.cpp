@@ -47,7 +47,7 @@ TEST(BadDem, EachHasItsMessage) {
         std::string path, message;
     };
     for (const Case& c :
-         {Case{"/nowhere/alps.tif", "cannot be read, no such file"},
+         {Case{"/nowhere/alps.tif", "no such file"},
           Case{(dir() / "notes.txt").string(), "not a raster in any format that GDAL reads"},
           Case{written("no_crs.tif", no_crs), "no coordinate reference system; pass --crs EPSG:n"},
           Case{written("empty.tif", empty), "no valid height: all 24 posts are voids"},
@@ -84,16 +84,16 @@ TEST(BadTime, EachHasItsMessage) {
                       "time: sunrise: no date; write 2026-06-21 sunrise or pass "
                       "--date");
     expect_no_picture(without_dem({"--time", "2026-06-21T18:30", "--date", "2026-06-21"}), 2,
-                      "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
-                      "day is written 2026-06-21T18:30");
+                      "--date: needs an event in --time, such as sunrise@46.55,8.56; write a time "
+                      "of day as 2026-06-21T18:30");
     expect_no_picture(capture_at({"--time", "2026-06-21T18:30", "--tz", "Europe/Zurick"}), 3,
                       "time zone: Europe/Zurick: no such time zone; did you mean Europe/Zurich?");
     // Without --time they would be left out of account, and the picture be of another day.
     expect_no_picture(capture_at({"--date", "2026-12-21"}), 2,
-                      "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
-                      "day is written --time 2026-12-21T18:30");
+                      "--date: needs an event in --time, such as sunrise@46.55,8.56; write a time "
+                      "of day as --time 2026-12-21T18:30");
     expect_no_picture(capture_at({"--tz", "Europe/Zurich"}), 2,
-                      "--tz: goes with --time, such as --time 2026-06-21T18:30");
+                      "--tz: needs --time, such as --time 2026-06-21T18:30");
 }
 
 TEST(BadValue, LineBreaksInItStandAsTheirNames) {
@@ -164,7 +164,7 @@ TEST(BadOutput, EachHasItsMessage) {
     const std::string nowhere = (dir() / "none" / "a.png").string();
     expect_no_picture({"capture", bundled_dem(), "-o", nowhere}, 3,
                       "image: " + nowhere + ": the folder " + (dir() / "none").string() +
-                          " does not exist; make it first");
+                          " does not exist; create it first");
     const std::string there = (dir() / "there.png").string();
     std::ofstream(there) << "precious";
     expect_no_picture({"capture", bundled_dem(), "-o", there}, 3,
@@ -198,10 +198,9 @@ TEST(BadDevice, AMachineWithoutAnyDriverSaysWhatToInstall) {
 TEST(BadUsage, EachHasItsMessage) {
     expect_no_picture({"captur"}, 2, "captur: no such command; did you mean capture?");
     expect_no_picture({"sun", "carpt"}, 2, "carpt: no such command; did you mean carpet?");
-    expect_no_picture(
-        {"sun"}, 2,
-        "sun: which command? There are position, day, horizon, carpet, when, shadow, hours, "
-        "sky-view, horizons, along; each has --help");
+    expect_no_picture({"sun"}, 2,
+                      "sun: no command given; there are position, day, horizon, carpet, when, "
+                      "shadow, hours, sky-view, horizons, along; each has --help");
     expect_no_picture({"plugins", "x"}, 2, "x: no such command; there are list, info");
     expect_no_picture({"capture"}, 2, "DEM is required; see relevo capture --help");
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--fov", "500"}, 2,
@@ -242,7 +241,7 @@ TEST(BadUsage, EachHasItsMessage) {
                       "--look-at, --heading and --pitch need --eye");
     expect_no_picture(
         {"capture", bundled_dem(), "-o", out_png(), "--eye", "36.3,-84.2", "--view", "az=3"}, 2,
-        "--view and --eye exclude each other; give one of them");
+        "--view and --eye exclude each other; use one");
 }
 
 }  // namespace

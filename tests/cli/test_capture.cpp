@@ -235,8 +235,8 @@ TEST_F(Capture, OfASavedSceneIsTheSamePicture) {
     expect_failure({"capture", "--scene", file, "-o", (dir_ / "c.png").string(), "--save-scene",
                     file, "--overwrite"},
                    3,
-                   fmt::format("--save-scene: {0}: is the scene {0}, which would be lost; give "
-                               "the result another name",
+                   fmt::format("--save-scene: {0}: is the scene {0}, which would be overwritten; "
+                               "give the result another name",
                                file));
     expect_failure({"capture", "-o", (dir_ / "c.png").string()}, 2,
                    "DEM is required; see relevo capture --help");

@@ -215,7 +215,7 @@ TEST_F(Output, IsNeverTheDemOrWhatBelongsToIt) {
     struct Case {
         std::string input, option, output, what;
     };
-    const std::string lost = ", which would be lost; give the result another name";
+    const std::string lost = ", which would be overwritten; give the result another name";
     const std::string of_dem = "is a file that the DEM is read from, ";
     for (const Case& c :
          {Case{dem, "-o", dem, "is the DEM " + dem}, Case{dem, "-o", link, "is the DEM " + dem},
@@ -267,7 +267,7 @@ TEST_F(Output, IsNeverAPresetOrAPluginsFile) {
              folder.string(), "--preset", path("my.json"), "--timings", c.file.string()},
             3,
             "--timings: " + c.file.string() + ": " + c.what + c.file.string() +
-                ", which would be lost; give the result another name");
+                ", which would be overwritten; give the result another name");
         EXPECT_EQ(read_text(c.file, "test"), before);
     }
     EXPECT_FALSE(std::filesystem::exists(path("a.png")));
@@ -284,11 +284,11 @@ TEST_F(Output, TimingsAreAnOutputLikeAnyOther) {
     arguments.back() = path("none/t.json");
     expect_failure(arguments, 3,
                    "--timings: " + path("none/t.json") + ": the folder " + path("none") +
-                       " does not exist; make it first");
+                       " does not exist; create it first");
     arguments.back() = path("./a.png");
-    expect_failure(arguments, 2,
-                   "--timings: " + path("./a.png") +
-                       ": another result goes there; give each a file of its own");
+    expect_failure(
+        arguments, 2,
+        "--timings: " + path("./a.png") + ": another result has this name; give each its own file");
     arguments.back() = "/dev/stdout";
     const Result run = relevo(arguments);
     EXPECT_EQ(run.status, 0) << run.err;
@@ -395,9 +395,8 @@ TEST_F(Output, NamesThatAreNoTextBreakNeitherJsonNorMessages) {
     EXPECT_EQ(info.status, 0) << info.err;
     EXPECT_EQ(nlohmann::json::parse(info.out)["path"], path("a\xef\xbf\xbd\x1b\nb.tif"));
     const std::string forged = path("none\nrelevo: error: /etc/passwd: all is well");
-    expect_failure(
-        {"info", forged}, 3,
-        path("none\\nrelevo: error: /etc/passwd: all is well") + ": cannot be read, no such file");
+    expect_failure({"info", forged}, 3,
+                   path("none\\nrelevo: error: /etc/passwd: all is well") + ": no such file");
     expect_failure({"capture", bundled_dem(), "-o", path("a\x1b[2J\nrelevo: done.gif")}, 3,
                    "image: " + path("a\\x1b[2J\\nrelevo: done.gif") +
                        ": not the name of a picture, expected an ending of png, jpg, webp, tif or "
@@ -416,7 +415,7 @@ TEST_F(Output, WithoutMemoryIsAnErrorThatSaysSo) {
     EXPECT_EQ(info.status, 1);
     EXPECT_EQ(info.err,
               "relevo: error: out of memory; use a smaller --size, a smaller --memory, or fewer "
-              "DEMs, or let the program have more (ulimit -v)\n");
+              "DEMs, or raise ulimit -v\n");
 }
 
 TEST_F(Output, WithoutAWorkingFolderIsAnErrorThatSaysSo) {

@@ -123,8 +123,7 @@ TEST_F(OverlayOption, StampsThatAreNoneAreRefused) {
         "relevo: error: --stamp: scael: expected all, none, or words of legend, title, scale, "
         "north, graticule, date, sun, attribution\n");
     EXPECT_EQ(capture("refused.png", {"--stamp", "attribution"}).err,
-              "relevo: error: --stamp: attribution: the words that name the data's source are "
-              "missing; expected --attribution TEXT\n");
+              "relevo: error: --stamp: attribution: its text is missing; add --attribution TEXT\n");
 }
 
 TEST_F(OverlayOption, OfASceneIsThatOfItsFile) {
@@ -146,9 +145,9 @@ TEST_F(OverlayOption, WhatIsNoneIsRefused) {
         EXPECT_FALSE(std::filesystem::exists(dir_ / "refused.png"));
         return run.err;
     };
-    EXPECT_EQ(said({"--overlay-opacity", "0.5"}),
-              "relevo: error: --overlay: what its colours, range, band, opacity and title are of, "
-              "is missing\n");
+    EXPECT_EQ(
+        said({"--overlay-opacity", "0.5"}),
+        "relevo: error: --overlay: missing; its colours, range, band, opacity and title need it\n");
     EXPECT_EQ(said({"--overlay", bundled_dem(), "--overlay-range", "5,5"}),
               "relevo: error: --overlay-range: 5,5: expected LOW,HIGH, the second over the first, "
               "such as 0,14\n");

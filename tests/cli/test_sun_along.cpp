@@ -182,7 +182,7 @@ TEST(SunAlongVerb, WhatIsMissingOrWrongIsSaid) {
             fmt::format("--speed: expected 0.01 to 1000 but got {}{}", speed, help));
     expect_failure(
         along(csv, {"--start", "2026-02-10T12:00Z", "--speed", "4", "--track", "2"}), 3,
-        fmt::format("sun along: {}: --track 2, expected 1 to 1: so many lines are in it", csv));
+        fmt::format("sun along: {}: --track 2, expected 1 to 1: the file has that many", csv));
     const std::string some =
         file("some.csv", "lat,lon,time\n36.30,-84.24,2026-02-10T12:00Z\n36.31,-84.24,\n");
     expect_failure({"-q", "sun", "along", bundled_dem(), some}, 3,
@@ -212,8 +212,9 @@ TEST(SunAlongVerb, WhatIsMissingOrWrongIsSaid) {
                                gpx));
     expect_failure(
         along(csv, {"--start", "2026-02-10T12:00Z", "--speed", "4", "-o", csv, "--overwrite"}), 3,
-        fmt::format("-o: {0}: is the track {0}, which would be lost; give the result another name",
-                    csv));
+        fmt::format(
+            "-o: {0}: is the track {0}, which would be overwritten; give the result another name",
+            csv));
 }
 
 }  // namespace

@@ -190,12 +190,12 @@ TEST(SunPoints, WhatIsMissingOrWrongIsSaid) {
     expect_failure({"sun", "horizon", dem, "--points", points, "--format", "pvgis"}, 2,
                    "--points: a file for pvgis is of one place; pass --at");
     expect_failure({"sun", "day", "--at", "1,2", "--date", "2026-02-10", "--points-crs", "EPSG:1"},
-                   2, "--points-crs: goes with --points");
+                   2, "--points-crs: needs --points");
     expect_failure(
         {"sun", "day", "--points", points, "--date", "2026-02-10", "-o", points, "--overwrite"}, 3,
-        fmt::format(
-            "-o: {0}: is the file of points {0}, which would be lost; give the result another name",
-            points));
+        fmt::format("-o: {0}: is the file of points {0}, which would be overwritten; give the "
+                    "result another name",
+                    points));
     EXPECT_EQ(
         relevo({"sun", "day", "--at", "1,2", "--points", points, "--date", "2026-02-10"}).status,
         2);
@@ -246,7 +246,7 @@ TEST(SunHorizonFormats, GoIntoFilesByTheirEnding) {
     for (const std::vector<std::string>& wrong :
          {std::vector<std::string>{"--json"}, {"-o", "a.svg"}, {"-o", "a.json"}})
         expect_failure(with(with(verb, {"--format", "pvgis"}), wrong), 2,
-                       "--format: goes with a table; pass -o with a name that ends in csv, hor, "
+                       "--format: applies to tables; pass -o with a name that ends in csv, hor, "
                        "txt, or none for standard output");
 }
 

@@ -319,7 +319,7 @@ TEST(SunClip, IsOfTheGridsCrsOrAnother) {
                 fmt::format("--clip: {}: expected WEST,SOUTH,EAST,NORTH, numbers of the DEM's CRS "
                             "or of --clip-crs, west less than east and south less than north",
                             text));
-    refused({"--clip-crs", "EPSG:4326"}, 2, "--clip-crs: goes with --clip");
+    refused({"--clip-crs", "EPSG:4326"}, 2, "--clip-crs: needs --clip");
 }
 
 TEST(SunRasters, ADryRunSaysWhatARunTakesAndWritesNothing) {
@@ -405,11 +405,11 @@ TEST(SunRasters, WhatMeansNothingIsRefused) {
     expect_failure(hours({"--year", "2026", "--bands", "first"}), 2,
                    "--bands: first, last and spells are available for at most 4 days");
     expect_failure(hours({"--year", "2026", "--linke", "4"}), 2,
-                   "--linke: goes with --bands global, beam, diffuse or reflected");
+                   "--linke: needs --bands global, beam, diffuse or reflected");
     expect_failure(hours({"--year", "2026", "--bands", "beam", "--albedo", "2"}), 2,
                    "--albedo: expected 0 to 1 but got 2; see relevo sun hours --help");
     expect_failure(hours({"--year", "2026", "--step", "1"}), 2,
-                   "--step: is of 4 days at most; a longer time has directions of the sun instead");
+                   "--step: for at most 4 days; longer periods use directions of the sun");
     expect_failure({"sun", "sky-view", dem, "-o", out("x.tif"), "--co", "ZSTD"}, 2,
                    "--co: ZSTD: expected NAME=VALUE, such as COMPRESS=ZSTD");
     const Result odd =
@@ -446,10 +446,11 @@ TEST(SunRasters, NeverReplaceTheirDem) {
     for (const std::vector<std::string>& verb : kRasterVerbs) {
         std::vector<std::string> arguments = verb_to(verb, dem, dem);
         arguments.emplace_back("--overwrite");
-        expect_failure(arguments, 3,
-                       fmt::format("-o: {0}: is the DEM {0}, which would be lost; give the result "
-                                   "another name",
-                                   dem));
+        expect_failure(
+            arguments, 3,
+            fmt::format(
+                "-o: {0}: is the DEM {0}, which would be overwritten; give the result another name",
+                dem));
     }
     EXPECT_EQ(bytes_of(dem), before);
 }
@@ -459,7 +460,7 @@ TEST(SunRasters, NeedAFolderThatCanBeWritten) {
     const std::filesystem::path none = folder() / "none";
     for (const std::vector<std::string>& verb : kRasterVerbs)
         expect_failure(verb_to(verb, dem, (none / "a.tif").string()), 3,
-                       fmt::format("-o: {}: the folder {} does not exist; make it first",
+                       fmt::format("-o: {}: the folder {} does not exist; create it first",
                                    (none / "a.tif").string(), none.string()));
     // A file system that takes no files, from root neither.
     for (const std::vector<std::string>& verb : kRasterVerbs)

@@ -195,7 +195,7 @@ TEST(SunShadow, TablesThatAreNoneAreRefused) {
     expect_refused(table("long.csv", text), "long.csv: more than 10000 times; split the file");
     const std::string times = table("one.csv", "time\n2026-01-10T13:30Z\n");
     expect_failure({"sun", "shadow", dem, "--times", times, "--sun", "90,10", "-o", out("x.tif")},
-                   2, "--times and --sun exclude each other; give one of them");
+                   2, "--times and --sun exclude each other; use one");
     expect_failure(
         {"sun", "shadow", dem, "--times", times, "--time", "2026-01-10T13:30Z", "-o", out("x.tif")},
         2, "--times: excludes --time and --date; remove them");
@@ -250,9 +250,9 @@ TEST(SunShadow, WhatMeansNothingIsRefused) {
     expect_failure(with({}), 2,
                    "--time: missing; pass --time 2026-06-21T18:30+02:00, or --sun AZ,EL");
     expect_failure(with({"--sun", "90,10", "--time", "2026-01-10T22:00Z"}), 2,
-                   "--time and --sun exclude each other; give one of them");
+                   "--time and --sun exclude each other; use one");
     expect_failure(with({"--sun", "90,10", "--no-refraction"}), 2,
-                   "--refraction: goes with --time; --sun is where the sun is seen");
+                   "--refraction: needs --time; --sun is an apparent direction");
     for (const std::string sun : {"90", "90,100", "north,10", "90,10,5", "map:90,10"})
         expect_failure(
             with({"--sun", sun}), 2,
@@ -262,9 +262,9 @@ TEST(SunShadow, WhatMeansNothingIsRefused) {
                         sun));
     expect_failure(
         {"sun", "shadow", dem, "--sun", "90,10", "-o", dem}, 3,
-        fmt::format("-o: {}: is the DEM {}, which would be lost; give the result another "
-                    "name",
-                    dem, dem));
+        fmt::format(
+            "-o: {}: is the DEM {}, which would be overwritten; give the result another name", dem,
+            dem));
     expect_failure(
         {"sun", "shadow", dem, "--sun", "90,10", "-o", out("x.png")}, 2,
         fmt::format("-o: {}: no format that this command writes, expected a name that ends "

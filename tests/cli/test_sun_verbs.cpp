@@ -366,7 +366,7 @@ TEST(BadSunInput, EachHasItsMessage) {
     expect_failure(day({"--tz", "UTC"}), 2,
                    "--date: missing; pass --date 2026-06-21, --from and --to, or --year 2026");
     expect_failure(day({"--date", "2026-06-21", "--year", "2026", "--tz", "UTC"}), 2,
-                   "--date, --from with --to, and --year exclude each other; give one of them");
+                   "--date, --from with --to, and --year exclude each other; use one");
     expect_failure(day({"--from", "2026-06-21", "--tz", "UTC"}), 2, "--from needs --to");
     expect_failure(
         day({"--date", "2011-12-30", "--tz", "Pacific/Apia"}), 3,
@@ -376,7 +376,7 @@ TEST(BadSunInput, EachHasItsMessage) {
                        ": no format that this command writes, expected a name that ends in svg, "
                        "png, csv, json");
     expect_failure(day({"--date", "2026-06-21", "--tz", "UTC", "--dip", "1", "--eye-height", "3"}),
-                   2, "--dip and --eye-height exclude each other; give one of them");
+                   2, "--dip and --eye-height exclude each other; use one");
     expect_failure({"sun", "day", "--at", "46.95,7.44,2agl", "--date", "2026-06-21", "--tz", "UTC"},
                    2, "--at: a height above the ground needs a DEM; give one above sea level");
 }
@@ -417,16 +417,15 @@ TEST(BadSunInput, UnknownEventsAndDatesOfThem) {
         at_time("first-light@46.95,7.44", {"--date", "2026-06-21", "--tz", "UTC"}), 3,
         "time: first-light@46.95,7.44: first and last light depend on the terrain; name a DEM");
     expect_failure(at_time("2026-06-21T12:00Z", {"--date", "2026-06-21"}), 2,
-                   "--date: goes with an event in --time, such as sunrise@46.55,8.56; a time of "
-                   "day is written 2026-06-21T18:30");
+                   "--date: needs an event in --time, such as sunrise@46.55,8.56; write a time of "
+                   "day as 2026-06-21T18:30");
     expect_failure(
         {"sun", "carpet", bundled_dem(), "--at", kValley, "--year", "1850", "--tz", "UTC"}, 3,
         "--year: 1850: the sun is computed for the years 1900 to 2100");
-    expect_failure({"sun", "carpet", bundled_dem(), "--at", kValley, "--year", "2026", "--tz",
-                    "UTC", "--step", "7min"},
-                   3,
-                   "carpet: step 420 s: no even part of a day, expected a divisor of 86400 "
-                   "s, such as 600");
+    expect_failure(
+        {"sun", "carpet", bundled_dem(), "--at", kValley, "--year", "2026", "--tz", "UTC", "--step",
+         "7min"},
+        3, "carpet: step 420 s: does not divide a day, expected a divisor of 86400 s, such as 600");
     expect_failure({"sun", "when", bundled_dem(), "--at", kValley, "--over", "47,11", "--year",
                     "2026", "--tz", "UTC"},
                    3,

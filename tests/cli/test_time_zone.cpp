@@ -176,8 +176,8 @@ TEST(TimeZone, SolarIsTheMeridiansMeanTime) {
     expect_failure(
         {"sun", "position", "--at", "0,-90", "--time", "2026-06-21T18:30+01:00", "--tz", "solar"},
         3,
-        "time: 2026-06-21T18:30+01:00: offset +01:00 contradicts LMT-06:00, "
-        "expected -06:00 (LMT); give only one of the two");
+        "time: 2026-06-21T18:30+01:00: offset +01:00 contradicts LMT-06:00, expected -06:00 (LMT); "
+        "use only one of them");
 }
 
 TEST(TimeZone, IsLookedUpOnlyWhereOneIsNeeded) {

@@ -335,9 +335,8 @@ TEST(Dialect, ArchiveOfSeveralRastersNamesOne) {
     const std::string path = (folder() / "two.zip").string();
     EXPECT_EQ(test::error_of([&] { load(path); }),
               "exit 3: " + path +
-                  ": an archive of 2 rasters, expected one; name those that are meant, as in "
-                  "'/vsizip/" +
-                  path + "/x.tif'");
+                  ": an archive of 2 rasters, expected one; name one, as in '/vsizip/" + path +
+                  "/x.tif'");
     EXPECT_EQ(load("/vsizip/" + path + "/y.tif").height_m.at(5, 3), 135);
 }
 

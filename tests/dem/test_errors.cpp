@@ -37,10 +37,10 @@ std::string written(const char* name, const std::string& text) {
 }
 
 TEST(LoadError, MissingFile) {
-    EXPECT_EQ(refusal("/nowhere/alps.tif"), "cannot be read, no such file");
-    EXPECT_EQ(refusal("NETCDF:/nowhere/alps.nc:z"), "cannot be read, no such file");
-    EXPECT_EQ(refusal("/vsizip//nowhere/alps.zip/alps.tif"), "cannot be read, no such file");
-    EXPECT_EQ(test::error_of([] { load(""); }), "exit 3: \"\": cannot be read, no such file");
+    EXPECT_EQ(refusal("/nowhere/alps.tif"), "no such file");
+    EXPECT_EQ(refusal("NETCDF:/nowhere/alps.nc:z"), "no such file");
+    EXPECT_EQ(refusal("/vsizip//nowhere/alps.zip/alps.tif"), "no such file");
+    EXPECT_EQ(test::error_of([] { load(""); }), "exit 3: \"\": no such file");
 }
 
 TEST(LoadError, NotARaster) {
@@ -369,8 +369,7 @@ TEST(LoadError, SeveralRastersInOneFile) {
     raster.options = {"RASTER_TABLE=slope", "APPEND_SUBDATASET=YES"};
     const std::string path = write_raster(folder() / "two.gpkg", raster);
     EXPECT_EQ(refusal(path),
-              "holds 2 rasters, expected one; name the one that is meant, as in 'GPKG:" + path +
-                  ":topo'");
+              "holds 2 rasters, expected one; name one, as in 'GPKG:" + path + ":topo'");
     EXPECT_EQ(load("GPKG:" + path + ":slope", {.band = 1}).height_m.at(0, 0), 9);
 }
 

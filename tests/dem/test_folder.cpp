@@ -137,7 +137,7 @@ TEST(Folder, WhatCannotBeOneDemHasItsMessage) {
     made("outer/inner");
     EXPECT_EQ(refusal(outer), "exit 3: " + outer.string() +
                                   ": a folder without a raster in it, expected a raster or a "
-                                  "folder of rasters; name the folder in it that is meant");
+                                  "folder of rasters; name one of its folders");
     const std::filesystem::path dir = made("with_picture");
     write_raster(dir / "a.tif", tile(0));
     Raster picture = tile(1);
@@ -151,13 +151,13 @@ TEST(Folder, WhatCannotBeOneDemHasItsMessage) {
                   ": a picture (red, green and blue bands of 8 bits), expected heights; if its "
                   "colours encode heights pass --encoding terrain-rgb or terrarium, if one band "
                   "holds them --band N; it is one of 2 in " +
-                  dir.string() + ", name those that are meant");
+                  dir.string() + ", name the right ones");
     // A damaged tile is no missing one.
     const std::filesystem::path cut = made("cut");
     write_raster(cut / "a.tif", tile(0));
     test::cut_short(write_raster(cut / "b.tif", tile(1)), 60);
-    EXPECT_THAT(refusal(cut), testing::EndsWith("it is one of 2 in " + cut.string() +
-                                                ", name those that are meant"));
+    EXPECT_THAT(refusal(cut),
+                testing::EndsWith("it is one of 2 in " + cut.string() + ", name the right ones"));
 }
 
 TEST(Folder, PipesInItAreNotWaitedFor) {

@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr const char* kUnitAssumed =
-    "heights are in metres, as neither the band nor a vertical CRS says; --unit sets another unit";
+    "heights are taken as metres: the file names no unit; --unit sets another";
 constexpr const char* kDatumAssumed =
     "heights are taken as ellipsoidal: the file names no vertical datum";
 
@@ -142,8 +142,8 @@ TEST(Load, FeetOfTheDistancesAreMentionedWhereHeightsSayNothing) {
     raster.geotransform = {{6400000, 30, 0, 1900000, 0, -30}};
     const Heightfield f = loaded("feet_crs.tif", raster);
     EXPECT_THAT(f.about.assumptions,
-                Contains("heights are in metres, as neither the band nor a vertical CRS says "
-                         "(distances are in US survey foot); --unit sets another unit"));
+                Contains("heights are taken as metres: the file names no unit (distances are in US "
+                         "survey foot); --unit sets another"));
 }
 
 TEST(Load, DepthsAreHeightsBelowZero) {
@@ -256,7 +256,7 @@ TEST(Load, BandIsChosen) {
     EXPECT_EQ(f.height_m.at(0, 0), 100);
     EXPECT_EQ(f.about.bands, 3);
     EXPECT_THAT(f.about.assumptions,
-                Contains("band 1 of 3 holds the heights; --band N takes another"));
+                Contains("band 1 of 3 holds the heights; --band N selects another"));
 }
 
 TEST(Load, BandOfAPictureOnlyWhenAskedFor) {
@@ -278,7 +278,7 @@ TEST(Load, CrsOptionSaysWhatTheFileDoesNot) {
     EXPECT_EQ(f.grid.crs().code(), "EPSG:31287");
     EXPECT_THAT(f.about.assumptions, Contains("the CRS is MGI / Austria Lambert, as given"));
     EXPECT_THAT(f.about.assumptions,
-                Contains("taken to WGS 84 by MGI to WGS 84 (3), good to 1.5 m"));
+                Contains("converted to WGS 84 by MGI to WGS 84 (3), good to 1.5 m"));
 }
 
 TEST(Load, CrsOptionReplacesTheFilesOwn) {

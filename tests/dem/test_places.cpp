@@ -129,12 +129,10 @@ TEST(Places, OneOfSeveralLinesIsNamedByItsNumber) {
     EXPECT_EQ(read_line(path, "t", {}, 2).name, "b");
     EXPECT_EQ(text_of(read_line(path, "t", {}, 1).places), "[|1|2|][|1|3|]");
     EXPECT_EQ(error_of([&] { read_line(path, "t"); }),
-              fmt::format("exit 3: t: {}: 2 lines in it; pass --track 1 to 2 for the one that is "
-                          "meant",
-                          path));
+              fmt::format("exit 3: t: {}: 2 lines in it; select one with --track 1 to 2", path));
     EXPECT_EQ(
         error_of([&] { read_line(path, "t", {}, 3); }),
-        fmt::format("exit 3: t: {}: --track 3, expected 1 to 2: so many lines are in it", path));
+        fmt::format("exit 3: t: {}: --track 3, expected 1 to 2: the file has that many", path));
 }
 
 TEST(Places, WhatCannotBeUsedIsNamedByItsLine) {

@@ -344,7 +344,7 @@ TEST(RealDem, SaysWhatItAssumed) {
     EXPECT_EQ(f.about.assumptions,
               (std::vector<std::string>{
                   "heights are taken as ellipsoidal: the file names no vertical datum",
-                  "taken to WGS 84 by NAD27 to WGS 84 (6), good to 7 m"}));
+                  "converted to WGS 84 by NAD27 to WGS 84 (6), good to 7 m"}));
     const Heightfield dted = load((data / "dem" / "n00_e006_3arc_v2.dt1").string());
     EXPECT_EQ(dted.about.vertical_datum, "EGM96");
 }

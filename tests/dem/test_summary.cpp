@@ -140,15 +140,14 @@ TEST(Summary, OfATurnedGridHasItsSides) {
 TEST(Summary, TextForPeople) {
     Summary summary = of("text.tif", alps());
     summary.path = "text.tif";
-    EXPECT_EQ(
-        to_text(summary),
-        "file       text.tif\nformat     GTiff, Int16\nposts      101 x 51\ncrs        EPSG:32632 "
-        "(WGS 84 / UTM zone 32N)\ncenter     46.94664 N 9.01991 E (UTM 32N 501515 E 5199235 N, "
-        "MGRS 32TNS0151499235)\nextent     3002 m east, 1501 m north\nspacing    30.01 m x 30.01 "
-        "m\nheights    1001.0 to 1200.0 m\nholes      0.01941 % (nodata -9999)\nunit       m "
-        "(assumed)\nabove      unknown\nassumed    heights are in metres, as neither the band nor "
-        "a vertical CRS says; --unit sets another unit\nassumed    heights are taken as "
-        "ellipsoidal: the file names no vertical datum\n");
+    EXPECT_EQ(to_text(summary),
+              "file       text.tif\nformat     GTiff, Int16\nposts      101 x 51\ncrs        "
+              "EPSG:32632 (WGS 84 / UTM zone 32N)\ncenter     46.94664 N 9.01991 E (UTM 32N 501515 "
+              "E 5199235 N, MGRS 32TNS0151499235)\nextent     3002 m east, 1501 m north\nspacing   "
+              " 30.01 m x 30.01 m\nheights    1001.0 to 1200.0 m\nholes      0.01941 % (nodata "
+              "-9999)\nunit       m (assumed)\nabove      unknown\nassumed    heights are taken as "
+              "metres: the file names no unit; --unit sets another\nassumed    heights are taken "
+              "as ellipsoidal: the file names no vertical datum\n");
 }
 
 }  // namespace

@@ -147,9 +147,9 @@ TEST(Survey, WhatAFileCannotHoldIsRefused) {
            "ySize=\"4\"/><DstRect xOff=\"0\" yOff=\"0\" xSize=\"2147483647\" ySize=\"4000\"/>"
            "</SimpleSource></VRTRasterBand></VRTDataset>";
     EXPECT_THAT(test::error_of([&] { Source::open(path.string()); }),
-                testing::MatchesRegex("exit 3: " + path.string() +
-                                      ": promises 2147483647 x 4000 posts, expected far fewer in "
-                                      "[0-9]+ bytes of files"));
+                testing::MatchesRegex(
+                    "exit 3: " + path.string() +
+                    ": claims 2147483647 x 4000 posts, too many for [0-9]+ bytes of files"));
 }
 
 TEST(Survey, BlocksLargerThanMemoryAreRefused) {

@@ -99,7 +99,7 @@ TEST_F(ImageFiles, OutputsAreCheckedBeforeTheWork) {
     const Image8 image = gradient(4, 4, 3);
     EXPECT_EQ(test::error_of([&] { write(dir_ / "none" / "a.png", image); }),
               "exit 3: image: " + (dir_ / "none" / "a.png").string() + ": the folder " +
-                  (dir_ / "none").string() + " does not exist; make it first");
+                  (dir_ / "none").string() + " does not exist; create it first");
     const std::string gif =
         "exit 3: image: " + (dir_ / "a.gif").string() +
         ": not the name of a picture, expected an ending of png, jpg, webp, tif or exr";

@@ -283,7 +283,7 @@ TEST(Ktx, WhatIsNoFileSaysSo) {
                           pipe.string()));
     const auto nowhere = dir / "missing" / "texture.ktx2";
     EXPECT_EQ(test::error_of([&] { write_ktx(nowhere, counted(PixelFormat::R8, 2, 2, 1, 1)); }),
-              fmt::format("exit 3: texture: {}: the folder {} does not exist; make it first",
+              fmt::format("exit 3: texture: {}: the folder {} does not exist; create it first",
                           nowhere.string(), nowhere.parent_path().string()));
 }
 

@@ -184,11 +184,11 @@ TEST(Alignments, ErrorsSayWhatIsWrong) {
               "to 2100");
     AlignmentOptions options;
     options.tolerance_rad = 0;
-    EXPECT_EQ(error_of([&] {
-                  alignments(here, target, {2026, 6, 21}, {2026, 6, 21}, kZurich, options);
-              }),
-              "exit 3: sun when: tolerance 0 degrees: no use, expected more than 0 and up "
-              "to 45");
+    EXPECT_EQ(
+        error_of([&] {
+            alignments(here, target, {2026, 6, 21}, {2026, 6, 21}, kZurich, options);
+        }),
+        "exit 3: sun when: tolerance 0 degrees: out of range, expected more than 0 and up to 45");
 }
 
 }  // namespace

@@ -87,8 +87,8 @@ TEST_F(Valley, CarpetErrorsSayWhatIsWrong) {
     EXPECT_EQ(error_of([&] { carpet(light_, 2150, zone_); }),
               "exit 3: carpet: year 2150: the sun is computed for the years 1900 to 2100");
     EXPECT_EQ(error_of([&] { carpet(light_, 2026, zone_, 7); }),
-              "exit 3: carpet: step 7 s: no even part of a day, expected a divisor of 86400 "
-              "s, such as 600");
+              "exit 3: carpet: step 7 s: does not divide a day, expected a divisor of 86400 s, "
+              "such as 600");
 }
 
 TEST(Carpet, LeavesOutDaysThatTheZoneSkipped) {

@@ -231,11 +231,11 @@ TEST(Walk, WhatIsNoWalkIsSaid) {
     const geo::Geodetic a = geo::geodetic_deg(36.30, -84.24), b = geo::geodetic_deg(36.36, -84.26);
     const Instant t = at("2026-02-10T12:00Z");
     EXPECT_EQ(error_of([&] { Walk::at_speed({a}, t, 1); }),
-              "exit 3: walk: 1 point: no way, expected two or more");
+              "exit 3: walk: 1 point: too few, expected two or more");
     EXPECT_EQ(error_of([&] {
                   Walk::at_speed({a, a}, t, 1);
               }),
-              "exit 3: walk: all points are at the same place, expected a way with a length");
+              "exit 3: walk: all points are at the same place, expected a track with a length");
     for (const double speed : {0.0, -1.0, std::nan("")})
         EXPECT_EQ(error_of([&] {
                       Walk::at_speed({a, b}, t, speed);
@@ -254,7 +254,7 @@ TEST(Walk, WhatIsNoWalkIsSaid) {
     EXPECT_EQ(error_of([&] {
                   Walk::timed({a, b}, {t, t});
               }),
-              "exit 3: walk: all points have the same time, expected a walk that takes some");
+              "exit 3: walk: all points have the same time, expected times that increase");
 }
 
 TEST(Walk, OutsideOfTheDemIsSaidWithWhereAndHowFar) {

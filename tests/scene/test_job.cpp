@@ -205,7 +205,7 @@ TEST_F(JobFile, AMillionPicturesAreRefusedBeforeTheyAreDrawnUp) {
                          "\"sweep\": [{\"set\": \"a.b\", \"from\": 1, \"to\": 1000, \"step\": 1},"
                          "{\"set\": \"a.c\", \"from\": 1, \"to\": 1000, \"step\": 1}]"),
                     100000),
-              " these are 1000000 pictures, more than 100000; pass --yes if that is meant");
+              " the job has 1000000 pictures, more than 100000; add --yes to allow them");
     EXPECT_THAT(
         error(with("\"time\": {\"at\": \"0:00\", \"date\": \"2026-01-01\"}, \"sweep\": "
                    "[{\"times\": {\"from\": \"0:00\", \"to\": \"23:59\", \"step\": \"1s\"}}]"),

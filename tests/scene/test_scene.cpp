@@ -171,11 +171,11 @@ TEST_F(SceneFile, MistakesNameTheirPlace) {
     EXPECT_EQ(error(with("\"time\": {\"at\": \"2026-06-21T12:00+01:00\", \"zone\": "
                          "\"Europe/Zurich\"}")),
               "2: time.at: 2026-06-21T12:00+01:00: offset +01:00 contradicts Europe/Zurich, "
-              "expected +02:00 (CEST); give only one of the two");
+              "expected +02:00 (CEST); use only one of them");
     EXPECT_EQ(error(with("\"time\": {\"at\": \"noon\",\n\"date\": \"June\"}")),
               "3: time.date: June: not a date, expected YYYY-MM-DD such as 2026-06-21");
     EXPECT_EQ(error(with("\"time\": {\"at\": \"2026-06-21T12:00Z\", \"date\": \"2026-06-21\"}")),
-              "2: time.date: goes with an event in time.at, such as sunset-30min");
+              "2: time.date: needs an event in time.at, such as sunset-30min");
     EXPECT_EQ(error(with("\"refraction\": \"some\"")),
               "2: refraction: expected one of standard, saemundsson, none but got \"some\"");
     EXPECT_EQ(error(with("\"effects\": {\"set\": {\"haze.density\": null}}")),

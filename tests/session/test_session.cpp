@@ -183,8 +183,9 @@ TEST(Session, FiguresHaveHolesWhateverIsDrawn) {
 TEST(Session, RefusesWhatNeedsAnotherProgram) {
     FilesInUse files;
     Session session(bundled_scene(), {.device = "software"}, files);
-    EXPECT_EQ(test::error_of([&] { session.set("paint.slope", "false"); }),
-              "exit 3: session: paint.slope: it is static: another value is another program");
+    EXPECT_EQ(
+        test::error_of([&] { session.set("paint.slope", "false"); }),
+        "exit 3: session: paint.slope: a static parameter: another value needs another shader");
     EXPECT_EQ(test::error_of([&] { session.set("film.density", "-1"); }),
               "exit 3: parameter: film.density: expected a number in [0, 1] 1/km but got "
               "\"-1\"");
@@ -262,9 +263,9 @@ TEST(Words, AreReadBeforeAnythingIsLoaded) {
     EXPECT_EQ(error({"sunrise", "", ""}),
               "exit 3: time: sunrise: no date; write 2026-06-21 sunrise or pass "
               "--date");
-    EXPECT_EQ(error({"2026-06-21 sunrise", "2026-06-22", ""}),
-              "exit 3: time: 2026-06-21 sunrise: contradicts --date 2026-06-22; "
-              "give only one of the two");
+    EXPECT_EQ(
+        error({"2026-06-21 sunrise", "2026-06-22", ""}),
+        "exit 3: time: 2026-06-21 sunrise: contradicts --date 2026-06-22; use only one of them");
     EXPECT_EQ(error({"2011-12-30 sunrise", "", "Pacific/Apia"}),
               "exit 3: time zone: 2011-12-30: there was no such day in Pacific/Apia, its clocks "
               "skipped it");

@@ -100,8 +100,8 @@ TEST(EventTime, ErrorsSayWhatIsWrong) {
               "exit 3: time: sunrise@46.55,8.56: no time zone to count the day "
               "2026-06-21 by; pass --tz, as in --tz Europe/Zurich");
     EXPECT_EQ(message("2026-06-20 sunrise@46.55,8.56"),
-              "exit 3: time: 2026-06-20 sunrise@46.55,8.56: contradicts --date "
-              "2026-06-21; give only one of the two");
+              "exit 3: time: 2026-06-20 sunrise@46.55,8.56: contradicts --date 2026-06-21; use "
+              "only one of them");
     EXPECT_EQ(message("sunset@78.2,15.6"),
               "exit 3: time: sunset@78.2,15.6: does not happen on 2026-06-21 in "
               "Europe/Zurich, the sun stays above all day");

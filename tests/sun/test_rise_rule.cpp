@@ -70,13 +70,13 @@ TEST(RiseRule, ADipCanBeGivenItself) {
               "sunrise and sunset: centre of the sun on the horizon 30.00 arc-minutes below the "
               "level one, no refraction");
     EXPECT_EQ(test::error_of([&] { RiseRule::seen_over_dip(Limb::Upper, air, radians(6.0)); }),
-              "exit 3: sunrise: dip of the horizon 6 degrees: none there, expected 0 to 5");
+              "exit 3: sunrise: dip of the horizon 6 degrees: impossible, expected 0 to 5");
 }
 
 TEST(RiseRule, AnImpossibleEyeIsAnError) {
-    EXPECT_EQ(test::error_of([] { RiseRule::seen(Limb::Upper, Refraction::none(), -3); }),
-              "exit 3: sunrise: eye height -3 m: no eye there, expected 0 to 10000 above the "
-              "sea or plain");
+    EXPECT_EQ(
+        test::error_of([] { RiseRule::seen(Limb::Upper, Refraction::none(), -3); }),
+        "exit 3: sunrise: eye height -3 m: impossible, expected 0 to 10000 above the sea or plain");
 }
 
 }  // namespace

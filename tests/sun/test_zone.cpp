@@ -70,16 +70,16 @@ TEST(Zone, SkippedAndRepeatedTimesAreSaidSo) {
     EXPECT_EQ(gap.kind, WallTimeKind::Nonexistent);
     EXPECT_EQ(to_iso(gap.utc), "2026-03-29T01:30:00Z");
     EXPECT_EQ(gap.note,
-              "2026-03-29T02:30: does not exist in Europe/Zurich, the clocks were put forward over "
-              "it; taken as 2026-03-29T03:30:00+02:00");
+              "2026-03-29T02:30: does not exist in Europe/Zurich (clocks went forward); taken as "
+              "2026-03-29T03:30:00+02:00");
     EXPECT_EQ(utc_of("2026-03-29T02:30", zurich, 1), "2026-03-29T00:30:00.000000Z");
 
     const ParsedTime twice = parse_time("2026-10-25T02:30", zurich);
     EXPECT_EQ(twice.kind, WallTimeKind::Ambiguous);
     EXPECT_EQ(to_iso(twice.utc), "2026-10-25T00:30:00Z");
     EXPECT_EQ(twice.note,
-              "2026-10-25T02:30: comes twice in Europe/Zurich, the clocks were put back over it; "
-              "taken as the first (+02:00), not the second (+01:00)");
+              "2026-10-25T02:30: is ambiguous in Europe/Zurich (clocks went back); taken as the "
+              "first (+02:00), not the second (+01:00)");
     EXPECT_EQ(utc_of("2026-10-25T02:30", zurich, 1), "2026-10-25T01:30:00.000000Z");
 
     const ParsedTime plain = parse_time("2026-10-25T03:00", zurich);
@@ -236,11 +236,11 @@ TEST(ParseTime, ATimeWithoutAZoneIsAnError) {
 
 TEST(ParseTime, AnOffsetThatTheZoneDoesNotHaveIsAnError) {
     EXPECT_EQ(parse_error("2026-06-21T18:30+01:00", Zone::named("Europe/Zurich")),
-              "exit 3: time: 2026-06-21T18:30+01:00: offset +01:00 contradicts "
-              "Europe/Zurich, expected +02:00 (CEST); give only one of the two");
+              "exit 3: time: 2026-06-21T18:30+01:00: offset +01:00 contradicts Europe/Zurich, "
+              "expected +02:00 (CEST); use only one of them");
     EXPECT_EQ(parse_error("2026-06-21T18:30+01:00", Zone::named("+05:30")),
-              "exit 3: time: 2026-06-21T18:30+01:00: offset +01:00 contradicts +05:30, "
-              "expected +05:30 (+05:30); give only one of the two");
+              "exit 3: time: 2026-06-21T18:30+01:00: offset +01:00 contradicts +05:30, expected "
+              "+05:30 (+05:30); use only one of them");
 }
 
 TEST(ParseTime, ImpossibleTimesAreErrors) {

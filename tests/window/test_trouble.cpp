@@ -42,8 +42,7 @@ TEST_F(Trouble, WithoutADisplayAnyMoreItEndsAndSaysSo) {
     ASSERT_TRUE(opens(window)) << window.output();
     display_.vanish();
     EXPECT_EQ(window.status(), 1);
-    EXPECT_EQ(window.output(),
-              "relevo: error: view: the display is gone, and the window with it\n");
+    EXPECT_EQ(window.output(), "relevo: error: view: the display is gone; the window is closed\n");
 }
 
 TEST_F(Trouble, ADisplayThatDoesNotAnswerIsNotWaitedForForEver) {
