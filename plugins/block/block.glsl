@@ -7,13 +7,13 @@
 //@ include lib/floor.glsl
 //@ include lib/ground.glsl
 
-uniform vec3 block_side = vec3(0.34, 0.31, 0.28); //@ colour label("Sides") description("Reflectance of the cut")
+uniform vec3 block_side = vec3(0.34, 0.31, 0.28); //@ colour label("Sides") description("Reflectance of the cut sides")
 uniform float block_sun = 0.45; //@ range(0, 2) label("Sun on the sides") description("Factor on the sunlight on the cut sides: below 1 the ground stays brighter")
-uniform float block_sky = 1.8; //@ range(0, 10) label("Light of the surroundings") description("On the sides, as a multiple of the sky's: what is bright around a block lights it")
-uniform vec3 block_above = vec3(0.60, 0.62, 0.64); //@ colour label("Backdrop above") description("At the picture's upper edge, by day")
-uniform vec3 block_below = vec3(0.43, 0.43, 0.42); //@ colour label("Backdrop below") description("And at its lower edge")
-uniform vec3 block_space = vec3(0.012, 0.014, 0.018); //@ colour label("Behind a globe") description("Backdrop of a DEM that goes round the Earth")
-uniform float block_shade = 0.55; //@ range(0, 1) label("Shade") description("How much of its light the floor below the block has lost")
+uniform float block_sky = 1.8; //@ range(0, 10) label("Ambient light") description("Ambient light on the sides, relative to the light of the sky")
+uniform vec3 block_above = vec3(0.60, 0.62, 0.64); //@ colour label("Backdrop above") description("Colour at the upper edge of the picture, by day")
+uniform vec3 block_below = vec3(0.43, 0.43, 0.42); //@ colour label("Backdrop below") description("Colour at the lower edge of the picture, by day")
+uniform vec3 block_space = vec3(0.012, 0.014, 0.018); //@ colour label("Behind a globe") description("Backdrop of a DEM of the whole Earth")
+uniform float block_shade = 0.55; //@ range(0, 1) label("Shade") description("Darkness of the block's shade on the floor")
 
 float block_luminance(in vec3 light) {
     return dot(light, vec3(0.2126, 0.7152, 0.0722));

@@ -9,8 +9,8 @@
 uniform sampler2DArray bump_normals;
 
 uniform float bump_strength = 1.0; //@ range(0, 4) label("Strength") description("Factor on the slopes of the bumps")
-uniform int bump_correction = 2; //@ enum(none, abrupt, smooth) static label("Correction") description("Light only where ground and bump both face the sun: not at all, the paper's figure 3a, and 3b")
-uniform float bump_softness = 0.12; //@ range(0.001, 1) label("Softness") description("Cosine of the sun's angle of incidence from which on ground is fully lit; of the smooth correction")
+uniform int bump_correction = 2; //@ enum(none, abrupt, smooth) static label("Correction") description("Bumps are lit only where the ground faces the sun too: off, as figure 3a of the paper, as figure 3b")
+uniform float bump_softness = 0.12; //@ range(0.001, 1) label("Softness") description("For the smooth correction: cosine of the incidence angle above which ground is fully lit")
 uniform float bump_relief = 1.0; //@ range(0, 4) label("Relief between posts") description("Synthetic detail between the DEM's posts, on ground near the camera; 0: none")
 
 const float bump_coarsest_m = 25.0;  // cells of the relief's coarsest noise: what is wider passes for the DEM's own

@@ -5,7 +5,7 @@
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section 3.2
 
-uniform float gloss_amount = 1.0; //@ range(0, 1) label("Amount") description("0 leaves highlights as they are")
+uniform float gloss_amount = 1.0; //@ range(0, 1) label("Amount") description("0: highlights unchanged")
 
 /// What is left of a highlight. @param gloss  of the map, 0..1
 float gloss_factor(in float gloss) {

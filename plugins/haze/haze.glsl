@@ -6,9 +6,9 @@
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section on sky and haze
 
 uniform float haze_density = 0.022; //@ range(0, 100) unit(1/km) label("Density") description("Extinction of green light at height 0")
-uniform float haze_visibility = 0.0; //@ range(0, 1000) unit(km) label("Visibility") description("Meteorological range at height 0, in the density's place: 3.912 / density. 0: the density counts")
-uniform float haze_scale_height = 2500.0; //@ range(10, 100000) unit(m) label("Scale height") description("Over which the haze thins by e")
-uniform float haze_blue = 0.6; //@ range(0, 1) label("Blue") description("How much more blue is scattered than red: 1 as by pure air, 0 as by fog and in the paper")
+uniform float haze_visibility = 0.0; //@ range(0, 1000) unit(km) label("Visibility") description("Meteorological range at height 0, instead of the density: 3.912 / density. 0: the density is used")
+uniform float haze_scale_height = 2500.0; //@ range(10, 100000) unit(m) label("Scale height") description("Height over which the haze thins by a factor of e")
+uniform float haze_blue = 0.6; //@ range(0, 1) label("Blue") description("Blue scattering relative to red: 1 as in pure air, 0 as in fog and in the paper")
 
 out vec3 haze_strength;  // red, green, blue: share of the sky's colour
 

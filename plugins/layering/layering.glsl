@@ -10,7 +10,7 @@ uniform sampler3D layering_noise;
 uniform sampler2D layering_patches;
 uniform sampler2D layering_regions;  // the same less 0.5, in floats
 
-uniform int layering_limits = 2; //@ enum(normalised, metres, climate) static label("Limits") description("Where materials change: the paper's share of the DEM's range, heights in metres, or tree and snow line of the latitude")
+uniform int layering_limits = 2; //@ enum(normalised, metres, climate) static label("Limits") description("Limits of the materials: fractions of the DEM's range as in the paper, heights in metres, or tree and snow line of the latitude")
 
 uniform vec2 layering_sand_grass = vec2(0.20, 0.25); //@ range(0, 1) label("Sand to grass, normalised")
 uniform vec2 layering_grass_rock = vec2(0.40, 0.45); //@ range(0, 1) label("Grass to rock, normalised")
@@ -20,20 +20,20 @@ uniform float layering_noise_amount = 0.03; //@ range(0, 0.5) label("Noise on li
 uniform vec2 layering_sand_grass_m = vec2(1.0, 6.0); //@ range(-12000, 9000) unit(m) label("Sand to grass")
 uniform vec2 layering_grass_rock_m = vec2(1700.0, 2300.0); //@ range(-12000, 9000) unit(m) label("Grass to rock")
 uniform vec2 layering_rock_snow_m = vec2(2700.0, 3000.0); //@ range(-12000, 9000) unit(m) label("Rock to snow")
-uniform vec3 layering_noise_amount_m = vec3(2.0, 180.0, 180.0); //@ range(0, 2000) unit(m) label("Noise on limits") description("On the limits from sand to grass, to rock, to snow")
-uniform float layering_snow_shift_m = 0.0; //@ range(-9000, 9000) unit(m) label("Snow line shift") description("Added to the climate's snow line: negative in a cold season")
+uniform vec3 layering_noise_amount_m = vec3(2.0, 180.0, 180.0); //@ range(0, 2000) unit(m) label("Noise on limits") description("Noise on the limits from sand to grass, to rock, to snow")
+uniform float layering_snow_shift_m = 0.0; //@ range(-9000, 9000) unit(m) label("Snow line shift") description("Added to the climate's snow line; negative in a cold season")
 
 uniform bool layering_slope = true; //@ static label("Rock on steep ground")
 uniform vec2 layering_slope_deg = vec2(33.0, 47.0); //@ range(0, 90) unit(deg) label("Steep from, to")
 
-uniform bool layering_metres = true; //@ static label("Scales in metres") description("Else a number of repeats over the DEM, as in the paper")
+uniform bool layering_metres = true; //@ static label("Scales in metres") description("Off: numbers of repeats over the DEM, as in the paper")
 uniform float layering_texture_m = 12.0; //@ range(0.1, 100000) unit(m) label("Texture size")
 uniform float layering_noise_m = 2400.0; //@ range(1, 1000000) unit(m) label("Noise size")
 uniform float layering_texture_repeats = 64.0; //@ range(1, 100000) label("Texture repeats")
 uniform float layering_noise_repeats = 8.0; //@ range(1, 1000) label("Noise repeats")
-uniform float layering_variation = 0.35; //@ range(0, 1) label("Variation") description("How much broad patches differ in brightness; 0 in the paper")
-uniform bool layering_nature = true; //@ static label("Natural ground") description("Textures without repeats, dry and lush ground, shrubs, bands of rock; not in the paper")
-uniform vec3 layering_patch_m = vec3(230.0, 5300.0, 67000.0); //@ range(1, 10000000) unit(m) label("Patch sizes") description("Of the small and the broad patches of natural ground, and of its regions")
+uniform float layering_variation = 0.35; //@ range(0, 1) label("Variation") description("Difference in brightness of broad patches; 0 in the paper")
+uniform bool layering_nature = true; //@ static label("Natural ground") description("Textures without visible repetition, dry and lush ground, shrubs, bands of rock; not in the paper")
+uniform vec3 layering_patch_m = vec3(230.0, 5300.0, 67000.0); //@ range(1, 10000000) unit(m) label("Patch sizes") description("Sizes of small patches, broad patches and regions of natural ground")
 
 // Coefficients of sand, grass, rock, snow.
 uniform vec4 layering_diffuse = vec4(1.0, 1.0, 1.0, 1.0); //@ range(0, 2) label("Diffuse")

@@ -11,10 +11,10 @@
 //@ include lib/surface.glsl
 //@ include lib/water.glsl
 
-uniform float sea_level_m = 0.0; //@ range(-500, 9000) unit(m) label("Level") description("0: water stands where the DEM has sea and lakes. Else all ground at this height and below is flooded")
-uniform float sea_least_depth_m = 10.0; //@ range(0, 1000) unit(m) label("Least depth") description("Added to the depth where ground is flooded: its level may be the level itself")
-uniform float sea_wind_m_s = 5.0; //@ range(0, 20) unit(m/s) label("Wind") description("Roughens the water: the more, the wider the sun's glitter")
-uniform float sea_yellow = 0.2; //@ range(0, 10) unit(1/m) label("Yellow substance") description("What rivers and plankton make water swallow of light of 440 nm: 0.01 in the blue ocean, 0.2 off a coast, above 1 in an estuary")
+uniform float sea_level_m = 0.0; //@ range(-500, 9000) unit(m) label("Level") description("0: water where the DEM has sea and lakes. Otherwise all ground at or below this height is flooded")
+uniform float sea_least_depth_m = 10.0; //@ range(0, 1000) unit(m) label("Least depth") description("Added to the depth of flooded ground, whose height may equal the level")
+uniform float sea_wind_m_s = 5.0; //@ range(0, 20) unit(m/s) label("Wind") description("Wind speed: more wind widens the sun's glitter")
+uniform float sea_yellow = 0.2; //@ range(0, 10) unit(1/m) label("Yellow substance") description("Absorption at 440 nm by dissolved matter: 0.01 in the open ocean, 0.2 near a coast, above 1 in an estuary")
 
 const vec3 sea_absorption = vec3(0.264, 0.0565, 0.0101);  // of pure water at 610, 550 and 465 nm [1/m]
 const vec3 sea_yellow_by_colour = vec3(0.0925, 0.214, 0.705);  // exp(-0.014 (wavelength - 440 nm))

@@ -11,27 +11,27 @@ uniform sampler3D sky_light;     // irradiance of slopes, likewise
 uniform sampler2DArray sky_times;
 uniform sampler3D sky_star_cells;  // by direction, unfolded like an octahedron; a column of stars
 
-uniform int sky_colours = 0; //@ enum(model, three) static label("Colours") description("A sky for every height of the sun, or the paper's three, blended")
-uniform float sky_brightness = 1.3; //@ range(0, 10) label("Brightness") description("Of the sky without the sun; above 1 because less of the aureole is drawn than there is")
-uniform float sky_horizon = 0.5; //@ range(0.05, 2) label("Horizon") description("Exponent of equation 3 for an eye at sea level: the higher, the farther up the horizon's colours reach")
-uniform float sky_day_deg = 25.0; //@ angle range(1, 90) unit(deg) label("Day from") description("Height of the sun from which on the day's texture is shown alone; of the three")
-uniform float sky_night_deg = -12.0; //@ angle range(-90, -1) unit(deg) label("Night from") description("Height of the sun below which the night's texture is shown alone; of the three")
+uniform int sky_colours = 0; //@ enum(model, three) static label("Colours") description("A sky for each elevation of the sun, or the paper's three, blended")
+uniform float sky_brightness = 1.3; //@ range(0, 10) label("Brightness") description("Brightness of the sky without the sun; above 1 because the drawn aureole is weaker than the real one")
+uniform float sky_horizon = 0.5; //@ range(0.05, 2) label("Horizon") description("Exponent of equation 3 for a camera at sea level; higher values extend the horizon's colours upwards")
+uniform float sky_day_deg = 25.0; //@ angle range(1, 90) unit(deg) label("Day from") description("Elevation of the sun above which only the day texture is used; for the paper's three skies")
+uniform float sky_night_deg = -12.0; //@ angle range(-90, -1) unit(deg) label("Night from") description("Elevation of the sun below which only the night texture is used; for the paper's three skies")
 
 uniform float sky_power = 20.0; //@ range(1, 4000) label("Power") description("Least exponent of equation 1; the next two are 4 and 16 times it")
-uniform vec3 sky_weights = vec3(0.133, 0.532, 0.346); //@ range(0, 1) label("Weights") description("Of those three powers; all 1 in the paper")
-uniform float sky_aureole = 0.3; //@ range(0, 100) label("Aureole") description("Brightness of the glow, as a multiple of the sun's light at the eye")
-uniform bool sky_air_mass = true; //@ static label("Aureole by air mass") description("A low sun shines through more haze; off in the paper")
+uniform vec3 sky_weights = vec3(0.133, 0.532, 0.346); //@ range(0, 1) label("Weights") description("Weights of the three powers; all 1 in the paper")
+uniform float sky_aureole = 0.3; //@ range(0, 100) label("Aureole") description("Brightness of the glow, relative to the sunlight at the camera")
+uniform bool sky_air_mass = true; //@ static label("Aureole by air mass") description("More glow for a low sun, which shines through more haze; off in the paper")
 uniform float sky_disc_power = 65000.0; //@ range(100, 1000000) label("Power of the disc") description("65000 falls to one half at 0.265 degrees: the sun's true size")
-uniform float sky_disc = 30.0; //@ range(0, 10000) label("Disc") description("Brightness of the sun's disc, as a multiple of its light at the eye")
-uniform float sky_disc_edge = 8.0; //@ range(1, 100) label("Edge of the disc") description("How sharply the disc ends; 1, a soft spot, in the paper")
+uniform float sky_disc = 30.0; //@ range(0, 10000) label("Disc") description("Brightness of the solar disc, relative to the sunlight at the camera")
+uniform float sky_disc_edge = 8.0; //@ range(1, 100) label("Edge of the disc") description("Sharpness of the disc's edge; 1, a soft spot, in the paper")
 
-uniform float sky_stars = 1.0; //@ range(0, 1000) label("Stars") description("Brightness, as a multiple of the true one; 0 switches them off")
+uniform float sky_stars = 1.0; //@ range(0, 1000) label("Stars") description("Brightness relative to the true one; 0: no stars")
 
-uniform bool sky_earth = true; //@ static label("Earth") description("Below the horizon the Earth: plain ground, lit as the terrain is, seen through its air. Else the colour of the horizon, as in the paper")
+uniform bool sky_earth = true; //@ static label("Earth") description("On: plain ground below the horizon, lit as the terrain and seen through its air. Off: the colour of the horizon, as in the paper")
 uniform vec3 sky_earth_albedo = vec3(0.19, 0.18, 0.15); //@ range(0, 1) label("Albedo of the Earth") description("Albedo of the ground outside the DEM, and around a slope")
 uniform float sky_earth_depth = 0.12; //@ range(0, 10) label("Air above the Earth") description("Vertical optical depth of the air over the ground outside the DEM")
 
-uniform bool sky_slopes = true; //@ static label("Light by direction") description("A slope gets the light of the part of the sky that it faces, and of the ground around it; else all ground gets the same")
+uniform bool sky_slopes = true; //@ static label("Light by direction") description("On: a slope receives light from the part of the sky that it faces and from the ground around it. Off: the same light everywhere")
 
 const float sky_fold = 0.14;       // tools/sky/textures.h: how heights of the sun are spread ...
 const float sky_lowest = 0.68822;  // ... over the slices: folded(sin 18 deg)

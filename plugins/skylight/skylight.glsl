@@ -6,8 +6,8 @@
 
 //@ include lib/openness.glsl
 
-uniform float skylight_albedo = 0.2;  //@ range(0, 1) label("Albedo") description("Of the ground that stands before the sky: so much of the sky's light comes from there")
-uniform float skylight_strength = 1.0;  //@ range(0, 4) label("Strength") description("1 is the light there is; above it hollows are darker than they are")
+uniform float skylight_albedo = 0.2;  //@ range(0, 1) label("Albedo") description("Albedo of the ground that hides the sky and reflects light instead")
+uniform float skylight_strength = 1.0;  //@ range(0, 4) label("Strength") description("1: physical; higher values darken hollows further")
 
 void skylight_on_ambient(in Surface s, inout vec3 irradiance) {
     float seen = pow(surface_open_sky(s), skylight_strength);

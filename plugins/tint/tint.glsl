@@ -7,12 +7,12 @@
 
 //@ include lib/ground.glsl
 
-uniform int tint_by = 0; //@ enum(height, slope, aspect, plain) static label("By") description("What the colour shows")
-uniform bool tint_lit = true; //@ static label("Lit") description("The sun shines on it; off, colours are those of the legend")
-uniform float tint_low_m = 0.0; //@ range(-12000, 9000) unit(m) label("Lowest") description("Height of the first colour of land; where it is not below the highest, the DEM's own range")
+uniform int tint_by = 0; //@ enum(height, slope, aspect, plain) static label("Colour by") description("What the colour shows")
+uniform bool tint_lit = true; //@ static label("Lit") description("On: lit by the sun. Off: exactly the colours of the legend")
+uniform float tint_low_m = 0.0; //@ range(-12000, 9000) unit(m) label("Lowest") description("Height of the first colour of land. If it is not below the highest, the DEM's own range")
 uniform float tint_high_m = 0.0; //@ range(-12000, 9000) unit(m) label("Highest") description("Height of the last colour")
-uniform vec3 tint_plain = vec3(0.72, 0.71, 0.69); //@ colour label("Plain") description("The one colour of ground by nothing")
-uniform float tint_sun = 1.0; //@ range(0, 1) label("Sun") description("Share of the sun's direct light")
+uniform vec3 tint_plain = vec3(0.72, 0.71, 0.69); //@ colour label("Plain") description("Colour of the ground if Colour by is plain")
+uniform float tint_sun = 1.0; //@ range(0, 1) label("Sun") description("Factor on the direct sunlight")
 uniform float tint_sky = 1.0; //@ range(0, 20) label("Sky") description("Factor on the light of the sky")
 
 // sRGB: what lies between two is mixed as it is seen. Seas from the shore down, slopes every 10 degrees, aspects every 45.
@@ -27,7 +27,7 @@ const vec3 tint_slope[tint_slopes] = vec3[](
     vec3(0.851, 0.318, 0.184), vec3(0.659, 0.118, 0.235), vec3(0.353, 0.067, 0.314)); //@ ramp(0, 60) unit(°) label("Slope") where(by, slope)
 const vec3 tint_aspect[tint_aspects] = vec3[](
     vec3(0.290, 0.435, 0.690), vec3(0.310, 0.624, 0.682), vec3(0.361, 0.722, 0.478), vec3(0.714, 0.812, 0.361),
-    vec3(0.949, 0.812, 0.290), vec3(0.918, 0.569, 0.251), vec3(0.812, 0.353, 0.373), vec3(0.561, 0.353, 0.627)); //@ ramp(ring) label("Slopes face") where(by, aspect)
+    vec3(0.949, 0.812, 0.290), vec3(0.918, 0.569, 0.251), vec3(0.812, 0.353, 0.373), vec3(0.561, 0.353, 0.627)); //@ ramp(ring) label("Aspect") where(by, aspect)
 const vec3 tint_level = vec3(0.851, 0.851, 0.831);  // ground without aspect
 
 /// Heights of the first and the last colour of land [m].

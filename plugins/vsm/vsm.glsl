@@ -7,25 +7,25 @@
 
 //@ include lib/surface.glsl
 
-uniform int vsm_size = 2048;      //@ range(256, 8192) unit(px) label("Size of a map") description("Texels along each side.")
-uniform int vsm_maps = 3;         //@ range(1, 3) label("Maps") description("At most: one of all that is seen, and nearer ones where that is too coarse.")
-uniform float vsm_blur = 0.08;    //@ range(0, 0.6) label("Blur") description("Share of a texel's neighbours in it, each way.")
-uniform float vsm_bleed = 0.2;    //@ range(0, 0.9) label("Light bleed cut") description("What Chebyshev's bound lets through where shadows overlap, and is taken as none.")
-uniform float vsm_bias = 0.5;     //@ range(0, 4) label("Bias") description("How far ground may lie below the map without a shadow, in standard deviations.")
-uniform float vsm_softness = 0.8; //@ range(0, 8) label("Softness") description("Least standard deviation of the heights in a texel, in the height of its row.")
-uniform bool vsm_penumbra = false; //@ static label("Penumbra") description("Shadows grow softer with the distance of what casts them, as the sun's half degree makes them.")
+uniform int vsm_size = 2048;      //@ range(256, 8192) unit(px) label("Size of a map") description("Texels along each side")
+uniform int vsm_maps = 3;         //@ range(1, 3) label("Maps") description("Largest number of maps: one of all visible ground, and nearer ones where it is too coarse")
+uniform float vsm_blur = 0.08;    //@ range(0, 0.6) label("Blur") description("Weight of a texel's neighbours in each direction")
+uniform float vsm_bleed = 0.2;    //@ range(0, 0.9) label("Light bleed cut") description("Light below this value counts as none: reduces light bleeding where shadows overlap")
+uniform float vsm_bias = 0.5;     //@ range(0, 4) label("Bias") description("Depth below the map without a shadow, in standard deviations")
+uniform float vsm_softness = 0.8; //@ range(0, 8) label("Softness") description("Smallest standard deviation of the heights in a texel, relative to the height of its row")
+uniform bool vsm_penumbra = false; //@ static label("Penumbra") description("Penumbra grows with the distance of the occluder, as for the sun's half degree")
 uniform float vsm_sun_diameter = 0.533;  //@ range(0, 10) angle unit(deg) label("Sun's diameter")
 
-uniform bool vsm_keep = true;     //@ label("Keep the map") description("Until the sun or the ground that is needed changes; else it is drawn for every frame.")
+uniform bool vsm_keep = true;     //@ label("Keep the map") description("Keep maps until the sun or the visible ground changes. Off: drawn for every frame")
 
 uniform vec4 vsm_across = vec4(0.0);   //@ host
 uniform vec4 vsm_along = vec4(0.0);    //@ host
 uniform vec4 vsm_rise = vec4(0.0);     //@ host
 uniform vec4 vsm_nearer = vec4(0.0);   //@ host
 uniform vec4 vsm_nearest = vec4(0.0);  //@ host
-uniform vec4 vsm_row_m = vec4(0.0);    //@ host description("Height of a row of each map.")
+uniform vec4 vsm_row_m = vec4(0.0);    //@ host description("Height of a row of each map")
 uniform vec4 vsm_reach = vec4(0.0);    //@ host
-uniform vec4 vsm_texel_m = vec4(0.0);  //@ host description("Across and up, of the map of all that is seen.")
+uniform vec4 vsm_texel_m = vec4(0.0);  //@ host description("Horizontal and vertical, of the map of all visible ground")
 
 uniform sampler2DArray vsm_moments;
 

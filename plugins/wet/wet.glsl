@@ -7,15 +7,15 @@
 //!           Lekner and M. C. Dorf, Why some things are darker when wet, Applied Optics 27 (1988), 1278
 
 uniform float wet_wetness = 1.0; //@ range(0, 1) label("Wetness") description("0 dry, 1 soaked")
-uniform int wet_where = 0; //@ enum(everywhere, shore) static label("Where") description("All ground, or only what the sea washes")
-uniform float wet_shore_m = 2.0; //@ range(-500, 9000) unit(m) label("Shore up to") description("Height below which the ground is wet; of the shore")
-uniform float wet_shore_fade_m = 2.0; //@ range(0.01, 1000) unit(m) label("Fade") description("Height over which it dries above")
+uniform int wet_where = 0; //@ enum(everywhere, shore) static label("Where") description("All ground, or only the shore")
+uniform float wet_shore_m = 2.0; //@ range(-500, 9000) unit(m) label("Shore up to") description("For the shore: height below which the ground is wet")
+uniform float wet_shore_fade_m = 2.0; //@ range(0.01, 1000) unit(m) label("Fade") description("Height above that over which the ground becomes dry")
 
 // Of sand, grass, rock, snow.
-uniform vec4 wet_diffuse = vec4(0.60, 0.75, 0.42, 0.92); //@ range(0, 1) label("Diffuse") description("Factor on the diffuse light of soaked ground: rock changes most")
+uniform vec4 wet_diffuse = vec4(0.60, 0.75, 0.42, 0.92); //@ range(0, 1) label("Diffuse") description("Factor on the diffuse light of soaked ground")
 uniform vec4 wet_specular = vec4(0.16, 0.08, 0.45, 0.12); //@ range(0, 2) label("Specular") description("Added to the highlight of soaked ground")
 uniform float wet_shininess = 60.0; //@ range(1, 1000) label("Shininess") description("Exponent of the highlight of soaked ground")
-uniform float wet_reflection = 0.6; //@ range(0, 1) label("Reflection") description("How much of a smooth film of water the ground carries; 0 in the paper")
+uniform float wet_reflection = 0.6; //@ range(0, 1) label("Reflection") description("Reflection of a smooth film of water on the ground; 0 in the paper")
 
 /// The value that a material has, blended as the two materials are.
 float wet_of(in vec4 values, in ivec2 material, in vec2 weight) {
