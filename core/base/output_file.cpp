@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/link_walk.h"
 #include "base/partial_names.h"
 #include "base/text.h"
 
@@ -96,7 +97,7 @@ struct OutputFile::Impl {
 
     void open();
     void open_special(const struct stat& target);
-    void open_folder(const std::filesystem::path& where);
+    void open_folder();
     void check_replaceable(const struct stat& target) const;
     void open_part();
     void settle() const;
@@ -132,8 +133,7 @@ void OutputFile::Impl::open() {
         // Someone else may have put it there, to have a file made where they may not.
         if (lstat(path.c_str(), &link) == 0)
             refuse("is a broken symbolic link; remove it, or create its target");
-        open_folder(given_folder);
-        leaf = name;
+        open_folder();
         return open_part();
     }
     Descriptor stream = standard_stream(path, target);
@@ -145,10 +145,7 @@ void OutputFile::Impl::open() {
     // Asks the kernel, which may protect links in folders that everyone can write to.
     if (const Descriptor followed(::open(path.c_str(), O_PATH | O_CLOEXEC)); !followed)
         refuse(fmt::format("cannot be written, {}", std::strerror(errno)));
-    const std::filesystem::path resolved = std::filesystem::canonical(path, error);
-    if (error) refuse(fmt::format("cannot be written, {}", error.message()));
-    open_folder(resolved.parent_path());
-    leaf = resolved.filename().string();
+    open_folder();
     check_replaceable(target);
     replaced_mode = target.st_mode & kPermissions;
     open_part();
@@ -166,14 +163,22 @@ void OutputFile::Impl::open_special(const struct stat& target) {
     if (!file) cannot_be_written(errno);
 }
 
-void OutputFile::Impl::open_folder(const std::filesystem::path& where) {
-    folder = Descriptor(::open(where.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+void OutputFile::Impl::open_folder() {
+    const LinkWalk found = walk_links(path);
+    if (!found.foreign_link.empty())
+        refuse(
+            fmt::format("the link {} is another user's, in a folder that others can write to; "
+                        "name the place that it leads to",
+                        printable(found.foreign_link.string())));
+    if (found.folder < 0) refuse(fmt::format("cannot be written, {}", std::strerror(found.error)));
+    leaf = found.leaf;
     // One may write to folders that one may not list.
-    if (!folder && errno == EACCES)
-        folder = Descriptor(::open(where.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
-    if (!folder)
-        refuse(fmt::format("the folder {} cannot be written to, {}", printable(where.string()),
-                           std::strerror(errno)));
+    folder = Descriptor(found.folder);
+    if (Descriptor listed(openat(found.folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC)); listed)
+        folder = std::move(listed);
+    else if (errno != EACCES)
+        refuse(fmt::format("the folder {} cannot be written to, {}",
+                           printable(path.parent_path().string()), std::strerror(errno)));
 }
 
 /// A rename could do without the permission to write to the file, and fails for the rest only in
