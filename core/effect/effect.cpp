@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "shader/growth.h"
 
 namespace relevo::effect {
 namespace {
@@ -229,6 +230,7 @@ Effect load_effect(const std::filesystem::path& folder, const std::filesystem::p
         effect.snippets.push_back(
             shader::parse_snippet(effect.id(), file.string(), glsl_text(file)));
     check_hooks(effect);
+    shader::check_growth(effect.snippets);
     check_ramps(effect);
     check_displace(effect);
     if (const auto& invents = effect.manifest.invents)
