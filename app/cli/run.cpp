@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/held_notices.h"
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/progress.h"
@@ -223,6 +224,7 @@ class Run {
         }
         const double took_s =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        notices_.release();
         log::info(fmt::format("{} pictures in {}{}", shots_.size() - failures,
                               duration_text(took_s), there));
         if (arguments_.audit && !shots_.empty()) audits.tell();
@@ -246,6 +248,7 @@ class Run {
                 time = fmt::format("an unknown time ({})", error.what());
             }
         }
+        notices_.release();
         std::string already;
         if (made_ > 0) already = fmt::format("; {} are there already and stay", made_);
         if (there_ > 0 && refusal.empty()) already += fmt::format("; {} are replaced", there_);
@@ -278,6 +281,7 @@ class Run {
 
     bool wants_sidecar() const { return arguments_.sidecar || arguments_.audit; }
 
+    log::HeldNotices notices_;
     const Arguments& arguments_;
     FilesInUse files_;
     session::Moments moments_;

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/held_notices.h"
 #include "chart/drawing.h"
 #include "cli/shared.h"
 #include "dem/posts.h"
@@ -90,7 +91,10 @@ struct TerrainArguments {
     void add_to(CLI::App& verb);
     bool given() const { return !dem.paths.empty(); }
     /// @throws Error as dem::load
-    dem::Posts load() const { return dem::Posts::load(dem.paths, dem.options); }
+    dem::Posts load() const {
+        const log::HeldNotices notices;
+        return dem::Posts::load(dem.paths, dem.options);
+    }
     /// How the horizon of a place is looked at.
     /// @param eye_height_m  --eye-height
     /// @throws Error (Usage) where the place has a height too

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/held_notices.h"
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
@@ -70,7 +71,9 @@ RasterGround RasterArguments::load() const {
     std::optional<dem::Clip> rectangle;
     if (!clip.empty()) rectangle = dem::parse_clip(clip, "--clip");
     if (!clip_crs.empty()) rectangle->crs = geo::Crs::parse(clip_crs, "--clip-crs");
+    log::HeldNotices notices;
     dem::Posts posts = dem::Posts::load(dem.paths, dem.options);
+    notices.release();
     const dem::Grid& grid = posts.grid();
     const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
                                          : dem::Window{0, 0, grid.columns(), grid.rows()};
