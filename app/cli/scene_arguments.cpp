@@ -25,7 +25,7 @@ void OverlayArguments::add_to(CLI::App& verb) {
             "--overlay-range", range,
             "Values of the first and the last colour, LOW,HIGH; default: the raster's range")
         ->group("Overlay");
-    verb.add_option("--overlay-opacity", opacity, "0 to 1")
+    verb.add_option("--overlay-opacity", opacity, "Opacity of the overlay, 0 to 1 (1)")
         ->check(in_range(0.0, 1.0))
         ->group("Overlay");
     verb.add_option("--overlay-title", title, "Title of the legend; default: the band's name")
@@ -46,9 +46,9 @@ void OverlayArguments::apply_to(scene::Scene& scene) const {
     const std::optional<double> low = ends.size() == 2 ? parse_number(ends[0]) : std::nullopt,
                                 high = ends.size() == 2 ? parse_number(ends[1]) : std::nullopt;
     if (!low || !high || !(*high > *low))
-        bad_usage(fmt::format(
-            "--overlay-range: {}: expected LOW,HIGH, the second over the first, such as 0,14",
-            printable(range)));
+        bad_usage(
+            fmt::format("--overlay-range: {}: expected LOW,HIGH with LOW below HIGH, such as 0,14",
+                        printable(range)));
     scene.overlay->range = {*low, *high};
 }
 

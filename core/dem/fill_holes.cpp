@@ -86,19 +86,17 @@ std::string FilledHoles::text(Holes holes) const {
     const auto share = [&](std::int64_t some) {
         return 100 * static_cast<double>(some) / static_cast<double>(posts);
     };
-    std::string text =
-        fmt::format("{:.3g} % of the posts are voids: ", share(filled_posts + cut_posts));
+    std::string text = fmt::format("voids: {:.3g} % of the DEM, ", share(filled_posts + cut_posts));
     if (filled_posts > 0)
-        text += fmt::format("{}{} drawn filled{}",
+        text += fmt::format("{}drawn filled{}",
                             cut_posts > 0 ? fmt::format("{:.3g} % ", share(filled_posts)) : "",
-                            cut_posts > 0 ? "are" : "they are",
-                            holes == Holes::Mark ? " and painted" : " (--holes mark shows where)");
+                            holes == Holes::Mark ? " and painted" : " (--holes mark shows them)");
     if (cut_posts > 0)
-        text += fmt::format("{}cut out{}", filled_posts > 0 ? ", the rest is " : "they are ",
-                            holes == Holes::Cut
-                                ? ""
-                                : fmt::format(", which is at the edge or more than {} posts wide",
-                                              kSmallHole_posts));
+        text += fmt::format("{}cut out{}", filled_posts > 0 ? ", the rest " : "",
+                            holes == Holes::Cut ? ""
+                                                : fmt::format(" (larger than {} posts, or at the "
+                                                              "edge)",
+                                                              kSmallHole_posts));
     return text;
 }
 

@@ -28,7 +28,7 @@ struct FilledHoles {
 
     std::int64_t posts = 0;  ///< of the whole DEM
 
-    /// "0.53 % of the posts have no height: ..."; empty where all have one.
+    /// "voids: 0.53 % of the DEM, drawn filled ..."; empty where all posts have a height.
     std::string text(Holes holes) const;
 };
 

@@ -197,7 +197,7 @@ std::string to_text(const Summary& s) {
     line("spacing", fmt::format("{} x {}", distance_text(s.post_spacing_m.x),
                                 distance_text(s.post_spacing_m.y)));
     line("heights", fmt::format("{:.1f} to {:.1f} m", s.min_m, s.max_m));
-    line("holes", fmt::format("{:.4g} %{}", 100 * s.nodata_share, holes_text(s)));
+    line("voids", fmt::format("{:.4g} %{}", 100 * s.nodata_share, holes_text(s)));
     if (s.outliers > 0) line("outliers", fmt::format("{} heights impossible on Earth", s.outliers));
     if (s.worst_spike)
         line("spikes", fmt::format("{} spikes: posts more than {:.0f} m above or below all their "

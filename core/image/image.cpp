@@ -77,10 +77,8 @@ bool is_png(const Format& format) {
 
 const Format& known_format(const std::filesystem::path& path) {
     if (const Format* format = format_of(path)) return *format;
-    bad_input(
-        fmt::format("image: {}: not the name of a picture, expected an ending of png, jpg, "
-                    "webp, tif or exr",
-                    printable(path.string())));
+    bad_input(fmt::format("image: {}: unknown picture format; use png, jpg, webp, tif or exr",
+                          printable(path.string())));
 }
 
 /// libjpeg ends the process where it finds no memory. What ends it while an encoder works is that.

@@ -82,10 +82,10 @@ View parse_view(std::string_view text) {
                                ? std::nullopt
                                : parse_number(std::string_view(piece).substr(equals + 1));
         if (!value || (key != "az" && key != "el" && key != "zoom"))
-            bad_usage(fmt::format(
-                "--view: {}: expected az=DEG, el=DEG or zoom=FACTOR, or first of all top, north, "
-                "north-east, east, ... north-west, but got \"{}\"",
-                text, piece));
+            bad_usage(
+                fmt::format("--view: {}: expected top, north, north-east, ... north-west, or "
+                            "az=DEG,el=DEG,zoom=FACTOR, but got \"{}\"",
+                            text, piece));
         if (key == "az") orbit.azimuth_deg = within_a_turn_deg(*value);
         if (key == "el") orbit.elevation_deg = *value;
         if (key == "zoom") orbit.zoom = *value;

@@ -26,7 +26,7 @@ TEST(InfoVerb, SaysEverythingInLines) {
                   "\nformat     GTiff, Int16\nposts      403 x 344\ncrs        EPSG:4326 (WGS "
                   "84)\ncenter     36.30292 N 84.24583 W (UTM 16N 747302 E 4021068 N, MGRS "
                   "16SGF4730221067)\nextent     30.1 km east, 31.7 km north\nspacing    74.85 m x "
-                  "92.47 m\nheights    236.0 to 1076.0 m\nholes      0 %\nunit       m "
+                  "92.47 m\nheights    236.0 to 1076.0 m\nvoids      0 %\nunit       m "
                   "(band)\nabove      unknown\nassumed    heights are taken as ellipsoidal: the "
                   "file names no vertical datum\nwater      0 % sea, 0.798 % lakes (2), as drawn "
                   "in pictures\nsun        azimuth 114.27, elevation 65.12 (65.13 with refraction) "

@@ -399,8 +399,7 @@ TEST_F(Output, NamesThatAreNoTextBreakNeitherJsonNorMessages) {
                    path("none\\nrelevo: error: /etc/passwd: all is well") + ": no such file");
     expect_failure({"capture", bundled_dem(), "-o", path("a\x1b[2J\nrelevo: done.gif")}, 3,
                    "image: " + path("a\\x1b[2J\\nrelevo: done.gif") +
-                       ": not the name of a picture, expected an ending of png, jpg, webp, tif or "
-                       "exr");
+                       ": unknown picture format; use png, jpg, webp, tif or exr");
 }
 
 TEST_F(Output, WithoutMemoryIsAnErrorThatSaysSo) {

@@ -149,8 +149,8 @@ TEST_F(OverlayOption, WhatIsNoneIsRefused) {
         said({"--overlay-opacity", "0.5"}),
         "relevo: error: --overlay: missing; its colours, range, band, opacity and title need it\n");
     EXPECT_EQ(said({"--overlay", bundled_dem(), "--overlay-range", "5,5"}),
-              "relevo: error: --overlay-range: 5,5: expected LOW,HIGH, the second over the first, "
-              "such as 0,14\n");
+              "relevo: error: --overlay-range: 5,5: expected LOW,HIGH with LOW below HIGH, such as "
+              "0,14\n");
     EXPECT_EQ(said({"--overlay", bundled_dem(), "--overlay-band", "2"}),
               "relevo: error: " + bundled_dem() + ": band 2: expected 1 to 1\n");
     const std::string elsewhere = (source_dir() / "data" / "dem" / "vancouver-island.tif").string();

@@ -262,8 +262,7 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
               fmt::format("run: {}: the folder cannot be made, Not a directory",
                           (dir_ / "file").string()));
     EXPECT_EQ(error(job(at + ", \"output\": \"a.gif\"")),
-              fmt::format("image: {}: not the name of a picture, expected an ending of png, jpg, "
-                          "webp, tif or exr",
+              fmt::format("image: {}: unknown picture format; use png, jpg, webp, tif or exr",
                           (dir_ / "a.gif").string()));
     EXPECT_EQ(error(job(at + ", \"output\": \"{dem}.tif\""), {"-o", bundled_dem()}),
               fmt::format("run: {0}: exists, the first of 1; pass --overwrite to replace it, or "

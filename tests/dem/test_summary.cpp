@@ -89,7 +89,7 @@ TEST(Summary, SaysHowHolesWereFound) {
     const auto holes = [](const char* name, const test::Raster& raster) {
         const Summary summary = of(name, raster);
         const std::string text = to_text(summary);
-        const std::size_t at = text.find("holes      ") + 11;
+        const std::size_t at = text.find("voids      ") + 11;
         return text.substr(at, text.find('\n', at) - at) + " " +
                nlohmann::json::parse(to_json(summary))["holes_by"].dump();
     };
@@ -144,7 +144,7 @@ TEST(Summary, TextForPeople) {
               "file       text.tif\nformat     GTiff, Int16\nposts      101 x 51\ncrs        "
               "EPSG:32632 (WGS 84 / UTM zone 32N)\ncenter     46.94664 N 9.01991 E (UTM 32N 501515 "
               "E 5199235 N, MGRS 32TNS0151499235)\nextent     3002 m east, 1501 m north\nspacing   "
-              " 30.01 m x 30.01 m\nheights    1001.0 to 1200.0 m\nholes      0.01941 % (nodata "
+              " 30.01 m x 30.01 m\nheights    1001.0 to 1200.0 m\nvoids      0.01941 % (nodata "
               "-9999)\nunit       m (assumed)\nabove      unknown\nassumed    heights are taken as "
               "metres: the file names no unit; --unit sets another\nassumed    heights are taken "
               "as ellipsoidal: the file names no vertical datum\n");

@@ -230,8 +230,8 @@ TEST(FillHoles, SmallOnesAreFilledLargeOnesAndThoseAtTheEdgeStay) {
             }
         }
     EXPECT_EQ(found.text(Holes::Fill),
-              "2.28 % of the posts are voids: 0.0833 % are drawn filled (--holes mark shows "
-              "where), the rest is cut out, which is at the edge or more than 64 posts wide");
+              "voids: 2.28 % of the DEM, 0.0833 % drawn filled (--holes mark shows them), the rest "
+              "cut out (larger than 64 posts, or at the edge)");
 }
 
 TEST(FillHoles, CutFillsNone) {
@@ -239,7 +239,7 @@ TEST(FillHoles, CutFillsNone) {
     h.at(20, 20) = kHole;
     const FilledHoles found = fill_small_holes(h, Holes::Cut);
     EXPECT_TRUE(found.height_m.empty());
-    EXPECT_EQ(found.text(Holes::Cut), "0.04 % of the posts are voids: they are cut out");
+    EXPECT_EQ(found.text(Holes::Cut), "voids: 0.04 % of the DEM, cut out");
     EXPECT_EQ(
         fill_small_holes(ground(9, 9, [](int, int) { return 1; }), Holes::Fill).text(Holes::Fill),
         "");

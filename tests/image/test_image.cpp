@@ -100,9 +100,8 @@ TEST_F(ImageFiles, OutputsAreCheckedBeforeTheWork) {
     EXPECT_EQ(test::error_of([&] { write(dir_ / "none" / "a.png", image); }),
               "exit 3: image: " + (dir_ / "none" / "a.png").string() + ": the folder " +
                   (dir_ / "none").string() + " does not exist; create it first");
-    const std::string gif =
-        "exit 3: image: " + (dir_ / "a.gif").string() +
-        ": not the name of a picture, expected an ending of png, jpg, webp, tif or exr";
+    const std::string gif = "exit 3: image: " + (dir_ / "a.gif").string() +
+                            ": unknown picture format; use png, jpg, webp, tif or exr";
     EXPECT_EQ(test::error_of([&] { check_format(dir_ / "a.gif", 4, 4); }), gif);
     EXPECT_EQ(test::error_of([&] { load_format(dir_ / "a.gif"); }), gif);
     EXPECT_EQ(test::error_of([&] { write(dir_ / "a.gif", image); }), gif);

@@ -172,7 +172,7 @@ TEST(Session, FiguresHaveHolesWhateverIsDrawn) {
         EXPECT_GT(dem.field.about.statistics.holes, 100);
         EXPECT_EQ(dem.drawn.is_filled.empty(), holes == dem::Holes::Cut);
         ASSERT_EQ(session.ground_notes().size(), 1u);
-        EXPECT_NE(session.ground_notes()[0].find("% of the posts are voids"), std::string::npos);
+        EXPECT_NE(session.ground_notes()[0].find("% of the DEM, "), std::string::npos);
         pictures[i] = session.picture().values;
     }
     EXPECT_EQ(bits[0], bits[1]);
