@@ -152,10 +152,9 @@ void report_chosen(const session::Session& session) {
     if (view && azimuth_deg)
         text += fmt::format("{}seen from the {}", time ? ", " : "",
                             geo::compass_point(std::fmod(*azimuth_deg + 360, 360)));
-    log::info(fmt::format("{}; {} others", text,
-                          time && view ? "--time and --view set"
-                          : time       ? "--time sets"
-                                       : "--view sets"));
+    log::info(text + (time && view ? "; --time and --view set others"
+                      : time       ? "; --time sets another"
+                                   : "; --view sets another"));
 }
 
 /// Place, time, sun and the assumptions about the ground.

@@ -108,11 +108,12 @@ TEST_F(Capture, SaysWhatItChoseInOneLine) {
     const auto time = lines_of(bundled_dem(), picture, {"--view", "az=200,el=30"});
     ASSERT_EQ(time.size(), 1u);
     EXPECT_THAT(time[0], MatchesRegex("relevo: chosen: 21 June 2026 [0-9]+:[0-9]+; --time sets "
-                                      "others"));
+                                      "another"));
     const std::vector<std::string> at{"--time", "2026-06-21T22:30Z"};
     const auto view = lines_of(bundled_dem(), picture, at);
     ASSERT_EQ(view.size(), 1u);
-    EXPECT_THAT(view[0], MatchesRegex("relevo: chosen: seen from the [NESW]+; --view sets others"));
+    EXPECT_THAT(view[0],
+                MatchesRegex("relevo: chosen: seen from the [NESW]+; --view sets another"));
     EXPECT_TRUE(lines_of(bundled_dem(), picture, {at[0], at[1], "--view", "top"}).empty());
 }
 
