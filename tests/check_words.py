@@ -2,7 +2,7 @@
 """Checks the words that users read against the table "Words" of docs/terms.md, and the line length of their pages.
 
 Read are the pages below, the texts of app/ and core/ (string literals with a blank in them, so that keys and options
-stay free), and the names and descriptions of plugins, presets and parameters. Code in pages (`...`, fences) is not.
+stay free), and the names and descriptions of plugins, presets, parameters and schemas. Code in pages (`...`, fences) is not.
 A word is refused by the pattern of its row; a row without a pattern needs a reader. New rows need an entry here.
 
 Usage: check_words.py ROOT. Prints every finding and exits with 1 if there is one.
@@ -83,6 +83,19 @@ def literals(text):
         yield line, whole
 
 
+def described(value):
+    """Every "description" in a JSON value."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            if key == "description" and isinstance(inner, str):
+                yield inner
+            else:
+                yield from described(inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from described(inner)
+
+
 def sources(root):
     """The (file, line, text) of what the program says."""
     for folder in ("app", "core"):
@@ -95,10 +108,11 @@ def sources(root):
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
             for text in ANNOTATED.findall(line):
                 yield path.relative_to(root), number, text
-    for path in sorted([*(root / "plugins").glob("*/plugin.json"), *(root / "data" / "presets").glob("*.json")]):
-        content = json.loads(path.read_text(encoding="utf-8"))
-        for key in ("name", "description"):
-            yield path.relative_to(root), 1, content.get(key, "")
+    for folder, names in (("plugins", "*/plugin.json"), ("data/presets", "*.json"), ("docs", "*.schema.json")):
+        for path in sorted((root / folder).glob(names)):
+            content = json.loads(path.read_text(encoding="utf-8"))
+            for text in (*described(content), content.get("name", ""), content.get("invents", {}).get("what", "")):
+                yield path.relative_to(root), 1, text
 
 
 def readable(page):
