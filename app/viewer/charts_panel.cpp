@@ -36,7 +36,7 @@ ImVec2 at_screen(ImVec2 corner, glm::dvec2 units, double px_a_unit) {
 /// Where the chosen point is in the window [px], from its upper left.
 std::optional<glm::vec2> chosen_in_window(const State& state, glm::vec2 size_px) {
     geo::Geodetic place = *state.chosen;
-    place.height_m *= state.land.exaggeration;
+    place.height_m = state.land.aim_m(place) * state.land.exaggeration;
     const auto at = in_picture(camera_of(state.document.pose, state.land),
                                state.land.frame->to_local(place), double{size_px.x} / size_px.y);
     if (!at) return std::nullopt;

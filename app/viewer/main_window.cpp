@@ -218,6 +218,7 @@ Wanted MainWindow::wanted_now() const {
     const glm::ivec2 size = window_->size_px();
     Wanted wanted;
     wanted.view = view_of(state_.document.pose, state_.land);
+    wanted.keep_above_m = hand_->is_walking() ? kWalk_m : kClearance_m;
     wanted.utc = state_.document.utc;
     wanted.width_px = size.x;
     wanted.height_px = size.y;
@@ -227,8 +228,8 @@ Wanted MainWindow::wanted_now() const {
 }
 
 bool MainWindow::same(const Wanted& a, const Wanted& b) {
-    return a.utc == b.utc && a.width_px == b.width_px && a.height_px == b.height_px &&
-           a.moving == b.moving && a.sun_moving == b.sun_moving &&
+    return a.keep_above_m == b.keep_above_m && a.utc == b.utc && a.width_px == b.width_px &&
+           a.height_px == b.height_px && a.moving == b.moving && a.sun_moving == b.sun_moving &&
            a.view->heading_deg == b.view->heading_deg && a.view->pitch_deg == b.view->pitch_deg &&
            a.view->fov_y_rad == b.view->fov_y_rad &&
            a.view->eye->place.lat_rad == b.view->eye->place.lat_rad &&

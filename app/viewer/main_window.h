@@ -64,6 +64,7 @@ class MainWindow {
     void hand_over();
     void hand_over_scene();
     Wanted wanted_now() const;
+    void follow_drawn_ground();
     static bool same(const Wanted& a, const Wanted& b);
 
     // ---- opening and comparing: main_window_scenes.cpp

@@ -231,7 +231,7 @@ void MainWindow::go_to_place(const std::string& text) {
     end_step();
     hand_->rest();
     geo::Geodetic drawn = place;
-    drawn.height_m *= state_.land.exaggeration;
+    drawn.height_m = state_.land.ground_under(state_.land.frame->to_local(place));
     const glm::dvec3 point_m = state_.land.frame->to_local(drawn);
     // Near enough for single posts to be seen.
     constexpr double kPosts = 150;

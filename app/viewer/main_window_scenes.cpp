@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "base/paths.h"
 #include "base/text.h"
@@ -108,6 +109,7 @@ void MainWindow::read_thread() {
         is_open() ? take_all_posts(std::move(opened)) : start(std::move(opened));
     if (const auto newer = scene_->newer_than(picture_ ? picture_->number : 0)) {
         picture_ = newer;
+        follow_drawn_ground();
         hand_->see(picture_);
         window_->take(*newer);
         has_new_picture_ = true;
@@ -127,6 +129,18 @@ void MainWindow::read_thread() {
     }
     read_point_work();
     if (is_open()) watch_saving();
+}
+
+/// Where drawn ground would have hidden the eye, the picture was drawn from higher up.
+void MainWindow::follow_drawn_ground() {
+    if (!is_open()) return;
+    state_.land.aim_m = picture_->aim_m;
+    constexpr double kSame_m = 0.005;
+    Pose& pose = state_.document.pose;
+    const bool is_of_now =
+        picture_->answers == scene_->wants() && wanted_ && same(*wanted_, wanted_now());
+    if (is_of_now && distance(pose.eye_m, picture_->camera.eye_m) > kSame_m)
+        pose.eye_m = picture_->camera.eye_m;
 }
 
 void MainWindow::watch_comparison() {
@@ -191,6 +205,7 @@ void MainWindow::stand_on_ground() {
     state_.land.height_m = [dem = opened_->dem](const geo::Geodetic& at) {
         return dem->height_m(at);
     };
+    state_.land.aim_m = opened_->aim_m;
     const session::LoadedDem& dem = *opened_->dem;
     const dem::Grid& grid = stands_in() ? dem.source->grid() : dem.field.grid;
     const glm::dvec2 spacing_m = grid.post_spacing_m();

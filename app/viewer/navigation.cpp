@@ -21,7 +21,7 @@ double wrapped_deg(double angle_deg) {
 /// Up to where there is room above the ground.
 Pose above_ground(Pose pose, const Land& land) {
     const geo::Geodetic place = land.frame->to_geodetic(pose.eye_m);
-    const double ground_m = land.height_m(place) * land.exaggeration;
+    const double ground_m = land.aim_m(place) * land.exaggeration;
     if (std::isnan(ground_m) || place.height_m >= ground_m + kClearance_m) return pose;
     pose.eye_m = land.frame->to_local({place.lat_rad, place.lon_rad, ground_m + kClearance_m});
     return pose;
@@ -44,7 +44,7 @@ Pose looking(const Pose& before, const Land& land, const glm::dvec3& eye_m,
 }  // namespace
 
 double Land::ground_under(const glm::dvec3& point_m) const {
-    return height_m(frame->to_geodetic(point_m)) * exaggeration;
+    return aim_m(frame->to_geodetic(point_m)) * exaggeration;
 }
 
 double drawn_height_m(const glm::dvec3& point_m, const Land& land, double within_m) {
@@ -182,7 +182,7 @@ Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m) {
     Pose moved = pose;
     moved.eye_m += by_m.x * right + by_m.y * forward;
     const geo::Geodetic place = land.frame->to_geodetic(moved.eye_m);
-    const double ground_m = land.height_m(place) * land.exaggeration;
+    const double ground_m = land.aim_m(place) * land.exaggeration;
     if (std::isnan(ground_m)) return pose;  // no ground to stand on
     moved.eye_m = land.frame->to_local({place.lat_rad, place.lon_rad, ground_m + kWalk_m});
     return moved;

@@ -28,8 +28,10 @@ struct Land {
     double exaggeration = 1;
     /// The DEM's height at a place [m], not exaggerated; NaN where it has none.
     scene::GroundHeight height_m;
+    /// The same as it is drawn, for the camera: session::Session::heights_to_aim_at().
+    scene::GroundHeight aim_m;
 
-    /// The ground's height under a point, exaggerated; NaN where there is none.
+    /// The drawn ground's height under a point, exaggerated; NaN where there is none.
     double ground_under(const glm::dvec3& point_m) const;
     geo::Axes axes(const glm::dvec3& point_m) const;
 };

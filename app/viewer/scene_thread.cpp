@@ -53,9 +53,8 @@ std::string text_of(const std::exception& error) {
 
 scene::Camera Opened::camera(const scene::View& view, double aspect,
                              const scene::Insets& insets) const {
-    return scene::make_camera(
-        view, [this](const geo::Geodetic& at) { return dem->height_m(at); }, ground.frame, outline,
-        aspect, scene.exaggeration, insets);
+    return scene::make_camera(view, aim_m, ground.frame, outline, aspect, scene.exaggeration,
+                              insets);
 }
 
 struct SceneThread::Impl {
@@ -120,16 +119,17 @@ struct SceneThread::Impl {
         const scene::Scene& now = of.scene;
         if (now.view.eye) return;
         const double aspect = static_cast<double>(now.width_px) / now.height_px;
-        const Land land{&of.ground.frame, now.exaggeration, {}};
-        session->look(view_of(pose_of(of.camera(now.view, aspect, insets), land), land));
+        const Land land{&of.ground.frame, now.exaggeration, {}, {}};
+        session->look(view_of(pose_of(of.camera(now.view, aspect, insets), land), land),
+                      kClearance_m);
     }
 
     std::shared_ptr<const Opened> as_opened() const {
         std::optional<chart::Legend> legend;
         if (session->scene().overlay) legend = session->legends().front();
         return std::make_shared<Opened>(Opened{session->dem(), session->ground(), session->scene(),
-                                               session->outline(), session->moment(),
-                                               std::move(legend)});
+                                               session->outline(), session->heights_to_aim_at(),
+                                               session->moment(), std::move(legend)});
     }
 
     /// Beside, when there is a picture of what stands in.
@@ -247,7 +247,7 @@ struct SceneThread::Impl {
     bool draw(const Wanted& now, std::uint64_t answers) {
         const auto began = Clock::now();
         const double scale = scale_for(now);
-        if (now.view) session->look(*now.view);
+        if (now.view) session->look(*now.view, now.keep_above_m);
         if (now.utc && *now.utc != session->moment()) {
             session->set_moment(*now.utc);
             shadows_lag = !session->effects().loaded.modules.empty();  // core's never do
@@ -287,6 +287,7 @@ struct SceneThread::Impl {
         texture.read(0, std::as_writable_bytes(std::span(made->rgba)));
         session->read_depths(made->depths_m);
         made->camera = session->camera();
+        made->aim_m = session->heights_to_aim_at();
         made->utc = session->moment();
         made->legends = session->colour_legends();
         made->sharp = sharp;

@@ -19,6 +19,7 @@ namespace relevo::viewer {
 /// What the window wants to see: the last word counts.
 struct Wanted {
     std::optional<scene::View> view;  ///< none: the scene's
+    double keep_above_m = 0;          ///< the eye is raised to be so far above the drawn ground
     std::optional<sun::Instant> utc;  ///< likewise
     int width_px = 1, height_px = 1;  ///< of the window
     scene::Insets insets;             ///< of its panels, for the scene's view
@@ -35,6 +36,7 @@ struct Opened {
     render::Ground ground;
     scene::Scene scene;  ///< whose orbit has both angles
     scene::Outline outline;
+    scene::GroundHeight aim_m;  ///< Session::heights_to_aim_at()
     sun::Instant utc;
     std::optional<chart::Legend> legend;  ///< of the scene's overlay
 };
@@ -46,7 +48,8 @@ struct Picture {
     int width_px = 0, height_px = 0;
     std::vector<std::uint8_t> rgba;  ///< rows from below
     std::vector<float> depths_m;     ///< as session::Session::read_depths
-    scene::Camera camera;
+    scene::Camera camera;            ///< raised above the drawn ground where the eye wanted is not
+    scene::GroundHeight aim_m;       ///< Session::heights_to_aim_at()
     sun::Instant utc;
     std::vector<chart::Legend> legends;  ///< of what effects colour the ground by
     /// In the window's size, with all its ground, from all posts, and with its sun's shadows.

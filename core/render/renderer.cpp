@@ -21,6 +21,8 @@
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "render/draw_watch.h"
+#include "render/footprint_texture.h"
+#include "render/ground_probe.h"
 #include "render/native_host.h"
 #include "render/programs.h"
 #include "shader/stored_varyings.h"
@@ -61,40 +63,6 @@ int day_of(double unix_s) {
 
 constexpr const char* kNormalAddress = "terrain.normal";
 
-/// Means of a footprint over squares of so many, three times over, which is nearly a Gaussian.
-Array2d<float> blurred(const Array2d<float>& sharp, int reach) {
-    Array2d<float> from = sharp, to = sharp;
-    for (int turn = 0; turn < 6; ++turn) {
-        const bool along = turn % 2 == 0;
-        for (int y = 0; y < from.height(); ++y)
-            for (int x = 0; x < from.width(); ++x) {
-                float sum = 0;
-                for (int i = -reach; i <= reach; ++i) {
-                    const int u = along ? x + i : x, v = along ? y : y + i;
-                    if (u >= 0 && v >= 0 && u < from.width() && v < from.height())
-                        sum += from.at(u, v);
-                }
-                to.at(x, y) = sum / static_cast<float>(2 * reach + 1);
-            }
-        std::swap(from, to);
-    }
-    return from;
-}
-
-/// What lib/floor.glsl reads.
-gl::Texture footprint_texture(const Footprint& footprint) {
-    const Array2d<float> near = blurred(footprint.share, 1), far = blurred(footprint.share, 4);
-    std::vector<std::uint8_t> texels;
-    for (std::size_t i = 0; i < near.size(); ++i)
-        for (const float share : {near.data()[i], far.data()[i]})
-            texels.push_back(static_cast<std::uint8_t>(std::lround(255 * std::min(share, 1.0f))));
-    const gl::Extent size{near.width(), near.height(), 1};
-    gl::Texture texture(gl::TextureKind::D2, gl::Format::RG8, size, 1, "floor_ground");
-    texture.set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
-    texture.write(0, {0, 0, 0}, size, std::as_bytes(std::span(texels)));
-    return texture;
-}
-
 }  // namespace
 
 std::vector<shader::Param> core_params() {
@@ -127,6 +95,7 @@ struct Renderer::Impl {
     gl::Buffer params_block;
     gl::VertexArray no_inputs;
     TileSelection tiles;  // of the last frame
+    GroundProbe probe;
     bool reads_surface = false, reads_climate = false, reads_sun = false, reads_sky = false,
          reads_water = false;
 
@@ -171,6 +140,9 @@ struct Renderer::Impl {
     }
 
     bool shows_block() const { return find_text("side") != nullptr; }
+
+    /// Of a frame; fills in what effects displace.
+    FrameBlock prepare(Terrain& terrain, const Ground& ground, FrameInputs& inputs);
 
     /// The name of a pass's program where the eye is.
     std::string here(const char* pass) const {
@@ -391,16 +363,47 @@ struct Renderer::Impl {
         if (reads_sun || reads_sky) ground.light().describe(block);
     }
 
-    // In one piece: the passes of a frame in their order.
-    void draw(Terrain& ground, const Ground& about, const FrameInputs& inputs, FrameBlock block,
-              PassTimes* times) {
-        move(is_outside(about, inputs.camera.eye_m, inputs.exaggeration));
+    /// Has the layers of pages be there that the programs read, and says in the block what they
+    /// read of the ground.
+    void describe(Terrain& ground, const FrameInputs& inputs, FrameBlock& block) const {
+        if (reads_surface) ground.keep_surface();
+        if (reads_water) ground.keep_water();
         block.normal_levels = static_cast<float>(ground.normal_levels());
         block.normal_texels_per_m = static_cast<float>(1 / ground.normal_spacing_m());
         if (reads_climate) ground.keep_climate(day_of(inputs.unix_s)).write(block);
         const dem::Pyramid& posts = ground.pyramid();
         block.posts = {posts.columns(), posts.rows(), 1.0F / static_cast<float>(posts.columns()),
                        1.0F / static_cast<float>(posts.rows())};
+    }
+
+    void bind_blocks(const FrameBlock& block) {
+        frame_block.write(std::as_bytes(std::span(&block, 1)));
+        frame_block.bind_uniform(kFrameBinding);
+        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
+    }
+
+    std::optional<double> probe_height_m(Terrain& ground, const Ground& about,
+                                         const FrameInputs& inputs, FrameBlock block) {
+        describe(ground, inputs, block);
+        probe.aim(inputs, about, block);
+        const TileSelection below = ground.select_below(
+            inputs.camera, options.width_px, options.height_px, inputs.exaggeration, inputs.afresh);
+        bind_blocks(block);
+        probe.bind();
+        if (ground.has_holes()) glEnable(GL_CLIP_DISTANCE0);
+        bind(program(here("geometry")), ground);
+        watched(here("geometry"), below.triangles(),
+                [&] { ground.draw(below, inputs.camera.eye_m); });
+        glDisable(GL_CLIP_DISTANCE0);
+        glDisable(GL_DEPTH_TEST);
+        return probe.height_m();
+    }
+
+    // In one piece: the passes of a frame in their order.
+    void draw(Terrain& ground, const Ground& about, const FrameInputs& inputs, FrameBlock block,
+              PassTimes* times) {
+        move(is_outside(about, inputs.camera.eye_m, inputs.exaggeration));
+        describe(ground, inputs, block);
 
         auto began = std::chrono::steady_clock::now();
         const auto passed = [&](const char* name) {
@@ -416,17 +419,13 @@ struct Renderer::Impl {
             footprint = footprint_texture(about.footprint);
             footprint_of = ground.serial();
         }
-        if (reads_surface) ground.keep_surface();
-        if (reads_water) ground.keep_water();
         tiles = ground.select_for_picture(inputs.camera, options.width_px, options.height_px,
                                           inputs.exaggeration, inputs.loading, inputs.afresh);
         passed("select");
 
         light(ground, inputs, block);
         if (reads_sun || reads_sky) passed("light");
-        frame_block.write(std::as_bytes(std::span(&block, 1)));
-        frame_block.bind_uniform(kFrameBinding);
-        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
+        bind_blocks(block);
 
         if (!natives.empty()) {
             for (NativeHost& native : natives) {
@@ -538,17 +537,26 @@ const std::vector<ProgramText>& Renderer::texts() const {
     return impl_->texts;
 }
 
+FrameBlock Renderer::Impl::prepare(Terrain& terrain, const Ground& ground, FrameInputs& inputs) {
+    inputs.displacement = displacement_of(displaces, values);
+    terrain.displace(inputs.displacement);
+    const double limit = anisotropy > 1 ? anisotropy : kFootprintWithoutAnisotropy;
+    return make_frame_block(inputs, ground, options.width_px, options.height_px, limit);
+}
+
 void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& frame,
                             PassTimes* times) {
     FrameInputs inputs = frame;
-    inputs.displacement = displacement();
-    terrain.displace(inputs.displacement);
-    const double footprint =
-        impl_->anisotropy > 1 ? impl_->anisotropy : kFootprintWithoutAnisotropy;
-    const FrameBlock block = make_frame_block(inputs, ground, impl_->options.width_px,
-                                              impl_->options.height_px, footprint);
+    const FrameBlock block = impl_->prepare(terrain, ground, inputs);
     impl_->exposure = block.exposure;
     impl_->draw(terrain, ground, inputs, block, times);
+}
+
+std::optional<double> Renderer::drawn_height_m(Terrain& terrain, const Ground& ground,
+                                               const FrameInputs& frame) {
+    FrameInputs inputs = frame;
+    const FrameBlock block = impl_->prepare(terrain, ground, inputs);
+    return impl_->probe_height_m(terrain, ground, inputs, block);
 }
 
 void Renderer::set_values(const shader::ParamStore& values) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,12 @@ class Renderer {
     /// each
     void render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                       PassTimes* times = nullptr);
+
+    /// Height of the ground as a frame of these inputs would draw it on the vertical through the
+    /// camera's eye [m]: ellipsoidal, exaggerated. The last frame stays. None where no ground is
+    /// drawn.
+    std::optional<double> drawn_height_m(Terrain& terrain, const Ground& ground,
+                                         const FrameInputs& inputs);
 
     /// Takes the values of parameters, static ones and those of native modules left out, from the
     /// next frame on.

@@ -159,20 +159,6 @@ void Terrain::displace(const Displacement& displacement) {
     serial_ = next_serial();
 }
 
-int TileSelection::finest_level() const {
-    int finest = tiles_.empty() ? 0 : tiles_.front().draw.key.level;
-    for (const Tile& tile : tiles_)
-        finest = std::min(finest, tile.draw.key.level);
-    return finest;
-}
-
-double TileSelection::nearest_m() const {
-    double nearest_m = tiles_.empty() ? 0 : tiles_.front().draw.distance_m;
-    for (const Tile& tile : tiles_)
-        nearest_m = std::min(nearest_m, tile.draw.distance_m);
-    return nearest_m;
-}
-
 bool Terrain::winds_counterclockwise() {
     const PatchNet& net = tree_.net(tree_.root());
     return dot(cross(net.position_m[3], net.position_m[1]), net.vertical[0]) > 0;
@@ -254,6 +240,13 @@ const gl::Texture* Terrain::texture(std::string_view name) const {
 bool Terrain::in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const {
     return wanted.tolerance <= 0 ||
            draws.size() * kGridVertices <= static_cast<std::size_t>(options_.vertex_budget);
+}
+
+double Terrain::tolerance_in_budget(const LodView& wanted) {
+    LodView view = wanted;
+    while (!in_budget(wanted, tree_.select(view)))
+        view.tolerance = coarser(view.tolerance);
+    return view.tolerance;
 }
 
 TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) {

@@ -90,6 +90,10 @@ class Terrain {
     TileSelection select_for_picture(const scene::Camera& camera, int width_px, int height_px,
                                      double exaggeration, Loading loading = Loading::Wait,
                                      bool afresh = false);
+    /// The tiles on the vertical through a camera's eye, at the levels that its picture draws them
+    /// at, with their pages: for GroundProbe.
+    TileSelection select_below(const scene::Camera& camera, int width_px, int height_px,
+                               double exaggeration, bool afresh);
     /// Whether the last picture had all its pages; so it is always where it waits for them.
     bool is_complete() const { return complete_; }
     /// Whether pages are still being made beside for it.
@@ -153,6 +157,8 @@ class Terrain {
     /// Of tiles whose pages are there.
     TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
     bool in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const;
+    /// The view's tolerance, or the least coarser one that keeps its tiles in the vertex budget.
+    double tolerance_in_budget(const LodView& wanted);
     void prepare_surface(const LodView& view, Loading loading, bool afresh);
     void clear_surface();
     /// @param only  pages that are read; null: all that are there

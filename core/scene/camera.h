@@ -37,7 +37,8 @@ struct Orbit {
     /// up (scene::frame_ground).
     std::optional<double> azimuth_deg{};
     std::optional<double> elevation_deg{};  ///< how high it stands, -90 to 90; none: likewise
-    double zoom = 1;                        ///< 1 shows the whole of the ground; 2 from half as far
+    /// 1 shows the whole of the ground; 2 shows what is in the picture's middle from half as far.
+    double zoom = 1;
 };
 
 /// Vertical field of view of a lens on 36 x 24 mm film, the long side of the film along the long
@@ -45,7 +46,8 @@ struct Orbit {
 double fov_y_of_focal_length(double focal_length_mm, double aspect);
 
 /// Stands so that all `points` are in the picture and their outline fills kFill of its width or
-/// height, and then nearer or farther by `zoom`.
+/// height, and then nearer to their mean distance, or farther from it, by `zoom`. Where ground is
+/// in the picture's middle, make_camera() zooms to that instead.
 /// @param orbit    with both angles
 /// @param points   ground to show, in the local frame [m], at least one
 /// @param aspect   width / height of the picture

@@ -1,6 +1,8 @@
 #include "scene/view.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,8 +16,6 @@
 
 namespace relevo::scene {
 namespace {
-
-constexpr double kClearance_m = 2;  // of a camera above the ground
 
 /// A standpoint in the local frame, the DEM's exaggeration included.
 glm::dvec3 position_of(const Standpoint& standpoint, std::string_view option,
@@ -34,6 +34,65 @@ glm::dvec3 position_of(const Standpoint& standpoint, std::string_view option,
         place.height_m *= exaggeration;
     }
     return frame.to_local(place);
+}
+
+/// A unit vector from the eye to the middle of the part of a picture that nothing covers.
+glm::dvec3 middle_ray(const Camera& camera, double aspect, const Insets& insets) {
+    const double tan_y = std::tan(camera.fov_y_rad / 2), tan_x = tan_y * aspect;
+    return normalize(camera.forward +
+                     tan_x * (insets.left - insets.right) * cross(camera.forward, camera.up) +
+                     tan_y * (insets.bottom - insets.top) * camera.up);
+}
+
+/// The first point of the ground along a ray from an eye; none where it meets no ground.
+/// @param points  of the ground: no other is nearer or farther along the ray than these
+std::optional<glm::dvec3> first_ground(const glm::dvec3& eye_m, const glm::dvec3& ray,
+                                       const std::vector<glm::dvec3>& points,
+                                       const GroundHeight& ground_height_m,
+                                       const geo::LocalFrame& frame, double exaggeration) {
+    double nearest_m = 1e300, farthest_m = 0;
+    for (const glm::dvec3& point : points) {
+        nearest_m = std::min(nearest_m, dot(point - eye_m, ray));
+        farthest_m = std::max(farthest_m, dot(point - eye_m, ray));
+    }
+    nearest_m = std::max(nearest_m, 0.0);
+    const auto is_below = [&](double along_m) {
+        const geo::Geodetic place = frame.to_geodetic(eye_m + along_m * ray);
+        return place.height_m <= ground_height_m(place) * exaggeration;  // not in voids, NaN
+    };
+    constexpr int kSteps = 1024, kHalvings = 40;
+    double above_m = nearest_m;
+    for (int i = 0; i <= kSteps; ++i) {
+        double below_m = nearest_m + (farthest_m - nearest_m) * i / kSteps;
+        if (!is_below(below_m)) {
+            above_m = below_m;
+            continue;
+        }
+        for (int j = 0; j < kHalvings; ++j) {
+            const double middle_m = 0.5 * (above_m + below_m);
+            (is_below(middle_m) ? below_m : above_m) = middle_m;
+        }
+        return eye_m + above_m * ray;
+    }
+    return std::nullopt;
+}
+
+/// The camera of an orbit. Zooming moves towards the ground in the picture's middle, which stays
+/// there; where it shows none, towards the ground's mean distance.
+Camera zoomed_orbit(const Orbit& orbit, const GroundHeight& ground_height_m,
+                    const geo::LocalFrame& frame, const Outline& outline, double fov_y_rad,
+                    double aspect, double exaggeration, const Insets& insets) {
+    Orbit whole = orbit;
+    whole.zoom = 1;
+    Camera camera = orbit_camera(whole, outline.points, fov_y_rad, aspect, outline.also, insets);
+    if (orbit.zoom == 1) return camera;
+    const std::optional<glm::dvec3> target =
+        first_ground(camera.eye_m, middle_ray(camera, aspect, insets), outline.points,
+                     ground_height_m, frame, exaggeration);
+    if (!target)
+        return orbit_camera(orbit, outline.points, fov_y_rad, aspect, outline.also, insets);
+    camera.eye_m = *target + (camera.eye_m - *target) / orbit.zoom;
+    return camera;
 }
 
 }  // namespace
@@ -107,9 +166,9 @@ Camera make_camera(const View& view, const GroundHeight& ground_height_m,
                                  ? fov_y_of_focal_length(view.focal_length_mm, aspect)
                                  : radians(kDefaultFov_deg);
     if (!view.eye) {
-        Camera camera =
-            orbit_camera(view.orbit, outline.points, fov_y_rad, aspect, outline.also, insets);
-        // Zoomed in, the camera may come to stand inside a mountain: then it stands on it.
+        Camera camera = zoomed_orbit(view.orbit, ground_height_m, frame, outline, fov_y_rad, aspect,
+                                     exaggeration, insets);
+        // Where no ground is in the middle it may come to stand inside a mountain: then on it.
         const geo::Geodetic place = frame.to_geodetic(camera.eye_m);
         const double ground_m = ground_height_m(place) * exaggeration;
         if (!std::isnan(ground_m) && place.height_m < ground_m + kClearance_m)

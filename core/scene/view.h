@@ -48,6 +48,9 @@ View parse_view(std::string_view text);
 /// Height of the eye above the ground where none is given [m]: a person's.
 inline constexpr double kEyeHeight_m = 1.7;
 
+/// An orbit's eye is no nearer above the ground [m].
+inline constexpr double kClearance_m = 2;
+
 /// The DEM's height at a place [m]; NaN where it has no ground.
 using GroundHeight = std::function<double(const geo::Geodetic& place)>;
 

@@ -14,7 +14,6 @@
 #include "base/parallel_for.h"
 #include "base/units.h"
 #include "dem/files_of.h"
-#include "dem/load.h"
 #include "geo/format.h"
 #include "render/ground.h"
 #include "scene/moment.h"
@@ -24,6 +23,7 @@
 #include "session/not_numbers.h"
 #include "session/overlay.h"
 #include "session/stamps.h"
+#include "session/standing.h"
 #include "session/words.h"
 #include "sun/celestial.h"
 #include "sun/position.h"
@@ -45,46 +45,11 @@ geo::Geodetic middle_of(const render::Ground& ground) {
     return middle;
 }
 
-LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
-    LoadedDem::Drawn drawn;
-    // Finer levels of means are read from the file, holes and all: they would disagree.
-    const bool all = field.reduction == 1;
-    if (field.about.statistics.holes > 0) {
-        const dem::Holes done = all ? holes : dem::Holes::Cut;
-        dem::FilledHoles filled = dem::fill_small_holes(field.height_m, done);
-        drawn.holes_text = filled.text(done);
-        if (!all && holes != dem::Holes::Cut)
-            drawn.holes_text += ", because the DEM is larger than --memory";
-        if (filled.filled_posts > 0) {
-            drawn.filled.emplace(dem::Heightfield{std::move(filled.height_m), field.grid,
-                                                  field.about, field.reduction});
-            drawn.is_filled = std::move(filled.filled);
-        }
-    }
-    drawn.water =
-        dem::find_water(drawn.filled ? drawn.filled->height_m : field.height_m, field.grid);
-    return drawn;
-}
-
-/// Posts above which others stand in for them, and how many of these there are at most.
-constexpr std::int64_t kManyPosts = std::int64_t{1} << 24, kStandInPosts = std::int64_t{1} << 22;
-
 std::shared_ptr<const LoadedDem> load(const scene::Scene& scene, bool may_stand_in) {
     auto source = std::make_shared<const dem::Source>(dem::Source::open(scene.dems, scene.dem));
     if (may_stand_in)
         if (auto stand_in = load_stand_in(source, scene)) return stand_in;
     return load_dem(std::move(source), scene);
-}
-
-std::shared_ptr<const LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
-                                            dem::Heightfield field, const scene::Scene& scene,
-                                            Clock::time_point began, bool stands_in) {
-    auto dem = std::make_shared<LoadedDem>(
-        LoadedDem{.source = std::move(source), .field = std::move(field), .stands_in = stands_in});
-    dem->drawn = drawn_of(dem->field, scene.holes);
-    dem->pyramid.emplace(dem::Pyramid::of(dem->to_draw(), dem->source.get()));
-    dem->took_ms = milliseconds_since(began);
-    return dem;
 }
 
 constexpr int kDivider_px = 2;
@@ -103,42 +68,6 @@ Picture side_by_side(const Picture& left, const Picture& right, Value line) {
 }
 
 }  // namespace
-
-std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> source,
-                                          const scene::Scene& scene) {
-    const auto began = Clock::now();
-    dem::Heightfield field = dem::load(*source, scene.dem.max_posts);
-    return loaded_dem(std::move(source), std::move(field), scene, began, /*stands_in=*/false);
-}
-
-std::shared_ptr<const LoadedDem> load_stand_in(std::shared_ptr<const dem::Source> source,
-                                               const scene::Scene& scene) {
-    const auto began = Clock::now();
-    const dem::Grid& grid = source->grid();
-    const std::int64_t posts = std::int64_t{grid.columns()} * grid.rows();
-    // Of more posts than memory holds, means are read anyway.
-    if (posts <= kManyPosts || posts > scene.dem.max_posts) return nullptr;
-    std::optional<dem::Heightfield> field = dem::load_quickly(*source, kStandInPosts);
-    if (!field) return nullptr;
-    return loaded_dem(std::move(source), std::move(*field), scene, began, /*stands_in=*/true);
-}
-
-render::Ground ground_of(const LoadedDem& dem) {
-    return render::make_ground(dem.field, dem.source->grid());
-}
-
-double LoadedDem::height_m(const geo::Geodetic& at) const {
-    if (field.reduction > 1) return source->height_at(at);
-    const glm::dvec2 post = field.grid.post(at);
-    return field.height_at(post.x, post.y);
-}
-
-std::vector<std::string> LoadedDem::ground_words(dem::Holes holes) const {
-    std::vector<std::string> words;
-    if (drawn.water.any()) words.emplace_back("water");
-    if (holes == dem::Holes::Mark && !drawn.is_filled.empty()) words.emplace_back("marked_holes");
-    return words;
-}
 
 /// What draws a scene: some effects, and of a comparison the rest of them.
 struct Session::DrawnEffects {
@@ -177,6 +106,7 @@ struct Session::Impl {
     std::optional<scene::Framing> framing;  // of the last view that left an angle open
     std::string moment_reason;
     render::FrameInputs inputs;
+    std::optional<double> keep_above_m;  ///< as look() has it
 
     Impl(scene::Scene given, Options o, FilesInUse& files)
         : scene(std::move(given)), options(std::move(o)) {
@@ -468,19 +398,44 @@ struct Session::Impl {
             framing = scene::frame_ground(view.orbit, to_show.net, *day);
             view.orbit = framing->orbit;
         }
-        inputs.camera = scene::make_camera(
-            view, height_m(), ground->frame, view.eye ? scene::Outline() : outline(),
-            static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration);
+        inputs.camera = standing(view, drawn_ground(), keep_above_m);
         scene.view = view;
     }
 
-    /// Of a scene that is given; where a user moves the eye, they see where it is.
-    void warn_of_eye() const {
-        scene::warn_of_eye_below_ground(scene.view, height_m(), ground->frame, scene.exaggeration);
+    DrawnGround drawn_ground() {
+        const auto camera_of = [this](const scene::View& view) {
+            return scene::make_camera(
+                view, heights_to_aim_at(), ground->frame, view.eye ? scene::Outline() : outline(),
+                static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration);
+        };
+        return {ground->frame, scene.exaggeration,
+                [this](const scene::Camera& camera) { return drawn_height_m(camera); }, camera_of};
     }
 
-    scene::GroundHeight height_m() const {
-        return [this](const geo::Geodetic& at) { return loaded->height_m(at); };
+    /// Height of the ground as it is drawn below a camera's eye, exaggerated; none where the eye is
+    /// above all ground.
+    std::optional<double> drawn_height_m(const scene::Camera& camera) {
+        const auto [lowest_m, highest_m] =
+            drawn.renderer->displacement().range_m(ground->lowest_m, ground->highest_m);
+        const double eye_m = ground->frame.to_geodetic(camera.eye_m).height_m;
+        if (eye_m > highest_m * scene.exaggeration + scene::kClearance_m) return std::nullopt;
+        context->make_current();
+        render::FrameInputs frame = inputs;
+        frame.camera = camera;
+        return drawn.renderer->drawn_height_m(*terrain, *ground, frame);
+    }
+
+    /// Of a scene that is given; where a user moves the eye, they see where it is.
+    void warn_of_eye() {
+        const auto drawn_m = [this](const geo::Geodetic&) {
+            const std::optional<double> height_m = drawn_height_m(inputs.camera);
+            return height_m ? *height_m / scene.exaggeration : std::nan("");
+        };
+        scene::warn_of_eye_below_ground(scene.view, drawn_m, ground->frame, scene.exaggeration);
+    }
+
+    scene::GroundHeight heights_to_aim_at() const {
+        return session::heights_to_aim_at(loaded, drawn.renderer->displacement());
     }
 
     scene::Outline outline() {
@@ -572,8 +527,13 @@ const scene::Scene& Session::scene() const {
     return impl_->scene;
 }
 
-void Session::look(const scene::View& view) {
+void Session::look(const scene::View& view, std::optional<double> keep_above_m) {
+    impl_->keep_above_m = keep_above_m;
     impl_->look(view);
+}
+
+scene::GroundHeight Session::heights_to_aim_at() const {
+    return impl_->heights_to_aim_at();
 }
 
 void Session::set_moment(sun::Instant utc) {
@@ -600,7 +560,9 @@ const ActiveEffects& Session::effects() const {
 
 void Session::set(const std::string& address, const std::string& value) {
     impl_->context->make_current();
+    const render::Displacement before = impl_->drawn.renderer->displacement();
     impl_->set_value(address, value);
+    if (impl_->drawn.renderer->displacement() != before) impl_->look(impl_->scene.view);
 }
 
 void Session::show(const scene::Scene& scene, sun::Instant utc) {

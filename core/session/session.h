@@ -102,8 +102,13 @@ class Session {
 
     /// As it is now; files that parameters name have absolute paths.
     const scene::Scene& scene() const;
-    /// Moves the camera. @throws Error (BadInput) as scene::make_camera
-    void look(const scene::View& view);
+    /// Moves the camera. An eye that is given above the ground stands on the ground as it is drawn.
+    /// @param keep_above_m  other eyes are raised to be so far above it; none: they stay where they
+    ///                      are given
+    /// @throws Error (BadInput) as scene::make_camera
+    void look(const scene::View& view, std::optional<double> keep_above_m = std::nullopt);
+    /// Heights to aim cameras at, as effects draw the ground now; keeps the DEM, for any thread.
+    scene::GroundHeight heights_to_aim_at() const;
     /// Moves the sun.
     void set_moment(sun::Instant utc);
     /// Shows another scene of the same DEM, with no more work than what differs takes. Its frames

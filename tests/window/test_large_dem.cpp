@@ -76,7 +76,7 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
     const scene::Camera camera = whole->camera(whole->scene.view, 320.0 / 200, {});
     EXPECT_LT(distance(session.camera().eye_m, camera.eye_m), 1e-6);
     // As the window draws it, upright at its eye.
-    const viewer::Land land{&session.ground().frame, 1, {}};
+    const viewer::Land land{&session.ground().frame, 1, {}, {}};
     session.look(view_of(pose_of(camera, land), land));
     session.draw();
     EXPECT_LE(test::difference(image_of(*picture), session.picture(), 1), 2e-4);

@@ -18,7 +18,7 @@ class Navigation : public testing::Test {
   protected:
     Navigation() {
         land_.frame = &frame_;
-        land_.height_m = [](const geo::Geodetic&) { return 500.0; };
+        land_.height_m = land_.aim_m = [](const geo::Geodetic&) { return 500.0; };
         pose_.eye_m = at(46.0, 8.0, 3000);
         pose_.heading_deg = 30;
         pose_.pitch_deg = -25;
@@ -130,7 +130,7 @@ TEST_F(Navigation, ZoomingKeepsThePointUnderTheCursor) {
 
 TEST_F(Navigation, WalkingStaysAtEyeHeightAndFlyingAboveTheGround) {
     // A slope up to the north.
-    land_.height_m = [](const geo::Geodetic& place) {
+    land_.aim_m = [](const geo::Geodetic& place) {
         return 500 + 20000 * (degrees(place.lat_rad) - 46.0);
     };
     pose_.heading_deg = 0;
@@ -138,16 +138,16 @@ TEST_F(Navigation, WalkingStaysAtEyeHeightAndFlyingAboveTheGround) {
     for (int i = 0; i < 50; ++i)
         walker = walk(walker, land_, {0, 20});
     const geo::Geodetic place = frame_.to_geodetic(walker.eye_m);
-    EXPECT_NEAR(place.height_m, land_.height_m(place) + kWalk_m, 1e-6);
+    EXPECT_NEAR(place.height_m, land_.aim_m(place) + kWalk_m, 1e-6);
     EXPECT_NEAR(place.lat_rad, radians(46.0) + 1000 / 6367000.0, 1e-5);
     Pose flyer = pose_;
     flyer.pitch_deg = -80;
     for (int i = 0; i < 100; ++i)
         flyer = fly(flyer, land_, {0, 100, 0});
     const geo::Geodetic down = frame_.to_geodetic(flyer.eye_m);
-    EXPECT_GE(down.height_m, land_.height_m(down) + kClearance_m - 1e-6);
+    EXPECT_GE(down.height_m, land_.aim_m(down) + kClearance_m - 1e-6);
     // No ground, no walk.
-    land_.height_m = [](const geo::Geodetic&) { return std::numeric_limits<double>::quiet_NaN(); };
+    land_.aim_m = [](const geo::Geodetic&) { return std::numeric_limits<double>::quiet_NaN(); };
     EXPECT_EQ(walk(pose_, land_, {0, 5}).eye_m, pose_.eye_m);
 }
 

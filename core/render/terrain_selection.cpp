@@ -1,0 +1,39 @@
+#include <algorithm>
+
+#include "render/ground_probe.h"
+#include "render/terrain.h"
+
+namespace relevo::render {
+
+int TileSelection::finest_level() const {
+    int finest = tiles_.empty() ? 0 : tiles_.front().draw.key.level;
+    for (const Tile& tile : tiles_)
+        finest = std::min(finest, tile.draw.key.level);
+    return finest;
+}
+
+double TileSelection::nearest_m() const {
+    double nearest_m = tiles_.empty() ? 0 : tiles_.front().draw.distance_m;
+    for (const Tile& tile : tiles_)
+        nearest_m = std::min(nearest_m, tile.draw.distance_m);
+    return nearest_m;
+}
+
+TileSelection Terrain::select_below(const scene::Camera& camera, int width_px, int height_px,
+                                    double exaggeration, bool afresh) {
+    const double pixel_error = options_.pixel_error;
+    const double tolerance = tolerance_in_budget(
+        LodView::of_camera(camera, width_px, height_px, pixel_error, exaggeration));
+    const scene::Camera below = GroundProbe::camera_below(camera, frame_, tolerance, pixel_error);
+    const LodView view = LodView::of_camera(below, 1, 1, pixel_error, exaggeration);
+    // With the coarser tiles above them, without which Loading::Beside draws none of these.
+    std::vector<TileKey> keys;
+    const auto is_there = [](const TileKey&) { return true; };
+    const std::vector<TileDraw> draws = tree_.select(view, TileTree::Resident{is_there, keys});
+    heights_.require(keys);
+    if (!surface_.find("normal_pages")) clear_surface();
+    prepare_surface(LodView::of_camera(below, 1, 1, 1, exaggeration), Loading::Wait, afresh);
+    return ready(view, draws);
+}
+
+}  // namespace relevo::render

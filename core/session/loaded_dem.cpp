@@ -1,0 +1,86 @@
+#include <chrono>
+#include <utility>
+
+#include "dem/load.h"
+#include "render/ground.h"
+#include "session/session.h"
+
+namespace relevo::session {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
+    LoadedDem::Drawn drawn;
+    // Finer levels of means are read from the file, holes and all: they would disagree.
+    const bool all = field.reduction == 1;
+    if (field.about.statistics.holes > 0) {
+        const dem::Holes done = all ? holes : dem::Holes::Cut;
+        dem::FilledHoles filled = dem::fill_small_holes(field.height_m, done);
+        drawn.holes_text = filled.text(done);
+        if (!all && holes != dem::Holes::Cut)
+            drawn.holes_text += ", because the DEM is larger than --memory";
+        if (filled.filled_posts > 0) {
+            drawn.filled.emplace(dem::Heightfield{std::move(filled.height_m), field.grid,
+                                                  field.about, field.reduction});
+            drawn.is_filled = std::move(filled.filled);
+        }
+    }
+    drawn.water =
+        dem::find_water(drawn.filled ? drawn.filled->height_m : field.height_m, field.grid);
+    return drawn;
+}
+
+/// Posts above which others stand in for them, and how many of these there are at most.
+constexpr std::int64_t kManyPosts = std::int64_t{1} << 24, kStandInPosts = std::int64_t{1} << 22;
+
+std::shared_ptr<const LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
+                                            dem::Heightfield field, const scene::Scene& scene,
+                                            Clock::time_point began, bool stands_in) {
+    auto dem = std::make_shared<LoadedDem>(
+        LoadedDem{.source = std::move(source), .field = std::move(field), .stands_in = stands_in});
+    dem->drawn = drawn_of(dem->field, scene.holes);
+    dem->pyramid.emplace(dem::Pyramid::of(dem->to_draw(), dem->source.get()));
+    dem->took_ms = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+    return dem;
+}
+
+}  // namespace
+
+std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> source,
+                                          const scene::Scene& scene) {
+    const auto began = Clock::now();
+    dem::Heightfield field = dem::load(*source, scene.dem.max_posts);
+    return loaded_dem(std::move(source), std::move(field), scene, began, /*stands_in=*/false);
+}
+
+std::shared_ptr<const LoadedDem> load_stand_in(std::shared_ptr<const dem::Source> source,
+                                               const scene::Scene& scene) {
+    const auto began = Clock::now();
+    const dem::Grid& grid = source->grid();
+    const std::int64_t posts = std::int64_t{grid.columns()} * grid.rows();
+    // Of more posts than memory holds, means are read anyway.
+    if (posts <= kManyPosts || posts > scene.dem.max_posts) return nullptr;
+    std::optional<dem::Heightfield> field = dem::load_quickly(*source, kStandInPosts);
+    if (!field) return nullptr;
+    return loaded_dem(std::move(source), std::move(*field), scene, began, /*stands_in=*/true);
+}
+
+render::Ground ground_of(const LoadedDem& dem) {
+    return render::make_ground(dem.field, dem.source->grid());
+}
+
+double LoadedDem::height_m(const geo::Geodetic& at) const {
+    if (field.reduction > 1) return source->height_at(at);
+    const glm::dvec2 post = field.grid.post(at);
+    return field.height_at(post.x, post.y);
+}
+
+std::vector<std::string> LoadedDem::ground_words(dem::Holes holes) const {
+    std::vector<std::string> words;
+    if (drawn.water.any()) words.emplace_back("water");
+    if (holes == dem::Holes::Mark && !drawn.is_filled.empty()) words.emplace_back("marked_holes");
+    return words;
+}
+
+}  // namespace relevo::session
