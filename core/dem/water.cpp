@@ -138,7 +138,9 @@ class WaterFinder {
                 "{} connected posts at or below 0 m, down to {:.1f} m, are drawn as sea: they "
                 "reach the edge of the DEM or a void; --disable sea draws land",
                 found.posts, found.lowest_m));
-        return found.lowest_m < kNoise_m && !flat ? WaterKind::SeaFloor : WaterKind::Sea;
+        if (found.lowest_m >= kNoise_m || flat) return WaterKind::Sea;
+        water_.has_sea_floor = true;
+        return WaterKind::SeaFloor;
     }
 
     /// Whether what is open at the edge and of one height is left from turning or cutting.

@@ -22,6 +22,7 @@ struct Water {
     std::int64_t sea_posts = 0, lake_posts = 0;
     int lakes = 0;
     double lowest_sea_m = 0;
+    bool has_sea_floor = false;  ///< some of it is WaterKind::SeaFloor
     /// Whole sentences: what the heights leave open.
     std::vector<std::string> assumptions;
 

@@ -120,7 +120,7 @@ void check_ramps(const Effect& effect) {
             const shader::Param* const param = find(end.address);
             if (!param || param->type != shader::ParamType::Float)
                 fail(ramp.file, ramp.line,
-                     fmt::format("{}: ramp: expected a number, lowest, highest or a float "
+                     fmt::format("{}: ramp: expected a number, lowest, highest, floor or a float "
                                  "parameter of the plugin's but got {}",
                                  ramp.name, end.address));
         }

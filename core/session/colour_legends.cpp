@@ -10,26 +10,24 @@ namespace {
 
 using shader::ColourRamp;
 
-struct Range {
-    double lowest, highest;
-};
-
 bool is_shown(const ColourRamp& ramp, const shader::ParamStore& values) {
     if (ramp.where.empty()) return true;
     const std::vector<std::string>& words = values.param(ramp.where).words;
     return words.at(static_cast<std::size_t>(values.value(ramp.where)[0])) == ramp.where_word;
 }
 
-double value_of(const ColourRamp::End& end, const shader::ParamStore& values, const Range& ground) {
+double value_of(const ColourRamp::End& end, const shader::ParamStore& values,
+                const DemRange& ground) {
     switch (end.of) {
         case ColourRamp::End::Of::Number:
             return end.number;
         case ColourRamp::End::Of::Param:
             return values.value(end.address)[0];
         case ColourRamp::End::Of::Lowest:
-            return ground.lowest;
+        case ColourRamp::End::Of::Floor:
+            return ground.lowest_m;
         case ColourRamp::End::Of::Highest:
-            return ground.highest;
+            return ground.highest_m;
     }
     return 0;
 }
@@ -37,16 +35,17 @@ double value_of(const ColourRamp::End& end, const shader::ParamStore& values, co
 /// Values of the first and the last colour, where the ground has any of them.
 std::optional<std::pair<double, double>> ends_of(const ColourRamp& ramp,
                                                  const shader::ParamStore& values,
-                                                 const Range& ground) {
+                                                 const DemRange& ground) {
     if (ramp.is_ring) return std::pair(0.0, 360.0);
     double from = value_of(ramp.from, values, ground), to = value_of(ramp.to, values, ground);
     using Of = ColourRamp::End::Of;
     // Land, where parameters leave it open.
     if (ramp.from.of == Of::Param && ramp.to.of == Of::Param && !(from < to)) {
-        from = std::max(ground.lowest, std::min(ground.highest, 0.0));
-        to = std::max(ground.highest, from + 1e-3);
+        from = std::max(ground.lowest_m, std::min(ground.highest_m, 0.0));
+        to = std::max(ground.highest_m, from + 1e-3);
     }
-    if (ramp.to.of == Of::Lowest && !(to < from)) return std::nullopt;
+    if (ramp.to.of == Of::Floor && !ground.has_sea_floor) return std::nullopt;
+    if ((ramp.to.of == Of::Lowest || ramp.to.of == Of::Floor) && !(to < from)) return std::nullopt;
     if (ramp.to.of == Of::Highest && !(to > from)) return std::nullopt;
     return std::pair(from, to);
 }
@@ -84,13 +83,12 @@ void join(std::vector<chart::Ramp::Stop> more, chart::Ramp& ramp) {
 
 }  // namespace
 
-std::vector<chart::Legend> colour_legends(const ActiveEffects& effects, double lowest_m,
-                                          double highest_m) {
+std::vector<chart::Legend> colour_legends(const ActiveEffects& effects, const DemRange& ground) {
     std::vector<chart::Legend> legends;
     for (const effect::Effect* effect : effects.loaded.selection.effects)
         for (const ColourRamp& ramp : effect->ramps()) {
             if (!is_shown(ramp, effects.values)) continue;
-            const auto ends = ends_of(ramp, effects.values, {lowest_m, highest_m});
+            const auto ends = ends_of(ramp, effects.values, ground);
             if (!ends) continue;
             auto stops = stops_of(ramp, ends->first, ends->second);
             const auto same =

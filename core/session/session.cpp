@@ -585,7 +585,8 @@ void Session::drape(std::shared_ptr<const render::Drape> drape) {
 }
 
 std::vector<chart::Legend> Session::colour_legends() const {
-    return session::colour_legends(effects(), impl_->ground->lowest_m, impl_->ground->highest_m);
+    return session::colour_legends(effects(), {impl_->ground->lowest_m, impl_->ground->highest_m,
+                                               impl_->loaded->drawn.water.has_sea_floor});
 }
 
 std::vector<chart::Legend> Session::legends() const {

@@ -98,6 +98,7 @@ class RampReader {
 
     ColourRamp::End end(const std::string& text) const {
         if (text == "lowest") return {ColourRamp::End::Of::Lowest, 0, {}};
+        if (text == "floor") return {ColourRamp::End::Of::Floor, 0, {}};
         if (text == "highest") return {ColourRamp::End::Of::Highest, 0, {}};
         if (const std::optional<double> number = parse_number(text))
             return {ColourRamp::End::Of::Number, *number, {}};

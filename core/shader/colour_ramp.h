@@ -15,7 +15,9 @@ namespace relevo::shader {
 struct ColourRamp {
     /// A value, of which one is meant.
     struct End {
-        enum class Of { Number, Param, Lowest, Highest };  ///< the two last: of the DEM [m]
+        /// Of the DEM [m]: its lowest and highest post, and the lowest where it has a sea with its
+        /// floor.
+        enum class Of { Number, Param, Lowest, Highest, Floor };
         Of of = Of::Number;
         double number = 0;
         std::string address;  ///< of a parameter: "tint.low_m"

@@ -69,9 +69,10 @@ TEST(PluginGuide, ItsRampIsOne) {
     EXPECT_THAT(broken("where(by, year)", "where(by, month)"),
                 HasSubstr("rain.glsl:3: rain_year: where: expected an enum parameter of the "
                           "plugin's and one of its words but got rain.by, month"));
-    EXPECT_THAT(broken("ramp(0, 3000)", "ramp(0, most)"),
-                HasSubstr("rain.glsl:3: rain_year: ramp: expected a number, lowest, highest or a "
-                          "float parameter of the plugin's but got rain.most"));
+    EXPECT_THAT(
+        broken("ramp(0, 3000)", "ramp(0, most)"),
+        HasSubstr("rain.glsl:3: rain_year: ramp: expected a number, lowest, highest, floor or a "
+                  "float parameter of the plugin's but got rain.most"));
 }
 
 TEST(PluginGuide, ItsFrostReadsTheClimate) {

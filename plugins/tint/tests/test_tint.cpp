@@ -108,8 +108,8 @@ TEST(Tint, LegendsShowTheColoursOfTheShader) {
     EXPECT_EQ(ramp("tint_land").from.address, "tint.low_m");
     expect_ramp("tint_land", "tint_of_height({})", 500, 500);
     gpu.frame().height_range = {-3000, 1.0f / 7000, 1, 0};
-    EXPECT_EQ(ramp("tint_sea").to.of, shader::ColourRamp::End::Of::Lowest);
-    expect_ramp("tint_sea", "tint_of_height({})", -1e-3, -1000);
+    EXPECT_EQ(ramp("tint_sea").to.of, shader::ColourRamp::End::Of::Floor);
+    expect_ramp("tint_sea", "tint_of_floor({})", -1e-3, -1000);
 }
 
 TEST(Tint, LitColoursAreThoseOfTheLegendAsLight) {
