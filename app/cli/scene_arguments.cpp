@@ -83,9 +83,10 @@ void StampArguments::apply_to(scene::Stamps& result) const {
 
 void SceneArguments::add_to(CLI::App& verb, bool with_file) {
     dem.add_to(verb);
-    verb.add_option("--holes", holes,
-                    "How voids in the DEM are drawn: fill (small ones filled, others cut out), cut "
-                    "(all cut out), mark (filled and painted) (fill)")
+    verb.add_option(
+            "--holes", holes,
+            "How voids in the DEM are drawn: fill (filled, wide ones covered in grey, those "
+            "at the edge cut out), cut (all cut out), mark (filled and painted) (fill)")
         ->check(CLI::IsMember({"fill", "cut", "mark"}));
     verb.add_option("--size", size, "Width and height in pixels, 1280x1024");
     if (with_file)

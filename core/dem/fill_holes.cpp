@@ -6,12 +6,14 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gdal.h>
 #include <gdal_alg.h>
 
 #include "base/error.h"
 #include "dem/gdal_support.h"
 #include "dem/grid.h"
+#include "dem/membrane.h"
 #include "dem/runs.h"
 
 namespace relevo::dem {
@@ -30,11 +32,23 @@ struct Hole {
         south = std::max(south, run.row);
         posts += run.last - run.first + 1;
     }
-    bool is_small(int columns, int rows) const {
-        return posts > 0 && west > 0 && north > 0 && east < columns - 1 && south < rows - 1 &&
-               east - west < kSmallHole_posts && south - north < kSmallHole_posts;
+    bool is_enclosed(int columns, int rows) const {
+        return posts > 0 && west > 0 && north > 0 && east < columns - 1 && south < rows - 1;
+    }
+    bool is_small() const {
+        return east - west < kSmallHole_posts && south - north < kSmallHole_posts;
     }
 };
+
+/// A window with a cover over all its holes.
+Array2d<float> covered_window(const Array2d<float>& height_m, const Window& w) {
+    Array2d<float> heights(w.columns, w.rows);
+    for (int y = 0; y < w.rows; ++y)
+        for (int x = 0; x < w.columns; ++x)
+            heights.at(x, y) = height_m.at(w.column + x, w.row + y);
+    span_membrane(heights);
+    return heights;
+}
 
 /// A window with all its holes filled. @returns empty where GDAL has no memory
 Array2d<float> filled_window(const Array2d<float>& height_m, const Window& w) {
@@ -82,40 +96,54 @@ const char* name_of(Holes holes) {
 }
 
 std::string FilledHoles::text(Holes holes) const {
-    if (filled_posts + cut_posts == 0) return "";
+    if (filled_posts + covered_posts + cut_posts == 0) return "";
     const auto share = [&](std::int64_t some) {
         return 100 * static_cast<double>(some) / static_cast<double>(posts);
     };
-    std::string text = fmt::format("voids: {:.3g} % of the DEM, ", share(filled_posts + cut_posts));
+    const bool several = (filled_posts > 0) + (covered_posts > 0) + (cut_posts > 0) > 1;
+    const auto share_of = [&](std::int64_t some) {
+        return several ? fmt::format("{:.3g} % ", share(some)) : std::string();
+    };
+    std::vector<std::string> parts;
     if (filled_posts > 0)
-        text += fmt::format("{}drawn filled{}",
-                            cut_posts > 0 ? fmt::format("{:.3g} % ", share(filled_posts)) : "",
-                            holes == Holes::Mark ? " and painted" : " (--holes mark shows them)");
+        parts.push_back(share_of(filled_posts) + "drawn filled" +
+                        (holes == Holes::Mark ? " and painted" : " (--holes mark shows them)"));
+    if (covered_posts > 0)
+        parts.push_back(fmt::format("{}covered in grey{} (wider than {} posts)",
+                                    share_of(covered_posts),
+                                    holes == Holes::Mark ? " and painted" : "", kSmallHole_posts));
     if (cut_posts > 0)
-        text += fmt::format("{}cut out{}", filled_posts > 0 ? ", the rest " : "",
-                            holes == Holes::Cut ? ""
-                                                : fmt::format(" (larger than {} posts, or at the "
-                                                              "edge)",
-                                                              kSmallHole_posts));
-    return text;
+        parts.push_back(share_of(cut_posts) + "cut out" +
+                        (holes == Holes::Cut ? "" : " (at the edge)"));
+    return fmt::format("voids: {:.3g} % of the DEM, {}",
+                       share(filled_posts + covered_posts + cut_posts), fmt::join(parts, ", "));
 }
+
+namespace {
+
+Runs runs_of_holes(const Array2d<float>& height_m) {
+    Runs runs(height_m.height());
+    for (int row = 0; row < height_m.height(); ++row) {
+        runs.begin_row();
+        const float* const h = height_m.row(row).data();
+        for (int column = 0; column < height_m.width(); ++column) {
+            if (!std::isnan(h[column])) continue;
+            const int first = column;
+            while (column + 1 < height_m.width() && std::isnan(h[column + 1]))
+                ++column;
+            runs.add(row, first, column, [](int) { return true; });
+        }
+    }
+    return runs;
+}
+
+}  // namespace
 
 FilledHoles fill_small_holes(const Array2d<float>& height_m, Holes holes) {
     const int columns = height_m.width(), rows = height_m.height();
     FilledHoles result;
     result.posts = std::ssize(height_m);
-    Runs runs(rows);
-    for (int row = 0; row < rows; ++row) {
-        runs.begin_row();
-        const float* const h = height_m.row(row).data();
-        for (int column = 0; column < columns; ++column) {
-            if (!std::isnan(h[column])) continue;
-            const int first = column;
-            while (column + 1 < columns && std::isnan(h[column + 1]))
-                ++column;
-            runs.add(row, first, column, [](int) { return true; });
-        }
-    }
+    Runs runs = runs_of_holes(height_m);
     std::vector<Hole> found(static_cast<std::size_t>(runs.size()));
     for (int i = 0; i < runs.size(); ++i) {
         found[static_cast<std::size_t>(runs.root(i))].add(runs.at(i));
@@ -125,7 +153,7 @@ FilledHoles fill_small_holes(const Array2d<float>& height_m, Holes holes) {
     prepare_gdal();
     std::vector<std::vector<Run>> runs_of(found.size());
     for (int i = 0; i < runs.size(); ++i)
-        if (found[static_cast<std::size_t>(runs.root(i))].is_small(columns, rows))
+        if (found[static_cast<std::size_t>(runs.root(i))].is_enclosed(columns, rows))
             runs_of[static_cast<std::size_t>(runs.root(i))].push_back(runs.at(i));
     for (std::size_t i = 0; i < found.size(); ++i) {
         if (runs_of[i].empty()) continue;
@@ -138,13 +166,15 @@ FilledHoles fill_small_holes(const Array2d<float>& height_m, Holes holes) {
                   north = std::max(hole.north - kAround, 0);
         const Window window{west, north, std::min(hole.east + kAround, columns - 1) - west + 1,
                             std::min(hole.south + kAround, rows - 1) - north + 1};
-        const Array2d<float> filled = filled_window(height_m, window);
+        const bool small = hole.is_small();
+        const Array2d<float> filled =
+            small ? filled_window(height_m, window) : covered_window(height_m, window);
         for (const Run& run : runs_of[i])
             for (int column = run.first; column <= run.last; ++column) {
                 result.height_m.at(column, run.row) = filled.at(column - west, run.row - north);
-                result.filled.at(column, run.row) = 1;
+                result.filled.at(column, run.row) = small ? kFilled : kCovered;
             }
-        result.filled_posts += hole.posts;
+        (small ? result.filled_posts : result.covered_posts) += hole.posts;
         result.cut_posts -= hole.posts;
     }
     return result;

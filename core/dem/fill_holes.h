@@ -9,9 +9,9 @@ namespace relevo::dem {
 
 /// What is done with holes where a DEM is drawn. Figures never see it.
 enum class Holes {
-    Fill,  ///< small ones are filled, others are cut out
+    Fill,  ///< small ones are filled, larger ones covered in grey, those at the edge cut out
     Cut,   ///< all are cut out
-    Mark,  ///< as Fill, and what is filled is painted
+    Mark,  ///< as Fill, and what is filled or covered is painted
 };
 
 /// Reads "fill", "cut" or "mark". @throws Error (Usage) `who: ...`
@@ -21,10 +21,13 @@ const char* name_of(Holes holes);
 /// Posts that a hole may be wide and high to be filled.
 inline constexpr int kSmallHole_posts = 64;
 
+/// Values of FilledHoles::filled.
+inline constexpr std::uint8_t kFilled = 1, kCovered = 2;
+
 struct FilledHoles {
     Array2d<float> height_m;       ///< NaN in the holes that are left; empty where none was filled
-    Array2d<std::uint8_t> filled;  ///< 1 where it was; empty likewise
-    std::int64_t filled_posts = 0, cut_posts = 0;
+    Array2d<std::uint8_t> filled;  ///< kFilled or kCovered where it was, else 0; empty likewise
+    std::int64_t filled_posts = 0, covered_posts = 0, cut_posts = 0;
 
     std::int64_t posts = 0;  ///< of the whole DEM
 
@@ -32,9 +35,10 @@ struct FilledHoles {
     std::string text(Holes holes) const;
 };
 
-/// Fills the holes that do not reach the edge and are no more than kSmallHole_posts wide and high,
-/// with heights from around them. For drawing alone: these heights are invented.
-/// source: GDALFillNodata, inverse distance to what is nearest in each direction, smoothed twice
+/// Fills the holes that do not reach the edge, with heights from around them: those that are no
+/// more than kSmallHole_posts wide and high as ground, larger ones with a smooth cover
+/// (membrane.h). For drawing alone: these heights are invented. source: GDALFillNodata, inverse
+/// distance to what is nearest in each direction, smoothed twice
 FilledHoles fill_small_holes(const Array2d<float>& height_m, Holes holes);
 
 }  // namespace relevo::dem

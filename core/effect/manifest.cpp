@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, 46> kReserved = {
 // Capabilities that core provides itself: render/programs.h.
 constexpr std::array<std::string_view, 2> kCoreWords = {"night", "outside"};
 
-constexpr std::array<std::string_view, 2> kGroundWords = {"water", "marked_holes"};
+constexpr std::array<std::string_view, 3> kGroundWords = {"water", "marked_holes", "covered_voids"};
 
 bool is_lower(char c) {
     return c >= 'a' && c <= 'z';

@@ -88,8 +88,8 @@ struct Manifest {
     std::filesystem::path file;  ///< folder / "plugin.json"
 };
 
-/// What a DEM may have, as a plugin's "default_where" says it: "water", and "marked_holes", which
-/// are filled and to be painted.
+/// What a DEM may have, as a plugin's "default_where" says it: "water"; "marked_holes", which are
+/// filled and to be painted; "covered_voids", which are too wide to be filled as ground.
 std::span<const std::string_view> ground_words();
 
 /// Reads `folder/plugin.json`.

@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 
 #include "base/parallel_for.h"
+#include "dem/fill_holes.h"
 #include "render/pages.h"
 
 namespace relevo::render {
@@ -19,6 +20,38 @@ constexpr double kLeastShore = 0.1;
 
 std::uint8_t unorm8(double value) {
     return static_cast<std::uint8_t>(std::lrint(std::clamp(value, 0.0, 1.0) * 255));
+}
+
+/// Kinds with that of the nearest post with a height, by steps along rows and columns, at posts
+/// without one; empty where all have one.
+Array2d<WaterKind> with_kind_in_voids(const Array2d<WaterKind>& kind, const Array2d<float>& h) {
+    const auto is_void = [](float height_m) { return std::isnan(height_m); };
+    if (kind.empty() || std::none_of(h.begin(), h.end(), is_void)) return {};
+    Array2d<WaterKind> result = kind;
+    constexpr int kFar = 1 << 30;
+    Array2d<int> steps(kind.width(), kind.height(), 0);
+    for (std::size_t i = 0; i < h.size(); ++i)
+        if (is_void(h.data()[i])) steps.data()[i] = kFar;
+    const auto take = [&](int column, int row, int from_column, int from_row) {
+        if (from_column < 0 || from_row < 0 || from_column >= kind.width() ||
+            from_row >= kind.height())
+            return;
+        const int away = steps.at(from_column, from_row) + 1;
+        if (away >= steps.at(column, row)) return;
+        steps.at(column, row) = away;
+        result.at(column, row) = result.at(from_column, from_row);
+    };
+    for (int row = 0; row < kind.height(); ++row)
+        for (int column = 0; column < kind.width(); ++column) {
+            take(column, row, column - 1, row);
+            take(column, row, column, row - 1);
+        }
+    for (int row = kind.height() - 1; row >= 0; --row)
+        for (int column = kind.width() - 1; column >= 0; --column) {
+            take(column, row, column + 1, row);
+            take(column, row, column, row + 1);
+        }
+    return result;
 }
 
 bool uniform(const WaterTexel* const* rows) {
@@ -75,13 +108,17 @@ WaterTexel coarser(const Array2d<WaterTexel>& finer, glm::ivec2 node, glm::ivec2
 
 WaterField::WaterField(const Array2d<float>& heights_m, const dem::Water& water,
                        const Array2d<std::uint8_t>* filled, int reduction)
-    : heights_m_(heights_m), water_(water), filled_(filled), reduction_(reduction) {
+    : heights_m_(heights_m),
+      kind_in_voids_(with_kind_in_voids(water.kind, heights_m)),
+      kind_(kind_in_voids_.empty() ? water.kind : kind_in_voids_),
+      filled_(filled),
+      reduction_(reduction) {
     make_levels();
 }
 
 /// -1 to 1, above 0 where wet.
 double WaterField::shore(int column, int row, bool wet) const {
-    const Array2d<WaterKind>& kind = water_.kind;
+    const Array2d<WaterKind>& kind = kind_;
     const auto kind_at = [&](int c, int r) {
         return kind.at(std::clamp(c, 0, kind.width() - 1), std::clamp(r, 0, kind.height() - 1));
     };
@@ -115,7 +152,7 @@ double WaterField::shore(int column, int row, bool wet) const {
 
 /// The kind of a post and all around it, where it is one; almost everywhere it is.
 std::optional<WaterKind> WaterField::kind_around(int column, int row) const {
-    const Array2d<WaterKind>& kind = water_.kind;
+    const Array2d<WaterKind>& kind = kind_;
     if (column < 1 || row < 1 || column + 1 >= kind.width() || row + 1 >= kind.height())
         return std::nullopt;
     const WaterKind own = kind.at(column, row);
@@ -126,10 +163,17 @@ std::optional<WaterKind> WaterField::kind_around(int column, int row) const {
     return own;
 }
 
+/// What is enclosed by water is as good as water.
+std::uint8_t WaterField::filled_texel(int column, int row) const {
+    const std::uint8_t filled = filled_ ? filled_->at(column, row) : std::uint8_t{0};
+    if (filled == 0) return 0;
+    const bool wet = !kind_.empty() && kind_.at(column, row) != WaterKind::None;
+    return filled == dem::kCovered && !wet ? 255 : 128;
+}
+
 WaterTexel WaterField::of_post(int column, int row) const {
-    const std::uint8_t filled =
-        filled_ && filled_->at(column, row) ? std::uint8_t{255} : std::uint8_t{0};
-    const Array2d<WaterKind>& kind = water_.kind;
+    const Array2d<WaterKind>& kind = kind_;
+    const std::uint8_t filled = filled_texel(column, row);
     if (kind.empty()) return {0, 0, 0, filled};
     if (const std::optional<WaterKind> alone = kind_around(column, row)) {
         const bool is_sea = *alone == WaterKind::Sea || *alone == WaterKind::SeaFloor;
@@ -163,7 +207,7 @@ WaterTexel WaterField::at(int level, int column, int row) const {
 }
 
 void WaterField::make_levels() {
-    if (water_.kind.empty() && !filled_) return;
+    if (kind_.empty() && !filled_) return;
     glm::ivec2 fine(heights_m_.width(), heights_m_.height());
     while (std::max(fine.x, fine.y) > 2) {
         const glm::ivec2 size = fine / 2 + 1;

@@ -20,7 +20,8 @@ LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
         drawn.holes_text = filled.text(done);
         if (!all && holes != dem::Holes::Cut)
             drawn.holes_text += ", because the DEM is larger than --memory";
-        if (filled.filled_posts > 0) {
+        drawn.has_covers = filled.covered_posts > 0;
+        if (filled.filled_posts + filled.covered_posts > 0) {
             drawn.filled.emplace(dem::Heightfield{std::move(filled.height_m), field.grid,
                                                   field.about, field.reduction});
             drawn.is_filled = std::move(filled.filled);
@@ -80,6 +81,7 @@ std::vector<std::string> LoadedDem::ground_words(dem::Holes holes) const {
     std::vector<std::string> words;
     if (drawn.water.any()) words.emplace_back("water");
     if (holes == dem::Holes::Mark && !drawn.is_filled.empty()) words.emplace_back("marked_holes");
+    if (drawn.has_covers) words.emplace_back("covered_voids");
     return words;
 }
 

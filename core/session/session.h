@@ -34,9 +34,10 @@ struct LoadedDem {
     /// For pictures alone, where holes were filled.
     struct Drawn {
         std::optional<dem::Heightfield> filled;  ///< none: as `field`
-        Array2d<std::uint8_t> is_filled;         ///< not 0 on filled posts; empty where none is
-        dem::Water water;                        ///< of what is drawn
-        std::string holes_text;                  ///< for people; empty where there are none
+        Array2d<std::uint8_t> is_filled;  ///< as dem::FilledHoles::filled; empty where none is
+        bool has_covers = false;          ///< voids too wide to be filled have a cover
+        dem::Water water;                 ///< of what is drawn
+        std::string holes_text;           ///< for people; empty where there are none
     };
     Drawn drawn{};
     std::optional<dem::Pyramid> pyramid{};  ///< of to_draw(); none: a session makes its own

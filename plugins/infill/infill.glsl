@@ -7,6 +7,6 @@
 uniform vec4 infill_colour = vec4(0.92, 0.1, 0.55, 0.75); //@ range(0, 1) label("Colour") description("Colour of filled voids, and its opacity")
 
 void infill_on_display(in Surface s, inout vec4 overlay) {
-    float filled = infill_colour.a * smoothstep(0.3, 0.7, water_of(s).a);
+    float filled = infill_colour.a * smoothstep(0.15, 0.35, water_of(s).a);
     overlay = mix(overlay, vec4(infill_colour.rgb, 1.0), filled);
 }

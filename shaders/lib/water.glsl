@@ -3,13 +3,13 @@
 
 //@ include lib/pages.glsl
 
-uniform sampler2DArray water_pages;  // r: side of the shore, one half on it; gba: sea, floor known, filled
+uniform sampler2DArray water_pages;  // r: side of the shore, one half on it; gb: sea, floor known; a: filled 0.5, covered 1
 
 /// Water at a place of the DEM.
 /// @param post         column and row
 /// @param pixel_posts  posts that a pixel is wide: shores are smooth over that
-/// @returns x: share of water, 0 to 1; y: of it, the share that is sea, z: and whose floor the DEM has; w: share of
-///          filled holes
+/// @returns x: share of water, 0 to 1; y: of it, the share that is sea, z: and whose floor the DEM has; w: of holes,
+///          0.5 where they are filled and 1 where they are covered
 vec4 water_at(in vec2 post, in float pixel_posts) {
     int most = textureQueryLevels(page_table) - 1;
     int level = clamp(int(log2(max(pixel_posts, 1.0)) + 0.5), 0, most);

@@ -204,7 +204,7 @@ TEST(Water, RealCoastsAndLakesAreFound) {
         EXPECT_FALSE(of(dry).second.any()) << dry;
 }
 
-TEST(FillHoles, SmallOnesAreFilledLargeOnesAndThoseAtTheEdgeStay) {
+TEST(FillHoles, SmallOnesAreFilledLargeOnesCoveredAndThoseAtTheEdgeStay) {
     auto h = ground(200, 150, [](int x, int y) { return 100 + 2 * x + y; });
     const auto cut = [&](int west, int north, int columns, int rows) {
         for (int y = north; y < north + rows; ++y)
@@ -217,21 +217,38 @@ TEST(FillHoles, SmallOnesAreFilledLargeOnesAndThoseAtTheEdgeStay) {
     const auto before = h;
     const FilledHoles found = fill_small_holes(h, Holes::Fill);
     EXPECT_EQ(found.filled_posts, 25);
-    EXPECT_EQ(found.cut_posts, 9 + 650);
+    EXPECT_EQ(found.covered_posts, 650);
+    EXPECT_EQ(found.cut_posts, 9);
     for (int y = 0; y < 150; ++y)
         for (int x = 0; x < 200; ++x) {
             const bool is_filled = x >= 10 && x < 15 && y >= 10 && y < 15;
-            EXPECT_EQ(found.filled.at(x, y) != 0, is_filled);
+            const bool is_covered = x >= 100 && x < 165 && y >= 40 && y < 50;
+            EXPECT_EQ(found.filled.at(x, y), is_filled ? kFilled : is_covered ? kCovered : 0);
             // Within what a plane differs by over the hole.
-            if (is_filled) {
+            if (is_filled || is_covered) {
                 EXPECT_NEAR(found.height_m.at(x, y), 100 + 2 * x + y, 4);
             } else if (!std::isnan(before.at(x, y))) {
                 EXPECT_EQ(found.height_m.at(x, y), before.at(x, y));
             }
         }
     EXPECT_EQ(found.text(Holes::Fill),
-              "voids: 2.28 % of the DEM, 0.0833 % drawn filled (--holes mark shows them), the rest "
-              "cut out (larger than 64 posts, or at the edge)");
+              "voids: 2.28 % of the DEM, 0.0833 % drawn filled (--holes mark shows them), 2.17 % "
+              "covered in grey (wider than 64 posts), 0.03 % cut out (at the edge)");
+}
+
+TEST(FillHoles, ACoverSpansFromRimToRimWithoutAStep) {
+    // A plane is its own membrane; an island in the void keeps its height.
+    auto h = ground(300, 260, [](int x, int y) { return 100 + 2 * x + y; });
+    for (int y = 30; y < 230; ++y)
+        for (int x = 40; x < 260; ++x)
+            if (std::hypot(x - 150, y - 130) > 6) h.at(x, y) = kHole;
+    const FilledHoles found = fill_small_holes(h, Holes::Fill);
+    double worst_m = 0;
+    for (int y = 0; y < 260; ++y)
+        for (int x = 0; x < 300; ++x)
+            worst_m = std::max(worst_m, std::abs(found.height_m.at(x, y) - (100.0 + 2 * x + y)));
+    EXPECT_LT(worst_m, 8);  // of 840 m that the plane rises by
+    EXPECT_EQ(found.cut_posts, 0);
 }
 
 TEST(FillHoles, CutFillsNone) {

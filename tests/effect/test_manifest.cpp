@@ -271,7 +271,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"TextFile", text(R"("kind": "file", "default": "../a.gpx")"),
             "2: texts.track.default: expected a file of the plugin's own folder but got ../a.gpx"},
         Bad{"DefaultWhere", with(R"("default_where": ["snow"])"),
-            "2: default_where: expected words of water, marked_holes but got \"snow\""},
+            "2: default_where: expected words of water, marked_holes, covered_voids but got "
+            "\"snow\""},
         Bad{"Displaces", with(R"("displaces": 5)"), "2: displaces: expected an object but got 5"},
         Bad{"DisplacesKey", with(R"("displaces": {"by_m": 5})"),
             "2: displaces.by_m: no such key; there are down_m, up_m, aside_m, to_m"},

@@ -72,6 +72,25 @@ TEST(WaterField, ASlantedShoreIsSmooth) {
     EXPECT_LT(worst, 0.3);
 }
 
+TEST(WaterField, WaterReachesTheVoidsThatItBordersOn) {
+    // East of a ragged line nothing is known: sea in the north of it, land in the south.
+    const auto is_void = [](int x, int y) { return x > 100 + (y * 7) % 5; };
+    Array2d<float> heights(257, 257, 0.0f);
+    for (int y = 0; y < 257; ++y)
+        for (int x = 0; x < 257; ++x)
+            if (is_void(x, y)) heights.at(x, y) = std::nanf("");
+    const dem::Water water =
+        water_where(257, WaterKind::Sea, [&](int x, int y) { return y < 128 && !is_void(x, y); });
+    const WaterField field(heights, water, nullptr, 1);
+    for (int level = 0; level < 4; ++level)
+        for (int y = 0; y < 257; y += 1 << level)
+            for (int x = 0; x < 107; x += 1 << level) {
+                if (std::abs(y - 128) <= 2 << level) continue;
+                EXPECT_EQ(field.at(level, x >> level, y >> level)[0], y < 128 ? 255 : 0)
+                    << level << ' ' << x << ' ' << y;
+            }
+}
+
 TEST(WaterField, CoarserLevelsKeepTheWatersArea) {
     const auto wet = [](int x, int y) { return std::hypot(x - 130, y - 120) < 70; };
     const dem::Water water = water_where(257, WaterKind::Lake, wet);
