@@ -9,7 +9,6 @@
 #include "cli/sun_options.h"
 #include "geo/format.h"
 #include "light/carpet.h"
-#include "sun/event_time.h"
 
 namespace relevo::cli {
 namespace {
@@ -143,18 +142,16 @@ void run(const Arguments& arguments) {
     FilesInUse files;
     OutputFile* const file = output.open(files, arguments.terrain.dem);
     const DaysArguments::Days asked = arguments.days.parse(arguments.place.parse().place);
-    const auto step_s = sun::parse_duration_s(arguments.step);
-    if (!step_s || *step_s != std::round(*step_s) || *step_s < 1 || *step_s > 86400)
-        bad_usage(
-            fmt::format("--step: {}: not a duration, expected whole seconds up to a day such as "
-                        "3min, 10min or 30s",
-                        arguments.step));
+    const double step_s = step_s_of(arguments.step, 1, 86400);
+    if (step_s != std::round(step_s))
+        bad_usage(fmt::format("--step: {}: expected whole seconds, such as 3min, 10min or 30s",
+                              arguments.step));
     const std::unique_ptr<TerrainView> view = arguments.terrain.view_from(arguments.place);
     const light::TerrainHorizon& horizon = view->horizon;
     const light::DirectLight direct(
         horizon, arguments.light.light(horizon.place(), arguments.place.eye_height_m));
     const light::Carpet carpet =
-        light::carpet(direct, asked.first.year, asked.zone, static_cast<int>(std::lround(*step_s)));
+        light::carpet(direct, asked.first.year, asked.zone, static_cast<int>(std::lround(step_s)));
     const light::Doubt doubt = light::doubt_of(
         direct, carpet.days, horizon.profile(kDoubtDirections), arguments.terrain.highest_m);
     warn_of(doubt);
@@ -184,7 +181,8 @@ void add_sun_carpet(CLI::App& sun_verb) {
     arguments->place.add_to(verb);
     arguments->days.add_year_to(verb);
     verb.get_option("--year")->required();
-    verb.add_option("--step", arguments->step, "Step of the time of day (3min); divides a day");
+    verb.add_option("--step", arguments->step,
+                    "Step of the time of day (3min), or minutes alone; divides a day");
     arguments->light.add_to(verb);
     arguments->output.add_to(verb, {"png", "svg", "csv", "json"});
     verb.callback([arguments] { run(*arguments); });

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/text.h"
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
@@ -20,7 +23,7 @@ struct Arguments {
     RasterArguments raster;
     DaysArguments days;
     RefractionArguments refraction;
-    std::optional<double> step_min;
+    std::optional<std::string> step;
     std::vector<std::string> bands{"hours"};
     std::optional<double> linke, albedo;
 };
@@ -82,9 +85,26 @@ sun::TimeSpan time_of(const DaysArguments::Days& days) {
     return {days.zone.day(days.first).begin, days.zone.day(days.last).end};
 }
 
+constexpr const char* kCommas = "separate bands with commas and no blanks: hours,first";
+
+bool is_band(const std::string& word) {
+    return std::find(kBands.begin(), kBands.end(), word) != kBands.end();
+}
+
+/// What is wrong with a band; empty: nothing.
+std::string check_band(const std::string& band) {
+    if (is_band(band)) return {};
+    if (trimmed(band).empty() || band.find(' ') != std::string::npos) return kCommas;
+    return fmt::format("expected some of {} but got {}", fmt::join(kBands, ", "), band);
+}
+
 /// What can be said before the DEM is read.
 void check(const Arguments& arguments) {
     const std::vector<std::string>& bands = arguments.bands;
+    for (const std::string& path : arguments.raster.dem.paths)
+        if (is_band(path) && !std::filesystem::exists(path))
+            bad_usage(fmt::format("--bands: {}: {}", path, kCommas));
+    if (arguments.step) step_s_of(*arguments.step, 1, 3600);
     for (std::size_t i = 0; i < bands.size(); ++i)
         if (std::find(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(i), bands[i]) !=
             bands.begin() + static_cast<std::ptrdiff_t>(i))
@@ -95,7 +115,7 @@ void check(const Arguments& arguments) {
                               arguments.linke ? "--linke" : "--albedo"));
     const auto [begin, end] = time_of(arguments.days.parse({}, false));
     if (end - begin <= 86400 * light::SunHoursOptions::kMostDays) return;
-    if (arguments.step_min)
+    if (arguments.step)
         bad_usage(fmt::format(
             "--step: for at most {:.10g} days; longer periods use directions of the sun",
             light::SunHoursOptions::kMostDays));
@@ -146,7 +166,7 @@ void run(const Arguments& arguments) {
     light::SunHoursOptions options;
     options.refraction = arguments.raster.terrestrial_refraction;
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
-    options.step_s = 60 * arguments.step_min.value_or(3);
+    options.step_s = step_s_of(arguments.step.value_or("3min"), 1, 3600);
     options.spells = has_spells(arguments.bands);
     if (std::any_of(arguments.bands.begin(), arguments.bands.end(), is_energy))
         options.irradiation = {.linke = arguments.linke.value_or(3),
@@ -202,16 +222,15 @@ void add_sun_hours(CLI::App& sun_verb) {
     arguments->raster.add_to(verb);
     arguments->days.add_to(verb);
     arguments->refraction.add_to(verb);
-    verb.add_option("--step", arguments->step_min,
-                    "Time step of the sun in minutes, for at most four days (3)")
-        ->check(in_range(1 / 60.0, 60.0));
+    verb.add_option("--step", arguments->step,
+                    "Time step of the sun, for at most four days (3min), or minutes alone");
     verb.add_option("--bands", arguments->bands,
                     "Bands: hours; for at most four days also first, last (minutes from the start) "
                     "and spells (number of sunshine periods); global, beam, diffuse, reflected "
                     "(clear-sky irradiation, kWh/m2)")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::IsMember(kBands));
+        ->check(CLI::Validator(check_band, {}, "band"));
     verb.add_option("--linke", arguments->linke,
                     "Linke turbidity for irradiation: 2 clean, 3 country, 5 city (3)")
         ->check(in_range(1.0, 10.0));

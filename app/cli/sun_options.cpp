@@ -9,10 +9,12 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_file.h"
+#include "base/text.h"
 #include "base/units.h"
 #include "dem/files_of.h"
 #include "geo/geodetic.h"
 #include "image/image.h"
+#include "sun/event_time.h"
 
 namespace relevo::cli {
 namespace {
@@ -90,6 +92,16 @@ DaysArguments::Days DaysArguments::parse(const geo::Geodetic& place, bool tell) 
     days.assumption = std::move(chosen.assumption);
     if (days.single) days.zone.day(days.first);  // says so where the zone skipped it
     return days;
+}
+
+double step_s_of(const std::string& step, double least_s, double most_s) {
+    const auto step_s = sun::parse_step_s(step);
+    if (!step_s || *step_s < least_s || *step_s > most_s)
+        bad_usage(fmt::format(
+            "--step: expected {:.10g}s to {:.10g}h, such as 30s, 3min or minutes alone, "
+            "but got {}",
+            least_s, most_s / 3600, printable(step)));
+    return *step_s;
 }
 
 void LightArguments::add_to(CLI::App& verb) {

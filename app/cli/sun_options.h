@@ -55,6 +55,10 @@ struct DaysArguments {
     Days parse(const geo::Geodetic& place, bool tell = true) const;
 };
 
+/// Reads --step of time, "3min" or minutes alone.
+/// @throws Error (Usage) where it is none, or not within the bounds
+double step_s_of(const std::string& step, double least_s, double most_s);
+
 /// --limb, --refraction, --dip: what rising and shining mean.
 struct LightArguments {
     RefractionArguments refraction;

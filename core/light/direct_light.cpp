@@ -244,6 +244,19 @@ LightDay DirectLight::day(sun::Date date, const sun::Zone& zone,
     return days(date, date, zone, rotation).front();
 }
 
+std::vector<LitInterval> DirectLight::lit_within(const sun::TimeSpan& span,
+                                                 const sun::EarthRotation& rotation) const {
+    return lit_within(span, sun::PositionTable(span.begin, span.end, rotation));
+}
+
+std::vector<LitInterval> DirectLight::lit_within(const sun::TimeSpan& span,
+                                                 const sun::PositionTable& table) const {
+    std::vector<LitInterval> lit = LightSearch(*this, table).lit(span);
+    for (LitInterval& interval : lit)
+        interval.not_known = LightSearch(*this, table).not_known(interval);
+    return lit;
+}
+
 std::vector<LightDay> DirectLight::days(sun::Date first, sun::Date last, const sun::Zone& zone,
                                         const sun::EarthRotation& rotation) const {
     std::vector<sun::Day> flat =
@@ -255,10 +268,9 @@ std::vector<LightDay> DirectLight::days(sun::Date first, sun::Date last, const s
         LightDay day;
         day.date = of_day.date;
         day.span = of_day.span;
-        day.lit = LightSearch(*this, table).lit(day.span);
-        for (LitInterval& interval : day.lit) {
+        day.lit = lit_within(day.span, table);
+        for (const LitInterval& interval : day.lit) {
             day.lit_s += interval.length_s();
-            interval.not_known = LightSearch(*this, table).not_known(interval);
             day.not_known_s += interval.not_known_s();
         }
         day.flat = std::move(of_day);

@@ -9,6 +9,10 @@
 #include "sun/events.h"
 #include "sun/refraction.h"
 
+namespace relevo::sun {
+class PositionTable;
+}
+
 namespace relevo::light {
 
 struct LightOptions {
@@ -73,6 +77,11 @@ class DirectLight {
         sun::Date first, sun::Date last, const sun::Zone& zone,
         const sun::EarthRotation& rotation = sun::EarthRotation::built_in()) const;
 
+    /// The light within any span of time, such as from midnight to midnight by the sun.
+    std::vector<LitInterval> lit_within(
+        const sun::TimeSpan& span,
+        const sun::EarthRotation& rotation = sun::EarthRotation::built_in()) const;
+
     const TerrainHorizon& horizon() const { return horizon_; }
     const Skyline& skyline() const { return skyline_; }
     /// Directions of the skyline, where a hole of the DEM may hide higher ground; empty: none.
@@ -86,6 +95,8 @@ class DirectLight {
 
   private:
     friend class LightSearch;
+    std::vector<LitInterval> lit_within(const sun::TimeSpan& span,
+                                        const sun::PositionTable& table) const;
     DirectLight(const TerrainHorizon& horizon, const LightOptions& options,
                 const std::vector<HorizonPoint>& profile);
 

@@ -22,11 +22,12 @@ sun::ParsedTime parse_time(std::string_view text, const std::optional<sun::Date>
     options.eye_above_ground = time.place->above_ground || !time.place->has_height;
     const TerrainHorizon horizon(dem.posts(), time.place->place, options);
     const sun::Date of = time.date ? *time.date : *date;
-    const LightDay day = DirectLight(horizon).day(of, *zone);
-    if (day.lit.empty())
+    const std::vector<LitInterval> lit =
+        DirectLight(horizon).lit_within(sun::span_of_events(time, date, zone, horizon.place()));
+    if (lit.empty())
         bad_input(fmt::format("time: {}: the sun does not reach that point on {}", time.text,
                               sun::to_string(of)));
-    const LightEdge& edge = time.last ? day.lit.back().end : day.lit.front().begin;
+    const LightEdge& edge = time.last ? lit.back().end : lit.front().begin;
     if (edge.midnight)
         bad_input(
             fmt::format("time: {}: no {} light on {}, the sun shines there at "

@@ -217,11 +217,11 @@ class JobReader {
         object.finish();
         check_time(object, "from", range.from);
         check_time(object, "to", range.to);
-        const auto step_s = sun::parse_duration_s(step);
-        if (!step_s || !(*step_s > 0))
+        const auto step_s = sun::parse_step_s(step);
+        if (!step_s)
             object.fail(object.line_of("step"), "step",
-                        fmt::format("expected a duration such as 15min, 1h30min or 45s but got "
-                                    "\"{}\"",
+                        fmt::format("expected a duration such as 15min, 1h30min or 45s, or "
+                                    "minutes alone, but got \"{}\"",
                                     step));
         range.step_s = *step_s;
         axis.range = range;

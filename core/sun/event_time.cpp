@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -59,6 +60,14 @@ std::optional<double> parse_duration_s(std::string_view text) {
         sum_s += *number * unit_s;
     }
     return sum_s;
+}
+
+std::optional<double> parse_step_s(std::string_view text) {
+    text = trimmed(text);
+    const auto minutes = parse_number(text);
+    const auto step_s = minutes ? std::optional(60 * *minutes) : parse_duration_s(text);
+    if (!step_s || !(*step_s > 0) || std::isinf(*step_s)) return std::nullopt;
+    return step_s;
 }
 
 bool is_event_time(std::string_view text) {
@@ -140,12 +149,28 @@ TimeSpan day_of(const EventTime& time, const std::optional<Date>& given,
     return zone->day(*date);
 }
 
+TimeSpan span_of_events(const EventTime& time, const std::optional<Date>& given,
+                        const std::optional<Zone>& zone, const geo::Geodetic& place) {
+    constexpr double kHalfDay_s = kDay_s / 2, kEarliestNoon_s = 8 * 3600, kLatestNoon_s = 16 * 3600;
+    const TimeSpan local_day = day_of(time, given, zone);
+    const auto noon =
+        day_events(PositionTable(local_day.begin, local_day.end), local_day, Observer(place), {})
+            .first(EventKind::Transit);
+    if (!noon || *noon - local_day.begin < kEarliestNoon_s ||
+        *noon - local_day.begin > kLatestNoon_s)
+        return local_day;
+    return {*noon - kHalfDay_s, *noon + kHalfDay_s};
+}
+
 ParsedTime resolve(const EventTime& time, const std::optional<Date>& given,
                    const std::optional<Zone>& zone) {
-    const TimeSpan span = day_of(time, given, zone);
+    const TimeSpan local_day = day_of(time, given, zone);
     if (!time.event) refuse(time.text, "first and last light depend on the terrain; name a DEM");
     if (!time.place)
         refuse(time.text, "no place, expected one after an @ such as sunrise@46.55,8.56");
+    const bool is_noon = time.event == EventKind::Transit || time.event == EventKind::LowerTransit;
+    const TimeSpan span =
+        is_noon ? local_day : span_of_events(time, given, zone, time.place->place);
     const Day day =
         day_events(PositionTable(span.begin, span.end), span, Observer(time.place->place), {});
     const auto utc = day.first(*time.event);

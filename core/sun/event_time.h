@@ -24,6 +24,10 @@ struct EventTime {
 /// "1h30min", "45s", "90min" in seconds; nothing where it is no duration.
 std::optional<double> parse_duration_s(std::string_view text);
 
+/// A step of time in seconds, above 0: "3min", "1h30min", "45s", or minutes alone, "3"; nothing
+/// where it is none.
+std::optional<double> parse_step_s(std::string_view text);
+
 /// Whether a time is given so: by an `@` or the name of an event.
 bool is_event_time(std::string_view text);
 
@@ -39,6 +43,13 @@ EventTime parse_event_time(std::string_view text);
 /// @throws Error (BadInput) where there is neither, or both and they differ, or no zone
 TimeSpan day_of(const EventTime& time, const std::optional<Date>& given,
                 const std::optional<Zone>& zone);
+
+/// The time in which a day's events are looked for: from half a day before the noon of the local
+/// day to half a day after it, so that its evening may end after midnight. By clocks that do not
+/// have noon between 8 and 16 h, as those of another place, it is the local day itself.
+/// @throws Error (BadInput) as day_of
+TimeSpan span_of_events(const EventTime& time, const std::optional<Date>& given,
+                        const std::optional<Zone>& zone, const geo::Geodetic& place);
 
 /// The moment of an event other than first and last light.
 /// @throws Error (BadInput) as day_of, where there is no place, and where the event does not happen

@@ -67,6 +67,48 @@ TEST(EventTime, TakesTheDateFromTheTextOrTheOption) {
     }
 }
 
+// Reykjavik has the sun until 00:03 of 22 June, and from 02:55 on (Almanak Haskola Islands, 2026).
+TEST(EventTime, TheEveningOfADayMayEndAfterMidnight) {
+    const Zone iceland = Zone::named("Atlantic/Reykjavik");
+    const auto local = [&](const char* event) {
+        return to_iso(
+            resolve(parse_event_time(std::string(event) + "@64.147,-21.94"), kMidsummer, iceland)
+                .utc,
+            iceland);
+    };
+    EXPECT_EQ(local("sunset").substr(0, 15), "2026-06-22T00:0");
+    EXPECT_EQ(local("sunrise").substr(0, 14), "2026-06-21T02:");
+    EXPECT_EQ(local("noon").substr(0, 14), "2026-06-21T13:");
+    // Dusk and dawn of a day stand about its noon likewise.
+    const Zone edinburgh = Zone::named("Europe/London");
+    const auto at = [&](const char* event) {
+        return resolve(parse_event_time(std::string(event) + "@57.5,-4.2"), kMidsummer, edinburgh)
+            .utc;
+    };
+    EXPECT_EQ(to_iso(at("nautical-dusk"), edinburgh).substr(0, 14), "2026-06-22T00:");
+    EXPECT_EQ(to_iso(at("nautical-dawn"), edinburgh).substr(0, 14), "2026-06-21T02:");
+    EXPECT_GT(at("sunset"), at("noon"));
+    EXPECT_LT(at("civil-dawn"), at("sunrise"));
+    EXPECT_GT(at("nautical-dusk"), at("civil-dusk"));
+}
+
+TEST(EventTime, OfClocksFarFromTheSunsIsOnThatDate) {
+    const Zone utc;
+    const ParsedTime sunset =
+        resolve(parse_event_time("sunset@21.3,-157.9"), kMidsummer, utc);  // Honolulu
+    EXPECT_EQ(to_iso(sunset.utc, utc).substr(0, 13), "2026-06-21T05");
+}
+
+TEST(EventTime, AStepIsADurationOrMinutesAlone) {
+    EXPECT_EQ(parse_step_s("3min"), 180);
+    EXPECT_EQ(parse_step_s("3"), 180);
+    EXPECT_EQ(parse_step_s("0.5"), 30);
+    EXPECT_EQ(parse_step_s("1h30min"), 5400);
+    EXPECT_EQ(parse_step_s("45s"), 45);
+    for (const char* none : {"", "0", "0s", "-1", "3 minutes", "min", "nan", "inf", "3d"})
+        EXPECT_EQ(parse_step_s(none), std::nullopt) << none;
+}
+
 TEST(EventTime, ErrorsSayWhatIsWrong) {
     const auto message = [](const char* text, std::optional<Date> date = kMidsummer,
                             std::optional<Zone> zone = kZurich) {
