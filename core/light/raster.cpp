@@ -1,5 +1,6 @@
 #include "light/raster.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -9,6 +10,7 @@
 
 #include <cpl_string.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
@@ -60,6 +62,44 @@ void describe(GDALDataset& dataset, const dem::Grid& grid, RasterType type,
     }
 }
 
+/// Options that change neither the values of the posts nor their grid. A list of what is allowed,
+/// and not of what is refused: GDAL's next version may have more that changes either.
+constexpr std::array kHarmless{"COMPRESS",
+                               "LEVEL",
+                               "PREDICTOR",
+                               "BLOCKSIZE",
+                               "BIGTIFF",
+                               "NUM_THREADS",
+                               "GEOTIFF_VERSION",
+                               "SPARSE_OK",
+                               "OVERVIEWS",
+                               "OVERVIEW_COUNT",
+                               "OVERVIEW_COMPRESS",
+                               "OVERVIEW_PREDICTOR",
+                               "OVERVIEW_RESAMPLING"};
+/// LERC and JPEG XL can be lossless, too, but LERC has no NaN and JPEG XL no readers.
+constexpr std::array kLossless{"NONE", "DEFLATE", "LZW", "LZMA", "ZSTD"};
+
+template <typename Words>
+bool is_one_of(const std::string& word, const Words& words) {
+    return std::any_of(words.begin(), words.end(),
+                       [&](const char* each) { return EQUAL(each, word.c_str()); });
+}
+
+/// @throws Error (Usage) for an option that would change the raster's values or grid
+void check_harmless(const std::string& name, const std::string& value) {
+    if (!is_one_of(name, kHarmless))
+        bad_usage(
+            fmt::format("--co: {}: would change the result's values or grid, or is no option of "
+                        "GDAL's COG driver; expected {}",
+                        printable(name), fmt::join(kHarmless, ", ")));
+    const bool is_codec =
+        EQUAL(name.c_str(), "COMPRESS") || EQUAL(name.c_str(), "OVERVIEW_COMPRESS");
+    if (is_codec && !is_one_of(value, kLossless))
+        bad_usage(fmt::format("--co: {}={}: would change the result's values; expected {}",
+                              printable(name), printable(value), fmt::join(kLossless, ", ")));
+}
+
 /// The driver's options: ours, and over them the user's.
 CPLStringList creation_options(const std::vector<std::string>& given, GDALDataType type) {
     CPLStringList options;
@@ -73,6 +113,7 @@ CPLStringList creation_options(const std::vector<std::string>& given, GDALDataTy
         if (equals == std::string::npos || equals == 0)
             bad_usage(fmt::format("--co: {}: expected NAME=VALUE, such as COMPRESS=ZSTD",
                                   printable(option)));
+        check_harmless(option.substr(0, equals), option.substr(equals + 1));
         options.SetNameValue(option.substr(0, equals).c_str(), option.substr(equals + 1).c_str());
     }
     // The digits of measured numbers hardly get shorter by looking longer: half a percent, for a
