@@ -135,7 +135,10 @@ std::string words_of(const light::SunHoursOptions::Irradiation& irradiation) {
 
 /// Of all parts.
 struct Summary {
+    static constexpr double kMore_h = 0.1;  // than over a level horizon: of account
+
     double hours = 0, posts = 0, least = INFINITY, most = -INFINITY, level_hours = 0;
+    double most_level_hours = 0, over_level = 0;  // the latter: posts
     std::int64_t holes = 0;
     std::string definition;
 
@@ -148,8 +151,10 @@ struct Summary {
             if (!std::isnan(value)) {
                 least = std::min(least, double{value});
                 most = std::max(most, double{value});
+                over_level += value > part.most_level_hours + kMore_h;
             }
         level_hours = part.level_hours;
+        most_level_hours = part.most_level_hours;
         holes += part.holes;
         definition = part.definition;
     }
@@ -205,6 +210,11 @@ void run(const Arguments& arguments) {
                         {"TIME_ZONE", days.zone.name()},
                         {"REFRACTION", air}}))
         return;
+    if (sum.over_level > 0)
+        log::info(fmt::format(
+            "more sun than over a level horizon at {:.2g} % of the posts, by up to {:.2f} h: over "
+            "lower ground, or over heights that are none (relevo info; --nodata)",
+            100 * sum.over_level / sum.posts, sum.most - sum.most_level_hours));
     fmt::print("time                {} to {}\n", from, to);
     fmt::print(
         "sun hours           mean {:.2f}, least {:.2f}, most {:.2f}; over a level horizon in "

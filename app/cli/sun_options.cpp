@@ -240,9 +240,21 @@ void warn_of_holes(const light::Doubt& doubt) {
             : "ground in them could raise the horizon"));
 }
 
+/// From a summit the sun is seen so much below the level horizon; ground that is not there, too.
+void say_that_more_is_lit(const light::Doubt& doubt) {
+    constexpr double kUsual_rad = radians(0.5);
+    if (!doubt.lowest_sun || doubt.lowest_sun->elevation_rad > -kUsual_rad) return;
+    const double azimuth_deg = degrees(doubt.lowest_sun->azimuth_rad);
+    log::info(fmt::format(
+        "more sun than over a level horizon: it shines from {:.1f} degrees below "
+        "at azimuth {:.0f} ({}), over lower ground",
+        -degrees(doubt.lowest_sun->elevation_rad), azimuth_deg, compass_point(azimuth_deg)));
+}
+
 }  // namespace
 
 void warn_of(const light::Doubt& doubt) {
+    say_that_more_is_lit(doubt);
     warn_of_the_edge(doubt);
     warn_of_holes(doubt);
 }

@@ -139,11 +139,23 @@ bool RasterRun::each_part(const std::function<void(const dem::Window&)>& body) {
         for (const dem::Window& part : ground_.parts) {
             part_share_ = posts_of(part) / posts_of(ground_.window);
             body(part);
+            if (writer_) inner_voids_ += inner_voids_of(part);
         }
     } catch (const Enough&) {
         return false;
     }
     return true;
+}
+
+std::int64_t RasterRun::inner_voids_of(const dem::Window& part) const {
+    const dem::Posts& posts = ground_.posts;
+    std::vector<float> buffer;
+    const dem::Posts::View view = posts.view(part, buffer);
+    std::int64_t count = 0;
+    for (int row = part.row; row < part.row + part.rows; ++row)
+        for (int column = part.column; column < part.column + part.columns; ++column)
+            count += std::isnan(*view.at(column, row)) && !posts.is_outside(column, row);
+    return count;
 }
 
 void RasterRun::warn_of(const std::function<std::optional<light::Beyond>()>& look,
@@ -163,9 +175,9 @@ bool RasterRun::finish(const std::string& definition, std::int64_t holes,
         tell();
         return false;
     }
-    if (holes > 0)
-        log::warning(
-            fmt::format("the DEM has {} voids: they get no value and cast no shadow", holes));
+    if (inner_voids_ > 0)
+        log::warning(fmt::format("the DEM has {} voids: they get no value and cast no shadow",
+                                 inner_voids_));
     if (!beyond_.empty()) more.emplace_back("BEYOND_DEM", beyond_);
     writer_->finish(arguments_.about(ground_, definition, holes, std::move(more)));
     return true;

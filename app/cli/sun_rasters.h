@@ -77,9 +77,11 @@ class RasterRun {
 
   private:
     void tell() const;
+    std::int64_t inner_voids_of(const dem::Window& part) const;
 
     const RasterArguments& arguments_;
     const RasterGround& ground_;
+    std::int64_t inner_voids_ = 0;
     std::string beyond_;
     std::optional<light::RasterWriter> writer_;
     std::optional<ProgressBar> bar_;

@@ -55,11 +55,19 @@ struct Posts::Impl {
     Array2d<float> block_highest_m;
     std::unique_ptr<TileCache> tiles;
     Array2d<float> thinned_m;  // of posts that are not in memory
+    std::once_flag outside_once;
+    Array2d<std::uint8_t> outside;  // of thinned posts, made where it is asked for; empty: none is
 
     const Grid& grid() const { return field ? field->grid : source->grid(); }
     int thinning() const {
         return (std::max(grid().columns(), grid().rows()) + kThinned - 1) / kThinned;
     }
+    int thinned(int posts) const { return (posts - 1) / thinning() + 1; }
+    float thinned_at(int column, int row) const {
+        const int step = thinning();
+        return field ? field->height_m.at(column * step, row * step) : thinned_m.at(column, row);
+    }
+    void find_outside();
     View view(const Window& window, std::vector<float>& buffer) const;
     void take(const Heightfield& in_memory);
     void take(const Source& on_demand, std::int64_t max_posts);
@@ -283,8 +291,48 @@ float Posts::thinned_m(int column, int row) const {
     const auto nearest = [&](int post, int posts) {
         return std::min((post + step / 2) / step, (posts - 1) / step);
     };
-    const int c = nearest(column, grid().columns()), r = nearest(row, grid().rows());
-    return impl_->field ? impl_->field->height_m.at(c * step, r * step) : impl_->thinned_m.at(c, r);
+    return impl_->thinned_at(nearest(column, grid().columns()), nearest(row, grid().rows()));
+}
+
+/// Spreads from the voids at the edges of the thinned grid.
+void Posts::Impl::find_outside() {
+    const int columns = thinned(grid().columns()), rows = thinned(grid().rows());
+    std::vector<std::pair<int, int>> open;
+    const auto take = [&](int column, int row) {
+        if (column < 0 || row < 0 || column >= columns || row >= rows ||
+            !std::isnan(thinned_at(column, row)))
+            return;
+        if (outside.empty()) outside = Array2d<std::uint8_t>(columns, rows, 0);
+        if (std::exchange(outside.at(column, row), 1) == 0) open.emplace_back(column, row);
+    };
+    for (int column = 0; column < columns; ++column)
+        take(column, 0), take(column, rows - 1);
+    for (int row = 0; row < rows; ++row)
+        take(0, row), take(columns - 1, row);
+    while (!open.empty()) {
+        const auto [column, row] = open.back();
+        open.pop_back();
+        for (int down = -1; down <= 1; ++down)
+            for (int on = -1; on <= 1; ++on)
+                take(column + on, row + down);
+    }
+}
+
+bool Posts::is_outside(int column, int row) const {
+    Impl& impl = *impl_;
+    std::call_once(impl.outside_once, [&] { impl.find_outside(); });
+    const int step = impl.thinning();
+    // Slivers along the edge may lie between thinned posts, as the rims of voids do.
+    if (step > 1 &&
+        std::min({column, row, grid().columns() - 1 - column, grid().rows() - 1 - row}) < step)
+        return true;
+    if (impl.outside.empty()) return false;
+    const int beside = step > 1 ? 1 : 0;
+    const int c = column / step, r = row / step;
+    for (int y = r; y <= std::min(r + beside, impl.outside.height() - 1); ++y)
+        for (int x = c; x <= std::min(c + beside, impl.outside.width() - 1); ++x)
+            if (impl.outside.at(x, y) != 0) return true;
+    return false;
 }
 
 double Posts::height_at(double column, double row) const {

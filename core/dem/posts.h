@@ -73,6 +73,10 @@ class Posts {
     int thinning() const;
     static constexpr int kThinned = 512;
 
+    /// Whether a post without a height lies outside of the DEM: in a void that reaches the edge of
+    /// the grid, by thinned_m(), so to thinning() posts. Voids within the DEM are none such.
+    bool is_outside(int column, int row) const;
+
     /// As Heightfield::height_at().
     double height_at(double column, double row) const;
 

@@ -10,6 +10,7 @@
 
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "light/edge_ground.h"
 #include "light/horizon.h"
 #include "light/sky.h"
 #include "sun/position.h"
@@ -34,6 +35,7 @@ struct Eye {
 struct View {
     double tangent = -kInfinity;  // of its ground
     double until_m = 0;           // where it ends
+    EdgeFinder edge;
 };
 
 class Looking {
@@ -89,6 +91,7 @@ class Looking {
             const double height_m = is_near ? *near.at(column, row) : posts_.thinned_m(column, row);
             if (!std::isnan(height_m)) {
                 view.until_m = s;
+                view.edge.add(s, height_m);
                 view.tangent =
                     std::max(view.tangent, (height_m - eye.height_m) / s - curvature_ * s / 2);
             }
@@ -195,11 +198,12 @@ std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const dem::Window&
     looking.each_eye([&](std::size_t i, const Eye& eye) {
         std::vector<float> buffer;
         const dem::Posts::View near = looking.near(eye, buffer);
-        const double dip =
-            -std::sqrt(2 * dem.curvature() * std::max(0.0, eye.height_m - posts.lowest_m()));
         for (const GridPair& way : ways) {
             const View view = looking.look(eye, near, way);
-            looking.consider(i, view, std::max(view.tangent, dip));
+            const Edge edge = view.edge.edge().value_or(Edge{view.until_m, eye.height_m});
+            looking.consider(
+                i, view,
+                std::max(view.tangent, tangent_beyond(edge, eye.height_m, dem.curvature())));
         }
     });
     return looking.found();

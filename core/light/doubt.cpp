@@ -70,6 +70,9 @@ Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
     for (const LightDay& day : days) {
         doubt.not_known_s += day.not_known_s;
         for (const LitInterval& lit : day.lit) {
+            for (const LightEdge& edge : {lit.begin, lit.end})
+                if (edge.elevation_rad < (doubt.lowest_sun ? doubt.lowest_sun->elevation_rad : 0))
+                    doubt.lowest_sun = edge;
             walk(lit.begin.utc, lit.end.utc, [&](std::size_t k, double elevation_rad) {
                 lowest_rad[k] = std::min(lowest_rad[k], elevation_rad);
             });

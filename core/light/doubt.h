@@ -24,6 +24,8 @@ struct Doubt {
     std::vector<Sector> holes;
     double not_known_s = 0;  ///< of the direct light, for the holes
     double highest_m = 0;    ///< what was assumed of the terrain beyond
+    /// The lowest sun that shines, where that is below the level horizon.
+    std::optional<LightEdge> lowest_sun{};
     Matters matters = Matters::Horizon;
 };
 

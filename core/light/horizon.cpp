@@ -13,6 +13,7 @@
 #include "base/parallel_for.h"
 #include "base/units.h"
 #include "geo/ellipsoid.h"
+#include "light/edge_ground.h"
 #include "light/fan.h"
 
 namespace relevo::light {
@@ -190,7 +191,11 @@ std::pair<glm::dvec2, double> ground_at(const dem::Posts& posts, const geo::Geod
                               place_text(place), cover_text(grid)));
     const double height_m = posts.height_at(post.x, post.y);
     if (std::isnan(height_m))
-        bad_input(fmt::format("horizon: {}: the point is in a void of the DEM{}", place_text(place),
+        bad_input(fmt::format("horizon: {}: the point is {}{}", place_text(place),
+                              posts.is_outside(static_cast<int>(std::lround(post.x)),
+                                               static_cast<int>(std::lround(post.y)))
+                                  ? "outside the ground of the DEM"
+                                  : "in a void of the DEM",
                               nearest_height_text(posts, post)));
     return {post, height_m};
 }
@@ -238,6 +243,16 @@ struct TerrainHorizon::Scan {
     double height_m = kNaN;
     double reach_m = 0;
     double first_hole_m = kInfinity, last_hole_m = -kInfinity;
+    double outside_from_m = kInfinity;  // the first void that reaches the DEM's edge
+
+    void add_void(double s, bool is_outside) {
+        if (is_outside) {
+            outside_from_m = std::min(outside_from_m, s);
+        } else {
+            first_hole_m = std::min(first_hole_m, s);
+            last_hole_m = std::max(last_hole_m, s);
+        }
+    }
 };
 
 namespace {
@@ -365,8 +380,9 @@ class Line {
                 // A hole at the far end of the edge does not spoil the post itself.
                 h = f <= kSnap_cells ? h0[0] : f >= 1 - kSnap_cells ? h0[step] : kNaN;
                 if (h != h) {
-                    scan_.first_hole_m = std::min(scan_.first_hole_m, s);
-                    scan_.last_hole_m = std::max(scan_.last_hole_m, s);
+                    const int none = h0[0] != h0[0] ? k : k + 1;
+                    scan_.add_void(
+                        s, kAxis == 0 ? posts_.is_outside(i, none) : posts_.is_outside(none, i));
                     continue;
                 }
             }
@@ -435,8 +451,6 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
             fmt::format("horizon: {}: the eye at {:.1f} m is under the ground, which "
                         "is at {:.1f} m there; a height above the ground is written as 2agl",
                         place_text(place_), eye_m_, ground_m_));
-    outside_m_ = options.outside_height_m.value_or(posts.lowest_m());
-
     const auto map_point = [&](const geo::Geodetic& p) { return grid.crs().from_geodetic(p); };
     const glm::dvec2 here = map_point(place_);
     const glm::dvec2 northward = map_point(geo::destination(place_, 0, 1)) - here;
@@ -470,8 +484,8 @@ void TerrainHorizon::with_ground(double azimuth_rad, const Body& body) const {
     }
 }
 
-void TerrainHorizon::look(double azimuth_rad, Scan& scan) const {
-    thread_local std::vector<TracePoint> line;
+/// @param line  becomes the line of sight over the grid
+void TerrainHorizon::look(double azimuth_rad, Scan& scan, std::vector<TracePoint>& line) const {
     thread_local std::vector<float> buffer;
     const dem::Grid& grid = posts_->grid();
     if (fan_) {
@@ -496,31 +510,45 @@ void TerrainHorizon::look(double azimuth_rad, Scan& scan) const {
 }
 
 HorizonPoint TerrainHorizon::at(double azimuth_rad) const {
+    thread_local std::vector<TracePoint> line;
     Scan scan;
-    look(azimuth_rad, scan);
+    look(azimuth_rad, scan, line);
     HorizonPoint point;
     point.azimuth_rad = turned(azimuth_rad);
     point.distance_m = scan.distance_m;
     point.post = scan.post;
     point.height_m = scan.height_m;
-    point.reach_m = scan.reach_m;
+    point.reach_m = std::min(scan.reach_m, scan.outside_from_m);
     point.elevation_rad = std::atan(scan.best);
-    with_ground(azimuth_rad, [&](const auto& ground) {
-        double least_rad = options_.least_elevation_rad;
-        if (outside_m_ > -kInfinity) {
-            const double from_m = std::max(scan.reach_m, 1.0);
-            const double far_m = farthest_rise_m(ground, outside_m_, from_m);
-            least_rad = std::max(least_rad, std::atan(tangent(ground, outside_m_, far_m)));
-        }
-        if (!(point.elevation_rad >= least_rad)) {
-            point.elevation_rad = least_rad;
-            point.distance_m = point.height_m = kNaN;
-            point.post = glm::dvec2(kNaN);
-        }
-    });
+    const double least_rad =
+        std::max(options_.least_elevation_rad, ground_beyond_rad(azimuth_rad, scan, line));
+    if (!(point.elevation_rad >= least_rad)) {
+        point.elevation_rad = least_rad;
+        point.distance_m = point.height_m = kNaN;
+        point.post = glm::dvec2(kNaN);
+    }
     point.hole_rad = hole_rad(azimuth_rad, scan);
     point.hole = point.hole_rad > point.elevation_rad;
     return point;
+}
+
+/// Elevation of the horizon that the smooth ground beyond the DEM makes.
+double TerrainHorizon::ground_beyond_rad(double azimuth_rad, const Scan& scan,
+                                         const std::vector<TracePoint>& line) const {
+    double elevation_rad = -kPi / 2;
+    with_ground(azimuth_rad, [&](const auto& ground) {
+        if (options_.outside_height_m) {
+            const double outside_m = *options_.outside_height_m;
+            if (outside_m == -kInfinity) return;
+            const double far_m = farthest_rise_m(ground, outside_m, std::max(scan.reach_m, 1.0));
+            elevation_rad = std::atan(tangent(ground, outside_m, far_m));
+        } else if (scan.best < 0) {  // over which no edge stands
+            const double curvature = (1 - ground.refraction) / ground.radius_m;
+            const Edge edge = edge_along(*posts_, line).value_or(Edge{0, posts_->lowest_m()});
+            elevation_rad = std::atan(tangent_beyond(edge, eye_m_, curvature));
+        }
+    });
+    return elevation_rad;
 }
 
 /// How high terrain as high as the highest post would stand in the holes that a look has met.
@@ -542,8 +570,12 @@ double TerrainHorizon::edge_m(const HorizonPoint& point) const {
     const auto outside = [&](double distance_m) {
         const glm::dvec2 post = fan_->post(point.azimuth_rad, distance_m);
         const dem::Grid& grid = posts_->grid();
-        return !(post.x >= -kSnap_cells && post.x <= grid.columns() - 1 + kSnap_cells &&
-                 post.y >= -kSnap_cells && post.y <= grid.rows() - 1 + kSnap_cells);
+        if (!(post.x >= -kSnap_cells && post.x <= grid.columns() - 1 + kSnap_cells &&
+              post.y >= -kSnap_cells && post.y <= grid.rows() - 1 + kSnap_cells))
+            return true;
+        const auto column = static_cast<int>(std::lround(post.x)),
+                   row = static_cast<int>(std::lround(post.y));
+        return std::isnan(posts_->thinned_m(column, row)) && posts_->is_outside(column, row);
     };
     double inside_m = point.reach_m, outside_m = 1.01 * point.reach_m + 1;
     if (outside(outside_m)) return point.reach_m;
@@ -560,9 +592,10 @@ double TerrainHorizon::edge_m(const HorizonPoint& point) const {
 }
 
 double TerrainHorizon::elevation_within_rad(double azimuth_rad, double distance_m) const {
+    std::vector<TracePoint> line;
     Scan scan;
     scan.until_m = distance_m;
-    look(azimuth_rad, scan);
+    look(azimuth_rad, scan, line);
     return std::atan(scan.best);
 }
 
@@ -710,7 +743,8 @@ Sight TerrainHorizon::sight(const geo::Geodetic& target) const {
         level = tangent(ground, target.height_m, std::max(sight.distance_m, 1e-3));
     });
     sight.elevation_rad = std::atan(level);
-    if (scan.until_m > 0) look(sight.azimuth_rad, scan);
+    std::vector<TracePoint> line;
+    if (scan.until_m > 0) look(sight.azimuth_rad, scan, line);
     sight.visible = scan.best <= level;
     sight.hole = sight.visible && hole_rad(sight.azimuth_rad, scan) > sight.elevation_rad;
     if (!sight.visible) sight.hidden_by_rad = std::atan(scan.best) - sight.elevation_rad;
@@ -741,8 +775,11 @@ std::string TerrainHorizon::description() const {
     if (options_.least_elevation_rad > -kPi / 2)
         text +=
             fmt::format("; nowhere below {:.4g} degrees", degrees(options_.least_elevation_rad));
-    else if (outside_m_ > -kInfinity)
-        text += fmt::format("; outside the DEM smooth ground at {:.0f} m", outside_m_);
+    else if (!options_.outside_height_m)
+        text += kBeyondTheDem;
+    else if (*options_.outside_height_m > -kInfinity)
+        text +=
+            fmt::format("; outside the DEM smooth ground at {:.0f} m", *options_.outside_height_m);
     return text;
 }
 

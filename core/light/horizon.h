@@ -34,8 +34,8 @@ struct HorizonOptions {
     /// C. F. Gauss's mean, 0.25 and more is common over cold or wet ground.
     double refraction = 0.13;
     EarthModel earth = EarthModel::Ellipsoid;
-    /// Beyond the DEM lies a smooth Earth at this height [m]; not given: at the DEM's lowest;
-    /// minus infinity: nothing at all.
+    /// Beyond the DEM lies a smooth Earth at this height [m]; not given: in each direction as high
+    /// as the DEM's edge there (edge_ground.h); minus infinity: nothing at all.
     std::optional<double> outside_height_m;
     /// The horizon is nowhere lower than this; 0 for the level one that solar tools know.
     double least_elevation_rad = -1.5707963267948966;
@@ -55,10 +55,10 @@ struct HorizonPoint {
     double distance_m = 0;
     glm::dvec2 post{0};   ///< column and row of the blocking point; NaN likewise
     double height_m = 0;  ///< of the blocking point; NaN likewise
-    /// How far the DEM was looked at this way: to its edge, or to where nothing in it could be
-    /// seen.
+    /// How far the DEM was looked at this way: to its edge, to a void that reaches it, or to where
+    /// nothing in it could be seen. Ground beyond such a void is in the horizon all the same.
     double reach_m = 0;
-    /// A hole of the DEM lies where terrain as high as its highest post would stand over this
+    /// A hole within the DEM lies where terrain as high as its highest post would stand over this
     /// horizon.
     bool hole = false;
     /// How high such terrain would stand in the nearest hole; -pi/2 without one.
@@ -94,6 +94,7 @@ struct Sight {
 };
 
 class Fan;
+struct TracePoint;
 
 /// What of the sky the terrain hides from one point.
 ///
@@ -179,7 +180,9 @@ class TerrainHorizon {
 
   private:
     struct Scan;
-    void look(double azimuth_rad, Scan& scan) const;
+    void look(double azimuth_rad, Scan& scan, std::vector<TracePoint>& line) const;
+    double ground_beyond_rad(double azimuth_rad, const Scan& scan,
+                             const std::vector<TracePoint>& line) const;
     template <typename Body>
     void with_ground(double azimuth_rad, const Body& body) const;
     double hole_rad(double azimuth_rad, const Scan& scan) const;
@@ -194,7 +197,7 @@ class TerrainHorizon {
     HorizonOptions options_;
     geo::Geodetic place_;
     glm::dvec2 post_{0};
-    double ground_m_ = 0, eye_m_ = 0, outside_m_ = 0;
+    double ground_m_ = 0, eye_m_ = 0;
     double true_north_on_map_rad_ = 0;
     double map_unit_m_ = 1;
 };

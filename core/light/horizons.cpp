@@ -40,11 +40,10 @@ struct Ground {
     }
 };
 
-std::string surroundings(const dem::Posts& posts, double refraction) {
+std::string surroundings(double refraction) {
     return fmt::format(
-        "ground of the DEM alone, on the WGS 84 ellipsoid with terrestrial refraction k = {:.4g}; "
-        "outside the DEM smooth ground at {:.0f} m",
-        refraction, double{posts.lowest_m()});
+        "ground of the DEM alone, on the WGS 84 ellipsoid with terrestrial refraction k = {:.4g}{}",
+        refraction, kBeyondTheDem);
 }
 
 /// Elevations of the horizons of posts next to each other; a hole has no number.
@@ -111,7 +110,7 @@ Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, doub
         for (const float elevation : result.elevation_rad.front())
             result.holes += std::isnan(elevation);
     result.definition =
-        "elevation of the horizon as seen from the ground; " + surroundings(posts, refraction);
+        "elevation of the horizon as seen from the ground; " + surroundings(refraction);
     return result;
 }
 
@@ -158,7 +157,7 @@ SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
         "share of a uniform sky's light that falls on {}, of {} directions (Dozier and Frew 1990); "
         "{}",
         options.level ? "a level plane" : "the ground as it is inclined", options.directions,
-        surroundings(posts, options.refraction));
+        surroundings(options.refraction));
     return result;
 }
 

@@ -19,8 +19,8 @@ struct Horizons {
 };
 
 /// Eyes are on the ground. What lies farther off than the nearest four posts is met within a
-/// quarter of a post of the direction. Beyond the DEM lies a smooth Earth as high as its lowest
-/// post, as in TerrainHorizon. Accuracy: tests/light/test_horizons.cpp.
+/// quarter of a post of the direction. Beyond the DEM lies a smooth Earth as high as its edge
+/// there, as in TerrainHorizon. Accuracy: tests/light/test_horizons.cpp.
 /// @param azimuth_rad  directions, from true north at each post
 /// @param refraction   terrestrial, as in HorizonOptions
 /// @throws Error (BadInput) as shadows()

@@ -319,7 +319,7 @@ RELEVO_WIDE_LOOPS void find_cover(const Cover& given) {
 struct EarthCover {
     int cells;
     float tangent, tangent_a_cell, spread;
-    float earth_m, a_tangent2_m;
+    float earth_lowest_m, earth_highest_m, a_tangent2_m;
     const float *lowest_m, *highest_m;
     float *over_m, *least_over_m;
 };
@@ -331,8 +331,8 @@ RELEVO_WIDE_LOOPS void add_earth(const EarthCover& given) {
     for (int k = 0; k < of.cells; ++k) {
         const float tangent = of.tangent + of.tangent_a_cell * static_cast<float>(k);
         const float least = tangent - of.spread, most = tangent + of.spread;
-        const float high = of.earth_m + least * least * of.a_tangent2_m + kSlack,
-                    low = of.earth_m + most * most * of.a_tangent2_m - kSlack;
+        const float high = of.earth_highest_m + least * least * of.a_tangent2_m + kSlack,
+                    low = of.earth_lowest_m + most * most * of.a_tangent2_m - kSlack;
         const float over = (least < 0 ? high : kNone_m) - of.lowest_m[k],
                     least_over = (most < 0 ? low : kNone_m) - of.highest_m[k];
         of.over_m[k] = over > of.over_m[k] ? over : of.over_m[k];
@@ -558,7 +558,8 @@ class LinesOverCells {
                        sun_.tangent_at(sheet_.first_column(0) + (kPosts - 1) / 2.0, middle_row)),
                    .tangent_a_cell = static_cast<float>(more.column * kPosts),
                    .spread = static_cast<float>(spread),
-                   .earth_m = static_cast<float>(earth_->lowest_m),
+                   .earth_lowest_m = static_cast<float>(earth_->lowest_m),
+                   .earth_highest_m = static_cast<float>(earth_->highest_m),
                    .a_tangent2_m = static_cast<float>(1 / (2 * earth_->curvature)),
                    .lowest_m = figures(ShadeCells::kLowest, cells),
                    .highest_m = figures(ShadeCells::kHighest, cells),

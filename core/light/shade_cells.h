@@ -160,9 +160,10 @@ class PatchFlags {
     std::vector<Word> bits_;
 };
 
-/// The smooth Earth around a DEM, which hides suns that are lower than level.
+/// The smooth Earth around a DEM, which hides suns that are lower than level: how high it is at
+/// least and at most.
 struct EarthAround {
-    double lowest_m = 0, curvature = 0;
+    double lowest_m = 0, highest_m = 0, curvature = 0;
 };
 
 /// What is known of the posts of patches before a sun is swept. Ground shades what is behind it

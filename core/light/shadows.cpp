@@ -118,10 +118,10 @@ Shadows shadows(const dem::Posts& posts, const SunOverDem& sun, const ShadowOpti
     count_posts({result.lit.data(), result.lit.size()}, result);
     result.definition = fmt::format(
         "{}, at the height of the ground; ground of the DEM alone shades, on the WGS 84 ellipsoid "
-        "with terrestrial refraction k = {:.4g}; outside the DEM smooth ground at {:.0f} m",
+        "with terrestrial refraction k = {:.4g}{}",
         options.soft ? "visible fraction of the solar disc over the terrain, cut by a level line"
                      : "1 where the centre of the sun is above the terrain, 0 in shadow",
-        options.refraction, double{posts.lowest_m()});
+        options.refraction, kBeyondTheDem);
     return result;
 }
 

@@ -62,7 +62,7 @@ struct Shadows {
 /// tiles with a sun each, which the ground outside of a tile shades all the same. Refraction of the
 /// sun is that of the air at a post's own height: where it differs over the DEM, there are two
 /// sweeps, for the lowest and the highest post, and the edge at a post lies between them by its
-/// height. Beyond the DEM lies a smooth Earth as high as its lowest post, as in TerrainHorizon.
+/// height. Beyond the DEM lies a smooth Earth as high as its edge there, as in TerrainHorizon.
 /// Holes neither shade nor are lit.
 ///
 /// The disc is cut by a level line, wherever the ridge before it runs.

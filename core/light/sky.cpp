@@ -61,15 +61,22 @@ glm::dvec2 moved(const dem::Grid& grid, const geo::Geodetic& from, double azimut
 constexpr double kNearLevel = 1e-5;  // tangent: what is over that is over level in floats, too
 constexpr int kRun = TileEdges::kRun;
 
-/// The edge that the smooth Earth makes: where a post sees the sun, from some post on.
+/// The edge that the smooth Earth makes: where a post sees the sun, from some post on. It is as
+/// high as the DEM's edge where the sun is lower than level there, too, and never lower than the
+/// lowest post.
 struct EarthLine {
     float base, a_post, from, scale, lowest;
+    float curvature;
+    RayEdges::OfRun edges;
 };
 [[gnu::always_inline]] inline void add_earth_to_all(const EarthLine& line, int count,
                                                     float* edge_m) {
+    const auto from_m = static_cast<float>(line.edges.from_m);
     for (int i = 0; i < count; ++i) {
         const float t = line.base + line.a_post * (line.from + static_cast<float>(i));
-        const float earth_m = line.lowest + t * t * line.scale;
+        const float at_edge = t + line.curvature * (line.edges.distance_m[i] - from_m);
+        const float beyond_m = at_edge < 0 ? line.edges.height_m[i] : line.lowest;
+        const float earth_m = std::max(beyond_m, line.lowest) + t * t * line.scale;
         edge_m[i] = (t < 0) & (earth_m > edge_m[i]) ? earth_m : edge_m[i];
     }
 }
@@ -121,7 +128,7 @@ const Loops& loops() {
 /// The smooth Earth around the DEM hides a sun that is lower than level. From the reference on, so
 /// that bits do not hang on where a run begins.
 void add_earth(const SweepSun& sun, const SweepRun& run, double lowest_m, double curvature,
-               float* edge_m) {
+               const RayEdges& edges, float* edge_m) {
     const GridPair& middle = sun.reference;
     const auto is_over = [&](int at) {
         return run.along_column ? sun.tangent_at(run.line, at) > kNearLevel
@@ -137,7 +144,9 @@ void add_earth(const SweepSun& sun, const SweepRun& run, double lowest_m, double
                    static_cast<float>(run.first - (run.along_column ? middle.row : middle.column)),
                scale = static_cast<float>(1 / (2 * curvature)),
                lowest = static_cast<float>(lowest_m);
-    loops().add_earth({base, a_post, from, scale, lowest}, run.count, edge_m);
+    loops().add_earth(
+        {base, a_post, from, scale, lowest, static_cast<float>(curvature), edges.of(run)},
+        run.count, edge_m);
 }
 
 /// Edges between those for the air of the lowest post and of the highest one, by a post's height.
@@ -741,28 +750,40 @@ void each_window(const std::vector<SweepWindow>& windows,
     });
 }
 
+/// The lowest tangent of a sun over a window.
+static double lowest_tangent(const SweepSun& sun, const SweepWindow& w) {
+    double lowest = sun.tangent;
+    for (const int column : {w.column, w.column + w.columns})
+        for (const int row : {w.row, w.row + w.rows})
+            lowest = std::min(lowest, sun.tangent_at(column, row));
+    return lowest;
+}
+
 TileEdges::TileEdges(const SunSky& sky, const SunTile& tile, double offset_rad)
     : dem_(sky.dem()), suns_{sky.sun(tile, sky.first_level(), offset_rad)} {
-    const SweepWindow& w = tile.window;
-    const auto is_over = [&](double column, double row) {
-        return suns_.front().tangent_at(column, row) >= 0;
-    };
-    const int right = w.column + w.columns, end = w.row + w.rows;
-    over_earth_ = is_over(w.column, w.row) && is_over(right, w.row) && is_over(w.column, end) &&
-                  is_over(right, end);
     if (sky.levels() == 2) suns_.push_back(sky.sun(tile, 1, offset_rad));
+    double lowest = 0;
+    for (const SweepSun& sun : suns_)
+        lowest = std::min(lowest, lowest_tangent(sun, tile.window));
+    over_earth_ = lowest >= 0;
+    if (!over_earth_)
+        edges_.emplace(dem_.posts(), tile.path, tile.window, tile.marks,
+                       -lowest / dem_.curvature());
 }
 
 const float* TileEdges::find(const SweepRun& run, const float* other_m, float* room) const {
     const bool two = suns_.size() == 2;
     if (over_earth_ && !two) return run.found;
     const double low_m = dem_.level_height_m(0), span_m = dem_.level_height_m(1) - low_m;
+    const auto add_ground_beyond = [&](const SweepSun& sun, float* edge_m) {
+        if (!over_earth_) add_earth(sun, run, low_m, dem_.curvature(), *edges_, edge_m);
+    };
     std::copy_n(run.found, run.count, room);
-    add_earth(suns_.back(), run, low_m, dem_.curvature(), room);
+    add_ground_beyond(suns_.back(), room);
     if (!two) return room;
     std::array<float, kRun> other;
     std::copy_n(other_m, run.count, other.data());
-    add_earth(suns_.front(), run, low_m, dem_.curvature(), other.data());
+    add_ground_beyond(suns_.front(), other.data());
     mix(run, other.data(), low_m, span_m, room);
     return room;
 }
@@ -790,12 +811,19 @@ void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, doubl
         scratch, use);
 }
 
-/// The horizon is no lower than the smooth Earth's, as high as the lowest post.
-RELEVO_WIDE_LOOPS static void add_dip(const SweepRun& run, float lowest_m, float curvature,
-                                      float* tangent) {
+/// The horizon is no lower than that of the ground beyond the edge, as tangent_beyond() has it,
+/// nor than the dip of a smooth Earth as high as the lowest post.
+RELEVO_WIDE_LOOPS static void add_dip(const SweepRun& run, const RayEdges::OfRun& edges,
+                                      float lowest_m, float curvature, float* tangent) {
+    const auto from_m = static_cast<float>(edges.from_m);
     for (int i = 0; i < run.count; ++i) {
-        const float dip = -std::sqrt(2 * curvature * std::max(0.0F, run.height_m[i] - lowest_m));
-        tangent[i] = std::max(run.found[i], dip);
+        const float eye_m = run.height_m[i];
+        const auto dip = [&](float height_m) {
+            return std::sqrt(2 * curvature * std::max(0.0F, eye_m - height_m));
+        };
+        const float beyond =
+            std::max(dip(edges.height_m[i]), curvature * (edges.distance_m[i] - from_m));
+        tangent[i] = std::max(run.found[i], -std::min(dip(lowest_m), beyond));
     }
 }
 
@@ -804,8 +832,9 @@ void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& ti
     const DemSky& dem = direction.dem();
     const auto curvature = static_cast<float>(dem.curvature());
     const auto lowest_m = static_cast<float>(dem.level_height_m(0));
+    const RayEdges edges(dem.posts(), tile.path, tile.window, tile.marks, dem.horizon_reach_m());
     const auto fill = [&](const SweepRun& part, float* tangent) {
-        add_dip(part, lowest_m, curvature, tangent);
+        add_dip(part, edges.of(part), lowest_m, curvature, tangent);
     };
     sweep.each_horizon(tile.path, dem.curvature(), dem.horizon_reach_m(), tile.part,
                        [&](const SweepRun& run) { each_part(run, fill, use); });

@@ -12,6 +12,7 @@
 #include "base/units.h"
 #include "dem/posts.h"
 #include "geo/local_frame.h"
+#include "light/edge_ground.h"
 #include "light/shadows.h"
 #include "light/sweep.h"
 #include "sun/refraction.h"
@@ -253,8 +254,7 @@ class TileValues {
     std::vector<float> values_;
 };
 
-/// The edges of shadow over a tile, the posts' own air and the smooth Earth around the DEM
-/// considered.
+/// The edges of shadow over a tile, the posts' own air and the ground beyond the DEM considered.
 class TileEdges {
   public:
     /// @param sky         outlives this
@@ -275,7 +275,7 @@ class TileEdges {
     /// @param room     for as many
     /// @return where they are: there, or what the run has
     const float* find(const SweepRun& run, const float* other_m, float* room) const;
-    static constexpr int kRun = 512;
+    static constexpr int kRun = RayEdges::kLongestRun;
 
     /// Takes tangents to change from post to post as those of another sun do.
     void go_like(const SweepSun& other) {
@@ -286,7 +286,8 @@ class TileEdges {
   private:
     const DemSky& dem_;
     std::vector<SweepSun> suns_;
-    bool over_earth_;
+    bool over_earth_;                // nowhere lower than level
+    std::optional<RayEdges> edges_;  // else
 };
 
 /// Calls `use` with the posts of a tile's part and the edge of the shadow over each, on several
@@ -296,8 +297,8 @@ class TileEdges {
 void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
                TileValues& scratch, const Sweep::Use& use);
 
-/// Likewise with the tangent of the horizon's elevation from the ground at each post, the smooth
-/// Earth around the DEM being seen where nothing of it is higher.
+/// Likewise with the tangent of the horizon's elevation from the ground at each post, the ground
+/// beyond the DEM being seen where nothing of it is higher.
 void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& tile,
                   const Sweep::Use& use);
 

@@ -1187,16 +1187,44 @@ class ManyDays {
     SweepWindow part_;
 };
 
-double level_hours(const DemSky& dem, const Moments& moments) {
-    double hours = 0;
-    for (std::size_t k = 1; k < moments.suns.size(); ++k) {
-        const double before = dem.apparent_rad(moments.suns[k - 1].elevation_rad, 0);
-        const double now = dem.apparent_rad(moments.suns[k].elevation_rad, 0);
-        const double over = std::max(before, 0.0) + std::max(now, 0.0);
-        const double all = std::abs(before) + std::abs(now);
-        if (over > 0) hours += (moments.at_s[k] - moments.at_s[k - 1]) / kHour_s * over / all;
+/// Hours over a level horizon, from one sun to the next.
+class LevelHours {
+  public:
+    void add(double at_s, double apparent_rad) {
+        const double over = std::max(before_rad_, 0.0) + std::max(apparent_rad, 0.0);
+        const double all = std::abs(before_rad_) + std::abs(apparent_rad);
+        if (over > 0 && at_s > at_s_) hours_ += (at_s - at_s_) / kHour_s * over / all;
+        at_s_ = at_s, before_rad_ = apparent_rad;
     }
-    return hours;
+    double hours() const { return hours_; }
+
+  private:
+    double hours_ = 0, at_s_ = 0, before_rad_ = 0;
+};
+
+/// In the middle of the DEM, and the most anywhere.
+void add_level_hours(const DemSky& dem, const Moments& moments, SunHours& result) {
+    const geo::Geodetic center = dem.grid().center();
+    const geo::Axes axes = dem.frame().axes(center.lat_rad, center.lon_rad);
+    LevelHours middle;
+    std::array<LevelHours, 9> at_marks;
+    for (std::size_t k = 0; k < moments.suns.size(); ++k) {
+        const SunOverDem& sun = moments.suns[k];
+        middle.add(moments.at_s[k], dem.apparent_rad(sun.elevation_rad, 0));
+        const double c = std::cos(sun.elevation_rad);
+        const glm::dvec3 direction = c * std::sin(sun.azimuth_rad) * axes.east +
+                                     c * std::cos(sun.azimuth_rad) * axes.north +
+                                     std::sin(sun.elevation_rad) * axes.up;
+        for (std::size_t i = 0; i < at_marks.size(); ++i) {
+            const geo::Geodetic& place = dem.marks()[i];
+            const glm::dvec3 up = dem.frame().axes(place.lat_rad, place.lon_rad).up;
+            const double elevation_rad = std::asin(std::clamp(glm::dot(direction, up), -1.0, 1.0));
+            at_marks[i].add(moments.at_s[k], dem.apparent_rad(elevation_rad, 0));
+        }
+    }
+    result.level_hours = result.most_level_hours = middle.hours();
+    for (const LevelHours& at : at_marks)
+        result.most_level_hours = std::max(result.most_level_hours, at.hours());
 }
 
 void check(sun::Instant begin, sun::Instant end, const SunHoursOptions& options) {
@@ -1297,16 +1325,16 @@ SunHours sun_hours(const dem::Posts& posts, sun::Instant begin, sun::Instant end
         ManyDays(dem, sweep, begin, length_s, options, part).light(result, options.done);
     sum_up(PartHeights(posts, part), part, result);
     if (options.irradiation) add_sky(dem, begin, length_s, options, result);
-    result.level_hours = level_hours(dem, times);
+    add_level_hours(dem, times, result);
     result.definition = fmt::format(
         "hours that the centre of the sun stands over the terrain, at the height of the ground, "
         "{}; ground of the DEM alone shades, on the WGS 84 ellipsoid with terrestrial refraction k "
-        "= {:.4g}; outside the DEM smooth ground at {:.0f} m; no clouds",
+        "= {:.4g}{}; no clouds",
         few ? fmt::format("from suns {:.10g} s apart, {:.10g} s near the horizon, in directions "
                           "within {:.2g} degrees of theirs",
                           options.step_s, options.step_s / kFiner, degrees(kOnePath_rad) / 2)
             : "from horizons in directions 2 degrees apart",
-        options.refraction, double{posts.lowest_m()});
+        options.refraction, kBeyondTheDem);
     return result;
 }
 

@@ -1679,8 +1679,8 @@ void Sweep::Blocks::leave_out(const std::vector<Sun>& suns, double earth_curvatu
         moment.sheet.emplace(sweep_.cells(view_->along_columns), view_->mirrored, view_->sheet.rows,
                              ground);
         for (const auto& shape : moment.bands.front().shapes) {
-            const ShadedPatches found =
-                shape->shaded(*moment.sheet, EarthAround{sweep_.lowest_m_, earth_curvature});
+            const ShadedPatches found = shape->shaded(
+                *moment.sheet, EarthAround{sweep_.lowest_m_, sweep_.highest_m_, earth_curvature});
             if (shaded[k])
                 shaded[k]->join(found);
             else

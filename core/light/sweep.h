@@ -210,9 +210,9 @@ class Sweep::Blocks {
     static constexpr int kMostLevels = 6;
     /// @param suns     one after the other in time, that go_together()
     /// @param floor_m  as Sweep::each_edge() has it
-    /// @param earth_curvature  of the smooth Earth around the grid, as high as the lowest post: it
-    ///     hides suns that are lower than level. Edges do not have it; where all_posts is not asked
-    ///     for, those that are under its own may be lower still
+    /// @param earth_curvature  of the smooth Earth around the grid, as high as some of its posts:
+    ///     it hides suns that are lower than level. Edges do not have it; where all_posts is not
+    ///     asked for, those that are under its own may be lower still
     Blocks(const Sweep& sweep, const std::vector<Sun>& suns, const SweepWindow& window,
            float floor_m, double earth_curvature);
     ~Blocks();

@@ -564,7 +564,7 @@ TEST(TerrainHorizon, SaysHowItWasMade) {
     EXPECT_EQ(TerrainHorizon(field, middle(field), options).description(),
               "terrain horizon: highest crossing with the rows and columns of the DEM, on the WGS "
               "84 ellipsoid with terrestrial refraction k = 0.13; eye at ground level, on ground "
-              "at 100.0 m; outside the DEM smooth ground at 100 m");
+              "at 100.0 m; outside the DEM smooth ground as high as its edge there");
     options.earth = EarthModel::MapOnPlane;
     options.eye_height_m = 1.6;
     options.least_elevation_rad = 0;

@@ -285,7 +285,8 @@ TEST(Horizons, HolesHideNothingAndHaveNone) {
     EXPECT_EQ(
         east.definition,
         "elevation of the horizon as seen from the ground; ground of the DEM alone, on the WGS 84 "
-        "ellipsoid with terrestrial refraction k = 0.13; outside the DEM smooth ground at 0 m");
+        "ellipsoid with terrestrial refraction k = 0.13; outside the DEM smooth ground as high as "
+        "its edge there");
 }
 
 TEST(SkyView, AgreesWithTopocalc) {
