@@ -158,6 +158,14 @@ struct Summary {
         holes += part.holes;
         definition = part.definition;
     }
+
+    void say_more_than_level() const {
+        if (over_level == 0) return;
+        log::info(fmt::format(
+            "more sun than over a level horizon at {:.2g} % of the posts, by up to {:.2f} h: over "
+            "lower ground, or over heights that are not real (relevo info, --nodata)",
+            100 * over_level / posts, most - most_level_hours));
+    }
 };
 
 void run(const Arguments& arguments) {
@@ -210,11 +218,7 @@ void run(const Arguments& arguments) {
                         {"TIME_ZONE", days.zone.name()},
                         {"REFRACTION", air}}))
         return;
-    if (sum.over_level > 0)
-        log::info(fmt::format(
-            "more sun than over a level horizon at {:.2g} % of the posts, by up to {:.2f} h: over "
-            "lower ground, or over heights that are none (relevo info; --nodata)",
-            100 * sum.over_level / sum.posts, sum.most - sum.most_level_hours));
+    sum.say_more_than_level();
     fmt::print("time                {} to {}\n", from, to);
     fmt::print(
         "sun hours           mean {:.2f}, least {:.2f}, most {:.2f}; over a level horizon in "
