@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/progress.h"
+#include "dem/load.h"
 
 namespace relevo::dem {
 namespace {
@@ -137,6 +138,10 @@ Survey survey(const Source& source, std::int64_t max_posts) {
         result.statistics = statistics(all.height_m, std::int64_t{columns} * rows);
         return result;
     }
+    // Read in seconds, whatever the shape; of more, what nothing else takes is not read for
+    // minutes.
+    constexpr std::int64_t kSoon = std::int64_t{1} << 28;
+    if (std::int64_t{columns} * rows > kSoon) refuse_endless_sides(source);
     std::optional<CollarSteps> collar_steps = collar_steps_of(source);
     // Whole rows of blocks, and of these as many columns as there is room for.
     const std::int64_t room = std::clamp(max_posts / 4, kLeastPosts, kMaxPosts);

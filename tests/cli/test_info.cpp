@@ -198,6 +198,33 @@ TEST(InfoVerb, FilesThatClaimMuchCostLittle) {
                              "with gdal_translate\n");
 }
 
+// 2^31 x 2 posts of a DEM of 200 kB: what memory and time none has to read is refused by name.
+TEST(InfoVerb, EndlessRowsAreRefusedSoon) {
+    const std::string path = (dir() / "endless.vrt").string();
+    std::ofstream(path)
+        << "<VRTDataset rasterXSize=\"2147483647\" rasterYSize=\"2\"><SRS>EPSG:4326</SRS>"
+           "<GeoTransform>0,0.00000001,0,1,0,-0.00000001</GeoTransform>"
+           "<VRTRasterBand dataType=\"Int16\" band=\"1\"><SimpleSource><SourceFilename>"
+        << bundled_dem()
+        << "</SourceFilename><SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" "
+           "xSize=\"400\" ySize=\"300\"/><DstRect xOff=\"0\" yOff=\"0\" "
+           "xSize=\"2147483647\" ySize=\"2\"/></SimpleSource></VRTRasterBand></VRTDataset>";
+    const std::string output = (dir() / "endless.tif").string();
+    for (const std::vector<std::string>& verb :
+         {std::vector<std::string>{"info", path},
+          {"capture", path, "-o", (dir() / "endless.png").string(), "--device", "software"},
+          {"sun", "horizon", path, "--at", "1,3"},
+          {"sun", "hours", path, "--date", "2026-03-20", "--tz", "UTC", "-o", output}}) {
+        std::vector<std::string> arguments{"-q"};
+        arguments.insert(arguments.end(), verb.begin(), verb.end());
+        const Result run = limited(arguments, 3, 20);
+        EXPECT_EQ(run.status, 3) << verb.front() << ": " << run.err;
+        EXPECT_NE(run.err.find(path + ": 2147483647 x 2 posts, expected at most 4194304 a side"),
+                  std::string::npos)
+            << verb.front() << ": " << run.err;
+    }
+}
+
 TEST(InfoVerb, SparseFilesAreReadWhereTheyStoreSomething) {
     Raster raster;
     raster.type = "Int16";
