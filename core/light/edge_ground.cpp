@@ -16,11 +16,10 @@ double height_near(const dem::Posts& posts, const glm::dvec2& post) {
                            static_cast<int>(std::lround(post.y)));
 }
 
-}  // namespace
-
-std::optional<Edge> edge_along(const dem::Posts& posts, std::span<const TracePoint> line) {
-    const dem::Grid& grid = posts.grid();
-    EdgeFinder finder;
+/// Calls `use` with distances and posts along a line of sight, as far apart as thinned posts are,
+/// until the line leaves the grid or `use` returns false.
+template <typename Use>
+void each_near(const dem::Posts& posts, std::span<const TracePoint> line, const Use& use) {
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
         const TracePoint &from = line[i], &to = line[i + 1];
         const glm::dvec2 way = to.post - from.post;
@@ -29,12 +28,34 @@ std::optional<Edge> edge_along(const dem::Posts& posts, std::span<const TracePoi
         for (int k = i == 0 ? 0 : 1; k <= steps; ++k) {
             const double share = double(k) / steps;
             const glm::dvec2 post = from.post + share * way;
-            if (!is_on(grid, post)) return finder.edge();
-            finder.add(from.distance_m + share * (to.distance_m - from.distance_m),
-                       height_near(posts, post));
+            if (!is_on(posts.grid(), post)) return;
+            if (!use(from.distance_m + share * (to.distance_m - from.distance_m),
+                     static_cast<int>(std::lround(post.x)), static_cast<int>(std::lround(post.y))))
+                return;
         }
     }
+}
+
+}  // namespace
+
+std::optional<Edge> edge_along(const dem::Posts& posts, std::span<const TracePoint> line) {
+    EdgeFinder finder;
+    each_near(posts, line, [&](double distance_m, int column, int row) {
+        finder.add(distance_m, posts.thinned_m(column, row));
+        return true;
+    });
     return finder.edge();
+}
+
+double outside_from_m(const dem::Posts& posts, std::span<const TracePoint> line) {
+    double from_m = std::numeric_limits<double>::infinity();
+    each_near(posts, line, [&](double distance_m, int column, int row) {
+        if (!std::isnan(posts.thinned_m(column, row)) || !posts.is_outside(column, row))
+            return true;
+        from_m = distance_m;
+        return false;
+    });
+    return from_m;
 }
 
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();

@@ -58,6 +58,10 @@ inline double tangent_beyond(const Edge& edge, double eye_m, double curvature) {
 /// The edge that a line of sight meets; none where it is over no ground.
 std::optional<Edge> edge_along(const dem::Posts& posts, std::span<const TracePoint> line);
 
+/// How far away the first void that reaches the DEM's edge is on a line of sight; infinity without
+/// one.
+double outside_from_m(const dem::Posts& posts, std::span<const TracePoint> line);
+
 /// For descriptions of figures.
 inline constexpr const char* kBeyondTheDem =
     "; outside the DEM smooth ground as high as its edge there";

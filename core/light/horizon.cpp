@@ -243,16 +243,6 @@ struct TerrainHorizon::Scan {
     double height_m = kNaN;
     double reach_m = 0;
     double first_hole_m = kInfinity, last_hole_m = -kInfinity;
-    double outside_from_m = kInfinity;  // the first void that reaches the DEM's edge
-
-    void add_void(double s, bool is_outside) {
-        if (is_outside) {
-            outside_from_m = std::min(outside_from_m, s);
-        } else {
-            first_hole_m = std::min(first_hole_m, s);
-            last_hole_m = std::max(last_hole_m, s);
-        }
-    }
 };
 
 namespace {
@@ -381,8 +371,10 @@ class Line {
                 h = f <= kSnap_cells ? h0[0] : f >= 1 - kSnap_cells ? h0[step] : kNaN;
                 if (h != h) {
                     const int none = h0[0] != h0[0] ? k : k + 1;
-                    scan_.add_void(
-                        s, kAxis == 0 ? posts_.is_outside(i, none) : posts_.is_outside(none, i));
+                    if (kAxis == 0 ? posts_.is_outside(i, none) : posts_.is_outside(none, i))
+                        continue;
+                    scan_.first_hole_m = std::min(scan_.first_hole_m, s);
+                    scan_.last_hole_m = std::max(scan_.last_hole_m, s);
                     continue;
                 }
             }
@@ -518,7 +510,9 @@ HorizonPoint TerrainHorizon::at(double azimuth_rad) const {
     point.distance_m = scan.distance_m;
     point.post = scan.post;
     point.height_m = scan.height_m;
-    point.reach_m = std::min(scan.reach_m, scan.outside_from_m);
+    point.reach_m = scan.reach_m;
+    if (posts_->about().statistics.holes > 0)
+        point.reach_m = std::min(point.reach_m, outside_from_m(*posts_, line));
     point.elevation_rad = std::atan(scan.best);
     const double least_rad =
         std::max(options_.least_elevation_rad, ground_beyond_rad(azimuth_rad, scan, line));

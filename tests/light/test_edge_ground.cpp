@@ -146,7 +146,7 @@ TEST(EdgeGround, AVoidThatReachesTheEdgeIsOutside) {
     const std::vector<HorizonPoint> profile = horizon.profile(360);
     for (const HorizonPoint& point : profile) {
         EXPECT_LE(point.reach_m, 51 * kPost_m);
-        const bool to_the_void = std::abs(degrees(point.azimuth_rad) - 90) < 6;
+        const bool to_the_void = std::abs(degrees(point.azimuth_rad) - 90) < 8;
         EXPECT_TRUE(to_the_void || !point.hole) << degrees(point.azimuth_rad);
     }
     EXPECT_TRUE(horizon.at(radians(90)).hole);
@@ -181,9 +181,8 @@ TEST(EdgeGround, OfAnOutlineIsAsHighAsItsRim) {
 
 TEST(EdgeGround, SunFromBelowTheLevelHorizonIsSaid) {
     // A tower of 800 m on a plain.
-    const dem::Heightfield tower = field([](int column, int row) {
-        return std::abs(column - 60) <= 1 && std::abs(row - 60) <= 1 ? 800.0 : 0.0;
-    });
+    const dem::Heightfield tower =
+        field([](int column, int row) { return column == 60 && row == 60 ? 800.0 : 0.0; });
     const TerrainHorizon top(tower, tower.grid.place(60, 60)),
         foot(tower, tower.grid.place(90, 60));
     const sun::Zone zone = sun::Zone::named("Europe/Zurich");

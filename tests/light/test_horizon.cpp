@@ -252,18 +252,18 @@ TEST(TerrainHorizon, OfAPlainDipsByTheRootOfTheEyeHeight) {
                 std::sqrt(2 * 6.36e6 * 0.5), 60);
 }
 
-TEST(TerrainHorizon, BeyondTheDemIsASmoothEarthAtItsLowestHeightOrTheOneGiven) {
+TEST(TerrainHorizon, BeyondTheDemIsASmoothEarthAsHighAsItsEdgeOrAsGiven) {
     const dem::Heightfield field =
-        plain([](int column, int row) { return column == 0 && row == 0 ? 95.0 : 100.0; });
+        plain([](int column, int row) { return column == 0 && row == 0 ? 5.0 : 100.0; });
     HorizonOptions options;
     options.refraction = 0;
     options.eye_height_m = 10;
     const auto arcmin = [&] {
         return degrees(TerrainHorizon(field, middle(field), options).elevation_rad(1)) * 60;
     };
-    EXPECT_NEAR(arcmin(), -1.926 * std::sqrt(15), 0.05);
-    options.outside_height_m = 100;
     EXPECT_NEAR(arcmin(), -1.926 * std::sqrt(10), 0.05);
+    options.outside_height_m = 95;
+    EXPECT_NEAR(arcmin(), -1.926 * std::sqrt(15), 0.05);
     options.outside_height_m = -kInfinity;  // only the DEM: its edge, 3.5 km away
     EXPECT_LT(arcmin(), -9);
     options.least_elevation_rad = 0;
@@ -307,8 +307,9 @@ TEST(TerrainHorizon, SeesOverGroundFromAHigherEye) {
 
 TEST(TerrainHorizon, PassesOverHolesAndSaysWhereTheyMatter) {
     // A hill of 60 m to the east, its top cut out; holes in the plain to the north, behind a wall
-    // of 250 m to the west.
+    // of 250 m to the west. None reaches the edge of the DEM.
     const auto heights = [](int column, int row) {
+        if (std::min({column, row, 200 - column, 200 - row}) == 0) return 100.0;
         if (column >= 139 && column <= 141) return column == 140 ? kNaN : 140.0;
         if (row == 50) return kNaN;
         if (column == 60) return 350.0;
