@@ -176,8 +176,8 @@ TEST_F(JobFile, MistakesNameTheirPlace) {
               "2: sweep[0].times[0]: sunsett: no such event as \"sunsett\"; did you mean sunset?");
     EXPECT_EQ(error(with("\"sweep\": [{\"times\": {\"from\": \"6:00\", \"to\": \"7:00\", \"step\": "
                          "\"0min\"}}]")),
-              "2: sweep[0].times.step: expected a duration such as 15min, 1h30min or 45s but got "
-              "\"0min\"");
+              "2: sweep[0].times.step: expected a duration such as 15min, 1h30min or 45s, or "
+              "minutes alone, but got \"0min\"");
     EXPECT_EQ(error(with("\"sweep\": [{\"set\": \"haze.density\", \"values\": [{}]}]")),
               "2: sweep[0].values: expected a number, true or false, a text or a list of numbers "
               "but got an object");
