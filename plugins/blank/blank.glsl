@@ -5,7 +5,7 @@
 
 //@ include lib/water.glsl
 
-uniform vec3 blank_colour = vec3(0.34, 0.31, 0.28); //@ colour label("Colour") description("Reflectance of the cover")
+uniform vec3 blank_colour = vec3(0.20, 0.195, 0.19); //@ colour label("Colour") description("Reflectance of the cover")
 
 /// Share of a point that is covered. Beside a cover filled holes are half of it, and not meant.
 float blank_share(in Surface s) {
