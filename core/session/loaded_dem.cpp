@@ -1,6 +1,9 @@
 #include <chrono>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
 #include "dem/load.h"
 #include "render/ground.h"
 #include "session/session.h"
@@ -35,6 +38,18 @@ LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
 /// Posts above which others stand in for them, and how many of these there are at most.
 constexpr std::int64_t kManyPosts = std::int64_t{1} << 24, kStandInPosts = std::int64_t{1} << 22;
 
+/// Higher or lower than any, with much room [m]: what is drawn has to fit on the Earth.
+constexpr double kMostHeight_m = 2e6;
+
+void check_heights(const dem::Description& about) {
+    const dem::Statistics& s = about.statistics;
+    if (s.min_m >= -kMostHeight_m && s.max_m <= kMostHeight_m) return;
+    bad_input(
+        fmt::format("{}: heights of {:g} to {:g} m cannot be drawn, expected {:g} to {:g} m; "
+                    "--unit sets the unit, --nodata V marks voids",
+                    about.path, s.min_m, s.max_m, -kMostHeight_m, kMostHeight_m));
+}
+
 std::shared_ptr<const LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
                                             dem::Heightfield field, const scene::Scene& scene,
                                             Clock::time_point began, bool stands_in) {
@@ -52,6 +67,7 @@ std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> sou
                                           const scene::Scene& scene) {
     const auto began = Clock::now();
     dem::Heightfield field = dem::load(*source, scene.dem.max_posts);
+    check_heights(field.about);
     return loaded_dem(std::move(source), std::move(field), scene, began, /*stands_in=*/false);
 }
 

@@ -128,6 +128,7 @@ struct Session::Impl {
         stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
         if (timed && !time) time = parse_over(scene.moment, *loaded->source, loaded->field);
         upload();
+        check_eye_height(scene.view, loaded->field.about.path);
         look(scene.view);
         warn_of_eye();
         set_moment(time ? time->utc : default_moment());
@@ -312,6 +313,7 @@ struct Session::Impl {
         scene.stamps = next.stamps;
         scene.moment = next.moment;
         set_moment(instant);
+        check_eye_height(next.view, loaded->field.about.path);
         look(next.view);
         warn_of_eye();
     }

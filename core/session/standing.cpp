@@ -6,6 +6,10 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
+
 namespace relevo::session {
 namespace {
 
@@ -53,6 +57,14 @@ scene::GroundHeight heights_to_aim_at(std::shared_ptr<const LoadedDem> dem,
             height_m = std::max(height_m, level_m);
         return height_m;
     };
+}
+
+void check_eye_height(const scene::View& view, const std::string& dem) {
+    if (!view.eye) return;
+    const double height_m = view.eye->place.height_m;
+    if (!(height_m >= kDeepestEye_m && height_m <= kFarthestEye_m))
+        bad_input(fmt::format("{}: --eye: a height of {:g} m, expected {:g} to {:g} m", dem,
+                              height_m, kDeepestEye_m, kFarthestEye_m));
 }
 
 scene::Camera standing(const scene::View& view, const DrawnGround& ground,

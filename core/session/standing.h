@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "geo/local_frame.h"
 #include "render/displacement.h"
@@ -18,6 +19,14 @@ namespace relevo::session {
 /// ground, but for effects that displace land. Keeps the DEM.
 scene::GroundHeight heights_to_aim_at(std::shared_ptr<const LoadedDem> dem,
                                       const render::Displacement& displacement);
+
+/// Heights that an eye may have [m]: the centre of the Earth, and from where a globe fills a
+/// picture of 1 degree.
+inline constexpr double kDeepestEye_m = -6.4e6, kFarthestEye_m = 9e8;
+
+/// @param dem  as the message names it
+/// @throws Error (BadInput) for an eye beyond these
+void check_eye_height(const scene::View& view, const std::string& dem);
 
 /// What standing() asks of a session.
 struct DrawnGround {
