@@ -94,7 +94,7 @@ void light_of(State& state, const PointLight& point) {
     if (has_first) go_to_edge(state, "First light", point.lit.front().begin);
     if (has_last) go_to_edge(state, "Last light", point.lit.back().end);
     if (has_first || has_last) ImGui::NewLine();
-    ImGui::Text("%s of direct sun, %s over a level horizon", duration_text(point.lit_s).c_str(),
+    ImGui::Text("%s of sun, %s over a level horizon", duration_text(point.lit_s).c_str(),
                 duration_text(point.flat_s).c_str());
     if (point.year)
         ImGui::Text("%.0f h in %d, %.0f h over a level horizon", point.year->lit_s / 3600,
