@@ -46,7 +46,8 @@ scene::GroundHeight heights_to_aim_at(std::shared_ptr<const LoadedDem> dem,
                                       const render::Displacement& displacement) {
     return [dem = std::move(dem), levels_m = displacement.to_m](const geo::Geodetic& at) {
         const dem::Heightfield& drawn = dem->to_draw();
-        const glm::dvec2 post = drawn.grid.post(at);
+        // The CRS of a DEM knows nothing of an eye's height, which may be out of its range.
+        const glm::dvec2 post = drawn.grid.post({at.lat_rad, at.lon_rad, 0});
         double height_m = on_drawn_triangles_m(drawn.height_m, post);
         const Array2d<dem::WaterKind>& water = dem->drawn.water.kind;
         if (std::isnan(height_m) || levels_m.empty() || water.empty()) return height_m;

@@ -187,6 +187,21 @@ TEST(Standing, AnEyeOverTheSeaStandsOnTheWaterThatIsDrawn) {
     EXPECT_NEAR(height_m, kEye_m, kAccuracy_m);
 }
 
+TEST(Standing, AnEyeMayBeFarAboveTheGround) {
+    const scene::Scene scene = scene_of(test::source_dir() / "data/dem/jacksboro.tif");
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    scene::View view;
+    view.eye = scene::Standpoint{session.ground().frame.origin(), /*above_ground=*/true};
+    for (const double height_m : {500.0, 100e3, 1e7}) {
+        view.eye->place.height_m = height_m;
+        session.look(view);
+        const geo::Geodetic eye = session.ground().frame.to_geodetic(session.camera().eye_m);
+        EXPECT_NEAR(eye.height_m - session.dem()->height_m(session.ground().frame.origin()),
+                    height_m, 20);
+    }
+}
+
 TEST(Standing, ZoomComesNearerToWhatIsInTheMiddleOfTheBundledDem) {
     scene::Scene scene = scene_of(test::source_dir() / "data/dem/jacksboro.tif");
     FilesInUse files;
