@@ -54,7 +54,7 @@ TEST(Framing, LevelGroundFillsAsMuchAsItsProjectionDoes) {
 }
 
 TEST(Framing, StandsBeside25And40DegreesAndBesideTheGridsAxes) {
-    for (const double turned_deg : {0.0, 20.0, 45.0})
+    for (const double turned_deg : {0.0, 10.0, 20.0, 35.0, 45.0, 60.0, 80.0})
         for (const double lat_deg : {-80.0, -30.0, 0.0, 46.0, 80.0}) {
             const GroundNet net = net_of(
                 [](double x, double y) { return 500 * std::sin(x / 3e3) * std::sin(y / 2e3); },
