@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <variant>
 
 #include <glm/geometric.hpp>
 
+#include "base/text.h"
 #include "base/units.h"
 #include "chart/carpet_chart.h"
 #include "chart/panorama.h"
@@ -302,6 +305,30 @@ TEST(CarpetChart, AreasAreTheHours) {
     }
     // 2.8 units a day and 20 an hour.
     EXPECT_NEAR(lit / 2.8 / 20 / (c.lit_s / 3600), 1, 0.002);
+}
+
+TEST(CarpetChart, MonthsHaveTheirHoursOfSunAboveThoseOfALevelHorizon) {
+    const Scene scene(places()[2]);
+    const light::Carpet c = carpet(scene.direct, 2026, scene.zone, 180);
+    const Drawing drawing =
+        CarpetChart{&c, scene.horizon.place(), "Valley", scene.horizon.description(), {}}.draw();
+    std::map<double, std::vector<double>> rows;  // by their heights, downwards
+    for (const auto& text : all_of<Drawing::Text>(drawing)) {
+        const std::string& words = text.words;
+        if (!words.ends_with(" h")) continue;
+        if (const auto hours = parse_number(words.substr(0, words.size() - 2)))
+            rows[text.at.y].push_back(*hours);
+    }
+    ASSERT_EQ(rows.size(), 2u);
+    const std::vector<double>&sun = rows.begin()->second, &level = rows.rbegin()->second;
+    ASSERT_EQ(sun.size(), 12u);
+    ASSERT_EQ(level.size(), 12u);
+    // Each is told to the hour.
+    EXPECT_NEAR(std::accumulate(sun.begin(), sun.end(), 0.0), c.lit_s / 3600, 6);
+    EXPECT_NEAR(std::accumulate(level.begin(), level.end(), 0.0), c.level_s / 3600, 6);
+    EXPECT_GT(std::abs(c.lit_s - c.level_s), 50 * 3600.0);
+    for (std::size_t month = 0; month < 12; ++month)
+        EXPECT_NEAR(sun[month], c.month_lit_s[month] / 3600, 0.51);
 }
 
 TEST(TerrainHorizon, WithinADistanceIsTheHorizonOfTheGroundThatNear) {

@@ -1,9 +1,13 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <map>
+#include <string>
+#include <tuple>
 
 #include <gmock/gmock.h>
 
+#include "base/text.h"
 #include "chart/legend.h"
 #include "chart/ramp.h"
 #include "support/support.h"
@@ -32,11 +36,21 @@ TEST(Ramp, ClassesHaveTheirOwnColourEach) {
 }
 
 TEST(Ramp, BuiltInOnesGoFromOneEndToTheOther) {
-    for (const std::string& name : ramp_names()) {
-        const Ramp ramp = named_ramp(name, -2, 6);
-        EXPECT_EQ(ramp.stops.front().value, -2) << name;
-        EXPECT_NEAR(ramp.stops.back().value, 6, 1e-12) << name;
-    }
+    for (const std::string& name : ramp_names())
+        for (const auto& [from, to] : {std::pair(-2.0, 6.0), {0.7, 1.0}, {1200.0, 3000.0}}) {
+            const Ramp ramp = named_ramp(name, from, to);
+            ASSERT_GE(ramp.stops.size(), 2u);
+            for (std::size_t k = 0; k < ramp.stops.size(); ++k)
+                EXPECT_NEAR(ramp.stops[k].value,
+                            from + (to - from) * static_cast<double>(k) /
+                                       static_cast<double>(ramp.stops.size() - 1),
+                            1e-9)
+                    << name;
+        }
+    // The colours of matplotlib's viridis at its ends, dark where the values are low.
+    const Ramp viridis = named_ramp("viridis", 1200, 3000);
+    EXPECT_EQ(viridis.at(1200).rgb, 0x440154u);
+    EXPECT_EQ(viridis.at(3000).rgb, 0xfde725u);
     EXPECT_EQ(error_of([] { named_ramp("rainbow", 0, 1); }),
               "exit 3: --overlay-colours: rainbow: expected sun, shade, steel, viridis, inferno, "
               "grey or a "
@@ -66,6 +80,16 @@ TEST_F(ColourFile, HasSharesNamesAlphaAndCellsWithoutAValue) {
     EXPECT_EQ(ramp.stops[2].value, 1000);
     EXPECT_EQ(ramp.stops[2].color.rgb, 0xffffffu);
     EXPECT_EQ(ramp.at(std::nan("")).rgb, 0x090807u);
+}
+
+TEST_F(ColourFile, SharesAreOfTheWayFromTheLeastValueToTheGreatest) {
+    const Ramp ramp =
+        read_ramp(write("0% 0 0 0\n25% 10 0 0\n1500 20 0 0\n100% 30 0 0\n"), 1000, 3000);
+    std::vector<double> values;
+    for (const Ramp::Stop& stop : ramp.stops)
+        values.push_back(stop.value);
+    EXPECT_THAT(values, ElementsAre(1000, 1500, 1500, 3000));
+    EXPECT_EQ(ramp.at(2250).rgb, 0x190000u);
 }
 
 TEST_F(ColourFile, WhatIsNoneIsRefusedByItsLine) {
@@ -121,6 +145,60 @@ TEST(Legend, StandsOnAPictureWithItsTitleRampAndValues) {
         }
     EXPECT_GT(above, 50);
     EXPECT_GT(below, above + 130);
+}
+
+/// Off by how much a pixel is from a colour, of 255.
+int apart(const image::Image8& picture, double x, double y, std::uint32_t rgb) {
+    int most = 0;
+    for (unsigned k = 0; k < 3; ++k)
+        most = std::max(most, std::abs(picture.at(static_cast<int>(x), static_cast<int>(y),
+                                                  static_cast<int>(k)) -
+                                       static_cast<int>(rgb >> (16 - 8 * k) & 255)));
+    return most;
+}
+
+TEST(Legend, AValueStandsBesideItsColour) {
+    for (const auto& [from, to] : {std::pair(0.0, 14.0), {-350.0, 2600.0}, {900.0, 1400.0}}) {
+        const Legend about{"Height", "m", named_ramp("viridis", from, to)};
+        const Drawing drawing = legend(about);
+        const image::Image8 picture = to_image(drawing);
+        int values = 0;
+        for (const Drawing::Item& item : drawing.items()) {
+            const auto* text = std::get_if<Drawing::Text>(&item);
+            if (!text) continue;
+            const auto value = parse_number(text->words.substr(0, text->words.find(' ')));
+            if (!value) continue;
+            ++values;
+            // A line leads from the middle of its letters to the bar, which is left of it.
+            const double y = text->at.y - 0.36 * text->lettering.size;
+            if (y < 33 || y > picture.height - 16) continue;  // at the bar's own edge
+            EXPECT_LE(apart(picture, text->at.x - 16, y, about.ramp.at(*value).rgb), 12)
+                << *value << " of " << from << " to " << to;
+        }
+        EXPECT_GE(values, 3);
+    }
+}
+
+TEST(Legend, ARingHasEastOnTheRightAndNorthAbove) {
+    const Ramp ramp{{{0, {0xff0000}},
+                     {90, {0x00ff00}},
+                     {180, {0x0000ff}},
+                     {270, {0xffff00}},
+                     {360, {0xff0000}}}};
+    const Drawing drawing = legend({"Slopes face", "", ramp, true});
+    std::map<std::string, glm::dvec2> letters;
+    for (const Drawing::Item& item : drawing.items())
+        if (const auto* text = std::get_if<Drawing::Text>(&item)) letters[text->words] = text->at;
+    const glm::dvec2 middle = (letters.at("N") + letters.at("S")) / 2.0 - glm::dvec2(0, 4);
+    EXPECT_GT(letters.at("E").x, middle.x + 30);
+    EXPECT_LT(letters.at("W").x, middle.x - 30);
+    EXPECT_LT(letters.at("N").y, middle.y - 20);
+    const image::Image8 picture = to_image(drawing);
+    constexpr double kRadius = 28;  // between the ring's two circles
+    for (const auto& [x, y, rgb] :
+         {std::tuple(0, -1, 0xff0000u), {1, 0, 0x00ff00u}, {0, 1, 0x0000ffu}, {-1, 0, 0xffff00u}})
+        EXPECT_LE(apart(picture, middle.x + kRadius * x, middle.y + kRadius * y, rgb), 40)
+            << x << ' ' << y;
 }
 
 }  // namespace

@@ -52,6 +52,31 @@ TEST(Stamps, TheBarIsAsLongAsItsLengthIsInThePicture) {
     }
 }
 
+TEST(Stamps, TheArrowAndItsLetterPointNorth) {
+    for (const glm::dvec2 north : {glm::dvec2(0, -1), {0.6, -0.8}, {-1, 0}, {0.28, 0.96}}) {
+        image::Image8 picture = grey(900, 900);
+        Stamps stamps;
+        stamps.north = north;
+        EXPECT_THAT(stamp(stamps, picture), IsEmpty());
+        const glm::dvec2 middle(12 + 26, 900 - 12 - 26), aside(-north.y, north.x);
+        const auto darkest = [&](const glm::dvec2& at, int reach) {
+            int least = 255;
+            for (int dy = -reach; dy <= reach; ++dy)
+                for (int dx = -reach; dx <= reach; ++dx)
+                    least = std::min(least, int{picture.at(static_cast<int>(at.x) + dx,
+                                                           static_cast<int>(at.y) + dy, 0)});
+            return least;
+        };
+        // The letter beyond the tip, and nothing as far on the other side.
+        EXPECT_LT(darkest(middle + 18.0 * north, 3), 90);
+        EXPECT_GT(darkest(middle - 22.0 * north, 1), 200);
+        // Half-way to the tip its dark half is as wide as an arrow's, and behind the notch it is
+        // open.
+        EXPECT_LT(darkest(middle + 2.0 * north + 1.5 * aside, 0), 60);
+        EXPECT_GT(darkest(middle - 16.0 * north, 0), 200);
+    }
+}
+
 TEST(Stamps, WhatHasNoRoomIsNamedAndNotThere) {
     Stamps stamps;
     stamps.title = "The valley of the Inn";
