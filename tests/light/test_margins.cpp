@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dem/load.h"
+#include "light/fields.h"
 #include "light/margins.h"
 #include "sun/position.h"
 #include "support/support.h"
@@ -77,6 +78,27 @@ TEST(Margins, AtNightThereAreNone) {
     const Found found = margins({1, radians(-10), 0.0046});
     EXPECT_TRUE(found.what.night);
     EXPECT_EQ(found.upper_m.at(5, 5), -1e9F);
+}
+
+TEST(Margins, SayHowFarTheSunIsOffWhereOneHoldsForFewPosts) {
+    const auto error_deg = [](double step_deg, int columns, int rows) {
+        const dem::Heightfield field = test::field_of(
+            columns, rows,
+            {-0.5 * columns * step_deg, step_deg, 0, 0.5 * rows * step_deg, 0, -step_deg},
+            "EPSG:4326", [](int, int) { return 100.0; });
+        const dem::Posts of(field);
+        return degrees(Margins(of, {})
+                           .each(
+                               field.grid.center(), {radians(140), radians(30), 0}, [](bool) {},
+                               [](const MarginRun&) {})
+                           .error_rad);
+    };
+    EXPECT_EQ(error_deg(1.0 / 3600, 200, 160), 0);
+    // A continent: one sun holds for few of its posts.
+    const double wide_deg = error_deg(0.2, 400, 400);
+    std::printf("[ accuracy ] a sun of a part of the DEM is off by up to %.2f degrees\n", wide_deg);
+    EXPECT_GT(wide_deg, 0.1);
+    EXPECT_LT(wide_deg, 12);
 }
 
 TEST(Margins, TheQuickShareOfADiscIsWithinTwoThousandths) {
