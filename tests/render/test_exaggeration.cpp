@@ -1,5 +1,6 @@
 // What --exaggerate changes: the light and the shape, and not what the ground is taken for.
 
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -128,6 +129,55 @@ TEST(Exaggeration, StepsOfTheGroundAreThoseOfItsCoordinates) {
         std::sort(errors.begin(), errors.end());
         // A pixel is 22 m wide, its slope rises by up to 8 m.
         EXPECT_LT(errors[errors.size() * 9 / 10], 0.8) << s.exaggeration;
+    }
+}
+
+/// What three cameras see of hills of so many times their height, drawn so many times as high:
+/// along the ground and from above, with more posts than a tile has.
+struct Views {
+    std::vector<image::ImageF> images;  // red: the distance, in 1024 m
+    std::vector<int> triangles;
+};
+Views views_of(double height_factor, double exaggeration) {
+    const dem::Heightfield hills =
+        test::field_of(385, 385, {500000, 25, 0, 5000, 0, -25}, "EPSG:32631", [&](int x, int y) {
+            return height_factor * (700 + 60 * std::sin(x / 9.0) * std::sin(y / 13.0 + 0.01 * x));
+        });
+    const TestEffect probe{
+        "probe",
+        "void probe_on_atmosphere(in Surface s, in vec3 view, inout vec3 radiance) {\n"
+        "    radiance = vec3(s.distance_m / 1024.0, 0.0, 1.0) / frame.exposure;\n}\n"};
+    Drawn drawn(hills, {test::kBrightSky, probe}, 160, 128, 4);
+    drawn.frame().exaggeration = exaggeration;
+    Views views;
+    for (const auto& [share, above_m, pitch_deg] :
+         {std::array{0.1, 500.0, 0.0}, {0.5, 1500.0, -40.0}, {0.3, 900.0, -10.0}}) {
+        drawn.stand(share, 0.4, height_factor * exaggeration * 700 + above_m, 70, pitch_deg);
+        views.images.push_back(drawn.radiance());
+        views.triangles.push_back(drawn.renderer().triangles());
+    }
+    return views;
+}
+
+TEST(Exaggeration, GroundIsDrawnAsGroundAsHighIs) {
+    const Views found = views_of(1, 5), expected = views_of(5, 1);
+    for (std::size_t i = 0; i < found.images.size(); ++i) {
+        // What is coarser by how far it is off is as coarse, and no more is culled.
+        EXPECT_NEAR(found.triangles[i], expected.triangles[i], 0.1 * expected.triangles[i]);
+        int ground = 0, other = 0;
+        for (int y = 0; y < 128; ++y)
+            for (int x = 0; x < 160; ++x) {
+                const bool sky = test::is_sky(expected.images[i], x, y);
+                ground += !sky;
+                if (sky != test::is_sky(found.images[i], x, y))
+                    ++other;
+                else if (!sky)
+                    other += std::abs(Drawn::values(found.images[i], x, y).x /
+                                          Drawn::values(expected.images[i], x, y).x -
+                                      1) > 0.01;
+            }
+        EXPECT_GT(ground, 5000) << i;
+        EXPECT_LT(other, 0.02 * ground) << i;
     }
 }
 

@@ -106,6 +106,41 @@ TEST(WaterField, CoarserLevelsKeepTheWatersArea) {
     }
 }
 
+/// Sea beyond column 120, of one kind in the upper half and of another below.
+dem::Water two_waters(WaterKind upper, WaterKind lower) {
+    dem::Water water = water_where(257, upper, [](int x, int) { return x > 120; });
+    for (int y = 129; y < 257; ++y)
+        for (int x = 121; x < 257; ++x)
+            water.kind.at(x, y) = lower;
+    return water;
+}
+
+TEST(WaterField, TheKindOfTheWaterIsTheSameOnAllLevels) {
+    const Array2d<float> heights(257, 257, -3.0f);
+    // Whether it is the sea, and whether the floor below it is known.
+    const auto expect_kind = [](const WaterTexel& texel, WaterKind kind, int level) {
+        EXPECT_EQ(texel[0], kind == WaterKind::None ? 0 : 255) << level;
+        EXPECT_EQ(texel[1], kind == WaterKind::Sea || kind == WaterKind::SeaFloor ? 255 : 0)
+            << level;
+        EXPECT_EQ(texel[2], kind == WaterKind::SeaFloor ? 255 : 0) << level;
+    };
+    for (const auto& [upper, lower] : {std::pair(WaterKind::Sea, WaterKind::SeaFloor),
+                                       {WaterKind::SeaFloor, WaterKind::Lake},
+                                       {WaterKind::Lake, WaterKind::Sea}}) {
+        const dem::Water water = two_waters(upper, lower);
+        const WaterField field(heights, water, nullptr, 1);
+        for (int level = 0; level <= 4; ++level) {
+            expect_kind(field.at(level, 200 >> level, 60 >> level), upper, level);
+            expect_kind(field.at(level, 200 >> level, 200 >> level), lower, level);
+            expect_kind(field.at(level, 40 >> level, 60 >> level), WaterKind::None, level);
+            // Along the shore there is some of it, of no other kind.
+            const WaterTexel shore = field.at(level, 128 >> level, 64 >> level);
+            EXPECT_EQ(shore[1], upper == WaterKind::Lake ? 0 : 255) << level;
+            EXPECT_EQ(shore[2], upper == WaterKind::SeaFloor ? 255 : 0) << level;
+        }
+    }
+}
+
 TEST(WaterField, FilledHolesAreTold) {
     Array2d<std::uint8_t> filled(65, 65, 0);
     filled.at(7, 9) = 1;
