@@ -106,14 +106,16 @@ TEST(Audit, GroundThatIsAlwaysLitIsNoBetterThanNoShadows) {
 }
 
 TEST(Audit, ExaggeratedGroundHasTheShadowsOfItsOwnHeights) {
-    scene::Scene scene = morning("shadows");
-    scene.moment.time = "2026-06-21T13:00Z";  // some 30 degrees
-    const ShadowAudit flat = audit_of(scene);
-    scene.exaggeration = 4;
-    const ShadowAudit high = audit_of(scene);
-    EXPECT_GT(high.shaded, 5 * flat.shaded + 100);
-    EXPECT_GE(high.agreement(), 0.99);
-    EXPECT_GE(high.balanced_accuracy(), 0.98);
+    for (const char* const effect : {"shadows", "vsm"}) {
+        scene::Scene scene = morning(effect);
+        scene.moment.time = "2026-06-21T13:00Z";  // some 30 degrees
+        const ShadowAudit flat = audit_of(scene);
+        scene.exaggeration = 4;
+        const ShadowAudit high = audit_of(scene);
+        EXPECT_GT(high.shaded, 5 * flat.shaded + 100);
+        EXPECT_GE(high.agreement(), effect == std::string("shadows") ? 0.99 : 0.97);
+        EXPECT_GE(high.balanced_accuracy(), effect == std::string("shadows") ? 0.98 : 0.96);
+    }
 }
 
 TEST(Audit, WallsOfTheBlockAndTheSurfaceOfASeaAreNoPosts) {
@@ -126,6 +128,36 @@ TEST(Audit, WallsOfTheBlockAndTheSurfaceOfASeaAreNoPosts) {
     EXPECT_GT(audit.left_out.moved, 1000);
     EXPECT_GT(audit.pixels(), 100);
     EXPECT_GE(audit.agreement(), 0.97);
+}
+
+TEST(Audit, ASeaOverExaggeratedGroundMovesNothingButWater) {
+    std::vector<double> moved;
+    for (const double exaggeration : {1.0, 3.0}) {
+        scene::Scene scene = morning("shadows");
+        scene.effects.switches.only = {"shadows", "sea"};
+        scene.effects.settings = {{"sea.level_m", "400"}};
+        scene.exaggeration = exaggeration;
+        scene.view.orbit = {200, 60, 1};
+        const ShadowAudit audit = audit_of(scene);
+        EXPECT_GT(audit.pixels(), 1000);
+        EXPECT_GE(audit.agreement(), 0.97);
+        moved.push_back(static_cast<double>(audit.left_out.moved) /
+                        static_cast<double>(audit.pixels() + audit.left_out.moved +
+                                            audit.left_out.between_posts));
+    }
+    EXPECT_NEAR(moved[0], moved[1], 0.15);
+    EXPECT_GT(moved[0], 0.05);
+}
+
+TEST(Audit, MeansOfADemHaveTheShadowsOfMeans) {
+    // A DEM beyond --memory: 403 x 344 posts as means of 2 x 2.
+    scene::Scene scene = morning("shadows");
+    scene.dem.max_posts = 50000;
+    const ShadowAudit audit = audit_of(scene);
+    EXPECT_GT(audit.lit, 1000);
+    EXPECT_GT(audit.shaded, 100);
+    EXPECT_GE(audit.agreement(), 0.98);
+    EXPECT_GE(audit.balanced_accuracy(), 0.98);
 }
 
 TEST(Audit, AtNightThereIsNothingToCompare) {

@@ -7,6 +7,7 @@
 
 #include "base/paths.h"
 #include "base/units.h"
+#include "session/seen_ground.h"
 #include "session/session.h"
 #include "sun/position.h"
 #include "support/support.h"
@@ -169,6 +170,72 @@ TEST(Frame, TheBlockStandsInItsOwnShade) {
             changed += within && left(x, y) != 1;
         }
     EXPECT_EQ(changed, 0);
+}
+
+TEST(Frame, TheBackdropIsLighterAboveThanBelow) {
+    SKIP_WITHOUT_BLOCK;
+    scene::Scene scene = scene_of(bundled("jacksboro.tif"), {"block"});
+    // Without the shade the backdrop depends on the height in the picture alone.
+    scene.effects.settings = {
+        {"block.shade", "0"}, {"block.above", "0.2,0.5,0.8"}, {"block.below", "0.6,0.4,0.1"}};
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    session.draw();
+    const image::Image8 picture = session.picture();
+    const int bottom = picture.height - 1;
+    for (const int x : {1, picture.width - 2}) {
+        // Above bluer, below redder.
+        EXPECT_GT(picture.at(x, 0, 2), picture.at(x, 0, 0) + 40);
+        EXPECT_LT(picture.at(x, bottom, 2), picture.at(x, bottom, 0) - 40);
+        for (int y = 1; y <= bottom; ++y)
+            EXPECT_LE(picture.at(x, y, 2), picture.at(x, y - 1, 2) + 1) << y;
+    }
+    // With its own colours it is lighter above.
+    session.set("block.above", "0.60,0.62,0.64");
+    session.set("block.below", "0.43,0.43,0.42");
+    session.draw();
+    const image::Image8 own = session.picture();
+    EXPECT_GT(own.at(1, 0, 1), own.at(1, bottom, 1) + 15);
+}
+
+/// Green of a block's walls seen from a side, by their height: of the lower third and the upper
+/// one.
+std::pair<double, double> wall_light(double azimuth_deg) {
+    scene::Scene scene = scene_of(bundled("jacksboro.tif"), {"block"});
+    scene.moment.time = "2026-12-21T17:40Z";  // noon: in the south, 30 degrees high
+    scene.view.orbit = {azimuth_deg, 12, 1};
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    session.draw();
+    const image::Image8 picture = session.picture();
+    std::vector<float> depths;
+    session.read_depths(depths);
+    const SeenGround seen(session.camera(), picture.width, picture.height, depths);
+    const render::Ground& ground = session.ground();
+    const double foot_m = ground.base_m(1), top_m = ground.lowest_m;
+    double sum[3] = {}, count[3] = {};
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const auto point = seen.point(x, y);
+            if (!point) continue;
+            const double share =
+                (ground.frame.to_geodetic(*point).height_m - foot_m) / (top_m - foot_m);
+            if (share < 0.05 || share > 0.95) continue;
+            const int third = static_cast<int>(3 * share);
+            sum[third] += picture.at(x, y, 1);
+            ++count[third];
+        }
+    EXPECT_GT(std::min(count[0], count[2]), 200);
+    return {sum[0] / count[0], sum[2] / count[2]};
+}
+
+TEST(Frame, WallsAreLitFromTheSunsSideAndDarkerAtTheirFoot) {
+    SKIP_WITHOUT_BLOCK;
+    const auto [south_foot, south_top] = wall_light(180);
+    const auto [north_foot, north_top] = wall_light(0);
+    EXPECT_GT(south_top, 1.1 * north_top);
+    EXPECT_LT(south_foot, 0.97 * south_top);
+    EXPECT_LT(north_foot, 0.97 * north_top);
 }
 
 TEST(Frame, WallsMeetTheGroundSoThatNothingShowsBetween) {

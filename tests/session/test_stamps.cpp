@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "base/units.h"
+#include "dem/fixture.h"
 #include "session/graticule.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
@@ -157,6 +158,23 @@ TEST(Graticule, LinesAreWhereTheirLatitudesAndLongitudesAreProjected) {
                                          [](float a) { return a > 0; });
         EXPECT_LT(drawn, 0.1 * 480 * 360);
     }
+}
+
+TEST(Graticule, GoesOnAcross180Degrees) {
+    test::Raster raster;
+    raster.columns = raster.rows = 100;
+    raster.crs = "EPSG:4326";
+    raster.geotransform = {{179.95, 0.001, 0, -16.95, 0, -0.001}};
+    scene::Scene scene = scene_of(180, 89.9);
+    scene.dems = {test::write_raster(test::scratch_dir() / "fiji.tif", raster)};
+    const Shown shown(scene);
+    const Graticule graticule =
+        make_graticule(shown.seen, shown.session.ground().frame, [](const auto&) { return true; });
+    std::vector<std::string> names;
+    for (const chart::Stamps::Label& label : graticule.labels)
+        names.push_back(label.words);
+    EXPECT_THAT(names, testing::IsSupersetOf({"180°00'", "179°58'E", "179°58'W", "17°00'S"}));
+    EXPECT_NEAR(graticule.longitude_step_deg, graticule.latitude_step_deg, 1e-9);
 }
 
 TEST(Graticule, HasStepsAndNamesOfMaps) {

@@ -1,0 +1,213 @@
+// Colours on the ground: the legend's are those of the picture, where they belong.
+#include <cmath>
+#include <functional>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "base/units.h"
+#include "dem/fixture.h"
+#include "session/seen_ground.h"
+#include "session/session.h"
+#include "support/support.h"
+
+namespace relevo::session {
+namespace {
+
+constexpr int kSide = 129;
+constexpr double kSpacing_m = 30;
+
+/// A DEM at the equator in UTM, where the grid runs along the compass.
+scene::Scene scene_of(const std::string& name, const std::function<double(int, int)>& height_m,
+                      std::vector<std::string> effects) {
+    test::Raster raster;
+    raster.columns = raster.rows = kSide;
+    raster.crs = "EPSG:32631";
+    raster.geotransform = {{500000, kSpacing_m, 0, 2000, 0, -kSpacing_m}};
+    raster.nodata = -9999;
+    raster.value = [&](int column, int row, int) { return height_m(column, row); };
+    scene::Scene scene;
+    scene.dems = {test::write_raster(test::scratch_dir("ground_colours") / name, raster)};
+    scene.moment.time = "2026-06-21T10:00Z";
+    scene.view.orbit = {180, 90, 1};
+    scene.width_px = 260;
+    scene.height_px = 240;
+    scene.effects.switches.only = std::move(effects);
+    return scene;
+}
+
+/// What a pixel of a picture shows: the column and row of the DEM.
+class Pixels {
+  public:
+    explicit Pixels(const Session& session) : session_(session) {
+        std::vector<float> depths_m;
+        session.read_depths(depths_m);
+        seen_.emplace(session.camera(), session.scene().width_px, session.scene().height_px,
+                      std::move(depths_m));
+    }
+    /// Only well within the DEM, where a pixel shows nothing else.
+    std::optional<glm::dvec2> post(int x, int y) const {
+        const auto point = seen_->point(x, y);
+        if (!point) return std::nullopt;
+        const glm::dvec2 post =
+            session_.dem()->field.grid.post(session_.ground().frame.to_geodetic(*point));
+        if (std::min(post.x, post.y) < 3 || std::max(post.x, post.y) > kSide - 4)
+            return std::nullopt;
+        return post;
+    }
+
+  private:
+    const Session& session_;
+    std::optional<SeenGround> seen_;
+};
+
+int apart(const image::Image8& picture, int x, int y, std::uint32_t rgb) {
+    int most = 0;
+    for (unsigned k = 0; k < 3; ++k)
+        most = std::max(most, std::abs(picture.at(x, y, static_cast<int>(k)) -
+                                       static_cast<int>(rgb >> (16 - 8 * k) & 255)));
+    return most;
+}
+
+/// Pixels whose colour is that of the legend for a value, among all.
+/// @param value  of the legend at a post, NaN where none is told
+double share_right(Session& session, const std::function<double(const glm::dvec2&)>& value,
+                   int tolerance) {
+    session.draw();
+    const image::Image8 picture = session.picture();
+    const Pixels pixels(session);
+    const std::vector<chart::Legend> legends = session.colour_legends();
+    EXPECT_EQ(legends.size(), 1u);
+    int count = 0, right = 0;
+    for (int y = 0; y < picture.height; y += 3)
+        for (int x = 0; x < picture.width; x += 3) {
+            const auto post = pixels.post(x, y);
+            if (!post || std::isnan(value(*post))) continue;
+            ++count;
+            right += apart(picture, x, y, legends.front().ramp.at(value(*post)).rgb) <= tolerance;
+        }
+    EXPECT_GT(count, 1000);
+    return static_cast<double>(right) / count;
+}
+
+void tint_by(scene::Scene& scene, const char* what) {
+    scene.stamps.legend = false;
+    scene.effects.settings = {{"tint.by", what}, {"tint.lit", "false"}};
+}
+
+TEST(ColourLegend, OfDirectionsIsThePictures) {
+    // A cone: east of its top the ground faces east.
+    const double middle = (kSide - 1) / 2.0;
+    scene::Scene scene = scene_of(
+        "cone.tif",
+        [&](int column, int row) { return 2000 - 12 * std::hypot(column - middle, row - middle); },
+        {"tint"});
+    tint_by(scene, "aspect");
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    const auto azimuth_deg = [&](const glm::dvec2& post) {
+        const glm::dvec2 off(post.x - middle, middle - post.y);
+        if (length(off) < 8) return std::nan("");
+        const double azimuth = degrees(std::atan2(off.x, off.y));
+        return azimuth < 0 ? azimuth + 360 : azimuth;
+    };
+    EXPECT_GT(share_right(session, azimuth_deg, 8), 0.97);
+}
+
+TEST(Skylight, TakesFromHollowsWhatTheGroundThatStandsThereDoesNotSend) {
+    // A gorge. Ground as bright as the sky takes nothing; black ground the most; grey between.
+    scene::Scene scene =
+        scene_of("gorge.tif",
+                 [](int column, int) { return 50.0 * std::min(std::abs(column - 64), 20); }, {});
+    scene.view = {.eye = scene::Standpoint{geo::geodetic_deg(0.0006, 3.0175, 5000)},
+                  .heading_deg = 0,
+                  .pitch_deg = -90};
+    const auto light = [&](const char* albedo) {
+        scene::Scene with = scene;
+        if (albedo) {
+            with.effects.switches.only = std::vector<std::string>{"skylight"};
+            with.effects.settings = {{"skylight.albedo", albedo}};
+        }
+        FilesInUse files;
+        Session session(with, {.device = "software", .radiance = true}, files);
+        session.draw();
+        return session.radiance();
+    };
+    const image::ImageF bare = light(nullptr), white = light("1"), black = light("0"),
+                        grey = light("0.5");
+    double most = 0;
+    for (int y = 20; y < bare.height; y += 5)
+        for (int x = 0; x < bare.width; ++x) {
+            const float whole = bare.at(x, y, 2);
+            EXPECT_NEAR(white.at(x, y, 2), whole, 0.01f * whole);
+            EXPECT_LE(black.at(x, y, 2), 1.001f * whole);
+            EXPECT_NEAR(grey.at(x, y, 2), 0.5f * (white.at(x, y, 2) + black.at(x, y, 2)),
+                        0.01f * whole);
+            most = std::max(most, 1 - double{black.at(x, y, 2)} / double{whole});
+        }
+    EXPECT_GT(most, 0.1);
+}
+
+TEST(Infill, PaintsFilledHolesAndNothingElse) {
+    const auto is_hole = [](double column, double row) {
+        return std::abs(column - 40) <= 3 && std::abs(row - 60) <= 3;
+    };
+    // With a sea beside it, which is no hole.
+    scene::Scene scene = scene_of(
+        "hole.tif",
+        [&](int column, int row) {
+            return is_hole(column, row) ? -9999.0 : column > 100 ? 0.0 : 100.0 + column % 5;
+        },
+        {"infill"});
+    scene.effects.settings = {{"infill.colour", "0,1,0,1"}};
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    session.draw();
+    const image::Image8 picture = session.picture();
+    const Pixels pixels(session);
+    int painted = 0, wrong = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const auto post = pixels.post(x, y);
+            if (!post) continue;
+            const bool green = apart(picture, x, y, 0x00ff00) < 4;
+            // Its edge lies between the posts.
+            const double from_edge = std::max(std::abs(post->x - 40), std::abs(post->y - 60)) - 3;
+            painted += green;
+            wrong += green ? from_edge > 1 : from_edge < -0.5;
+        }
+    EXPECT_GT(painted, 50);
+    EXPECT_EQ(wrong, 0);
+}
+
+TEST(ExaggeratedPicture, IsThatOfGroundAsHigh) {
+    // What light and air make of the ground is of the ground as it is drawn.
+    constexpr double kFactor = 5;
+    const auto picture = [&](double height_factor, double exaggeration) {
+        scene::Scene scene =
+            scene_of(fmt::format("hills{}.tif", height_factor),
+                     [&](int column, int row) {
+                         return height_factor *
+                                (60 + 40 * std::sin(column / 7.0) * std::sin(row / 11.0) + column);
+                     },
+                     {"haze", "sky", "shadows", "skylight"});
+        scene.moment.time = "2026-06-21T07:30Z";
+        scene.exaggeration = exaggeration;
+        scene.effects.settings = {{"haze.density", "0.4"}, {"haze.scale_height", "500"}};
+        scene.view = {.eye = scene::Standpoint{geo::geodetic_deg(0.001, 2.997, 900 / exaggeration)},
+                      .heading_deg = 80,
+                      .pitch_deg = -8};
+        FilesInUse files;
+        Session session(scene, {.device = "software"}, files);
+        session.draw();
+        return session.picture();
+    };
+    const image::Image8 high = picture(kFactor, 1), exaggerated = picture(1, kFactor),
+                        flat = picture(1, 1);
+    EXPECT_GT(image::compare(high, exaggerated).psnr_db, 38);
+    EXPECT_LT(image::compare(high, flat).psnr_db, 25);
+}
+
+}  // namespace
+}  // namespace relevo::session

@@ -1,0 +1,96 @@
+// What a session shows next is as if it had been opened for it: nothing is kept that has changed.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "session/session.h"
+#include "support/support.h"
+
+namespace relevo::session {
+namespace {
+
+/// A low sun, with the light that core finds by place.
+scene::Scene evening() {
+    scene::Scene scene;
+    scene.dems = {(test::source_dir() / "data/dem/jacksboro.tif").string()};
+    scene.moment.time = "2026-06-21T23:30:00Z";
+    scene.view.orbit = {250, 30, 1};
+    scene.width_px = 200;
+    scene.height_px = 160;
+    scene.effects.switches.only = std::vector<std::string>{"shadows", "skylight"};
+    return scene;
+}
+
+struct Change {
+    std::string what;
+    std::function<void(scene::Scene&)> make;
+};
+
+const std::vector<Change>& changes() {
+    static const std::vector<Change> all{
+        {"exaggeration", [](scene::Scene& s) { s.exaggeration = 3; }},
+        {"exaggeration below 1", [](scene::Scene& s) { s.exaggeration = 0.4; }},
+        {"refraction", [](scene::Scene& s) { s.refraction = "none"; }},
+        {"time", [](scene::Scene& s) { s.moment.time = "2026-12-21T14:00:00Z"; }},
+        {"camera",
+         [](scene::Scene& s) {
+             s.view.orbit = {60, 20, 2};
+         }},
+        {"exposure", [](scene::Scene& s) { s.exposure_ev = -1; }},
+        {"pixel error", [](scene::Scene& s) { s.pixel_error = 60; }},
+        {"size", [](scene::Scene& s) { s.width_px = 120; }},
+        {"effects", [](scene::Scene& s) { s.effects.switches.only = std::vector<std::string>{}; }},
+        {"stamps", [](scene::Scene& s) { s.stamps.scale = s.stamps.north = true; }},
+    };
+    return all;
+}
+
+image::Image8 picture_of(Session& session) {
+    session.draw();
+    return session.picture();
+}
+
+image::Image8 alone(const scene::Scene& scene) {
+    FilesInUse files;
+    Session session(scene, {.device = "software"}, files);
+    return picture_of(session);
+}
+
+/// @param begin  of which each change is made, shown, and taken back
+void expect_nothing_kept(const scene::Scene& begin, const std::vector<Change>& changes) {
+    const image::Image8 first = alone(begin);
+    const sun::Instant begin_utc = sun::parse_time(begin.moment.time).utc;
+    FilesInUse files;
+    Session session(begin, {.device = "software"}, files);
+    ASSERT_EQ(picture_of(session).values, first.values);
+    for (const Change& change : changes) {
+        scene::Scene scene = begin;
+        change.make(scene);
+        session.show(scene, sun::parse_time(scene.moment.time).utc);
+        const image::Image8 next = picture_of(session);
+        EXPECT_EQ(next.values, alone(scene).values) << change.what;
+        EXPECT_NE(next.values, first.values) << change.what << " changes nothing";
+        session.show(begin, begin_utc);
+        EXPECT_EQ(picture_of(session).values, first.values) << "after " << change.what;
+    }
+}
+
+TEST(Show, APictureIsTheSameWhateverWasShownBefore) {
+    expect_nothing_kept(evening(), changes());
+}
+
+TEST(Show, ShadowMapsAreOfTheGroundAndTheSunThatAreShown) {
+    scene::Scene scene = evening();
+    scene.effects.switches.only = std::vector<std::string>{"vsm"};
+    expect_nothing_kept(scene,
+                        {{"exaggeration", [](scene::Scene& s) { s.exaggeration = 3; }},
+                         {"time", [](scene::Scene& s) { s.moment.time = "2026-06-21T22:00:00Z"; }},
+                         {"camera", [](scene::Scene& s) {
+                              s.view.orbit = {60, 20, 2};
+                          }}});
+}
+
+}  // namespace
+}  // namespace relevo::session
