@@ -6,6 +6,7 @@
 
 #include "base/units.h"
 #include "support/support.h"
+#include "viewer/document.h"
 #include "viewer/navigation.h"
 #include "viewer/overlay.h"
 
@@ -149,6 +150,26 @@ TEST_F(Navigation, WalkingStaysAtEyeHeightAndFlyingAboveTheGround) {
     // No ground, no walk.
     land_.aim_m = [](const geo::Geodetic&) { return std::numeric_limits<double>::quiet_NaN(); };
     EXPECT_EQ(walk(pose_, land_, {0, 5}).eye_m, pose_.eye_m);
+}
+
+TEST_F(Navigation, StandsOnTheGroundAsItIsDrawn) {
+    land_.exaggeration = 3;  // the ground is at 1500 m
+    const auto height_m = [&](const Pose& pose) { return frame_.to_geodetic(pose.eye_m).height_m; };
+    EXPECT_NEAR(height_m(walk(pose_, land_, {10, 20})), 1500 + kWalk_m, 1e-6);
+    Pose down = pose_;
+    down.pitch_deg = -80;
+    for (int i = 0; i < 100; ++i)
+        down = fly(down, land_, {0, 100, 0});
+    EXPECT_NEAR(height_m(down), 1500 + kClearance_m, 1e-6);
+    EXPECT_NEAR(land_.ground_under(pose_.eye_m), 1500, 1e-9);
+    // A view that is kept is found again on ground that is drawn otherwise by then.
+    Document document;
+    document.pose = pose_;
+    const SavedView saved = saved_view(document, land_, "kept");
+    EXPECT_NEAR(saved.eye.height_m, 1000, 1e-3);
+    EXPECT_LT(distance(viewer::pose_of(saved, land_).eye_m, pose_.eye_m), 1e-3);
+    land_.exaggeration = 2;
+    EXPECT_NEAR(height_m(viewer::pose_of(saved, land_)), 2000, 1e-3);
 }
 
 TEST_F(Navigation, ZoomingFromStraightAboveKeepsNorthUp) {
