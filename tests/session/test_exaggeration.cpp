@@ -74,7 +74,7 @@ Lines lines_of(scene::Scene scene) {
 TEST(ExaggeratedGraticule, IsOnTheGroundWhateverItsHeight) {
     for (const double exaggeration : {0.3, 1.0, 4.0}) {
         scene::Scene scene = scene_of(exaggeration);
-        scene.view.orbit = {200, 40, 1};
+        scene.view.orbit = {200, 60, 6};  // a pixel is some 20 m wide
         const Lines lines = lines_of(scene);
         int ground = 0, drawn = 0;
         for (std::size_t i = 0; i < lines.drawn.size(); ++i) {
