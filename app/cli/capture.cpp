@@ -16,6 +16,7 @@
 #include "base/text.h"
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
+#include "cli/trust.h"
 #include "dem/files_of.h"
 #include "geo/format.h"
 #include "session/batch.h"
@@ -53,6 +54,10 @@ Wanted wanted(const Arguments& arguments) {
     Wanted result{scene::read_scene_text(text->second, path.string(), path.parent_path()),
                   arguments.ab};
     arguments.scene.apply_to(result.scene);
+    Trust trusted(arguments.scene, "--from: " + printable(path.string()), NamedBy::Picture);
+    trusted.check_names(result.scene);
+    trusted.keep_folders(result.scene.effects);
+    trusted.tell();
     const auto compared = metadata.find(session::kComparedKeyword);
     if (compared != metadata.end() && arguments.ab.empty())
         result.compared = split(compared->second, ',');

@@ -18,6 +18,7 @@
 #include "cli/commands.h"
 #include "cli/scene_arguments.h"
 #include "cli/shard.h"
+#include "cli/trust.h"
 #include "dem/files_of.h"
 #include "scene/job.h"
 #include "session/batch.h"
@@ -109,9 +110,17 @@ class Run {
             job.folder.clear();
         }
         files_.add_input(arguments_.job, "the job");
+        Trust trusted(arguments_.scene, "job: " + printable(arguments_.job), NamedBy::File);
         scene::Shots drawn_up = scene::shots_of(
-            job, [&](const scene::Scene& scene) { return moments_.of(scene); },
+            job,
+            [&](const scene::Scene& scene) {
+                trusted.check_names(scene);  // before its DEM is opened
+                return moments_.of(scene);
+            },
             arguments_.yes ? kMost : kMostUnasked);
+        for (scene::Shot& shot : drawn_up.shots)
+            trusted.keep_folders(shot.scene.effects);
+        trusted.tell();
         warn_of_skipped(drawn_up.left_out);
         return std::move(drawn_up.shots);
     }

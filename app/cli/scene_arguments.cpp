@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "cli/trust.h"
 
 namespace relevo::cli {
 
@@ -97,6 +98,8 @@ void SceneArguments::add_to(CLI::App& verb, bool with_file) {
                 dem.dem_option->required(false);
             },
             "Scene to draw, a file of --save-scene; other options override it");
+    verb.add_flag("--trust", trust,
+                  "Use plugin folders and names on the net that a scene, job or picture names");
     time.add_to(verb);
     refraction.add_to(verb);
     view.add_to(verb);
@@ -114,6 +117,10 @@ scene::Scene SceneArguments::scene() const {
     scene::Scene result;
     if (!file.empty()) result = scene::read_scene(file);
     apply_to(result);
+    Trust trusted(*this, "scene: " + printable(file), NamedBy::File);
+    trusted.check_names(result);
+    trusted.keep_folders(result.effects);
+    trusted.tell();
     return result;
 }
 

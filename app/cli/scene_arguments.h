@@ -41,6 +41,7 @@ struct SceneArguments {
     StampArguments stamps;
     std::string file, size, holes;
     std::optional<double> exposure_ev, pixel_error;
+    bool trust = false;  ///< --trust: Trust
 
     /// @param with_file  there is --scene
     void add_to(CLI::App& verb, bool with_file = true);

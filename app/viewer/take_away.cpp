@@ -1,11 +1,13 @@
 #include "viewer/take_away.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/output_file.h"
+#include "dem/remote.h"
 #include "image/image.h"
 #include "scene/job.h"
 #include "session/record.h"
@@ -63,9 +65,22 @@ scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 
     return scene;
 }
 
+namespace {
+
+/// What a command that reads a file of this scene needs besides: Relevo uses plugin folders and
+/// names on the net only where the command line allows them.
+std::string trust_option(const scene::Scene& scene) {
+    const bool asks_net = std::any_of(scene.dems.begin(), scene.dems.end(), dem::is_remote) ||
+                          (scene.overlay && dem::is_remote(scene.overlay->file));
+    return asks_net || !scene.effects.plugin_path.empty() ? " --trust" : "";
+}
+
+}  // namespace
+
 std::string save_scene(const scene::Scene& scene) {
     const std::string name = save_json(scene::scene_text(scene, ""));
-    return name + ": scene saved; relevo view --scene opens it";
+    return fmt::format("{0}: scene saved; relevo view --scene {0}{1} opens it", name,
+                       trust_option(scene));
 }
 
 std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone) {
@@ -79,8 +94,8 @@ std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zo
                                .step = "1h",
                                .output = "{dem}_{time:%Y%m%dT%H%M}.png"};
     const std::string name = save_json(scene::day_job_text(scene, of_day, ""));
-    return fmt::format("{}: every hour of this day{}; run it with relevo run {}", name,
-                       by_sun ? " from sunrise to sunset" : "", name);
+    return fmt::format("{}: every hour of this day{}; run it with relevo run {}{}", name,
+                       by_sun ? " from sunrise to sunset" : "", name, trust_option(scene));
 }
 
 namespace {

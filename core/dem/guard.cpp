@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "dem/interpret.h"
+#include "dem/remote.h"
 
 namespace relevo::dem {
 namespace {
@@ -25,14 +26,6 @@ namespace {
 constexpr std::array kRemoteDrivers = {"DAAS",   "EEDA",     "EEDAI",    "HTTP",          "NGW",
                                        "OGCAPI", "PLMOSAIC", "PLSCENES", "PostGISRaster", "STACIT",
                                        "STACTA", "WCS",      "WMS",      "WMTS"};
-constexpr std::array kRemotePrefixes = {
-    "DAAS:",     "EEDA:",   "EEDAI:",  "NGW:", "OGCAPI:", "PG:",  "PLMOSAIC:",
-    "PLSCENES:", "STACIT:", "STACTA:", "WCS:", "WMS:",    "WMTS:"};
-/// GDAL's file systems that lie on files of this machine.
-constexpr std::array<std::string_view, 10> kLocalSystems = {
-    "/vsi7z/",  "/vsicached",  "/vsicrypt/",   "/vsigzip/", "/vsimem/",
-    "/vsirar/", "/vsisparse/", "/vsisubfile/", "/vsitar/",  "/vsizip/"};
-
 using OpenFunction = GDALDataset* (*)(GDALOpenInfo*);
 
 struct Disarmed {
@@ -75,11 +68,6 @@ GDALDriver* driver(const char* name) {
     return GDALDriver::FromHandle(GDALGetDriverByName(name));
 }
 
-bool is_local_system(std::string_view name) {
-    return std::any_of(kLocalSystems.begin(), kLocalSystems.end(),
-                       [&](std::string_view system) { return name.starts_with(system); });
-}
-
 CPLHTTPResult* fetch_nothing(const char*, CSLConstList, GDALProgressFunc, void*,
                              CPLHTTPFetchWriteFunc, void*, void*) {
     auto* const result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
@@ -97,7 +85,7 @@ void close_remote_systems() {
     char** const prefixes = VSIGetFileSystemsPrefixes();
     for (char** prefix = prefixes; prefix && *prefix; ++prefix) {
         const std::string name = *prefix;
-        if (!name.starts_with("/vsi") || is_local_system(name)) continue;
+        if (!name.starts_with("/vsi") || is_local_file_system(name)) continue;
         VSIFilesystemHandler* const handler = VSIFileManager::GetHandler(name.c_str());
         disarmed().systems.emplace_back(name, handler);
         VSIInstallPluginHandler(name.c_str(), nothing);
@@ -137,21 +125,6 @@ void allow_remote() {
     for (const auto& [name, handler] : all.systems)
         VSIFileManager::InstallHandler(name, handler);
     CPLHTTPSetFetchCallback(nullptr, nullptr);
-}
-
-bool is_remote(std::string_view name) {
-    if (name.starts_with("vrt://")) name.remove_prefix(6);
-    if (name.find("://") != std::string_view::npos) return true;
-    for (const std::string_view prefix : kRemotePrefixes)
-        if (name.size() >= prefix.size() && EQUALN(name.data(), prefix.data(), prefix.size()))
-            return true;
-    // In the middle too: "/vsizip//vsicurl/...".
-    for (std::size_t at = name.find("/vsi"); at != std::string_view::npos;
-         at = name.find("/vsi", at + 1))
-        if (at == 0 || name[at - 1] == '/' || name[at - 1] == '{' || name[at - 1] == ':' ||
-            name[at - 1] == '"' || name[at - 1] == ',')
-            if (!is_local_system(name.substr(at))) return true;
-    return false;
 }
 
 std::string disarmed_driver_of(const std::string& path) {
@@ -242,11 +215,14 @@ namespace {
 /// Walks through a virtual raster and those that it names.
 class VrtWalk {
   public:
-    explicit VrtWalk(std::string given) : given_(std::move(given)) {}
+    explicit VrtWalk(std::string given)
+        : given_(std::move(given)), may_ask_net_(is_remote(given_)) {}
 
     std::uint64_t bytes() const { return bytes_; }
 
     void file(const std::string& path) {
+        // A name may be the text of a virtual raster itself.
+        if (path.starts_with('<')) return source(path, "");
         VSIStatBufL status{};
         if (VSIStatL(path.c_str(), &status) == 0)
             bytes_ += static_cast<std::uint64_t>(status.st_size);
@@ -320,14 +296,11 @@ class VrtWalk {
             refuse(given_, fmt::format("a virtual raster of the program's own memory ('{}'), "
                                        "expected files",
                                        text));
-        {
-            const std::lock_guard lock(mutex());
-            if (is_remote(name) && !disarmed().remote_allowed)
-                refuse(given_, fmt::format("a virtual raster of '{}', expected files of this "
-                                           "machine; the net is asked only by a name on the "
-                                           "command line",
-                                           text));
-        }
+        if (is_remote(name) && !may_ask_net_)
+            refuse(given_, fmt::format("a virtual raster of '{}', expected files of this "
+                                       "machine; the net is asked only by a name on the "
+                                       "command line",
+                                       text));
         if (!folder.empty()) name = CPLProjectRelativeFilename(folder.c_str(), name.c_str());
         std::error_code unknown;
         const std::string found = file_in(name);
@@ -346,6 +319,8 @@ class VrtWalk {
     }
 
     std::string given_;
+    /// Whatever the process may by now: another name on the command line is not this file's.
+    bool may_ask_net_;
     std::vector<std::string> inside_;
     std::vector<std::string> seen_;
     int sources_ = 0;

@@ -13,9 +13,6 @@ namespace relevo::dem {
 /// net. What names a file of this machine is left. prepare_gdal() calls it once.
 void disarm_gdal();
 
-/// Whether a name asks for the net or for standard input: "https://...", "/vsis3/...", "WMTS:...".
-bool is_remote(std::string_view name);
-
 /// Gives the net back, for a name that a person has given. Safe on several threads at once.
 void allow_remote();
 

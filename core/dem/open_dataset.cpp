@@ -17,6 +17,7 @@
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
+#include "dem/remote.h"
 
 namespace relevo::dem {
 

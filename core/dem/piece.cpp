@@ -15,6 +15,7 @@
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/nodata.h"
+#include "dem/remote.h"
 
 namespace relevo::dem {
 namespace {

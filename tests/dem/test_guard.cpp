@@ -14,6 +14,7 @@
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/load.h"
+#include "dem/remote.h"
 #include "support/support.h"
 
 // What a file from others must not make the program do.
@@ -242,6 +243,22 @@ TEST(Guard, AProcessWithoutFilesLeftSaysSo) {
     const std::string message = refusal(path);
     ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
     EXPECT_EQ(message, "cannot be read, Too many open files; allow more of them with ulimit -n");
+}
+
+/// The last: the net is open from here on.
+TEST(Guard, TheNetOfOneNameIsNotThatOfAFile) {
+    const std::string remote = "/vsicurl/http://127.0.0.1:9/a.tif";
+    EXPECT_NE(test::error_of([&] { load(remote); }), "no error");
+    EXPECT_EQ(refusal(vrt("late.vrt", source_of(remote))),
+              fmt::format("a virtual raster of '{}', expected files of this machine; the net is "
+                          "asked only by a name on the command line",
+                          remote));
+    // As the text of a name, too.
+    EXPECT_EQ(refusal("<VRTDataset rasterXSize=\"6\" rasterYSize=\"4\"><VRTRasterBand dataType="
+                      "\"Float32\" band=\"1\">" +
+                      source_of("WMTS:here") + "</VRTRasterBand></VRTDataset>"),
+              "a virtual raster of 'WMTS:here', expected files of this machine; the net is asked "
+              "only by a name on the command line");
 }
 
 }  // namespace

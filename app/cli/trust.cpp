@@ -1,0 +1,105 @@
+#include "cli/trust.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/paths.h"
+#include "base/text.h"
+#include "cli/scene_arguments.h"
+#include "dem/remote.h"
+#include "effect/registry.h"
+
+namespace relevo::cli {
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// One name for a folder, whichever way it is named.
+std::string absolute(const std::string& folder) {
+    std::error_code unknown;
+    const std::filesystem::path whole = std::filesystem::weakly_canonical(folder, unknown);
+    return unknown ? folder : (whole / "").parent_path().string();  // without a slash at its end
+}
+
+}  // namespace
+
+Trust::Trust(const SceneArguments& given, std::string file, NamedBy by)
+    : given_(given), file_(std::move(file)), by_(by) {
+    for (const std::string& folder : given.effects.plugin_path)
+        named_.push_back(absolute(folder));
+}
+
+void Trust::check_names(const scene::Scene& scene) const {
+    if (given_.trust) return;
+    const auto check = [&](const char* key, const std::string& name,
+                           const std::vector<std::string>& named) {
+        if (dem::is_remote(name) && !contains(named, name))
+            bad_input(
+                fmt::format("{}: {}: '{}' is not a file of this machine; name it on the "
+                            "command line, or add --trust",
+                            file_, key, printable(name)));
+    };
+    for (const std::string& name : scene.dems)
+        check("dem.files", name, given_.dem.paths);
+    if (scene.overlay) check("overlay.file", scene.overlay->file, {given_.overlay.file});
+}
+
+/// The plugins below a folder that have no native module.
+std::vector<std::string> Trust::without_modules(const std::string& folder) {
+    std::vector<std::string> folders;
+    const effect::Registry registry = effect::Registry::load({folder}, share_dir() / "data");
+    for (const effect::Effect& effect : registry.effects())
+        (effect.manifest.module.empty() ? folders : modules_)
+            .push_back(effect.manifest.folder.string());
+    for (const effect::BrokenEffect& broken : registry.broken())
+        modules_.push_back(broken.folder.string());
+    return folders;
+}
+
+const Trust::Known& Trust::folder(const std::string& name) {
+    const auto known = known_.find(name);
+    if (known != known_.end()) return known->second;
+    Known folder{absolute(name), Folder::LeftOut, {name}};
+    if (contains(named_, folder.path))
+        folder.kind = Folder::Named;
+    else if (given_.trust)
+        folder.kind = Folder::Allowed;
+    else if (!contains(left_out_, folder.path))
+        left_out_.push_back(folder.path);
+    if (folder.kind == Folder::Allowed && by_ == NamedBy::Picture)
+        folder.folders = without_modules(name);
+    return known_.emplace(name, std::move(folder)).first->second;
+}
+
+void Trust::keep_folders(scene::Effects& effects) {
+    std::vector<std::string> kept;
+    for (const std::string& name : std::exchange(effects.plugin_path, {})) {
+        const Known& of = folder(name);
+        if (of.kind == Folder::LeftOut || contains(kept, of.path)) continue;
+        kept.push_back(of.path);
+        effects.plugin_path.insert(effects.plugin_path.end(), of.folders.begin(), of.folders.end());
+    }
+}
+
+void Trust::tell() const {
+    const auto warn = [&](const std::vector<std::string>& folders, const char* what,
+                          const char* otherwise) {
+        if (folders.empty()) return;
+        const std::string first = printable(folders.front());
+        const std::string more =
+            folders.size() == 1 ? "" : fmt::format(" and {} more", folders.size() - 1);
+        log::warning(fmt::format("{}: {} {}{} are not used; add --plugin-path {}{}", file_, what,
+                                 first, more, first, otherwise));
+    };
+    warn(left_out_, "plugins of", ", or --trust for all");
+    warn(modules_, "native modules of", "");
+}
+
+}  // namespace relevo::cli

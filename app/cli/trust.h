@@ -1,0 +1,55 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace relevo::cli {
+
+struct SceneArguments;
+
+/// Whose names a scene has besides those of the command line.
+enum class NamedBy {
+    File,     ///< a scene or a job
+    Picture,  ///< the record in one, which may come from anybody
+};
+
+/// What a scene, a job or a picture names is used like what the command line names, but for two
+/// kinds: plugin folders, whose code would run, and names on the net, which would be asked. Those
+/// are used where the command line has the same name or --trust. Native modules of a folder that
+/// only a picture names are never loaded.
+class Trust {
+  public:
+    /// @param given  the command line
+    /// @param file   as messages name it: "scene: view.json"
+    Trust(const SceneArguments& given, std::string file, NamedBy by);
+
+    /// @throws Error (Usage) for a DEM or an overlay that is on the net
+    void check_names(const scene::Scene& scene) const;
+    /// Keeps of a scene's plugin folders those that are used, each once.
+    void keep_folders(scene::Effects& effects);
+    /// Warns, on one line, of the folders that were left out.
+    void tell() const;
+
+  private:
+    enum class Folder { Named, Allowed, LeftOut };
+    struct Known {
+        std::string path;  ///< absolute
+        Folder kind;
+        std::vector<std::string> folders;  ///< what is used of it
+    };
+    const Known& folder(const std::string& name);
+    std::vector<std::string> without_modules(const std::string& folder);
+
+    const SceneArguments& given_;
+    std::string file_;
+    NamedBy by_;
+    std::vector<std::string> named_;      ///< folders of the command line, absolute
+    std::map<std::string, Known> known_;  ///< by the name in a scene
+    std::vector<std::string> left_out_;   ///< folders, absolute
+    std::vector<std::string> modules_;    ///< likewise, of plugins whose modules are not loaded
+};
+
+}  // namespace relevo::cli

@@ -1,0 +1,290 @@
+// What a picture, a scene or a job from somebody else may not make the program do.
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <nlohmann/json.hpp>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "cli/program.h"
+#include "image/image.h"
+#include "support/support.h"
+
+namespace relevo::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kLeftOut = "are not used; add --plugin-path ";
+
+class Trust : public testing::Test {
+  protected:
+    Trust() {
+        fs::create_directories(evil() / "native");
+        // Its module ends the program where it is loaded.
+        fs::copy(build_dir() / "tests/modules/faulty.so", evil() / "native/native.so");
+        std::ofstream(evil() / "native/plugin.json")
+            << R"({"format": 1, "id": "native", "name": "N", "version": "1", "module": "native"})";
+        std::ofstream(evil() / "native/native.glsl")
+            << "void native_on_albedo(inout Surface s) {}\n";
+        fs::create_directories(evil() / "red");
+        std::ofstream(evil() / "red/plugin.json")
+            << R"({"format": 1, "id": "red", "name": "R", "version": "1"})";
+        std::ofstream(evil() / "red/red.glsl")
+            << "void red_on_albedo(inout Surface s) { s.diffuse = vec3(1.0, 0.0, 0.0); }\n";
+    }
+
+    fs::path evil() const { return dir_ / "evil"; }
+
+    /// A small scene of the bundled DEM with one more member.
+    json scene(const std::string& key, const json& value) const {
+        json scene = {{"format", 1},
+                      {"dem", {{"files", json::array({bundled_dem()})}}},
+                      {"time", {{"at", "2026-06-21T08:00Z"}}},
+                      {"picture", {{"size", {64, 48}}}}};
+        scene[key] = value;
+        return scene;
+    }
+    json with_plugins(const std::string& folder) const {
+        return scene("effects", {{"only", json::array()}, {"plugin_path", json::array({folder})}});
+    }
+    std::string file(const std::string& name, const json& content) const {
+        std::ofstream(dir_ / name) << content.dump(1);
+        return (dir_ / name).string();
+    }
+    /// A picture whose record is this scene.
+    std::string picture(const json& scene) const {
+        image::write(dir_ / "photo.png", image::Image8(8, 8, 3),
+                     {{"Software", "Relevo"}, {"relevo:scene", scene.dump()}}, true);
+        return (dir_ / "photo.png").string();
+    }
+
+    Result drawn(std::vector<std::string> arguments, const std::vector<std::string>& more = {},
+                 const char* fault = "create exit later") const {
+        arguments.insert(arguments.begin(), "-q");
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        fs::remove(dir_ / "out.png");
+        return relevo(arguments, {std::string("RELEVO_TEST_FAULT=") + fault});
+    }
+    Result capture(const char* option, const std::string& from,
+                   const std::vector<std::string>& more = {}) const {
+        return drawn({"capture", option, from, "-o", (dir_ / "out.png").string()}, more);
+    }
+    bool is_there() const { return fs::exists(dir_ / "out.png"); }
+
+    fs::path dir_ = scratch_dir("trust");
+};
+
+TEST_F(Trust, APictureRunsNoCode) {
+    for (const std::string& folder : {std::string("evil"), evil().string()}) {
+        json record = with_plugins(folder);
+        record["effects"].erase("only");
+        const std::string photo = picture(record);
+        const Result run = capture("--from", photo);
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_EQ(run.err, fmt::format("relevo: warning: --from: {0}: plugins of {1} {2}{1}, or "
+                                       "--trust for all\n",
+                                       photo, evil().string(), kLeftOut));
+        EXPECT_TRUE(is_there());
+    }
+}
+
+TEST_F(Trust, OfAPictureThatIsTrustedModulesAreNotLoaded) {
+    json record = with_plugins("evil");
+    record["effects"].erase("only");
+    const std::string photo = picture(record);
+    const Result run = capture("--from", photo, {"--trust"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err, fmt::format("relevo: warning: --from: {}: native modules of {}/native are "
+                                   "not used; add --plugin-path {}/native\n",
+                                   photo, evil().string(), evil().string()));
+    // Other plugins are used.
+    const image::Image8 image = image::read(dir_ / "out.png");
+    double red = 0, green = 0;
+    for (int y = 24; y < 40; ++y)
+        for (int x = 16; x < 48; ++x) {
+            red += image.at(x, y, 0);
+            green += image.at(x, y, 1);
+        }
+    EXPECT_GT(red, 2 * green);
+}
+
+TEST_F(Trust, ScenesAndJobsRunNoCode) {
+    json base = with_plugins("evil");
+    base["effects"].erase("only");
+    json plain = scene("output", "out.png");
+    json in_job = plain;
+    in_job["effects"] = base["effects"];
+    json of_base = plain;
+    of_base["scene"] = "scene.json";
+    json in_shot = plain;
+    in_shot["shots"].push_back(json::object({{"effects", base["effects"]}}));
+    json in_sweep = plain;
+    in_sweep["sweep"].push_back(json::object({{"effects", json::array({base["effects"]})}}));
+    const std::string scene = file("scene.json", base);
+    const auto expect_left_out = [&](const Result& run, const std::string& what) {
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_THAT(run.err, HasSubstr(evil().string() + " " + kLeftOut + evil().string())) << what;
+        EXPECT_THAT(run.err, Not(HasSubstr("native"))) << what;
+        EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    };
+    expect_left_out(capture("--scene", scene), "scene");
+    EXPECT_EQ(capture("--scene", scene, {"--trust"}).status, 1);
+    const std::pair<const char*, json> jobs[] = {
+        {"job", in_job}, {"base", of_base}, {"shot", in_shot}, {"sweep", in_sweep}};
+    for (const auto& [what, content] : jobs) {
+        const std::string job = file("job.json", content);
+        expect_left_out(drawn({"run", job}), what);
+        EXPECT_TRUE(is_there()) << what;
+        expect_left_out(drawn({"run", job, "--dry-run"}), what);
+        const Result trusted = drawn({"run", job}, {"--trust"});
+        EXPECT_NE(trusted.status, 0) << what;
+        EXPECT_THAT(trusted.err, HasSubstr("native.so: its create() ended the program")) << what;
+    }
+}
+
+TEST_F(Trust, WhatTheCommandLineNamesIsUsedOnce) {
+    const std::string link = (dir_ / "link").string();
+    fs::create_directory_symlink(evil(), link);
+    json record = with_plugins("evil/");
+    record["effects"]["only"] = json::array({"red"});
+    for (const std::string& named : {evil().string(), evil().string() + "/", link}) {
+        const Result run = capture("--from", picture(record), {"--plugin-path", named});
+        EXPECT_EQ(run.status, 0) << run.err;
+        EXPECT_EQ(run.err, "") << named;
+        EXPECT_TRUE(is_there());
+    }
+}
+
+TEST_F(Trust, APictureOfAPluginPathIsMadeAgainByIt) {
+    const std::string made = (dir_ / "made.png").string();
+    const std::vector<std::string> path{"--plugin-path", evil().string()};
+    const Result first = drawn(
+        {"capture", bundled_dem(), "--size", "64x48", "--only", "red", "-o", made, "--overwrite"},
+        path);
+    ASSERT_EQ(first.status, 0) << first.err;
+    const Result untrusted = capture("--from", made);
+    EXPECT_EQ(untrusted.status, 3);  // red is asked for and not there
+    EXPECT_THAT(untrusted.err, HasSubstr(kLeftOut));
+    EXPECT_FALSE(is_there());
+    ASSERT_EQ(capture("--from", made, path).status, 0);
+    EXPECT_EQ(image::read(made).values, image::read(dir_ / "out.png").values);
+}
+
+/// A server on this machine that has nothing, and counts who asks.
+class CountingServer {
+  public:
+    CountingServer() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+        sockaddr_in at{};
+        at.sin_family = AF_INET;
+        at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof at;
+        if (bind(socket_, reinterpret_cast<sockaddr*>(&at), size) != 0 ||
+            listen(socket_, 16) != 0 ||
+            getsockname(socket_, reinterpret_cast<sockaddr*>(&at), &size) != 0)
+            return;
+        port_ = ntohs(at.sin_port);
+        thread_ = std::thread([this] { serve(); });
+    }
+    ~CountingServer() {
+        stop_ = true;
+        if (thread_.joinable()) thread_.join();
+        close(socket_);
+    }
+    CountingServer(const CountingServer&) = delete;
+    CountingServer& operator=(const CountingServer&) = delete;
+
+    std::string address() const { return fmt::format("http://127.0.0.1:{}", port_); }
+    int asked() const { return asked_; }
+
+  private:
+    void serve() {
+        while (!stop_) {
+            pollfd ready{socket_, POLLIN, 0};
+            if (poll(&ready, 1, 20) <= 0) continue;
+            const int client = accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC);
+            if (client < 0) continue;
+            ++asked_;
+            const timeval patience{1, 0};
+            setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+            char request[4096];
+            if (read(client, request, sizeof request) > 0) {
+                constexpr std::string_view kNothing =
+                    "HTTP/1.0 404 Not Found\r\nContent-Length: 0\r\n\r\n";
+                [[maybe_unused]] const auto written =
+                    write(client, kNothing.data(), kNothing.size());
+            }
+            close(client);
+        }
+    }
+
+    int socket_;
+    int port_ = 0;
+    std::atomic<bool> stop_ = false;
+    std::atomic<int> asked_ = 0;
+    std::thread thread_;
+};
+
+TEST_F(Trust, NoFileAsksTheNet) {
+    const CountingServer server;
+    const std::string remote = server.address() + "/x.tif";
+    const auto job = [&](json members) {
+        members["output"] = "out.png";
+        return file("job.json", members);
+    };
+    for (const std::string& name : {remote, "/vsicurl/" + remote, "/vsigzip//vsicurl/" + remote,
+                                    "vrt://" + remote + "?bands=1", "WMTS:" + remote}) {
+        const json dem = scene("dem", {{"files", json::array({name})}});
+        const json overlay = scene("overlay", {{"file", name}});
+        json event = scene("shots", json::array({dem}));
+        event["shots"][0] = {{"dem", dem["dem"]}};
+        event["time"] = {{"at", "sunset"}, {"date", "2026-06-21"}};
+        const std::vector<Result> runs{capture("--from", picture(dem)),
+                                       capture("--from", picture(overlay)),
+                                       capture("--scene", file("scene.json", dem)),
+                                       capture("--scene", file("scene.json", overlay)),
+                                       drawn({"run", job(dem)}),
+                                       drawn({"run", job(overlay), "--dry-run"}),
+                                       drawn({"run", job(event)})};
+        for (const Result& run : runs) {
+            EXPECT_EQ(run.status, 2) << run.err;
+            EXPECT_THAT(run.err, HasSubstr(": '" + name +
+                                           "' is not a file of this machine; name it on the "
+                                           "command line, or add --trust\n"));
+        }
+    }
+    EXPECT_EQ(server.asked(), 0);
+}
+
+TEST_F(Trust, TheCommandLineAsksTheNet) {
+    const CountingServer server;
+    const std::string name = "/vsicurl/" + server.address() + "/x.tif";
+    int asked = 0;
+    const auto expect_asked = [&](const Result& run) {
+        EXPECT_EQ(run.status, 3) << run.err;
+        EXPECT_THAT(run.err, HasSubstr(name + ": "));
+        EXPECT_GT(server.asked(), std::exchange(asked, server.asked()));
+    };
+    expect_asked(drawn({"capture", name, "-o", (dir_ / "out.png").string()}));
+    const std::string photo = picture(scene("dem", {{"files", json::array({name})}}));
+    expect_asked(capture("--from", photo, {"--trust"}));
+    expect_asked(
+        capture("--from", picture(scene("stamps", {{"show", json::array({"scale"})}})), {name}));
+}
+
+}  // namespace
+}  // namespace relevo::test
