@@ -196,7 +196,7 @@ void capture(const Arguments& arguments) {
     Timings timings(open(arguments.timings, "--timings"));
     OutputFile* const scene_file = open(arguments.save_scene, "--save-scene");
     OutputFile* const sidecar_file =
-        open(arguments.sidecar || arguments.audit ? session::sidecar_of(output).string() : "",
+        open(arguments.sidecar || arguments.audit ? session::sidecar_to_write(output).string() : "",
              "--sidecar");
 
     session::Options options{.device = arguments.device,

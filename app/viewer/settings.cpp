@@ -58,6 +58,10 @@ void write_whole(const fs::path& file, const ordered_json& content) {
     if (failure)
         failed(fmt::format("view: {}: cannot be made, {}; settings are not saved",
                            printable(file.parent_path().string()), failure.message()));
+    // A pipe would keep the window waiting until somebody reads it.
+    if (fs::exists(file, failure) && !fs::is_regular_file(file, failure))
+        failed(fmt::format("view: {}: is no regular file; nothing is remembered, remove it",
+                           printable(file.string())));
     // Names of files may be of any bytes.
     write_text(file, content.dump(2, ' ', false, json::error_handler_t::replace) + "\n",
                /*overwrite=*/true, "view");

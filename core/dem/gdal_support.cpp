@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "base/text.h"
 #include "dem/guard.h"
+#include "dem/regular_files.h"
 
 namespace relevo::dem {
 namespace {
@@ -29,6 +30,7 @@ void prepare_gdal() {
         CPLSetErrorHandler(to_debug_log);
         GDALAllRegister();
         disarm_gdal();
+        open_regular_files_only();
         // By itself it is a twentieth of the machine's memory, whatever --memory is.
         if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr))
             GDALSetCacheMax64(std::min(GDALGetCacheMax64(), kBlockBytes));

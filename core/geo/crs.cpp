@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "geo/proj_files.h"
 
 namespace relevo::geo {
 namespace {
@@ -39,6 +40,7 @@ struct Transformation {
         Transformation copy;
         copy.context.reset(proj_context_clone(context.get()));
         proj_log_level(copy.context.get(), PJ_LOG_NONE);
+        open_regular_files_only(copy.context.get());
         copy.pj.reset(proj_clone(copy.context.get(), pj.get()));
         if (!copy.pj) failed("CRS: a PROJ transformation could not be copied");
         return copy;
@@ -277,6 +279,7 @@ Crs Crs::parse(std::string_view given, std::string_view who) {
     Context context(proj_context_create());
     PJ_CONTEXT* const c = context.get();
     proj_log_func(c, &reason, keep_last_message);
+    open_regular_files_only(c);
 
     std::string definition(text);
     if (wants_type_crs(text)) definition += text.starts_with('+') ? " +type=crs" : " type=crs";

@@ -5,7 +5,6 @@
 #include <condition_variable>
 #include <deque>
 #include <exception>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -137,7 +136,7 @@ class Batch {
             Outputs{files_.open_alone(shot.output, options_.overwrite, "run"), std::nullopt});
         if (options_.sidecar)
             outputs->sidecar.emplace(
-                files_.open_alone(sidecar_of(shot.output), options_.overwrite, "--sidecar"));
+                files_.open_alone(sidecar_to_write(shot.output), options_.overwrite, "--sidecar"));
         session_->show(shot.scene, shot.utc);
         session_->draw();
         std::optional<ShadowAudit> audit;
@@ -253,10 +252,26 @@ std::filesystem::path sidecar_of(std::filesystem::path picture) {
     return picture += ".json";
 }
 
+std::filesystem::path sidecar_to_write(const std::filesystem::path& picture) {
+    std::filesystem::path sidecar = sidecar_of(picture);
+    std::error_code unknown;
+    const std::filesystem::file_status status = std::filesystem::status(sidecar, unknown);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        bad_input(
+            fmt::format("--sidecar: {}: is not a regular file; remove it, or give the "
+                        "picture another name",
+                        printable(sidecar.string())));
+    return sidecar;
+}
+
 bool has_sidecar(const std::filesystem::path& picture, bool audited) {
-    std::ifstream file(sidecar_of(picture), std::ios::binary);
-    if (!file) return false;
-    const auto json = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+    std::string text;
+    try {
+        text = read_text(sidecar_of(picture), "--sidecar");
+    } catch (const Error&) {
+        return false;
+    }
+    const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
     return json.is_object() && (!audited || json.contains("audit"));
 }
 

@@ -27,6 +27,10 @@ bool is_made(const scene::Shot& shot, const std::vector<std::filesystem::path>& 
 /// Where the JSON beside a picture is.
 std::filesystem::path sidecar_of(std::filesystem::path picture);
 
+/// The same, to be written. @throws Error (BadInput) where it is a pipe or a device, which would
+/// keep the program waiting though nobody has named it
+std::filesystem::path sidecar_to_write(const std::filesystem::path& picture);
+
 /// Whether it is there. @param audited  with an audit in it
 bool has_sidecar(const std::filesystem::path& picture, bool audited);
 
