@@ -4,6 +4,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <new>
 #include <optional>
@@ -12,15 +13,19 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <pthread.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/fatal_signals.h"
 #include "base/log.h"
 #include "base/output_file.h"
 #include "base/text.h"
@@ -202,13 +207,44 @@ int run_and_report(int argc, char** argv, std::string& lost_output) {
     }
 }
 
+/// What a limit on memory or on stacks leaves a graphics driver ends it by a signal, not an error.
+/// Sanitizers say more of it.
+int run_guarded(int argc, char** argv, std::string& lost_output) {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    const relevo::FatalSignalGuard guard([](const char* ending) {
+        return fmt::format(
+            "the program ended in {}; allow more memory and stack (ulimit -v, "
+            "ulimit -s), else report it with the command line",
+            ending);
+    });
+#endif
+    return run_and_report(argc, argv, lost_output);
+}
+
+/// Does work with stacks of the usual size, its own and those of the threads that it starts, where
+/// a limit (ulimit -s) allows the first thread less than drivers need.
+int with_usual_stacks(const std::function<int()>& work) {
+    constexpr std::size_t kUsualBytes = 8 << 20;
+    constexpr rlim_t kEnoughBytes = 1 << 20;
+    rlimit limit{};
+    if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= kEnoughBytes) return work();
+    pthread_attr_t usual;
+    pthread_attr_init(&usual);
+    pthread_attr_setstacksize(&usual, kUsualBytes);
+    pthread_setattr_default_np(&usual);
+    pthread_attr_destroy(&usual);
+    int status = 1;
+    std::thread([&] { status = work(); }).join();
+    return status;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     fill_standard_streams();
     relevo::remove_partial_files_at_signals();
     std::string lost_output;
-    const int status = run_and_report(argc, argv, lost_output);
+    const int status = with_usual_stacks([&] { return run_guarded(argc, argv, lost_output); });
     const std::optional<std::string> lost = close_standard_output(lost_output);
     if (!lost || status != 0) return status;
     relevo::log::error(fmt::format("standard output: cannot be written, {}", *lost));

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/output_file.h"
 #include "base/text.h"
 
 namespace relevo {
@@ -51,6 +52,7 @@ void end_program(const char* message) noexcept {
     write_all("relevo: error: ");
     write_all(message);
     write_all("\n");
+    remove_partial_files();
     // Past everything that exit() and _exit() do: threads may hang, and memory may be damaged.
     while (true)
         syscall(SYS_exit_group, static_cast<int>(ErrorCode::Failed));

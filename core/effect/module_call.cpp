@@ -1,10 +1,7 @@
 #include "effect/module_call.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <csignal>
-#include <cstddef>
 #include <cstdlib>
 #include <mutex>
 #include <thread>
@@ -16,16 +13,15 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "effect/signals.h"
+#include "base/fatal_signals.h"
 
 namespace relevo::effect {
 namespace {
 
-// A handler of signals or of exits gets no object: what it may need is here.
+// A handler of exits gets no object: what it may need is here.
 
-/// What to say of each fatal signal, while a module's function runs.
+/// What there is to say while a module's function runs.
 struct Running {
-    std::array<std::string, kFatalSignals.size()> on_signal;
     std::string on_exit;
     Watchdog* watchdog = nullptr;
     std::thread::id thread{};  // that calls it
@@ -33,19 +29,11 @@ struct Running {
 /// Of the process, as a module may have threads of its own.
 std::atomic<const Running*> running{nullptr};
 
-/// Signals are handled by the whole process, so that one function runs at a time.
+/// Exits are of the whole process, so that one function runs at a time.
 std::mutex call_mutex;
 
 std::mutex modules_mutex;
 std::vector<const ModuleInProcess*> modules;  // that are loaded
-
-void on_signal(int signal) {
-    const Running* now = running.load();
-    for (std::size_t i = 0; now && i < kFatalSignals.size(); ++i)
-        if (kFatalSignals[i].number == signal) end_program(now->on_signal[i].c_str());
-    std::signal(signal, SIG_DFL);
-    raise(signal);
-}
 
 /// The program does not end by itself while a module is loaded: main() unloads them all.
 void on_exit_of_the_program() {
@@ -72,13 +60,15 @@ const void* base_of(const void* address) {
 /// Says so where code of a module called _exit().
 void blame(const void* caller) {
     const void* base = base_of(caller);
+    const Running* now = running.load();
+    // While a module's function runs, what is not the program's own is its, or what it has loaded:
+    // where its code lies is not known before it is registered.
+    if (now && base != base_of(reinterpret_cast<const void*>(&base_of)))
+        end_program(now->on_exit.c_str());
     const std::unique_lock lock(modules_mutex, std::try_to_lock);
     if (!base || !lock) return;
-    for (const ModuleInProcess* module : modules) {
-        if (module->base() != base) continue;
-        const Running* now = running.load();
-        end_program(now ? now->on_exit.c_str() : module->message("", "ended the program").c_str());
-    }
+    for (const ModuleInProcess* module : modules)
+        if (module->base() == base) end_program(module->message("", "ended the program").c_str());
 }
 
 }  // namespace
@@ -106,35 +96,19 @@ std::string ModuleInProcess::message(const std::string& function, const std::str
 
 struct ModuleCall::Signals {
     std::unique_lock<std::mutex> turn{call_mutex};
-    Running texts;
-    std::vector<std::byte> stack;
-    stack_t old_stack{};
-    std::array<struct sigaction, kFatalSignals.size()> old_actions{};
+    Running running;
+    FatalSignalGuard guard;
 };
 
 ModuleCall::ModuleCall(ModuleInProcess& module, const std::string& function)
-    : module_(module), signals_(std::make_unique<Signals>()) {
-    Signals& signals = *signals_;
-    for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
-        signals.texts.on_signal[i] =
-            module.message(function, fmt::format("ended in {}", kFatalSignals[i].name));
-    signals.texts.on_exit = module.message(function, "ended the program");
-    signals.texts.watchdog = &module.watchdog_;
-    signals.texts.thread = std::this_thread::get_id();
-
-    // A stack of its own: what ran out may be the other one.
-    constexpr std::size_t kStackBytes = 64 * 1024;
-    signals.stack.resize(kStackBytes);
-    stack_t stack{};
-    stack.ss_sp = signals.stack.data();
-    stack.ss_size = signals.stack.size();
-    sigaltstack(&stack, &signals.old_stack);
-    struct sigaction action {};
-    action.sa_handler = on_signal;
-    action.sa_flags = SA_ONSTACK;
-    running.store(&signals.texts);
-    for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
-        sigaction(kFatalSignals[i].number, &action, &signals.old_actions[i]);
+    : module_(module),
+      signals_(new Signals{.running = {.on_exit = module.message(function, "ended the program"),
+                                       .watchdog = &module.watchdog_,
+                                       .thread = std::this_thread::get_id()},
+                           .guard = FatalSignalGuard([&](const char* ending) {
+                               return module.message(function, fmt::format("ended in {}", ending));
+                           })}) {
+    running.store(&signals_->running);
     const std::chrono::milliseconds limit = patience();
     module.watchdog_.start(
         limit, module.message(function, fmt::format("took more than {:g} s",
@@ -143,9 +117,6 @@ ModuleCall::ModuleCall(ModuleInProcess& module, const std::string& function)
 
 ModuleCall::~ModuleCall() {
     module_.watchdog_.stop();
-    for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
-        sigaction(kFatalSignals[i].number, &signals_->old_actions[i], nullptr);
-    sigaltstack(&signals_->old_stack, nullptr);
     running.store(nullptr);
 }
 

@@ -20,9 +20,9 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/fatal_signals.h"
 #include "base/paths.h"
 #include "base/watchdog.h"
-#include "effect/signals.h"
 #include "effect/trial_report.h"
 
 extern char** environ;

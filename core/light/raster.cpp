@@ -53,7 +53,7 @@ void describe(GDALDataset& dataset, const dem::Grid& grid, RasterType type,
     if (crs.SetFromUserInput(grid.crs().text().c_str()) == OGRERR_NONE) dataset.SetSpatialRef(&crs);
     for (std::size_t k = 0; k < bands.size(); ++k) {
         GDALRasterBand& to = *dataset.GetRasterBand(static_cast<int>(k) + 1);
-        to.SetDescription(bands[k].name.c_str());
+        to.SetDescription(printable(bands[k].name).c_str());
         to.SetUnitType(bands[k].unit.c_str());
         to.SetNoDataValue(type == RasterType::Byte ? 255
                                                    : std::numeric_limits<double>::quiet_NaN());
@@ -129,8 +129,13 @@ CPLStringList creation_options(const std::vector<std::string>& given, GDALDataTy
 void check_creation_options(const std::vector<std::string>& given) {
     dem::prepare_gdal();
     const dem::GdalMessages messages;
-    if (!GDALValidateCreationOptions(driver("COG"), creation_options(given, GDT_Byte).List()))
-        bad_usage(fmt::format("--co: GDAL's COG driver says: {}", messages.failure("--co")));
+    CPLErrorReset();
+    if (GDALValidateCreationOptions(driver("COG"), creation_options(given, GDT_Byte).List()))
+        return;
+    // GDAL says why as a warning.
+    std::string reason = CPLGetLastErrorMsg();
+    if (reason.empty()) reason = "it gives no reason";
+    bad_usage(fmt::format("--co: GDAL's COG driver says: {}", reason));
 }
 
 struct RasterWriter::Impl {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/paths.h"
 #include "shader/loops.h"
 
 namespace relevo::render {
@@ -20,6 +21,14 @@ std::string disable(const std::set<std::string>& ids) {
                        ids.size() == 1 ? "it" : "them");
 }
 
+/// The effects whose GLSL is in a program.
+std::set<std::string> present_in(const shader::Stitched& stitched) {
+    std::set<std::string> ids;
+    for (const shader::HookUse& use : stitched.hooks)
+        ids.insert(use.providers.begin(), use.providers.end());
+    return ids;
+}
+
 }  // namespace
 
 DrawWatch::Turn::Turn(std::optional<DrawWatch>& watch, const ProgramText& program, double parts)
@@ -27,20 +36,37 @@ DrawWatch::Turn::Turn(std::optional<DrawWatch>& watch, const ProgramText& progra
     if (!watch_) return;
     const double patience_ms = static_cast<double>(patience().count());
     const double limit_ms = std::max(patience_ms, patience_ms * kPart_share * parts);
-    watch_->watchdog_.start(
-        std::chrono::milliseconds(static_cast<long>(limit_ms)),
-        fmt::format("render: program {}: the device took more than {:g} s{}", program.name,
-                    limit_ms / 1e3, watch_->blame(program.stitched)));
+    const std::string blamed = watch_->blame(program.stitched);
+    watch_->watchdog_.start(std::chrono::milliseconds(static_cast<long>(limit_ms)),
+                            fmt::format("render: program {}: the device took more than {:g} s{}",
+                                        program.name, limit_ms / 1e3, blamed));
+    const std::set<std::string> foreign = watch_->foreign(program.stitched);
+    guard_.emplace([&](const char* ending) {
+        return fmt::format("render: program {}: the driver ended in {}{}", program.name, ending,
+                           !foreign.empty()
+                               ? "; " + disable(foreign)
+                               : "; it needs more memory (ulimit -v, ulimit -s), or is "
+                                 "at fault itself: try another --device");
+    });
 }
 
 DrawWatch::Turn::~Turn() {
     if (watch_) watch_->watchdog_.stop();
 }
 
+std::set<std::string> DrawWatch::foreign(const shader::Stitched& stitched) const {
+    const std::set<std::string> present = present_in(stitched);
+    const std::string shipped = (share_dir() / "plugins" / "").string();
+    std::set<std::string> ids;
+    for (const shader::Snippet* snippet : snippets_)
+        if (present.count(snippet->id) > 0 && !snippet->file.starts_with(shipped))
+            ids.insert(snippet->id);
+    return ids;
+}
+
 std::string DrawWatch::blame(const shader::Stitched& stitched) const {
-    std::set<std::string> present;
-    for (const shader::HookUse& use : stitched.hooks)
-        present.insert(use.providers.begin(), use.providers.end());
+    std::set<std::string> present = foreign(stitched);
+    if (present.empty()) present = present_in(stitched);
     if (present.empty()) return "";
     std::set<std::string> suspects;
     std::vector<std::string> loops;

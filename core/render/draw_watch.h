@@ -1,16 +1,18 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "base/fatal_signals.h"
 #include "base/watchdog.h"
 #include "render/programs.h"
 
 namespace relevo::render {
 
-/// Ends the program where a driver compiles or draws for ever, which nothing else can stop: a loop
-/// without an end in a plugin's GLSL.
+/// Ends the program where a driver compiles or draws for ever, which nothing else can stop (a loop
+/// without an end in a plugin's GLSL), and says whose GLSL it was where a driver ends the program.
 class DrawWatch {
   public:
     /// @param snippets  of the enabled plugins; must outlive this
@@ -29,9 +31,12 @@ class DrawWatch {
 
       private:
         DrawWatch* watch_;
+        std::optional<FatalSignalGuard> guard_;
     };
 
   private:
+    /// Of the effects in a program those that did not come with Relevo, where they have been tried.
+    std::set<std::string> foreign(const shader::Stitched& stitched) const;
     std::string blame(const shader::Stitched& stitched) const;
 
     std::vector<const shader::Snippet*> snippets_;

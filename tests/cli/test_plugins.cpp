@@ -185,6 +185,39 @@ TEST_F(Plugins, AnEndlessLoopOfAVertexHookEndsTheProgram) {
     EXPECT_FALSE(drawn());
 }
 
+/// GLSL that is small, and of which a driver makes more than it can hold.
+std::vector<std::pair<const char*, std::string>> bombs() {
+    std::string doubled = "#define odd_m0 s.diffuse.x +=\\\n 0.1;\n";
+    std::string chain = "float odd_c0(in float x) { return sin(x) + 0.1; }\n";
+    for (int i = 1; i <= 25; ++i) {
+        if (i <= 24) doubled += fmt::format("#define odd_m{0} odd_m{1} odd_m{1}\n", i, i - 1);
+        chain += fmt::format(
+            "float odd_c{0}(in float x) {{ return odd_c{1}(x) + odd_c{1}(x + 1.0); "
+            "}}\n",
+            i, i - 1);
+    }
+    const std::string albedo = "void odd_on_albedo(inout Surface s) { ";
+    return {{"array", albedo + "float a[2000000000]; a[int(s.height_m)] = 1.0; s.diffuse.x = "
+                               "a[int(s.height_m * 2.0)]; }\n"},
+            {"constant array", "const int odd_n = 2000000000;\n" + albedo +
+                                   "float a[odd_n]; a[int(s.height_m)] = 1.0; s.diffuse.x = "
+                                   "a[int(s.height_m * 2.0)]; }\n"},
+            {"macro", doubled + albedo + "odd_m24 }\n"},
+            {"calls", chain + albedo + "s.diffuse.x *= odd_c25(s.height_m); }\n"}};
+}
+
+TEST_F(Plugins, GlslThatGrowsBeyondWhatADriverHoldsIsNamed) {
+    for (const auto& [what, glsl] : bombs()) {
+        make(glsl);
+        const Result run = capture();
+        EXPECT_TRUE(run.status == 0 || run.status == 1 || run.status == 3) << what << run.status;
+        EXPECT_THAT(run.err, HasSubstr("plugins/odd/odd.glsl:")) << what;
+        EXPECT_TRUE(run.err.find("--disable odd silences this\n") != std::string::npos ||
+                    run.err.find("--disable odd goes on without it\n") != std::string::npos)
+            << what << run.err;
+    }
+}
+
 // ---- native modules
 
 TEST_F(Plugins, AModuleThatFailsItsTrialIsOffAloud) {
@@ -209,6 +242,13 @@ TEST_F(Plugins, AModuleThatFailsItsTrialIsOffAloud) {
 TEST_F(Plugins, AModuleThatEndsTheProgramIsNamed) {
     make_native();
     const std::pair<const char*, const char*> cases[] = {
+        {"load exit later", "its registration ended the program"},
+        {"load under later", "its registration ended the program"},
+        {"register exit later", "its registration ended the program"},
+        {"register under later", "its registration ended the program"},
+        {"register Under later", "its registration ended the program"},
+        {"register quick later", "its registration ended the program"},
+        {"register crash later", "its registration ended in a segmentation fault"},
         {"create crash later", "its create() ended in a segmentation fault"},
         {"prepare crash later", "its prepare() ended in a segmentation fault"},
         {"prepare overflow later", "its prepare() ended in a segmentation fault"},

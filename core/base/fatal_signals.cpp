@@ -1,0 +1,82 @@
+#include "base/fatal_signals.h"
+
+#include <atomic>
+#include <cstddef>
+#include <mutex>
+#include <vector>
+
+#include "base/watchdog.h"
+
+namespace relevo {
+namespace {
+
+// A signal's handler gets no object: what it may need is here.
+
+using Messages = std::array<std::string, kFatalSignals.size()>;
+
+thread_local const Messages* of_thread = nullptr;
+std::atomic<const Messages*> newest{nullptr};
+
+std::mutex guards_mutex;
+std::vector<const Messages*> guards;  // in their order
+std::array<struct sigaction, kFatalSignals.size()> old_actions;
+
+void on_signal(int signal) {
+    const Messages* const messages = of_thread ? of_thread : newest.load();
+    for (std::size_t i = 0; messages && i < kFatalSignals.size(); ++i)
+        if (kFatalSignals[i].number == signal) end_program((*messages)[i].c_str());
+    std::signal(signal, SIG_DFL);
+    raise(signal);
+}
+
+void add(const Messages* messages) {
+    const std::lock_guard lock(guards_mutex);
+    guards.push_back(messages);
+    newest = messages;
+    if (guards.size() > 1) return;
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_ONSTACK;
+    for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
+        sigaction(kFatalSignals[i].number, &action, &old_actions[i]);
+}
+
+void remove(const Messages* messages) {
+    const std::lock_guard lock(guards_mutex);
+    std::erase(guards, messages);
+    newest = guards.empty() ? nullptr : guards.back();
+    if (!guards.empty()) return;
+    for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
+        sigaction(kFatalSignals[i].number, &old_actions[i], nullptr);
+}
+
+}  // namespace
+
+struct FatalSignalGuard::Impl {
+    Messages messages;
+    const Messages* outer = nullptr;
+    /// A stack of its own: what ran out may be the other one.
+    std::array<std::byte, 64 * 1024> stack;
+    stack_t old_stack{};
+};
+
+FatalSignalGuard::FatalSignalGuard(const std::function<std::string(const char* ending)>& message)
+    : impl_(std::make_unique<Impl>()) {
+    for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
+        impl_->messages[i] = message(kFatalSignals[i].name);
+    stack_t stack{};
+    stack.ss_sp = impl_->stack.data();
+    stack.ss_size = impl_->stack.size();
+    sigaltstack(&stack, &impl_->old_stack);
+    impl_->outer = of_thread;
+    of_thread = &impl_->messages;
+    add(&impl_->messages);
+}
+
+FatalSignalGuard::~FatalSignalGuard() {
+    remove(&impl_->messages);
+    of_thread = impl_->outer;
+    sigaltstack(&impl_->old_stack, nullptr);
+}
+
+}  // namespace relevo
