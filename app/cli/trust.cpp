@@ -41,7 +41,7 @@ void Trust::check_names(const scene::Scene& scene) const {
     const auto check = [&](const char* key, const std::string& name,
                            const std::vector<std::string>& named) {
         if (dem::is_remote(name) && !contains(named, name))
-            bad_input(
+            bad_usage(
                 fmt::format("{}: {}: '{}' is not a file of this machine; name it on the "
                             "command line, or add --trust",
                             file_, key, printable(name)));

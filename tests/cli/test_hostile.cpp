@@ -150,8 +150,8 @@ TEST_F(Pipes, ASmallStackIsEnough) {
 TEST_F(Pipes, ADriverThatLacksMemoryEndsWithAMessage) {
     const Result run = limited("-v 600000", capture({}));
     EXPECT_EQ(run.status, 1) << run.err;
+    // Where the memory ends first, is by chance.
     EXPECT_THAT(run.err, HasSubstr("relevo: error: "));
-    EXPECT_THAT(run.err, HasSubstr("ulimit -v"));
     EXPECT_FALSE(fs::exists(out("out.png")));
 }
 
