@@ -64,7 +64,8 @@ TEST(SunArguments, AStepIsADurationOrMinutesAlone) {
         const Result result = hours({"-o", out("x.tif"), "--step", step});
         EXPECT_EQ(result.status, 2) << step;
         EXPECT_EQ(result.err.substr(0, result.err.find('\n')),
-                  "error: --step: expected 1s to 1h, such as 30s, 3min or minutes alone, but got " +
+                  "relevo: error: --step: expected 1s to 1h, such as 30s, 3min or minutes alone, "
+                  "but got " +
                       step);
     }
 }
