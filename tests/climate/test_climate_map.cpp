@@ -83,6 +83,28 @@ TEST(ClimateMap, IsWholeAcrossTheDateLineAndAtThePoles) {
     }
 }
 
+TEST(ClimateMap, IsLinearFromTheLastCellBeforeTheDateLineToTheFirstBehindIt) {
+    // Middles of the cells of temperature, of one degree, lie half a degree from it.
+    const ClimateMap map = ClimateMap::shipped();
+    for (const double lat_deg : {67.5, 51.5, -16.5}) {
+        const Normals west = map.at(geodetic_deg(lat_deg, 179.5)),
+                      east = map.at(geodetic_deg(lat_deg, -179.5));
+        double differ = 0;
+        for (std::size_t month = 0; month < 12; ++month) {
+            const double a = west.sea_level_c[month], b = east.sea_level_c[month];
+            differ = std::max(differ, std::abs(a - b));
+            const auto at = [&](double lon_deg) {
+                return map.at(geodetic_deg(lat_deg, lon_deg)).sea_level_c[month];
+            };
+            EXPECT_NEAR(at(180), (a + b) / 2, 1e-9) << lat_deg;
+            EXPECT_NEAR(at(-180), (a + b) / 2, 1e-9) << lat_deg;
+            EXPECT_NEAR(at(179.75), 0.75 * a + 0.25 * b, 1e-9) << lat_deg;
+            EXPECT_NEAR(at(-179.75), 0.25 * a + 0.75 * b, 1e-9) << lat_deg;
+        }
+        EXPECT_GE(differ, 0.1) << lat_deg;  // or it would show nothing
+    }
+}
+
 TEST(ClimateMap, APoleIsOnePlace) {
     const ClimateMap map = ClimateMap::shipped();
     for (const double lat_deg : {90.0, -90.0}) {
@@ -93,6 +115,28 @@ TEST(ClimateMap, APoleIsOnePlace) {
             EXPECT_NEAR(other.rain_mm[6], greenwich.rain_mm[6], 1e-9);
         }
     }
+}
+
+TEST(ClimateMap, APoleHasTheMeanOfTheRowAroundIt) {
+    const ClimateMap map = ClimateMap::shipped();
+    for (const double side : {1.0, -1.0}) {
+        double sum_c = 0;
+        for (int column = 0; column < 360; ++column)
+            sum_c += map.at(geodetic_deg(side * 89.5, column - 179.5)).sea_level_c[0];
+        EXPECT_NEAR(map.at(geodetic_deg(side * 90, 0)).sea_level_c[0], sum_c / 360, 1e-9) << side;
+    }
+}
+
+TEST(ClimateMap, MappedIceOfABoxIsTheSameFromEitherSideOfTheDateLine) {
+    const ClimateMap map = ClimateMap::shipped();
+    int mixed = 0;
+    for (double lat_deg = -85; lat_deg < 72; lat_deg += 0.5) {
+        const double west = map.around(geodetic_deg(lat_deg, 179.99), 8).mapped_ice;
+        const double east = map.around(geodetic_deg(lat_deg, -179.99), 8).mapped_ice;
+        EXPECT_NEAR(west, east, 0.08) << lat_deg;
+        mixed += west > 0.2 && west < 0.8;
+    }
+    EXPECT_GT(mixed, 3);  // or it would show nothing
 }
 
 TEST(ClimateMap, OpensInMilliseconds) {

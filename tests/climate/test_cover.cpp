@@ -152,6 +152,44 @@ TEST(Cover, GrowthFallsWithHeightWithoutSteps) {
     }
 }
 
+TEST(Cover, RainOfSummerIsWorthLessInEitherHemisphere) {
+    // Peel et al. 2007, table 1: the limit of dry climates is 20 mm for each degree of the year's
+    // mean, and 280 more where 70 % of the rain falls in summer, none where in winter.
+    const auto dryness = [](double lat_deg, int wet_month, double year_mm) {
+        Normals normals{.lat_deg = lat_deg};
+        normals.sea_level_c.fill(15);
+        normals.rain_mm[static_cast<std::size_t>(wet_month)] = year_mm;
+        return CoverColumn(normals).dryness(0);
+    };
+    constexpr int kJanuary = 0, kJuly = 6;
+    EXPECT_NEAR(dryness(40, kJuly, 580), 1, 1e-6);
+    EXPECT_NEAR(dryness(40, kJanuary, 300), 1, 1e-6);
+    EXPECT_NEAR(dryness(-40, kJanuary, 580), 1, 1e-6);
+    EXPECT_NEAR(dryness(-40, kJuly, 300), 1, 1e-6);
+}
+
+TEST(Cover, GreenIsByTheRainThatHasFallenNotByWhatIsToCome) {
+    Normals normals{.lat_deg = 15};
+    normals.sea_level_c.fill(20);
+    normals.rain_mm[4] = 300;  // in May alone
+    const CoverColumn column(normals);
+    EXPECT_LT(column.green(0, day_of_year(4, 20)), 0.05);
+    EXPECT_GT(column.green(0, day_of_year(6, 20)), 0.95);
+    EXPECT_LT(column.green(0, day_of_year(9, 1)), 0.05);
+}
+
+TEST(Cover, SnowOfADayIsWhatLiesAtTheEndOfThatDaysStep) {
+    // Steps of five days, each with the snow at its end.
+    Year snow_mm{};
+    for (std::size_t step = 0; step < snow_mm.size(); ++step)
+        snow_mm[step] = static_cast<float>(10 * step);
+    EXPECT_NEAR(snow_on(snow_mm, 5), 0, 1e-4);  // the first step ends with the 5th of January
+    EXPECT_NEAR(snow_on(snow_mm, 10), 10, 1e-4);
+    EXPECT_NEAR(snow_on(snow_mm, 12.5), 15, 1e-4);
+    EXPECT_NEAR(snow_on(snow_mm, 365), 720, 1e-4);
+    EXPECT_NEAR(snow_on(snow_mm, 2.5), 360, 1e-4);  // from the last step of the year before
+}
+
 TEST(Cover, DaysOfTheYearCountFromTheFirstOfJanuary) {
     EXPECT_EQ(day_of_year(1, 1), 0);
     EXPECT_EQ(day_of_year(3, 1), 59);

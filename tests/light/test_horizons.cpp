@@ -332,6 +332,34 @@ TEST(SkyView, OfAnInclinedPlaneIsHalfOfOneAndItsCosine) {
     }
 }
 
+TEST(SkyView, MeanIsThatOfTheGroundWithoutItsHoles) {
+    // A plain sees all of the sky, however much of it is not there.
+    const dem::Heightfield plain =
+        test::field_of(60, 40, {500000, 10, 0, 400, 0, -10}, "EPSG:32631",
+                       [](int column, int) { return column < 20 ? double{kHole} : 7.0; });
+    const SkyView seen = sky_view(dem::Posts(plain));
+    EXPECT_EQ(seen.holes, 20 * 40);
+    EXPECT_NEAR(seen.mean, 1, 1e-3);
+}
+
+TEST(SkyView, OfASlopeIsRelatedToWhatTheSlopeSeesAlone) {
+    // The sides of a long valley rise by s. Half-way up, the other side stands h over the horizon:
+    // of the sky (1 + cos(s + h)) / 2 is left, and an endless slope sees (1 + cos s) / 2.
+    for (const double slope_deg : {10.0, 30.0, 60.0}) {
+        const double a_post = 10 * std::tan(radians(slope_deg));
+        const dem::Heightfield valley =
+            test::field_of(41, 601, {500000, 10, 0, 3000, 0, -10}, "EPSG:32631",
+                           [&](int column, int) { return a_post * std::abs(column - 20); });
+        const SkyView seen =
+            sky_view(dem::Posts(valley), {.directions = 180, .of_open_slope = true});
+        const double h = std::atan(10 * a_post / 300);
+        EXPECT_NEAR(seen.share.at(30, 300),
+                    (1 + std::cos(radians(slope_deg) + h)) / (1 + std::cos(radians(slope_deg))),
+                    0.01)
+            << slope_deg;
+    }
+}
+
 TEST(SkyView, FewerDirectionsAreNotFarOff) {
     const dem::Heightfield field = test::bundled("jacksboro.tif");
     const dem::Posts posts(field);

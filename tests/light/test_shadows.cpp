@@ -286,6 +286,16 @@ TEST(Shadows, AzimuthIsFromTrueNorthWhereverTheMapHasIt) {
         degrees(std::atan(std::tan(middle.lon_rad - radians(9)) * std::sin(middle.lat_rad)));
     EXPECT_GT(convergence_deg, 2);
     EXPECT_NEAR(degrees(true_azimuth_rad(east, radians(30))), 30 + convergence_deg, 0.01);
+    // On a map in degrees the way is that over the ground, whatever a degree of longitude is long;
+    // one of latitude is shorter by the Earth's flattening than a sphere has it.
+    for (const double lat_deg : {47.0, -60.0}) {
+        const dem::Grid degrees_of(11, 11, {8, 0.001, 0, lat_deg, 0, -0.001},
+                                   geo::Crs::parse("EPSG:4326", "test"));
+        for (const double azimuth_deg : {30.0, 135.0, 250.0})
+            EXPECT_NEAR(degrees(true_azimuth_rad(degrees_of, radians(azimuth_deg))), azimuth_deg,
+                        0.2)
+                << lat_deg;
+    }
 }
 
 TEST(Shadows, WhatItCannotDoIsRefused) {

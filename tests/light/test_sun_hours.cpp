@@ -221,6 +221,48 @@ TEST(SunHours, SpellsBeginAndEndWhereTheWallHasThem) {
     EXPECT_TRUE(std::isnan(night.first_h.at(35, 30)));
 }
 
+TEST(SunHours, ADayOfTwoPeriodsBeginsWithTheFirstAndEndsWithTheLast) {
+    // A pillar of 100 m, 100 m south of a post at 47 N, hides the sun about noon in December, which
+    // is 19.6 degrees high then. The sun's centre is up for half of a day's turn each side of
+    // 11:22 UTC, at 9 E: acos(-tan 47 tan -23.44) = 62.3 degrees or 4.15 hours.
+    const dem::Heightfield field = test::field_of(
+        61, 61, {499700, 10, 0, 5205300, 0, -10}, "EPSG:32632",
+        [](int column, int row) { return row == 40 && std::abs(column - 30) <= 2 ? 100.0 : 0.0; });
+    const Instant begin = utc("2026-12-21T00:00Z");
+    SunHoursOptions options;
+    options.step_s = 60;
+    options.spells = true;
+    const SunHours day = sun_hours(dem::Posts(field), begin, begin + 86400.0, options);
+    EXPECT_EQ(day.spells.at(30, 30), 2);
+    EXPECT_NEAR(day.first_h.at(30, 30), 11.37 - 4.15, 0.05);
+    EXPECT_NEAR(day.last_h.at(30, 30), 11.37 + 4.15, 0.05);
+    // The pillar is 40 to 60 m wide: 11.3 to 16.7 degrees of azimuth to either side, which the low
+    // sun of noon turns by in some 50 to 70 minutes.
+    EXPECT_GT(day.hours.at(30, 30), 2 * (4.15 - 70 / 60.0));
+    EXPECT_LT(day.hours.at(30, 30), 2 * (4.15 - 45 / 60.0));
+    EXPECT_EQ(day.spells.at(5, 30), 1);  // beside it
+    EXPECT_NEAR(day.hours.at(5, 30), 2 * 4.15, 0.05);
+}
+
+TEST(SunHours, ABrokenMorningBeginsWithItsFirstLight) {
+    // The same place and day; three pickets stand where the sun is within two hours of its rise,
+    // at azimuths of 130, 135 and 140 degrees, and hide it for some minutes each.
+    const dem::Heightfield field = test::field_of(
+        61, 61, {499900, 10, 0, 5205100, 0, -10}, "EPSG:32632", [](int column, int row) {
+            const bool picket = (column == 33 && row == 29) || (column == 31 && row == 31) ||
+                                (column == 29 && row == 33);
+            return picket ? 100.0 : 0.0;
+        });
+    const Instant begin = utc("2026-12-21T00:00Z");
+    SunHoursOptions options;
+    options.step_s = 60;
+    options.spells = true;
+    const SunHours day = sun_hours(dem::Posts(field), begin, begin + 86400.0, options);
+    EXPECT_EQ(day.spells.at(10, 10), 4);
+    EXPECT_NEAR(day.first_h.at(10, 10), 11.37 - 4.15, 0.05);
+    EXPECT_NEAR(day.last_h.at(10, 10), 11.37 + 4.15, 0.05);
+}
+
 TEST(SunHours, ManyDaysAreAsLongAsTheirDays) {
     const dem::Heightfield field = test::bundled("jacksboro.tif");
     const dem::Posts posts(field);

@@ -207,6 +207,34 @@ TEST(Walk, AHoleUnderTheFeetAndBeforeTheSunIsNotKnown) {
     EXPECT_EQ(light_along(posts, rest, options()).stretches.back().light, WalkLight::NotKnown);
 }
 
+TEST(Walk, TheDemIsOpenFromWhereItsEdgeIsNearest) {
+    // A plain of 30 km. Who looks at the sun in the south-west from its middle and then from 1 km
+    // before its western edge could lose it behind mountains right beyond that.
+    const dem::Heightfield field = test::field_of(301, 301, {600000, 100, 0, 30000, 0, -100},
+                                                  "EPSG:32631", [](int, int) { return 0.0; });
+    const dem::Posts posts(field);
+    const geo::Geodetic far = field.grid.place(150, 150), near = field.grid.place(10, 150);
+    const Instant evening = at("2026-03-20T17:10Z");
+    WalkOptions wanted = options();
+    wanted.highest_m = 3000;
+    const auto reach_from = [&](std::vector<geo::Geodetic> places, std::vector<Instant> times) {
+        const LightAlong found =
+            light_along(posts, Walk::timed(std::move(places), std::move(times)), wanted);
+        EXPECT_EQ(found.sums[0].time_s, found.duration_s);
+        EXPECT_FALSE(found.doubt.open.empty());
+        double least_m = 1e9;
+        for (const OpenSector& sector : found.doubt.open)
+            least_m = std::min(least_m, sector.reach_m);
+        return least_m;
+    };
+    EXPECT_NEAR(reach_from({far, far}, {evening, evening + 20}), 15000, 150);
+    // In either order, and within the same quarter of a degree of the sun's way.
+    EXPECT_NEAR(reach_from({near, near, far, far}, {evening, evening, evening, evening + 20}), 1000,
+                100);
+    EXPECT_NEAR(reach_from({far, far, near, near}, {evening, evening, evening, evening + 20}), 1000,
+                100);
+}
+
 TEST(Walk, ARestAndAJumpAreLookedAtByTimeAndByDistance) {
     const Jacksboro dem;
     const geo::Geodetic a = geo::geodetic_deg(36.30, -84.24), b = geo::geodetic_deg(36.36, -84.26);
