@@ -335,10 +335,12 @@ TEST(SkyView, OfAnInclinedPlaneIsHalfOfOneAndItsCosine) {
 TEST(SkyView, MeanIsThatOfTheGroundWithoutItsHoles) {
     // A plain sees all of the sky, however much of it is not there.
     const dem::Heightfield plain =
-        test::field_of(60, 40, {500000, 10, 0, 400, 0, -10}, "EPSG:32631",
-                       [](int column, int) { return column < 20 ? double{kHole} : 7.0; });
+        test::field_of(60, 40, {500000, 10, 0, 400, 0, -10}, "EPSG:32631", [](int column, int row) {
+            const bool is_void = column >= 20 && column < 50 && row >= 10 && row < 30;
+            return is_void ? double{kHole} : 7.0;
+        });
     const SkyView seen = sky_view(dem::Posts(plain));
-    EXPECT_EQ(seen.holes, 20 * 40);
+    EXPECT_EQ(seen.holes, 30 * 20);
     EXPECT_NEAR(seen.mean, 1, 1e-3);
 }
 
