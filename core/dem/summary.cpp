@@ -200,7 +200,7 @@ std::string to_text(const Summary& s) {
     line("voids", fmt::format("{:.4g} %{}", 100 * s.nodata_share, holes_text(s)));
     if (s.outliers > 0) line("outliers", fmt::format("{} heights impossible on Earth", s.outliers));
     if (s.worst_spike)
-        line("spikes", fmt::format("{} spikes: posts more than {:.0f} m above or below all their "
+        line("spikes", fmt::format("{} posts more than {:.0f} m above or below all their "
                                    "neighbours, the worst by {:.0f} m at {}",
                                    s.spikes.count, s.spikes.limit_m, s.spikes.worst_m,
                                    geo::degrees_text(*s.worst_spike)));

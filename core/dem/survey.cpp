@@ -140,7 +140,7 @@ Survey survey(const Source& source, std::int64_t max_posts) {
     }
     // Read in seconds, whatever the shape; of more, what nothing else takes is not read for
     // minutes.
-    constexpr std::int64_t kSoon = std::int64_t{1} << 28;
+    constexpr std::int64_t kSoon = std::int64_t{1} << 30;
     if (std::int64_t{columns} * rows > kSoon) refuse_endless_sides(source);
     std::optional<CollarSteps> collar_steps = collar_steps_of(source);
     // Whole rows of blocks, and of these as many columns as there is room for.

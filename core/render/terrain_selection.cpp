@@ -24,15 +24,20 @@ TileSelection Terrain::select_below(const scene::Camera& camera, int width_px, i
     const double pixel_error = options_.pixel_error;
     const double tolerance = tolerance_in_budget(
         LodView::of_camera(camera, width_px, height_px, pixel_error, exaggeration));
-    const scene::Camera below = GroundProbe::camera_below(camera, frame_, tolerance, pixel_error);
-    const LodView view = LodView::of_camera(below, 1, 1, pixel_error, exaggeration);
+    scene::Camera vertical = GroundProbe::camera_below(camera, frame_, tolerance, pixel_error);
+    LodView view = LodView::of_camera(vertical, 1, 1, pixel_error, exaggeration);
     // With the coarser tiles above them, without which Loading::Beside draws none of these.
     std::vector<TileKey> keys;
     const auto is_there = [](const TileKey&) { return true; };
-    const std::vector<TileDraw> draws = tree_.select(view, TileTree::Resident{is_there, keys});
+    std::vector<TileDraw> draws = tree_.select(view, TileTree::Resident{is_there, keys});
+    if (draws.empty()) {  // an eye under all ground
+        vertical.forward = -vertical.forward;
+        view = LodView::of_camera(vertical, 1, 1, pixel_error, exaggeration);
+        draws = tree_.select(view, TileTree::Resident{is_there, keys});
+    }
     heights_.require(keys);
     if (!surface_.find("normal_pages")) clear_surface();
-    prepare_surface(LodView::of_camera(below, 1, 1, 1, exaggeration), Loading::Wait, afresh);
+    prepare_surface(LodView::of_camera(vertical, 1, 1, 1, exaggeration), Loading::Wait, afresh);
     return ready(view, draws);
 }
 

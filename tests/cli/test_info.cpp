@@ -103,7 +103,7 @@ TEST(InfoVerb, ReportsSpikesAndOutliers) {
     EXPECT_EQ(run.status, 0);
     EXPECT_NE(
         run.out.find(
-            "outliers   1 heights impossible on Earth\nspikes     1 spikes: posts more than 180 m "
+            "outliers   1 heights impossible on Earth\nspikes     1 posts more than 180 m "
             "above or below all their neighbours, the worst by 8995 m at 46.95231 N 9.00138 E\n"),
         std::string::npos)
         << run.out;

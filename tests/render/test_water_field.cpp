@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dem/fill_holes.h"
 #include "render/pages.h"
 #include "render/water_field.h"
 
@@ -143,11 +144,13 @@ TEST(WaterField, TheKindOfTheWaterIsTheSameOnAllLevels) {
 
 TEST(WaterField, FilledHolesAreTold) {
     Array2d<std::uint8_t> filled(65, 65, 0);
-    filled.at(7, 9) = 1;
+    filled.at(7, 9) = dem::kFilled;
+    filled.at(20, 9) = dem::kCovered;
     const Array2d<float> heights(65, 65, 50.0f);
     const dem::Water dry;
     const WaterField field(heights, dry, &filled, 1);
-    EXPECT_EQ(field.at(0, 7, 9), (WaterTexel{0, 0, 0, 255}));
+    EXPECT_EQ(field.at(0, 7, 9), (WaterTexel{0, 0, 0, 128}));
+    EXPECT_EQ(field.at(0, 20, 9), (WaterTexel{0, 0, 0, 255}));
     EXPECT_EQ(field.at(0, 8, 9), (WaterTexel{0, 0, 0, 0}));
 }
 

@@ -210,7 +210,7 @@ TEST_F(JobFile, AMillionPicturesAreRefusedBeforeTheyAreDrawnUp) {
         error(with("\"time\": {\"at\": \"0:00\", \"date\": \"2026-01-01\"}, \"sweep\": "
                    "[{\"times\": {\"from\": \"0:00\", \"to\": \"23:59\", \"step\": \"1s\"}}]"),
               1000),
-        HasSubstr("these are 86341 or more pictures, more than 1000; pass --yes"));
+        HasSubstr("the job has 86341 or more pictures, more than 1000; add --yes"));
 }
 
 TEST_F(JobFile, AFileNamedTwiceIsRefused) {
