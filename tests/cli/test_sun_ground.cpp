@@ -177,10 +177,11 @@ TEST(Holes, AreSaidOfHorizonCarpetAndSummit) {
         count(when.out, "not known           whether it is visible, through a void of the DEM\n"),
         1)
         << when.out << when.err;
-    EXPECT_EQ(count(when.err,
-                    "relevo: warning: ground in voids of the DEM could hide the summit or the sun; "
-                    "use a DEM without voids"),
-              1)
+    EXPECT_EQ(
+        count(when.err,
+              "relevo: warning: the DEM has voids in the way: ground in them could hide the summit "
+              "or the sun over it; use a DEM without voids"),
+        1)
         << when.err;
     EXPECT_EQ(json_of(with(verb("when", holed(), over), {"-q"}))["sight"]["hole"], true);
     EXPECT_EQ(relevo(verb("when", whole(), over)).err, "");
