@@ -72,7 +72,7 @@ TEST(SunShadow, WritesAMaskOnTheGridOfTheDem) {
     EXPECT_STREQ(mask->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG");
     EXPECT_STREQ(mask->GetMetadataItem("SUN_APPARENT_ELEVATION_DEG"), "10.00000");
     EXPECT_TRUE(std::string(mask->GetMetadataItem("DEFINITION"))
-                    .starts_with("1 where the centre of the sun stands over the terrain"));
+                    .starts_with("1 where the centre of the sun is above the terrain"));
     EXPECT_TRUE(std::string(mask->GetMetadataItem("TIFFTAG_SOFTWARE")).starts_with("Relevo "));
     const std::vector<float> values = values_of(*mask);
     const auto at = [&](int column, int row) {
