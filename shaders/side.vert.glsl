@@ -75,7 +75,7 @@ SideCorner corner(in vec2 grid) {
 const int kReach = 3;  // nodes around that tell where a void lies
 
 /// How coverage rises along rows and columns around a node of the page.
-vec2 share_slope(in ivec2 node) {
+vec2 slope_of_coverage(in ivec2 node) {
     vec2 slope = vec2(0.0);
     int layer = int(net_uu.w);
     for (int i = 1; i <= kReach; ++i) {
@@ -103,7 +103,7 @@ vec3 outwards(in vec2 grid, in vec2 at, in bool cut) {
     for (int i = 0; i < 9; ++i) {
         ivec2 way = ivec2(i % 3, i / 3) - 1;
         ivec2 node = texel + way * (way.x * way.y == 0 ? kReach : kReach - 1);
-        vec2 found = share_slope(clamp(node, 1, 65));
+        vec2 found = slope_of_coverage(clamp(node, 1, 65));
         float clear = dot(found, found) / 1000.0;
         slope += found * clear * clear * clear * clear;
     }
