@@ -208,7 +208,7 @@ TEST_F(Run, APictureThatCannotBeMadeIsToldOfAndTheRestGoOn) {
     const Result run = relevo({"run", path.string()});
     EXPECT_EQ(run.status, 5);
     EXPECT_THAT(run.err, HasSubstr(fmt::format("relevo: error: {}: --eye: 46.00000 N 8.00000 E: "
-                                               "outside of the DEM or in a hole of it",
+                                               "outside the DEM or in a void",
                                                (dir_ / "off.png").string())));
     EXPECT_THAT(run.err, HasSubstr(fmt::format(
                              "relevo: error: {}: run: no ground of the DEM is in the picture; turn "

@@ -177,7 +177,7 @@ TEST(SunPanel, SaysWhatTheCommandLineSaysInTheSameAir) {
         ASSERT_GT(expected, 0.2);
         ASSERT_LT(expected, 3);
         EXPECT_THAT(sun_figures(state),
-                    testing::EndsWith(fmt::format(", height {:.2f}°", expected)));
+                    testing::EndsWith(fmt::format(", elevation {:.2f}°", expected)));
         // And so does the way of the day.
         const SunPoint& dawn = state.day.points[62];
         EXPECT_NEAR(
