@@ -30,7 +30,7 @@ class Trust {
     void check_names(const scene::Scene& scene) const;
     /// Keeps of a scene's plugin folders those that are used, each once.
     void keep_folders(scene::Effects& effects);
-    /// Warns, on one line, of the folders that were left out.
+    /// Warns, on one line, of the folders that were skipped.
     void tell() const;
 
   private:

@@ -51,7 +51,7 @@ struct SunHours {
     Array2d<float> beam_kwh, diffuse_kwh, reflected_kwh;
     double mean_hours = 0;
     double level_hours = 0;       ///< that it is over a level horizon in the middle of the DEM
-    double most_level_hours = 0;  ///< likewise anywhere on the DEM
+    double most_level_hours = 0;  ///< the most anywhere on the DEM
     std::int64_t holes = 0;
     /// Windows, or bands of a sun, into which the DEM was divided at most, each with suns of its
     /// own.
