@@ -8,6 +8,7 @@ find_package(CLI11 REQUIRED)
 find_package(PNG REQUIRED)
 find_package(ZLIB REQUIRED)
 pkg_check_modules(deflate REQUIRED IMPORTED_TARGET libdeflate)
+pkg_check_modules(expat REQUIRED IMPORTED_TARGET expat)
 find_package(TIFF REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 pkg_check_modules(openimageio REQUIRED IMPORTED_TARGET OpenImageIO)  # its CMake files want its programs too

@@ -21,6 +21,7 @@ OWNERS = {
     "OpenImageIO": (re.compile(r"OpenImageIO/"), {"image"}),
     "Cairo": (re.compile(r"cairo"), {"chart"}),
     "zlib": (re.compile(r"zlib\.h"), {"climate"}),
+    "Expat": (re.compile(r"expat\.h"), {"dem"}),
     "libdeflate": (re.compile(r"libdeflate\.h"), {"image"}),
     "libpng": (re.compile(r"png\.h"), {"image"}),
 }

@@ -160,7 +160,7 @@ void check_times(const Arguments& arguments, const dem::NamedLine& line, const s
             fmt::format("--speed: missing, as {} has no times; pass --speed 4, in km/h", path));
 }
 
-/// The times of a track's points.
+/// The times of a track's points: an offset of their own counts, whatever the walk's zone is.
 /// @throws Error (BadInput) where one has none, and where one is no time
 std::vector<sun::Instant> times_of(const dem::NamedLine& line, const std::string& path,
                                    const sun::Zone& zone) {
@@ -168,15 +168,20 @@ std::vector<sun::Instant> times_of(const dem::NamedLine& line, const std::string
     for (const dem::NamedPlace& place : line.places) {
         if (!has_time(place))
             bad_input(
-                fmt::format("sun along: {}: point {} has no time, where others have one; "
-                            "pass --start and --speed",
-                            path, times.size() + 1));
+                fmt::format("sun along: {}: line {}: a point without a time, where others have "
+                            "one; pass --start and --speed",
+                            path, place.line));
         try {
-            times.push_back(sun::parse_time(place.time, zone).utc);
+            times.push_back(sun::is_wall_time(place.time) ? sun::parse_time(place.time, zone).utc
+                                                          : sun::parse_time(place.time).utc);
         } catch (const Error& error) {
-            bad_input(
-                fmt::format("sun along: {}: point {}: {}", path, times.size() + 1, error.what()));
+            bad_input(fmt::format("sun along: {}: line {}: {}", path, place.line, error.what()));
         }
+        if (times.size() > 1 && times.back() < times[times.size() - 2])
+            bad_input(fmt::format(
+                "sun along: {}: line {}: its time, {}, is before that of the point before, {}; "
+                "expected times in order",
+                path, place.line, sun::to_iso(times.back()), sun::to_iso(times[times.size() - 2])));
     }
     return times;
 }

@@ -16,29 +16,21 @@
 #include "base/error.h"
 #include "base/input_file.h"
 #include "base/text.h"
-#include "dem/vector_file.h"
+#include "dem/geojson.h"
+#include "dem/gpx.h"
+#include "dem/vector_point.h"
 #include "geo/crs.h"
 
 namespace relevo::dem {
 namespace {
 
-/// GDAL holds a GeoJSON in memory some 16 times over.
+/// A GeoJSON is held in memory some ten times over.
 constexpr std::uint64_t kMostJsonBytes = std::uint64_t{64} << 20;
-
-/// What errors of a file are said with.
-struct Asked {
-    const std::string& path;
-    std::string_view who;
-
-    [[noreturn]] void refuse(const std::string& what) const {
-        bad_input(fmt::format("{}: {}: {}", who, path, what));
-    }
-};
 
 /// A text file line by line, of any length, in bounded memory.
 class Lines {
   public:
-    explicit Lines(const Asked& asked) : asked_(asked), file_(asked.path, asked.who) {}
+    explicit Lines(const FileErrors& errors) : errors_(errors), file_(errors.path, errors.who) {}
 
     /// The next line, without its end; nothing after the last. Valid until the next call.
     std::optional<std::string_view> next() {
@@ -65,19 +57,19 @@ class Lines {
         text_.erase(0, at_);
         at_ = 0;
         if (text_.size() > kBlockBytes)
-            asked_.refuse(
+            errors_.refuse(
                 fmt::format("line {} has more than {} bytes, expected a CSV, a GPX or a "
                             "GeoJSON file",
                             number_ + 1, kBlockBytes));
         const std::size_t before = text_.size();
         text_.resize(before + kBlockBytes);
         const ssize_t count = read(file_.descriptor(), text_.data() + before, kBlockBytes);
-        if (count < 0) asked_.refuse(fmt::format("cannot be read, {}", std::strerror(errno)));
+        if (count < 0) errors_.refuse(fmt::format("cannot be read, {}", std::strerror(errno)));
         text_.resize(before + static_cast<std::size_t>(count));
         ended_ = count == 0;
     }
 
-    Asked asked_;
+    FileErrors errors_;
     InputFile file_;
     std::string text_;
     std::size_t at_ = 0, number_ = 0;
@@ -85,19 +77,19 @@ class Lines {
 };
 
 /// Whether a file begins as XML or JSON do, and with which of them: '<', '{', or another byte.
-char beginning_of(const Asked& asked) {
-    const InputFile file(asked.path, asked.who);
+char beginning_of(const FileErrors& errors) {
+    const InputFile file(errors.path, errors.who);
     std::array<char, 512> head{};
     const ssize_t count = read(file.descriptor(), head.data(), head.size());
     std::string_view text(head.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
     text = trimmed(text);
-    if (text.empty()) asked.refuse("an empty file, expected a CSV, a GPX or a GeoJSON file");
+    if (text.empty()) errors.refuse("an empty file, expected a CSV, a GPX or a GeoJSON file");
     if (text.find('\0') != text.npos)
-        asked.refuse("not a text, expected a CSV, a GPX or a GeoJSON file");
+        errors.refuse("not a text, expected a CSV, a GPX or a GeoJSON file");
     if (text.front() == '{' && file.size() > kMostJsonBytes)
-        asked.refuse(fmt::format("a GeoJSON file of more than {} MiB; make a CSV of it",
-                                 kMostJsonBytes >> 20));
+        errors.refuse(fmt::format("a GeoJSON file of more than {} MiB; make a CSV of it",
+                                  kMostJsonBytes >> 20));
     return text.front();
 }
 
@@ -124,7 +116,7 @@ std::vector<std::string> fields_of(std::string_view line, char separator) {
 /// The names of a CSV's columns, in its first line.
 class Header {
   public:
-    explicit Header(std::string_view line) {
+    Header(std::string_view line, const FileErrors& errors) : errors_(errors) {
         for (const char candidate : {',', ';', '\t'})
             if (std::count(line.begin(), line.end(), candidate) >
                 std::count(line.begin(), line.end(), separator_))
@@ -138,11 +130,22 @@ class Header {
                 if (equal_ignoring_case(names_[i], word)) return i;
         return std::nullopt;
     }
-    std::vector<std::string> fields(std::string_view line) const {
-        return fields_of(line, separator_);
+    /// @throws Error (BadInput) for more fields than columns: a decimal comma parts a number
+    std::vector<std::string> fields(std::string_view line, std::size_t number) const {
+        std::vector<std::string> fields = fields_of(line, separator_);
+        while (fields.size() > names_.size() && fields.back().empty())
+            fields.pop_back();
+        if (fields.size() > names_.size())
+            errors_.refuse(
+                number,
+                fmt::format("{} fields, but the first line names {} columns; write decimal points, "
+                            "and names with a '{}' in quotes",
+                            fields.size(), names_.size(), separator_));
+        return fields;
     }
 
   private:
+    FileErrors errors_;
     char separator_ = ',';
     std::vector<std::string> names_;
 };
@@ -156,8 +159,8 @@ std::string field_of(const std::vector<std::string>& fields,
 /// The columns of a CSV of places, by their names.
 class Columns {
   public:
-    Columns(std::string_view header, const std::string& crs, const Asked& asked)
-        : asked_(asked), header_(header) {
+    Columns(std::string_view header, const std::string& crs, const FileErrors& errors)
+        : errors_(errors), header_(header, errors) {
         lat_ = header_.find({"lat", "latitude", "lat_deg"});
         lon_ = header_.find({"lon", "longitude", "lng", "long", "lon_deg"});
         name_ = header_.find({"name", "id", "title"});
@@ -167,25 +170,30 @@ class Columns {
         lon_ = header_.find({"x", "easting"});
         lat_ = header_.find({"y", "northing"});
         if (!lat_ || !lon_)
-            asked_.refuse(
+            errors_.refuse(
                 fmt::format("no columns lat and lon, expected a first line that names "
                             "them but got \"{}\"",
                             header.substr(0, 80)));
         if (crs.empty())
-            asked_.refuse(
+            errors_.refuse(
                 "columns x and y without a coordinate reference system; pass --points-crs EPSG:n, "
                 "or columns lat and lon in degrees");
         crs_ = geo::Crs::parse(crs, "--points-crs");
     }
 
     NamedPlace read(std::string_view line, std::size_t number) const {
-        const std::vector<std::string> fields = header_.fields(line);
+        const std::vector<std::string> fields = header_.fields(line, number);
         const auto field = [&](const std::optional<std::size_t>& column) {
             return field_of(fields, column);
         };
-        const std::string who = fmt::format("{}: {}: line {}", asked_.who, asked_.path, number);
+        const std::string who = fmt::format("{}: {}: line {}", errors_.who, errors_.path, number);
         const std::string height = field(height_);
-        NamedPlace place{field(name_), {}, field(time_)};
+        NamedPlace place{field(name_), {}, field(time_), number};
+        for (const auto& column : {lat_, lon_})
+            if (field(column).find(',') != std::string::npos)
+                errors_.refuse(number,
+                               fmt::format("\"{}\": write a decimal point, as in {}", field(column),
+                                           column == lat_ ? "46.91" : "8.05"));
         std::string text = field(lat_) + "," + field(lon_);
         if (crs_) text = "0,0";
         if (!height.empty()) text += "," + height;
@@ -213,134 +221,187 @@ class Columns {
         place.lon_rad = found.lon_rad;
     }
 
-    Asked asked_;
+    FileErrors errors_;
     Header header_;
     std::optional<std::size_t> lat_, lon_, name_, height_, time_;
     std::optional<geo::Crs> crs_;
 };
 
-[[noreturn]] void refuse_many(const Asked& asked) {
-    asked.refuse(fmt::format("more than {} places; split the file", kMostPlaces));
+[[noreturn]] void refuse_many(const FileErrors& errors) {
+    errors.refuse(fmt::format("more than {} places; split the file", kMostPlaces));
 }
 
-std::vector<NamedPlace> read_csv(const Asked& asked, const std::string& crs) {
-    Lines lines(asked);
+std::vector<NamedPlace> read_csv(const FileErrors& errors, const std::string& crs) {
+    Lines lines(errors);
     std::optional<Columns> columns;
     std::vector<NamedPlace> places;
     while (const std::optional<std::string_view> line = lines.next()) {
         if (trimmed(*line).empty() || line->starts_with('#')) continue;
         if (!columns) {
-            columns.emplace(*line, crs, asked);
+            columns.emplace(*line, crs, errors);
         } else {
-            if (places.size() >= kMostPlaces) refuse_many(asked);
+            if (places.size() >= kMostPlaces) refuse_many(errors);
             places.push_back(columns->read(*line, lines.number()));
         }
     }
     return places;
 }
 
-/// A place from degrees that a program has read. @param number  which of the file, from 1
-geo::PlaceText checked(const Asked& asked, std::size_t number, double lat_deg, double lon_deg) {
-    if (!(std::abs(lat_deg) <= 90) || !(lon_deg >= -180 && lon_deg <= 360))
-        asked.refuse(
-            fmt::format("point {}: latitude {:.10g}, longitude {:.10g}: no place on Earth, "
-                        "expected -90 to 90 and -180 to 360 degrees",
-                        number, lat_deg, lon_deg));
-    return {.place = geo::geodetic_deg(lat_deg, lon_deg)};
+NamedPlace place_of(const FileErrors& errors, VectorPoint&& point) {
+    const double lat_deg = point.lat_deg, lon_deg = point.lon_deg;
+    const auto is_lat = [](double deg) { return std::abs(deg) <= 90; };
+    const auto is_lon = [](double deg) { return deg >= -180 && deg <= 360; };
+    if (!is_lat(lat_deg) || !is_lon(lon_deg)) {
+        const bool swapped = is_lat(lon_deg) && is_lon(lat_deg);
+        errors.refuse(
+            point.line,
+            fmt::format("latitude {:.10g}, longitude {:.10g}: no place on Earth, expected -90 to "
+                        "90 and -180 to 360 degrees{}",
+                        lat_deg, lon_deg, swapped ? "; perhaps the two are swapped" : ""));
+    }
+    return {std::move(point.name),
+            {.place = geo::geodetic_deg(lat_deg, lon_deg)},
+            std::move(point.time),
+            point.line};
 }
 
-NamedPlace place_of(const Asked& asked, std::size_t number, VectorPoint&& point) {
-    return {std::move(point.name), checked(asked, number, point.lat_deg, point.lon_deg),
-            std::move(point.time)};
+/// The lines of a GPX: its tracks, or its routes where it has no tracks.
+/// @param wanted  which one's points are kept, from 1
+/// @param places  get them
+/// @returns the names of all
+std::vector<std::string> gpx_lines(const FileErrors& errors, int wanted,
+                                   std::vector<NamedPlace>& places) {
+    std::vector<std::string> names;
+    for (const GpxKind kind : {GpxKind::Tracks, GpxKind::Routes}) {
+        std::size_t count = 0;
+        names = read_gpx(errors, kind, [&](int index, VectorPoint&& point) {
+            if (++count > kMostPlaces) refuse_many(errors);
+            if (index == wanted) places.push_back(place_of(errors, std::move(point)));
+        });
+        if (!names.empty()) break;
+    }
+    return names;
+}
+
+/// The same of a GeoJSON.
+std::vector<std::string> geojson_lines(const FileErrors& errors, int wanted,
+                                       std::vector<NamedPlace>& places) {
+    std::vector<std::string> names;
+    std::size_t count = 0;
+    for (VectorLine& line : read_geojson(errors).lines) {
+        names.push_back(std::move(line.name));
+        count += line.points.size();
+        if (count > kMostPlaces) refuse_many(errors);
+        if (static_cast<int>(names.size()) != wanted) continue;
+        for (VectorPoint& point : line.points)
+            places.push_back(place_of(errors, std::move(point)));
+    }
+    return names;
+}
+
+/// @throws Error (BadInput) where a CRS is given for a file that has its own
+void refuse_crs(const FileErrors& errors, const std::string& crs) {
+    if (!crs.empty())
+        errors.refuse(
+            "--points-crs is for columns x and y of a CSV; GPX and GeoJSON have their own");
 }
 
 }  // namespace
 
+void FileErrors::refuse(std::string_view what) const {
+    bad_input(fmt::format("{}: {}: {}", who, path, what));
+}
+
+void FileErrors::refuse(std::size_t line, std::string_view what) const {
+    bad_input(fmt::format("{}: {}: line {}: {}", who, path, line, what));
+}
+
 std::vector<NamedTime> read_times(const std::string& path, std::string_view who, std::size_t most) {
-    const Asked asked{path, who};
-    Lines lines(asked);
+    const FileErrors errors{path, who};
+    Lines lines(errors);
     std::optional<Header> header;
     std::optional<std::size_t> time, name;
     std::vector<NamedTime> times;
     while (const std::optional<std::string_view> line = lines.next()) {
-        if (line->find('\0') != line->npos) asked.refuse("not a text, expected a CSV file");
+        if (line->find('\0') != line->npos) errors.refuse("not a text, expected a CSV file");
         if (trimmed(*line).empty() || line->starts_with('#')) continue;
         if (!header) {
-            header.emplace(*line);
+            header.emplace(*line, errors);
             time = header->find({"time"});
             name = header->find({"name", "id", "title"});
             if (!time)
-                asked.refuse(
+                errors.refuse(
                     fmt::format("no column time, expected a first line that names it but got "
                                 "\"{}\"",
                                 line->substr(0, 80)));
             continue;
         }
-        const std::vector<std::string> fields = header->fields(*line);
+        const std::vector<std::string> fields = header->fields(*line, lines.number());
         times.push_back({field_of(fields, name), field_of(fields, time), lines.number()});
-        if (times.back().time.empty())
-            asked.refuse(fmt::format("line {}: no time in it", lines.number()));
+        if (times.back().time.empty()) errors.refuse(lines.number(), "no time in it");
         if (times.size() > most)
-            asked.refuse(fmt::format("more than {} times; split the file", most));
+            errors.refuse(fmt::format("more than {} times; split the file", most));
     }
     if (times.empty())
-        asked.refuse("no times, expected a first line \"time\" and a line for each below it");
+        errors.refuse("no times, expected a first line \"time\" and a line for each below it");
     return times;
 }
 
 std::vector<NamedPlace> read_points(const std::string& path, std::string_view who,
                                     const std::string& crs) {
-    const Asked asked{path, who};
-    const char beginning = beginning_of(asked);
+    const FileErrors errors{path, who};
+    const char beginning = beginning_of(errors);
     std::vector<NamedPlace> places;
     if (beginning != '<' && beginning != '{') {
-        places = read_csv(asked, crs);
-        if (places.empty()) asked.refuse("no points, expected a line for each below the columns");
+        places = read_csv(errors, crs);
+        if (places.empty()) errors.refuse("no points, expected a line for each below the columns");
         return places;
     }
-    VectorFile file(path, who, beginning == '<');
-    file.points([&](VectorPoint&& point) {
-        if (places.size() >= kMostPlaces) refuse_many(asked);
-        places.push_back(place_of(asked, places.size() + 1, std::move(point)));
-    });
+    refuse_crs(errors, crs);
+    const auto add = [&](VectorPoint&& point) {
+        if (places.size() >= kMostPlaces) refuse_many(errors);
+        places.push_back(place_of(errors, std::move(point)));
+    };
+    if (beginning == '<')
+        read_gpx(errors, GpxKind::Waypoints,
+                 [&](int, VectorPoint&& point) { add(std::move(point)); });
+    else
+        for (VectorPoint& point : read_geojson(errors).points)
+            add(std::move(point));
     if (places.empty())
-        asked.refuse(beginning == '<' ? "no waypoints (wpt); tracks and routes are for sun along"
-                                      : "no points, expected features with Point geometries");
+        errors.refuse(beginning == '<' ? "no waypoints (wpt); tracks and routes are for sun along"
+                                       : "no points, expected features with Point geometries");
     return places;
 }
 
 NamedLine read_line(const std::string& path, std::string_view who, const std::string& crs,
                     int number) {
-    const Asked asked{path, who};
-    const char beginning = beginning_of(asked);
+    const FileErrors errors{path, who};
+    const char beginning = beginning_of(errors);
     const int wanted = std::max(number, 1);
     NamedLine line;
     int lines = 1;
     if (beginning == '<' || beginning == '{') {
-        std::size_t count = 0;
-        const std::vector<std::string> names =
-            VectorFile(path, who, beginning == '<').lines([&](int index, VectorPoint&& point) {
-                if (++count > kMostPlaces) refuse_many(asked);
-                if (index == wanted)
-                    line.places.push_back(
-                        place_of(asked, line.places.size() + 1, std::move(point)));
-            });
+        refuse_crs(errors, crs);
+        const std::vector<std::string> names = beginning == '<'
+                                                   ? gpx_lines(errors, wanted, line.places)
+                                                   : geojson_lines(errors, wanted, line.places);
         lines = static_cast<int>(names.size());
         if (wanted <= lines) line.name = names[static_cast<std::size_t>(wanted) - 1];
     } else {
-        line.places = read_csv(asked, crs);
+        line.places = read_csv(errors, crs);
     }
     if (lines == 0)
-        asked.refuse(beginning == '<' ? "no line in it, expected a track or a route"
-                                      : "no line in it, expected a LineString");
+        errors.refuse(beginning == '<' ? "no line in it, expected a track or a route"
+                                       : "no line in it, expected a LineString");
     if (number == 0 && lines > 1)
-        asked.refuse(fmt::format("{} lines in it; select one with --track 1 to {}", lines, lines));
+        errors.refuse(fmt::format("{} lines in it; select one with --track 1 to {}", lines, lines));
     if (number > lines)
-        asked.refuse(
+        errors.refuse(
             fmt::format("--track {}, expected 1 to {}: the file has that many", number, lines));
     if (line.places.size() < 2)
-        asked.refuse(fmt::format("a line of {} point{}, expected two or more", line.places.size(),
-                                 line.places.size() == 1 ? "" : "s"));
+        errors.refuse(fmt::format("a line of {} point{}, expected two or more", line.places.size(),
+                                  line.places.size() == 1 ? "" : "s"));
     return line;
 }
 

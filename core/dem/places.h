@@ -13,18 +13,18 @@
 /// (also `latitude`, `longitude`, `lng`, `long`, `lat_deg`, `lon_deg`), or `x` and `y` (also
 /// `easting`, `northing`) in a CRS that is given; `name` (also `id`, `title`), `height` as the H of
 /// LAT,LON,H, `time`. Columns are parted by commas, semicolons or tabs; lines that begin with # are
-/// left out. GPX and GeoJSON are read by GDAL, under the guards that rasters are read under, by
-/// those two drivers and from files of this machine alone; their heights are left out, as those of
-/// the ground are the DEM's.
+/// skipped. Heights of GPX and GeoJSON are not read, as those of the ground are the DEM's. A number
+/// is one with a decimal point: what cannot be read as written is an error, never skipped.
 namespace relevo::dem {
 
 /// More places than these are refused: a GPS of one fix a second has them in eleven days.
 inline constexpr std::size_t kMostPlaces = 1'000'000;
 
 struct NamedPlace {
-    std::string name;   ///< empty where the file has none
-    geo::PlaceText at;  ///< a height only from a CSV's column
-    std::string time;   ///< as sun::parse_time() reads it; empty where the file has none
+    std::string name;      ///< empty where the file has none
+    geo::PlaceText at;     ///< a height only from a CSV's column
+    std::string time;      ///< as sun::parse_time() reads it; empty where the file has none
+    std::size_t line = 0;  ///< of the file, from 1
 };
 
 struct NamedLine {
@@ -34,7 +34,8 @@ struct NamedLine {
 
 /// Rows of a CSV, waypoints of a GPX, points of a GeoJSON, in their order.
 /// @param who  what errors begin with, "--points"
-/// @param crs  of x and y in a CSV, as geo::Crs::parse() reads it; empty: none
+/// @param crs  of x and y in a CSV, as geo::Crs::parse() reads it; empty: none. For other files an
+///     error
 /// @throws Error (BadInput) for what is no such file, has no points, more than kMostPlaces, or a
 ///     coordinate that is none: `who: path: line 17: what`
 std::vector<NamedPlace> read_points(const std::string& path, std::string_view who,

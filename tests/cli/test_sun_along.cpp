@@ -163,6 +163,25 @@ TEST(SunAlongVerb, GeoJsonAndMapCoordinatesAreTheSameWalk) {
               csv["stretches"]);
 }
 
+// 07:20 in New York in winter is 12:20 UTC, however a track writes it.
+TEST(SunAlongVerb, AnOffsetOfATracksTimesCountsWhateverTheZone) {
+    for (const auto& [first, last] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"2026-02-10T17:50:00+05:30", "2026-02-10T18:50:00+0530"},
+             {"2026-02-10T04:20:00-0800", "2026-02-10T05:20:00-08"},
+             {"2026-02-10 12:20:00Z", "2026-02-10t13:20:00z"},
+             {"2026-02-10T12:20:00", "2026-02-10T13:20:00"}}) {
+        const std::string track = file(
+            "offset.gpx", fmt::format("<gpx><trk><trkseg>"
+                                      "<trkpt lat=\"36.30\" lon=\"-84.24\"><time>{}</time></trkpt>"
+                                      "<trkpt lat=\"36.31\" lon=\"-84.24\"><time>{}</time></trkpt>"
+                                      "</trkseg></trk></gpx>",
+                                      first, last));
+        const json walk = json_of(track, {});
+        EXPECT_EQ(walk["stretches"][0]["from"]["local"], "2026-02-10T07:20:00-05:00") << first;
+        EXPECT_NEAR(walk["duration_h"].get<double>(), 1, 1e-9) << last;
+    }
+}
+
 TEST(SunAlongVerb, WhatIsMissingOrWrongIsSaid) {
     const std::string csv = walk_csv(), gpx = walk_gpx();
     const std::string help = "; see relevo sun along --help";
@@ -185,22 +204,25 @@ TEST(SunAlongVerb, WhatIsMissingOrWrongIsSaid) {
         fmt::format("sun along: {}: --track 2, expected 1 to 1: the file has that many", csv));
     const std::string some =
         file("some.csv", "lat,lon,time\n36.30,-84.24,2026-02-10T12:00Z\n36.31,-84.24,\n");
-    expect_failure({"-q", "sun", "along", bundled_dem(), some}, 3,
-                   fmt::format("sun along: {}: point 2 has no time, where others have one; pass "
-                               "--start and --speed",
-                               some));
+    expect_failure(
+        {"-q", "sun", "along", bundled_dem(), some}, 3,
+        fmt::format("sun along: {}: line 3: a point without a time, where others have one; "
+                    "pass --start and --speed",
+                    some));
     const std::string back = file("back.csv",
                                   "lat,lon,time\n36.30,-84.24,2026-02-10T12:00Z\n"
                                   "36.31,-84.24,2026-02-10T11:00Z\n");
     expect_failure({"-q", "sun", "along", bundled_dem(), back}, 3,
-                   "walk: point 2: its time, 2026-02-10T11:00:00Z, is before that of the "
-                   "point before, 2026-02-10T12:00:00Z; expected times in order");
+                   fmt::format("sun along: {}: line 3: its time, 2026-02-10T11:00:00Z, is before "
+                               "that of the point before, 2026-02-10T12:00:00Z; expected times in "
+                               "order",
+                               back));
     const std::string odd = file("odd.csv",
                                  "lat,lon,time\n36.30,-84.24,2026-02-10T12:00Z\n"
                                  "36.31,-84.24,noonish\n");
     const Result run = relevo({"-q", "sun", "along", bundled_dem(), odd});
     EXPECT_EQ(run.status, 3);
-    EXPECT_TRUE(run.err.starts_with("relevo: error: sun along: " + odd + ": point 2: ")) << run.err;
+    EXPECT_TRUE(run.err.starts_with("relevo: error: sun along: " + odd + ": line 3: ")) << run.err;
     EXPECT_NE(run.err.find("noonish"), std::string::npos) << run.err;
     const std::string off = file("off.csv", "lat,lon\n36.30,-84.24\n36.30,-84.00\n");
     expect_failure(along(off, {"--start", "2026-02-10T12:00Z", "--speed", "4"}), 3,
