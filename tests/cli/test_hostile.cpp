@@ -142,7 +142,8 @@ Result limited(const std::string& limit, std::vector<std::string> arguments) {
 }
 
 TEST_F(Pipes, ASmallStackIsEnough) {
-    const Result run = limited("-s 16", capture({}));
+    // In KiB. Below 24 the loader already fails, which only maps the libraries.
+    const Result run = limited("-s 32", capture({}));
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_TRUE(fs::exists(out("out.png")));
 }
