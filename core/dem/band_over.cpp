@@ -1,6 +1,7 @@
 #include "dem/band_over.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -10,13 +11,14 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
+#include "base/units.h"
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
 
 namespace relevo::dem {
 namespace {
 
-constexpr int kNet = 16;  // posts between places that are computed
+constexpr int kNet = 16;  // values between places that are computed
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 /// Cells of a band, all of them or picks of overviews.
@@ -54,44 +56,114 @@ Cells read_cells(GDALRasterBandH band, const std::string& path) {
     return cells;
 }
 
-/// Where posts of the DEM lie among the cells of the raster.
+/// Where places of the overlay's values lie among the cells of the raster.
 class Places {
   public:
-    Places(const Grid& dem, const Grid& raster)
-        : dem_(dem), raster_(raster), same_(dem.crs().text() == raster.crs().text()) {
-        if (same_) return;
-        net_ = Array2d<glm::dvec2>((dem.columns() - 1) / kNet + 2, (dem.rows() - 1) / kNet + 2);
+    /// @param values  of the result along both sides, the first and the last on the DEM's posts
+    Places(const Grid& dem, const Grid& raster, const glm::ivec2& values)
+        : dem_(dem),
+          raster_(raster),
+          step_(glm::dvec2(dem.columns() - 1, dem.rows() - 1) /
+                glm::dvec2(glm::max(values - 1, glm::ivec2(1)))),
+          linear_(is_linear()) {
+        if (linear_) return;
+        net_ = Array2d<glm::dvec2>((values.x - 1) / kNet + 2, (values.y - 1) / kNet + 2);
         parallel_for(0, net_.height(), 1, [&](int first, int last) {
             for (int row = first; row < last; ++row)
                 for (int column = 0; column < net_.width(); ++column)
-                    net_.at(column, row) = raster.post(dem.place(column * kNet, row * kNet));
+                    net_.at(column, row) = exact({column * kNet, row * kNet});
+        });
+        uneven_ = Array2d<std::uint8_t>(net_.width() - 1, net_.height() - 1);
+        parallel_for(0, uneven_.height(), 1, [&](int first, int last) {
+            for (int row = first; row < last; ++row)
+                for (int column = 0; column < uneven_.width(); ++column)
+                    uneven_.at(column, row) = is_uneven(column, row);
         });
     }
 
-    glm::dvec2 operator()(double column, double row) const {
-        if (same_) return raster_.affine().inverse(dem_.affine()(column, row));
-        const double x = column / kNet, y = row / kNet;
-        const int left = std::min(static_cast<int>(x), net_.width() - 2),
-                  above = std::min(static_cast<int>(y), net_.height() - 2);
-        const double u = x - left, v = y - above;
-        const auto at = [&](int i, int j) { return net_.at(left + i, above + j); };
-        return (1 - v) * ((1 - u) * at(0, 0) + u * at(1, 0)) +
-               v * ((1 - u) * at(0, 1) + u * at(1, 1));
+    glm::dvec2 operator()(int column, int row) const {
+        if (linear_) return linear(glm::dvec2(column, row) * step_);
+        if (uneven_.at(column / kNet, row / kNet)) return exact({column, row});
+        return interpolated(glm::dvec2(column, row) / double{kNet});
     }
 
   private:
+    glm::dvec2 linear(const glm::dvec2& post) const {
+        return raster_.affine().inverse(dem_.affine()(post.x, post.y));
+    }
+
+    glm::dvec2 exact(const glm::dvec2& value) const {
+        const glm::dvec2 post = value * step_;
+        return raster_.post(dem_.place(post.x, post.y));
+    }
+
+    /// Whether both have one CRS and count its longitudes alike: 190 degrees may be -170 there.
+    bool is_linear() const {
+        constexpr int kSamples = 32;
+        if (dem_.crs().text() != raster_.crs().text()) return false;
+        const glm::dvec2 last(dem_.columns() - 1, dem_.rows() - 1);
+        for (int j = 0; j <= kSamples; ++j)
+            for (int i = 0; i <= kSamples; ++i) {
+                const glm::dvec2 post = last * glm::dvec2(i, j) / double{kSamples};
+                if (distance(raster_.post(dem_.place(post.x, post.y)), linear(post)) > 0.5)
+                    return false;
+            }
+        return true;
+    }
+
+    /// @param at  in steps of the net
+    glm::dvec2 interpolated(const glm::dvec2& at) const {
+        const int left = std::min(static_cast<int>(at.x), net_.width() - 2),
+                  above = std::min(static_cast<int>(at.y), net_.height() - 2);
+        const double u = at.x - left, v = at.y - above;
+        const auto node = [&](int i, int j) { return net_.at(left + i, above + j); };
+        return (1 - v) * ((1 - u) * node(0, 0) + u * node(1, 0)) +
+               v * ((1 - u) * node(0, 1) + u * node(1, 1));
+    }
+
+    /// Whether places in a part of the net cannot be interpolated: near a pole, where longitudes
+    /// begin anew, and where the net is too wide for how the two CRSs differ.
+    bool is_uneven(int column, int row) const {
+        const glm::dvec2 corner = net_.at(column, row), across = net_.at(column + 1, row),
+                         down = net_.at(column, row + 1);
+        const double value_cells =
+            std::min(distance(corner, across), distance(corner, down)) / kNet;
+        const double most_off = kMostOff * std::max(1.0, value_cells);
+        for (const glm::dvec2& in : {glm::dvec2(0.5, 0.5), glm::dvec2(0.5, 0), glm::dvec2(0.5, 1),
+                                     glm::dvec2(0, 0.5), glm::dvec2(1, 0.5)}) {
+            const glm::dvec2 at = glm::dvec2(column, row) + in;
+            if (!(distance(interpolated(at), exact(at * double{kNet})) <= most_off)) return true;
+        }
+        return false;
+    }
+
+    static constexpr double kMostOff = 0.05;  // cells of the raster, or values where they are wider
+
     const Grid& dem_;
     const Grid& raster_;
-    bool same_;
+    glm::dvec2 step_;  ///< posts of the DEM from value to value
+    bool linear_;
     Array2d<glm::dvec2> net_;
+    Array2d<std::uint8_t> uneven_;
 };
 
+/// Whether the last cells of a row lie beside its first ones, around the Earth.
+bool goes_round(const Grid& raster) {
+    const Affine& affine = raster.affine();
+    const double turn = 2 * kPi / raster.crs().unit_si();
+    return raster.crs().is_geographic() && affine.x_row == 0 && affine.y_column == 0 &&
+           std::abs(std::abs(affine.x_column) * raster.columns() - turn) <
+               0.01 * std::abs(affine.x_column);
+}
+
 /// Between four cells, those without a value left out; none where the nearest has none.
-float between(const Array2d<float>& cells, const glm::dvec2& at) {
+/// @param round  the last column lies beside the first
+float between(const Array2d<float>& cells, const glm::dvec2& at, bool round) {
     const int width = cells.width(), height = cells.height();
     if (!(at.x >= -0.5 && at.y >= -0.5 && at.x <= width - 0.5 && at.y <= height - 0.5)) return kNaN;
     const auto value = [&](int column, int row) {
-        return cells.at(std::clamp(column, 0, width - 1), std::clamp(row, 0, height - 1));
+        column = round ? (column + width) % width : std::clamp(column, 0, width - 1);
+        return cells.at(column, std::clamp(row, 0, height - 1));
     };
     if (std::isnan(value(static_cast<int>(std::lround(at.x)), static_cast<int>(std::lround(at.y)))))
         return kNaN;
@@ -115,6 +187,26 @@ float nearest(const Array2d<float>& cells, const glm::dvec2& at) {
     return cells.at(static_cast<int>(column), static_cast<int>(row));
 }
 
+/// "46.90 to 47.10 N, 8.95 to 9.20 E": a box around what is sampled of a raster's edges.
+std::string extent_text(const Grid& grid) {
+    constexpr int kSamples = 16;
+    const double centre_rad = grid.center().lon_rad;
+    glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
+    const glm::dvec2 last(grid.columns() - 0.5, grid.rows() - 0.5);
+    for (int i = 0; i <= kSamples; ++i)
+        for (int j = 0; j <= kSamples; j += i % kSamples == 0 ? 1 : kSamples) {
+            const glm::dvec2 post =
+                glm::mix(glm::dvec2(-0.5), last, glm::dvec2(i, j) / double{kSamples});
+            const geo::Geodetic at = grid.place(post.x, post.y);
+            const double lon_rad = centre_rad + std::remainder(at.lon_rad - centre_rad, 2 * kPi);
+            if (!std::isfinite(at.lat_rad) || !std::isfinite(lon_rad)) continue;
+            low = glm::min(low, glm::dvec2(degrees(at.lat_rad), degrees(lon_rad)));
+            high = glm::max(high, glm::dvec2(degrees(at.lat_rad), degrees(lon_rad)));
+        }
+    return fmt::format("latitude {:.4g} to {:.4g}, longitude {:.4g} to {:.4g}", low.x, high.x,
+                       low.y, high.y);
+}
+
 std::vector<std::array<std::uint8_t, 4>> colors_of(GDALRasterBandH band) {
     std::vector<std::array<std::uint8_t, 4>> colors;
     const GDALColorTableH table = GDALGetRasterColorTable(band);
@@ -128,44 +220,75 @@ std::vector<std::array<std::uint8_t, 4>> colors_of(GDALRasterBandH band) {
     return colors;
 }
 
+GDALRasterBandH band_of(const Dataset& dataset, const std::string& path, int number) {
+    const int bands = GDALGetRasterCount(dataset.get());
+    if (number < 1 || number > bands)
+        refuse(path, fmt::format("band {}: expected 1 to {}", number, bands));
+    return GDALGetRasterBand(dataset.get(), number);
+}
+
+std::map<std::string, std::string> metadata_of(const Dataset& dataset, GDALRasterBandH band) {
+    std::map<std::string, std::string> result;
+    for (const GDALMajorObjectH object :
+         {GDALMajorObjectH{dataset.get()}, GDALMajorObjectH{band}}) {
+        char** const items = GDALGetMetadata(object, nullptr);
+        for (char** item = items; item && *item; ++item) {
+            const std::string_view text = *item;
+            const std::size_t equals = text.find('=');
+            if (equals != std::string_view::npos)
+                result[std::string(text.substr(0, equals))] = text.substr(equals + 1);
+        }
+    }
+    return result;
+}
+
 }  // namespace
+
+std::map<std::string, std::string> band_metadata(const std::string& path, int number) {
+    std::string opened = path;
+    const Dataset dataset = open_dataset(opened);
+    return metadata_of(dataset, band_of(dataset, path, number));
+}
 
 BandOver read_band_over(const Grid& grid, const std::string& path, int number) {
     std::string opened = path;
     const Dataset dataset = open_dataset(opened);
-    const int bands = GDALGetRasterCount(dataset.get());
-    if (number < 1 || number > bands)
-        refuse(path, fmt::format("band {}: expected 1 to {}", number, bands));
+    const GDALRasterBandH band = band_of(dataset, path, number);
     Description unused;
     const Georeference where = georeference(opened, dataset.get(), {}, unused);
-    const GDALRasterBandH band = GDALGetRasterBand(dataset.get(), number);
     const Cells cells = read_cells(band, path);
     const Grid raster(GDALGetRasterXSize(dataset.get()), GDALGetRasterYSize(dataset.get()),
                       where.affine, where.crs);
-    const Places places(grid, raster);
-
     BandOver over;
     over.name = GDALGetDescription(band);
     over.unit = GDALGetRasterUnitType(band);
+    over.about = metadata_of(dataset, band);
     over.whole = GDALGetRasterDataType(band) == GDT_Byte;
     over.colors = colors_of(band);
     const double share = std::sqrt(
         std::min(1.0, static_cast<double>(kMostOver) / (double{1} * grid.columns() * grid.rows())));
     over.values = Array2d<float>(std::max(1, static_cast<int>(grid.columns() * share)),
                                  std::max(1, static_cast<int>(grid.rows() * share)));
-    const glm::dvec2 last(grid.columns() - 1, grid.rows() - 1),
-        to_last(std::max(1, over.values.width() - 1), std::max(1, over.values.height() - 1));
+    const Places places(grid, raster, {over.values.width(), over.values.height()});
+    const bool round = goes_round(raster);
+    std::atomic<bool> covers = false;
     parallel_for(0, over.values.height(), 16, [&](int first, int end) {
         for (int row = first; row < end; ++row)
             for (int column = 0; column < over.values.width(); ++column) {
-                const glm::dvec2 post = last * glm::dvec2(column, row) / to_last;
-                const glm::dvec2 at = (places(post.x, post.y) + 0.5) / cells.shrunk - 0.5;
+                const glm::dvec2 place = places(column, row);
+                const glm::dvec2 at = (place + 0.5) / cells.shrunk - 0.5;
                 over.values.at(column, row) =
-                    over.whole ? nearest(cells.values, at) : between(cells.values, at);
+                    over.whole ? nearest(cells.values, at) : between(cells.values, at, round);
+                if (place.x >= -0.5 && place.y >= -0.5 && place.x <= raster.columns() - 0.5 &&
+                    place.y <= raster.rows() - 0.5)
+                    covers = true;
             }
     });
+    if (!covers)
+        refuse(path, fmt::format("the overlay does not cover this DEM; it is at {}, the DEM at {}",
+                                 extent_text(raster), extent_text(grid)));
     if (std::all_of(over.values.begin(), over.values.end(), [](float v) { return std::isnan(v); }))
-        refuse(path, "has no value over the DEM, expected a raster that lies there");
+        refuse(path, "the overlay has no value anywhere on this DEM");
     return over;
 }
 

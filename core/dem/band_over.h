@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,12 +16,16 @@ struct BandOver {
     /// NaN where the raster has no value, or does not reach. The first and the last columns and
     /// rows lie on the DEM's.
     Array2d<float> values;
-    std::string name;    ///< the band's description; empty where it has none
-    std::string unit;    ///< likewise
+    std::string name;                          ///< the band's description; empty where it has none
+    std::string unit;                          ///< likewise
+    std::map<std::string, std::string> about;  ///< metadata of the raster, and over them the band's
     bool whole = false;  ///< stored as whole numbers of 8 bits: classes, a mask
     /// RGBA of the values 0, 1, ...; empty where the band has no colour table.
     std::vector<std::array<std::uint8_t, 4>> colors;
 };
+
+/// What a band says of itself: BandOver::about. @throws Error (BadInput) as read_band_over()
+std::map<std::string, std::string> band_metadata(const std::string& path, int band);
 
 /// Values of more posts than these are means or picks of fewer [posts].
 inline constexpr std::int64_t kMostOver = std::int64_t{1} << 24;
@@ -28,8 +33,9 @@ inline constexpr std::int64_t kMostOver = std::int64_t{1} << 24;
 /// Reads a band of any raster that GDAL opens, in any CRS, for the posts of a DEM: of 8-bit bands
 /// the nearest cell, of others what is linear between cells.
 ///
-/// Accuracy: places between those of every 16th post are interpolated where the two have different
-/// CRSs (tests/dem/test_band_over.cpp).
+/// Accuracy: within 0.05 cells of the raster, or 0.05 values where those are wider apart, also
+/// around a pole and across 180 degrees (tests/dem/test_band_over.cpp): between every 16th value
+/// places are interpolated only where that is so.
 /// @param band  from 1
 /// @throws Error (BadInput) as Source::open(), for a band that is not there, and where the raster
 ///     has no cell over the DEM

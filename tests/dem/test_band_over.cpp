@@ -90,11 +90,85 @@ TEST(BandOver, WhereTheRasterDoesNotReachThereIsNoValue) {
     EXPECT_TRUE(std::isnan(over.values.at(11, 5)));
 }
 
+/// A raster of the whole Earth in degrees, whose value is the longitude's cosine times 100 plus the
+/// latitude: the same on both sides of 180 degrees.
+std::string write_earth(const char* name, double west_deg) {
+    return write_raster(folder() / name, {.columns = 720,
+                                          .rows = 360,
+                                          .geotransform = {{west_deg, 0.5, 0, 90, 0, -0.5}},
+                                          .crs = "EPSG:4326",
+                                          .value = [=](int column, int row, int) {
+                                              const double lon_deg = west_deg + (column + 0.5) / 2;
+                                              return 100 * std::cos(radians(lon_deg)) + 90 -
+                                                     (row + 0.5) / 2;
+                                          }});
+}
+
+/// How far values are from that formula, all over a DEM.
+double worst_off(const Grid& dem, const std::string& path) {
+    const BandOver over = read_band_over(dem, path, 1);
+    double worst = 0;
+    for (int row = 0; row < dem.rows(); ++row)
+        for (int column = 0; column < dem.columns(); ++column) {
+            const geo::Geodetic at = dem.place(column, row);
+            const double off =
+                over.values.at(column, row) - (100 * std::cos(at.lon_rad) + degrees(at.lat_rad));
+            worst = std::isnan(off) ? 1e9 : std::max(worst, std::abs(off));
+        }
+    return worst;
+}
+
+// A cell is 0.5 degrees: 0.9 of a value by the longitude, of which linear interpolation loses
+// 0.0010; and 0.05 cells 0.044.
+constexpr double kMostOff = 0.05;
+
+TEST(BandOver, AcrossTheDateLineEveryPostHasTheValueOfItsPlace) {
+    const std::string greenwich = write_earth("greenwich.tif", -180),
+                      pacific = write_earth("pacific.tif", 0);
+    // Degrees that go on past 180, and UTM and Mercator on both sides of it.
+    const std::vector<Grid> dems{
+        {200, 100, {170.05, 0.1, 0, 5.05, 0, -0.1}, geo::Crs::parse("EPSG:4326", "test")},
+        {200, 100, {-189.95, 0.1, 0, 5.05, 0, -0.1}, geo::Crs::parse("EPSG:4326", "test")},
+        {120, 90, {600000, 5000, 0, 6200000, 0, -5000}, geo::Crs::parse("EPSG:32660", "test")},
+        {200, 90, {19500000, 5000, 0, 800000, 0, -5000}, geo::Crs::parse("EPSG:3857", "test")},
+    };
+    for (const Grid& dem : dems)
+        for (const std::string& raster : {greenwich, pacific})
+            EXPECT_LT(worst_off(dem, raster), kMostOff) << dem.crs().name() << " on " << raster;
+}
+
+TEST(BandOver, AroundAPoleEveryPostHasTheValueOfItsPlace) {
+    const std::string earth = write_earth("earth.tif", -180);
+    const Grid arctic(161, 161, {-400000, 5000, 0, 400000, 0, -5000},
+                      geo::Crs::parse("EPSG:3413", "test"));
+    const BandOver over = read_band_over(arctic, earth, 1);
+    int wrong = 0;
+    for (int row = 0; row < 161; ++row)
+        for (int column = 0; column < 161; ++column) {
+            const geo::Geodetic at = arctic.place(column, row);
+            const double true_value = 100 * std::cos(at.lon_rad) + degrees(at.lat_rad);
+            // Within the last row of cells the pole has no cell of its own.
+            if (degrees(at.lat_rad) > 89.7) continue;
+            // Near the pole cells are narrower than the posts are apart, which counts then.
+            const double cells = std::max(1.0, 5e3 / (55.6e3 * std::cos(at.lat_rad)));
+            wrong += !(std::abs(over.values.at(column, row) - true_value) < kMostOff * cells);
+        }
+    EXPECT_EQ(wrong, 0) << "of " << 161 * 161 << " posts";
+}
+
 TEST(BandOver, WhatItCannotReadIsRefused) {
     const std::string far =
         write_raster(folder() / "far.tif", {.geotransform = {{600000, 30, 0, 5200000, 0, -30}}});
-    EXPECT_EQ(error_of([&] { read_band_over(grid(), far, 1); }),
-              "exit 3: " + far + ": has no value over the DEM, expected a raster that lies there");
+    EXPECT_EQ(
+        error_of([&] { read_band_over(grid(), far, 1); }),
+        "exit 3: " + far +
+            ": the overlay does not cover this DEM; it is at latitude 46.95 to 46.95, longitude "
+            "10.31 to 10.32, the DEM at latitude 46.94 to 46.95, longitude 9 to 9.016");
+    const std::string empty = write_raster(
+        folder() / "empty.tif",
+        {.columns = 41, .rows = 31, .nodata = 7, .value = [](int, int, int) { return 7.0; }});
+    EXPECT_EQ(error_of([&] { read_band_over(grid(), empty, 1); }),
+              "exit 3: " + empty + ": the overlay has no value anywhere on this DEM");
     EXPECT_EQ(error_of([&] { read_band_over(grid(), far, 2); }),
               "exit 3: " + far + ": band 2: expected 1 to 1");
 }
