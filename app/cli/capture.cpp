@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <new>
 
@@ -43,7 +44,7 @@ struct Wanted {
 Wanted wanted(const Arguments& arguments) {
     if (arguments.from.empty()) return {arguments.scene.scene(), arguments.ab};
     if (!arguments.scene.file.empty()) bad_usage("--scene and --from exclude each other; use one");
-    const image::Metadata metadata = image::read_metadata(arguments.from);
+    const image::Metadata metadata = session::read_record(arguments.from);
     const auto text = metadata.find(session::kSceneKeyword);
     if (text == metadata.end())
         bad_input(
@@ -195,9 +196,11 @@ void capture(const Arguments& arguments) {
     OutputFile& picture_file = *open(arguments.output, "image");
     Timings timings(open(arguments.timings, "--timings"));
     OutputFile* const scene_file = open(arguments.save_scene, "--save-scene");
+    const session::SceneIn scene_in = session::scene_in(output, scene::with_absolute_paths(scene));
+    const bool sidecar =
+        arguments.sidecar || arguments.audit || scene_in == session::SceneIn::Sidecar;
     OutputFile* const sidecar_file =
-        open(arguments.sidecar || arguments.audit ? session::sidecar_to_write(output).string() : "",
-             "--sidecar");
+        open(sidecar ? session::sidecar_to_write(output).string() : "", "--sidecar");
 
     session::Options options{.device = arguments.device,
                              .radiance = image::holds_linear_light(output),
@@ -208,6 +211,10 @@ void capture(const Arguments& arguments) {
             render::dump_programs(texts, arguments.dump_shaders, arguments.overwrite);
         };
     image::load_format(output);
+    session::SceneInputs inputs(RELEVO_VERSION);
+    // Hashes files while a session opens. What is wrong with the scene the session says.
+    const auto recorded = std::async(std::launch::async | std::launch::deferred,
+                                     [&, of = scene] { inputs.record(of); });
     session::Session session(scene, options, files);
     for (const auto& [stage, took_ms] : session.stages())
         timings.add(stage, took_ms);
@@ -218,10 +225,12 @@ void capture(const Arguments& arguments) {
     timings.add("passes", milliseconds_since(passes_began));
 
     const auto shown = [&](auto picture) {
-        if (!arguments.allow_blank && !session.shows_ground()) session::refuse_blank("capture");
+        if (!arguments.allow_blank && !session.shows_ground())
+            failed("capture: the picture shows only sky; turn the camera or add --allow-blank");
         return picture;
     };
-    const image::Metadata metadata = session::metadata_of(session, RELEVO_VERSION, compared);
+    recorded.wait();
+    const image::Metadata metadata = session::metadata_of(session, inputs, scene_in, compared);
     if (options.radiance)
         write_picture(picture_file, metadata, timings, [&] { return shown(session.radiance()); });
     else
@@ -236,9 +245,9 @@ void capture(const Arguments& arguments) {
     std::optional<session::ShadowAudit> audit;
     if (arguments.audit) audit = session::audit_shadows(session);
     if (sidecar_file)
-        sidecar_file->write(session::sidecar_text(session, RELEVO_VERSION,
-                                                  output.filename().string(),
-                                                  session::hashed_files(scene.dems), audit));
+        sidecar_file->write(
+            session::sidecar_text(session, inputs, output.filename().string(), audit));
+    if (scene_in == session::SceneIn::Sidecar) log::info(session::says_where_scene_is(output));
     timings.write(session, arguments.repeat);
     files.finish_outputs();
     notices.release();

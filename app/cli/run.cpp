@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -19,9 +20,11 @@
 #include "cli/scene_arguments.h"
 #include "cli/shard.h"
 #include "cli/trust.h"
-#include "dem/files_of.h"
 #include "scene/job.h"
 #include "session/batch.h"
+#include "session/made.h"
+#include "session/record.h"
+#include "session/scene_inputs.h"
 
 namespace relevo::cli {
 namespace {
@@ -77,6 +80,26 @@ class Audits {
     std::string picture_;
 };
 
+/// Pictures that were not written because they show no ground.
+class Blanks {
+  public:
+    void add(const scene::Shot& shot) {
+        if (count_++ == 0) first_ = shot.output.string();
+    }
+
+    void tell() const {
+        if (count_ == 0) return;
+        log::error(
+            fmt::format("{} only sky (first: {}); turn the camera or add --allow-blank",
+                        count_ == 1 ? "1 picture shows" : fmt::format("{} pictures show", count_),
+                        printable(first_)));
+    }
+
+  private:
+    std::size_t count_ = 0;
+    std::string first_;
+};
+
 /// A job on its way.
 class Run {
   public:
@@ -86,14 +109,16 @@ class Run {
         shots_ = shots();
         for (const scene::Shot& shot : shots_)
             image::check_format(shot.output, shot.scene.width_px, shot.scene.height_px);
-        session::settle(shots_, moments_);
+        session::settle(shots_, moments_, inputs_);
         session::order_for_drawing(shots_);
+        for (const scene::Shot& shot : shots_)
+            if (session::scene_in(shot.output, shot.scene) == session::SceneIn::Sidecar)
+                beside_.insert(shot.output);
+        check_outputs();
         take_shard();
-        add_inputs();
         const std::size_t all = shots_.size();
-        if (arguments_.resume) leave_out_made();
+        const std::string refusal = arguments_.resume ? leave_out_made() : what_is_in_the_way();
         made_ = all - shots_.size();
-        const std::string refusal = what_is_in_the_way();
         if (arguments_.dry_run) return tell(refusal);
         if (!refusal.empty()) bad_input(refusal);
         check_folders();
@@ -111,6 +136,8 @@ class Run {
         }
         files_.add_input(arguments_.job, "the job");
         Trust trusted(arguments_.scene, "job: " + printable(arguments_.job), NamedBy::File);
+        for (const scene::JobFile& file : job.files)
+            files_.add_input(file.path, file.what);
         scene::Shots drawn_up = scene::shots_of(
             job,
             [&](const scene::Scene& scene) {
@@ -136,50 +163,82 @@ class Run {
         shots_ = std::vector<scene::Shot>(at(shard.number - 1), at(shard.number));
     }
 
-    /// What the pictures are made of, which none of them may replace.
-    void add_inputs() {
-        std::set<std::vector<std::string>> dems;
-        for (const scene::Shot& shot : shots_)
-            if (dems.insert(shot.scene.dems).second)
-                for (const fs::path& file : dem::files_of(shot.scene.dems)) {
-                    inputs_.push_back(file);
-                    files_.add_input(file, "the DEM");
-                }
+    /// Says before any work is done that a result would replace what some picture is made of, or
+    /// another result. Of all pictures, also where others draw the other parts.
+    void check_outputs() {
+        std::vector<fs::path> outputs;
+        for (const scene::Shot& shot : shots_) {
+            inputs_.add_to(files_, shot.scene);
+            outputs.push_back(shot.output);
+            if (has_sidecar(shot)) outputs.push_back(session::sidecar_of(shot.output));
+        }
+        files_.check_planned(outputs, "run");
+    }
+
+    bool has_sidecar(const scene::Shot& shot) const {
+        return wants_sidecar() || beside_.contains(shot.output);
     }
 
     /// Why the pictures cannot be made where other files have their names; empty: they can.
     std::string what_is_in_the_way() {
         std::string first;
         for (const scene::Shot& shot : shots_) {
-            std::error_code missing;
-            if (!fs::exists(fs::symlink_status(shot.output, missing))) continue;
-            if (there_++ == 0) first = shot.output.string();
+            std::vector<fs::path> names{shot.output};
+            if (has_sidecar(shot)) names.push_back(session::sidecar_of(shot.output));
+            const auto taken = std::find_if(names.begin(), names.end(), [](const fs::path& name) {
+                std::error_code missing;
+                return fs::exists(fs::symlink_status(name, missing));
+            });
+            if (taken != names.end() && there_++ == 0) first = taken->string();
         }
         if (there_ == 0 || arguments_.overwrite) return {};
-        std::string which;
-        if (arguments_.resume)
-            which = wants_sidecar()
-                        ? " that are not whole, of another scene, older than the DEM, "
-                          "or without what their sidecars shall say"
-                        : " that are not whole, of another scene, or older than the DEM";
-        return fmt::format("run: {}: exists, the first of {}{}; pass --overwrite to replace {}{}",
-                           printable(first), there_, which, there_ == 1 ? "it" : "them",
-                           arguments_.resume ? "" : ", or --resume to make what is missing");
+        return fmt::format(
+            "run: {}: exists, the first of {}; pass --overwrite to replace {}, or "
+            "--resume to make what is missing",
+            printable(first), there_, there_ == 1 ? "it" : "them");
     }
 
-    /// Leaves out pictures that are made already.
-    void leave_out_made() {
-        std::vector<char> made(shots_.size());
+    /// Leaves out pictures that are made already. @returns as what_is_in_the_way()
+    std::string leave_out_made() {
+        std::vector<session::Wanted> wanted;
+        std::set<std::string> remote;
+        for (const scene::Shot& shot : shots_) {
+            wanted.push_back({inputs_.record(shot.scene), has_sidecar(shot), arguments_.audit});
+            for (const std::string& name : inputs_.remote_names(shot.scene))
+                remote.insert(name);
+        }
+        if (!remote.empty())
+            log::warning(
+                fmt::format("run: {}: is not on this machine; --resume does not notice "
+                            "where it has changed",
+                            printable(*remote.begin())));
+        std::vector<session::OnDisk> found(shots_.size());
         parallel_for(0, static_cast<int>(shots_.size()), 1, [&](int first, int last) {
             for (int i = first; i < last; ++i) {
                 const auto at = static_cast<std::size_t>(i);
-                made[at] =
-                    session::is_made(shots_[at], inputs_) &&
-                    (!wants_sidecar() || session::has_sidecar(shots_[at].output, arguments_.audit));
+                found[at] = session::on_disk(shots_[at], wanted[at]);
             }
         });
+        return leave_out(found);
+    }
+
+    std::string leave_out(const std::vector<session::OnDisk>& found) {
+        using State = session::OnDisk::State;
+        std::string first;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const std::string name = shots_[i].output.string();
+            if (found[i].state == State::Part) parts_.insert(shots_[i].output);
+            if (found[i].state == State::Other && there_++ == 0)
+                first = fmt::format("{}: {}", printable(name), found[i].why);
+        }
         std::size_t at = 0;
-        std::erase_if(shots_, [&](const scene::Shot&) { return made[at++]; });
+        std::erase_if(shots_,
+                      [&](const scene::Shot&) { return found[at++].state == State::Whole; });
+        if (there_ == 0 || arguments_.overwrite) return {};
+        return fmt::format(
+            "run: {}, the first of {} that --resume cannot keep; pass --overwrite "
+            "to make {} again",
+            first, there_, there_ == 1 ? "it" : "them");
     }
 
     /// Says before any work is done where nothing can be written.
@@ -193,28 +252,42 @@ class Run {
             if (error)
                 bad_input(fmt::format("run: {}: the folder cannot be made, {}",
                                       printable(folder.string()), error.message()));
-            files_.open_alone(shot.output, arguments_.overwrite, "run");
+            files_.open_alone(shot.output, arguments_.overwrite || parts_.contains(shot.output),
+                              "run");
         }
     }
 
     session::BatchOptions options() const {
         session::BatchOptions result;
         result.device = arguments_.device;
-        result.version = RELEVO_VERSION;
         result.overwrite = arguments_.overwrite;
+        result.parts = parts_;
         result.sidecar = wants_sidecar();
         result.audit = arguments_.audit;
         result.allow_blank = arguments_.allow_blank;
         return result;
     }
 
+    /// Says which pictures have no room for their scenes, which nobody has asked sidecars for.
+    void tell_of_sidecars() const {
+        if (wants_sidecar()) return;
+        const auto beside = [&](const scene::Shot& shot) { return has_sidecar(shot); };
+        const auto first = std::find_if(shots_.begin(), shots_.end(), beside);
+        if (first == shots_.end()) return;
+        const auto more = std::count_if(std::next(first), shots_.end(), beside);
+        log::info(session::says_where_scene_is(first->output) +
+                  (more > 0 ? fmt::format("; the same for {} more", more) : ""));
+    }
+
     void draw() {
+        tell_of_sidecars();
         const auto began = std::chrono::steady_clock::now();
         const std::string there =
             made_ > 0 ? fmt::format("; {} were there already", made_) : std::string();
         std::string first;
         std::size_t failures = 0;
         Audits audits;
+        Blanks blanks;
         {
             ProgressBar bar;
             std::size_t done = 0;  // both below are called on one thread at a time
@@ -229,7 +302,12 @@ class Run {
                 if (first.empty()) first = printable(shot.output.string());
                 count();
             };
-            failures = session::draw_batch(shots_, batch, moments_, files_);
+            batch.blank = [&](const scene::Shot& shot) {
+                blanks.add(shot);
+                if (first.empty()) first = printable(shot.output.string());
+                count();
+            };
+            failures = session::draw_batch(shots_, batch, moments_, inputs_, files_);
         }
         const double took_s =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -237,6 +315,7 @@ class Run {
         log::info(fmt::format("{} pictures in {}{}", shots_.size() - failures,
                               duration_text(took_s), there));
         if (arguments_.audit && !shots_.empty()) audits.tell();
+        blanks.tell();
         if (failures > 0)
             throw Error(ErrorCode::Incomplete,
                         fmt::format("run: {} of {} pictures could not be made, the first is {}; "
@@ -295,9 +374,11 @@ class Run {
     FilesInUse files_;
     session::Moments moments_;
     std::vector<scene::Shot> shots_;
-    std::vector<fs::path> inputs_;
-    std::size_t made_ = 0;   ///< pictures that --resume leaves out
-    std::size_t there_ = 0;  ///< names of the others that files have already
+    session::SceneInputs inputs_{RELEVO_VERSION};
+    std::set<fs::path> beside_;  ///< pictures whose scene is in a sidecar, for want of room
+    std::set<fs::path> parts_;   ///< pictures of which, or of whose sidecar, --resume finds one
+    std::size_t made_ = 0;       ///< pictures that --resume leaves out
+    std::size_t there_ = 0;      ///< names of the others that files have already
 };
 
 }  // namespace

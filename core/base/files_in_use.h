@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,12 @@ class FilesInUse {
     /// @param what  "the DEM"
     /// @throws Error (BadInput) where an output would replace it
     void add_input(const std::filesystem::path& path, std::string_view what);
+
+    /// Refuses results of which one would replace an input or another result, before any is opened:
+    /// links are followed, also those of folders.
+    /// @throws Error (BadInput) naming both files
+    void check_planned(const std::vector<std::filesystem::path>& results,
+                       std::string_view who) const;
 
     /// Opens a file that is written; it lives as long as this.
     /// @param who  the option that names it, "--timings"
@@ -44,6 +51,7 @@ class FilesInUse {
         std::string what;
     };
     std::vector<Input> inputs_;
+    std::set<std::string> input_names_;
     std::deque<OutputFile> outputs_;
 };
 

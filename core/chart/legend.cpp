@@ -11,7 +11,7 @@ namespace relevo::chart {
 namespace {
 
 constexpr double kPadding = 10, kBarWidth = 16, kBarHeight = 150, kGap = 6, kLetters = 11,
-                 kTitle = 12, kLeastWidth = 92, kMostTitle = 220, kRing = 104;
+                 kTitle = 12, kLeastWidth = 92, kMostTitle = 220, kRing = 104, kClassHeight = 20;
 constexpr int kSteps = 75;  // of a continuous ramp
 constexpr int kLabels = 6;  // at most
 
@@ -75,6 +75,19 @@ void draw_ring(const Ramp& ramp, double left, double top, Drawing& drawing) {
                      letter, {.size = kLetters, .color = {0x202020}, .anchor = Anchor::Middle});
 }
 
+/// A class a line, its colour on the ground's own.
+void draw_classes(const std::vector<Legend::Class>& classes, double left, double top,
+                  Drawing& drawing) {
+    for (std::size_t k = 0; k < classes.size(); ++k) {
+        const double y = top + static_cast<double>(k) * kClassHeight;
+        drawing.rect({left, y, kBarWidth, kClassHeight - kGap}, {.fill = Color{0xb8ad94}});
+        drawing.rect({left, y, kBarWidth, kClassHeight - kGap},
+                     {.fill = classes[k].color, .stroke = Color{0x303030, 0.6}, .width = 0.8});
+        drawing.text({left + kBarWidth + kGap, y + (kClassHeight - kGap) / 2 + kLetters * 0.36},
+                     classes[k].name, {.size = kLetters, .color = {0x202020}});
+    }
+}
+
 }  // namespace
 
 std::vector<double> round_values(double from, double to, int most) {
@@ -94,12 +107,19 @@ std::vector<double> round_values(double from, double to, int most) {
 
 Drawing legend(const Legend& about) {
     const std::vector<std::string> lines = wrapped(about.title, kTitle, kMostTitle);
-    const bool is_range = about.ramp.stops.size() > 1 &&
+    const bool is_range = about.classes.empty() && about.ramp.stops.size() > 1 &&
                           about.ramp.stops.back().value > about.ramp.stops.front().value;
     const std::vector<Label> labels =
         is_range && !about.ring ? labels_of(about.ramp, about.unit) : std::vector<Label>{};
     double width = about.ring ? kRing + 2 * kPadding : kLeastWidth;
-    const double body = about.ring ? kRing : is_range ? kBarHeight : kLetters;
+    const double body = about.ring ? kRing
+                        : !about.classes.empty()
+                            ? static_cast<double>(about.classes.size()) * kClassHeight - kGap
+                        : is_range ? kBarHeight
+                                   : kLetters;
+    for (const Legend::Class& one : about.classes)
+        width =
+            std::max(width, kBarWidth + kGap + text_width(one.name, kLetters) + 2 * kPadding + 4);
     for (const std::string& line : lines)
         width = std::max(width, text_width(line, kTitle, true) + 2 * kPadding);
     for (const Label& label : labels)
@@ -112,6 +132,7 @@ Drawing legend(const Legend& about) {
         drawing.text({kPadding, kPadding + kTitle * 0.85 + static_cast<double>(k) * (kTitle + 4)},
                      lines[k], {.size = kTitle, .color = {0x202020}, .bold = true});
     if (about.ring) draw_ring(about.ramp, (drawing.width() - kRing) / 2, top, drawing);
+    if (!about.classes.empty()) draw_classes(about.classes, kPadding, top, drawing);
     if (!is_range || about.ring) return drawing;
     draw_bar(about.ramp, kPadding, top, drawing);
     for (const Label& label : labels) {

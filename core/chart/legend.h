@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "chart/drawing.h"
 #include "chart/ramp.h"
@@ -13,6 +14,13 @@ struct Legend {
     std::string unit;   ///< "h"; empty or "1": none
     Ramp ramp;
     bool ring = false;  ///< of directions, 0 to 360 degrees clockwise from north
+    struct Class {
+        std::string name;  ///< "in the shade"
+        Color color;
+
+        bool operator==(const Class&) const = default;
+    };
+    std::vector<Class> classes{};  ///< instead of the ramp's values
 
     bool operator==(const Legend&) const = default;
 };

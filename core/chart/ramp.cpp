@@ -199,10 +199,6 @@ Ramp named_ramp(std::string_view name, double from, double to) {
                     kWho, printable(std::string(name)), fmt::join(ramp_names(), ", ")));
 }
 
-bool is_ramp_file(std::string_view name_or_path) {
-    return name_or_path.find_first_of("/.") != std::string_view::npos;
-}
-
 Ramp read_ramp(const std::string& path, double from, double to) {
     std::istringstream lines(read_text(path, kWho));
     Ramp ramp;

@@ -35,9 +35,6 @@ std::vector<std::string> ramp_names();
 /// @throws Error (BadInput) for an unknown name, or an end that is not over the beginning
 Ramp named_ramp(std::string_view name, double from, double to);
 
-/// Whether read_ramp() takes it for a path.
-bool is_ramp_file(std::string_view name_or_path);
-
 /// Reads a colour file as gdaldem color-relief has it: `value red green blue [alpha]` a line,
 /// parted by spaces, tabs, commas or colons; a value may be a share of the range, "40%", or "nv"
 /// for cells without one; a colour may be one of GDAL's names. Lines that begin with # are left

@@ -177,6 +177,16 @@ void check_format(const std::filesystem::path& path, int width_px, int height_px
             printable(path.string()), format.name, format.largest_px, width_px, height_px));
 }
 
+bool metadata_fits(const std::filesystem::path& path, const Metadata& metadata, std::size_t rest) {
+    const Format& format = known_format(path);
+    std::size_t bytes = rest;
+    for (const auto& [keyword, text] : metadata)
+        bytes += keyword.size() + text.size();
+    if (std::string_view(format.name) == "jpeg")
+        return xmp_packet(metadata).size() + rest <= kLongestXmpOfJpeg;
+    return bytes <= (is_png(format) ? kLongestTextOfPng : kMaxPictureBytes / 2);
+}
+
 void load_format(const std::filesystem::path& path) {
     if (!is_png(known_format(path))) formats_module(path);
 }

@@ -63,6 +63,9 @@ bool holds_linear_light(const std::filesystem::path& path);
 ///     the size
 void check_format(const std::filesystem::path& path, int width_px, int height_px);
 
+/// Whether the format has room for these texts and `rest` more bytes: a JPEG has 64 KiB.
+bool metadata_fits(const std::filesystem::path& path, const Metadata& metadata, std::size_t rest);
+
 /// Loads what writes the format, 0.3 s for all but PNG; write() does it where it has not been done.
 /// @throws Error (Failed) if it is not installed
 void load_format(const std::filesystem::path& path);

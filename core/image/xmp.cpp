@@ -103,8 +103,7 @@ Metadata texts_in_xmp(std::string_view file) {
 
 std::string add_xmp_to_jpeg(std::vector<std::byte>& file, std::string_view packet) {
     constexpr std::string_view kName("http://ns.adobe.com/xap/1.0/\0", 29);
-    constexpr std::size_t kLongest = 65502;  // of a segment's 65535 less its length and name
-    if (packet.size() > kLongest) return "its scene is too long for a JPEG; name a .png";
+    if (packet.size() > kLongestXmpOfJpeg) return "its scene is too long for a JPEG; name a .png";
     if (file.size() < 4 || file[0] != std::byte{0xff} || file[1] != std::byte{0xd8})
         return "the encoder left no JPEG";
     // Behind what some readers want first, JFIF's and Exif's own.

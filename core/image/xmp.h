@@ -20,6 +20,9 @@ std::string xmp_packet(const Metadata& metadata);
 /// where there is no packet.
 Metadata texts_in_xmp(std::string_view file);
 
+/// A longer packet does not go into a JPEG: of a segment's 65535 bytes less its length and name.
+inline constexpr std::size_t kLongestXmpOfJpeg = 65502;
+
 /// Puts a packet into an encoded picture. @returns why it cannot be, or nothing
 /// Sources: XMP Specification Part 3 (Adobe, 2020), 1.1.3; WebP Container Specification (Google).
 std::string add_xmp_to_jpeg(std::vector<std::byte>& file, std::string_view packet);

@@ -63,8 +63,10 @@ class JobReader {
         object.string("$schema", "");  // which editors look for
         job_.file = file_;
         job_.folder = folder_;
-        if (const std::string base = object.string("scene", ""); !base.empty())
+        if (const std::string base = object.string("scene", ""); !base.empty()) {
+            job_.files.push_back({reader_.beside(base), "the scene"});
             job_.scene = read_scene(reader_.beside(base));
+        }
         reader_.take(object, "", job_.scene);
         change(job_.scene);
         job_.output_given = object.has("output");
@@ -326,6 +328,7 @@ class JobReader {
         Axis axis{"site", path, value.line, {}, {}};
         ObjectReader object = inside(value, path);
         const std::string file = reader_.beside(object.string("file"));
+        job_.files.push_back({file, "the sites"});
         const std::string crs = object.string("crs", "");
         const double height_m = object.number("height", kEyeHeight_m, -500, 10000, false);
         View along;

@@ -46,9 +46,16 @@ struct Axis {
     std::optional<TimeRange> range;  ///< instead of values, of times
 };
 
+/// A file that a job was read from, beside its own.
+struct JobFile {
+    std::filesystem::path path;
+    std::string what;  ///< "the scene", "the sites"
+};
+
 /// A scene, and how its pictures differ.
 struct Job {
     std::string file;                                            ///< as messages name it
+    std::vector<JobFile> files;                                  ///< that it names
     Scene scene;                                                 ///< that all begin with
     std::string output = "{dem}_{time:%Y%m%dT%H%M}_{n:04}.png";  ///< template of names
     bool output_given = false;

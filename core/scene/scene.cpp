@@ -25,14 +25,24 @@ using nlohmann::ordered_json;
 constexpr std::string_view kWho = "scene";
 constexpr int kFormat = 1;
 
+/// Instead of a folder, which no folder is called: names are written as they are.
+constexpr std::string_view kAsTheyAre = "//as they are";
+
 /// A path as a file in `folder` names it.
 std::string from_folder(const std::string& name, const fs::path& folder) {
+    if (folder.native() == kAsTheyAre) return name;
     std::error_code unknown;
     if (!fs::exists(name, unknown)) return name;
     const fs::path whole = fs::weakly_canonical(name, unknown);
     const fs::path base = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, unknown);
     const fs::path below = whole.lexically_relative(base);
     return below.empty() || *below.begin() == ".." ? whole.string() : below.string();
+}
+
+/// The same of a file where a bare name is something else: "./viridis".
+std::string path_from_folder(const std::string& path, const fs::path& folder) {
+    std::string name = from_folder(path, folder);
+    return name.find_first_of("/.") == std::string::npos ? "./" + name : name;
 }
 
 /// An angle as people gave it: the shortest of degrees that are read as the same bits.
@@ -105,7 +115,7 @@ ordered_json effects_json(const Effects& effects, const fs::path& folder) {
     if (!effects.switches.enable.empty()) json["enable"] = effects.switches.enable;
     if (!effects.switches.disable.empty()) json["disable"] = effects.switches.disable;
     for (const std::string& preset : effects.presets)
-        json["presets"].push_back(effect::is_preset_file(preset) ? from_folder(preset, folder)
+        json["presets"].push_back(effect::is_preset_file(preset) ? path_from_folder(preset, folder)
                                                                  : preset);
     for (const effect::Setting& setting : effects.settings)
         json["set"][setting.address] = setting.text;
@@ -118,7 +128,10 @@ ordered_json overlay_json(const Overlay& overlay, const fs::path& folder) {
     ordered_json json;
     json["file"] = from_folder(overlay.file, folder);
     json["band"] = overlay.band;
-    if (!overlay.colours.empty()) json["colours"] = from_folder(overlay.colours, folder);
+    if (!overlay.colours.empty())
+        json["colours"] = is_colour_file(overlay.colours)
+                              ? path_from_folder(overlay.colours, folder)
+                              : overlay.colours;
     if (overlay.range) json["range"] = {overlay.range->first, overlay.range->second};
     json["opacity"] = overlay.opacity;
     if (!overlay.title.empty()) json["title"] = overlay.title;
@@ -266,8 +279,16 @@ std::string scene_text(const Scene& scene, const fs::path& folder) {
     return text_of(json_of(scene, folder), 2) + "\n";
 }
 
+bool is_colour_file(std::string_view name_or_path) {
+    return name_or_path.find_first_of("/.") != std::string_view::npos;
+}
+
 std::string scene_line(const Scene& scene) {
-    return text_of(json_of(with_absolute_paths(scene), "/nowhere"), -1);
+    return whole_scene_line(with_absolute_paths(scene));
+}
+
+std::string whole_scene_line(const Scene& scene) {
+    return text_of(json_of(scene, kAsTheyAre), -1);
 }
 
 Scene with_absolute_paths(Scene scene) {
@@ -279,7 +300,7 @@ Scene with_absolute_paths(Scene scene) {
         whole(name);
     if (scene.overlay) {
         whole(scene.overlay->file);
-        whole(scene.overlay->colours);
+        if (is_colour_file(scene.overlay->colours)) whole(scene.overlay->colours);
     }
     for (std::string& preset : scene.effects.presets)
         if (effect::is_preset_file(preset)) whole(preset);

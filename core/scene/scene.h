@@ -39,6 +39,10 @@ struct Overlay {
     std::string title;                               ///< of the legend; empty: the band's name
 };
 
+/// Whether Overlay::colours are a colour file, whose path has a slash or a dot, and not a ramp that
+/// the program brings.
+bool is_colour_file(std::string_view name_or_path);
+
 /// What stands on a picture beside the ground, in its corners and, of the graticule, on the ground.
 struct Stamps {
     bool legend = true;  ///< of what colours mean, where there is something to tell
@@ -96,6 +100,10 @@ std::string scene_text(const Scene& scene, const std::filesystem::path& folder);
 /// The same on one line, with absolute paths: what pictures carry, and what tells whether two
 /// scenes are one.
 std::string scene_line(const Scene& scene);
+
+/// The same of what with_absolute_paths() returns, without a look at the disk: each name costs some
+/// 20 us there.
+std::string whole_scene_line(const Scene& scene);
 
 /// The same with absolute names of the files there are, which then hold in any folder.
 Scene with_absolute_paths(Scene scene);

@@ -106,8 +106,7 @@ void SceneReader::overlay(const Json& value, const std::string& path, Scene& sce
     overlay.band =
         static_cast<int>(object.number("band", 1, 1, std::numeric_limits<int>::max(), true));
     overlay.colours = object.string("colours", "");
-    if (overlay.colours.find_first_of("/.") != std::string::npos)
-        overlay.colours = beside(overlay.colours);
+    if (is_colour_file(overlay.colours)) overlay.colours = beside(overlay.colours);
     if (const Json* const range = object.take("range")) {
         const std::vector<double> v =
             numbers(object, *range, "range", 2, 2, "the values of the first and the last colour");

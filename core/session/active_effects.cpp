@@ -61,6 +61,24 @@ void ActiveEffects::take_ground(const effect::GroundWords& words, const scene::E
     }
 }
 
+std::vector<std::string> ActiveEffects::switch_off_unasked(std::string_view word) {
+    const auto has = [](const std::vector<std::string>& ids, const std::string& id) {
+        return std::find(ids.begin(), ids.end(), id) != ids.end();
+    };
+    std::vector<std::string> off;
+    for (const effect::Effect* effect : loaded.selection.effects) {
+        const std::string& id = effect->id();
+        if (effect->provides(word) && !has(switches.enable, id) &&
+            !(switches.only && has(*switches.only, id)))
+            off.push_back(id);
+    }
+    if (off.empty()) return off;
+    switches.disable.insert(switches.disable.end(), off.begin(), off.end());
+    loaded =
+        effect::select_and_load(registry, presets, switches, values, {}, std::move(loaded), ground);
+    return off;
+}
+
 render::EffectInputs ActiveEffects::inputs() const {
     render::EffectInputs inputs;
     inputs.stitch.snippets = loaded.selection.snippets();

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/files_in_use.h"
@@ -41,6 +42,11 @@ struct ActiveEffects : InstalledEffects {
     /// @throws Error (BadInput) as effect::select_and_load
     void take_ground(const effect::GroundWords& words, const scene::Effects& asked,
                      bool aloud = true);
+
+    /// Switches off those that provide a word and were not asked for by name.
+    /// @returns their ids
+    /// @throws Error (BadInput) as effect::select_and_load
+    std::vector<std::string> switch_off_unasked(std::string_view word);
 
     /// Switches off, with a warning, what brings larger textures than a device takes.
     /// @throws Error (BadInput) for what was asked for by name

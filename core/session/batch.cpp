@@ -14,17 +14,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
-#include "dem/files_of.h"
-#include "effect/selection.h"
 #include "image/image.h"
-#include "session/active_effects.h"
 #include "session/record.h"
 
 namespace relevo::session {
@@ -108,8 +103,8 @@ struct Outputs {
 
 class Batch {
   public:
-    Batch(const BatchOptions& options, Moments& moments, FilesInUse& files)
-        : options_(options), moments_(moments), files_(files) {}
+    Batch(const BatchOptions& options, Moments& moments, SceneInputs& inputs, FilesInUse& files)
+        : options_(options), moments_(moments), inputs_(inputs), files_(files) {}
 
     std::size_t run(const std::vector<scene::Shot>& shots) {
         const bool linear = image::holds_linear_light(shots.front().output);
@@ -132,22 +127,24 @@ class Batch {
   private:
     void draw(const scene::Shot& shot, bool linear, Crew& crew) {
         open_session(shot, linear);
+        const SceneIn scene_is = scene_in(shot.output, shot.scene);
+        const bool overwrite = options_.overwrite || options_.parts.contains(shot.output);
         auto outputs = std::make_shared<Outputs>(
-            Outputs{files_.open_alone(shot.output, options_.overwrite, "run"), std::nullopt});
-        if (options_.sidecar)
+            Outputs{files_.open_alone(shot.output, overwrite, "run"), std::nullopt});
+        if (options_.sidecar || scene_is == SceneIn::Sidecar)
             outputs->sidecar.emplace(
-                files_.open_alone(sidecar_to_write(shot.output), options_.overwrite, "--sidecar"));
+                files_.open_alone(sidecar_to_write(shot.output), overwrite, "--sidecar"));
         session_->show(shot.scene, shot.utc);
         session_->draw();
+        if (!options_.allow_blank && !session_->shows_ground()) return blank(shot);
         std::optional<ShadowAudit> audit;
         if (options_.audit) audit = audit_shadows(*session_);
         if (audit) options_.audited(shot, *audit);
         if (outputs->sidecar)
-            outputs->sidecar->write(sidecar_text(*session_, options_.version,
-                                                 shot.output.filename().string(), hashes_, audit));
-        const image::Metadata metadata = metadata_of(*session_, options_.version);
+            outputs->sidecar->write(
+                sidecar_text(*session_, inputs_, shot.output.filename().string(), audit));
+        const image::Metadata metadata = metadata_of(*session_, inputs_, scene_is);
         const auto write = [&](auto picture) {
-            if (!options_.allow_blank && !session_->shows_ground()) refuse_blank("run");
             auto kept = std::make_shared<decltype(picture)>(std::move(picture));
             crew.add([this, &shot, outputs, metadata, kept] {
                 write_files(shot, *outputs, metadata, *kept);
@@ -177,6 +174,12 @@ class Batch {
         }
     }
 
+    void blank(const scene::Shot& shot) {
+        const std::lock_guard lock(mutex_);
+        ++failed_;
+        options_.blank(shot);
+    }
+
     void failed(const scene::Shot& shot, const std::string& why) {
         const std::lock_guard lock(mutex_);
         ++failed_;
@@ -194,7 +197,7 @@ class Batch {
         session_.reset();
         moments_.keep_only(shot.scene);
         options.dem = moments_.loaded(shot.scene);
-        if (options_.sidecar) hashes_ = hashed_files(shot.scene.dems);
+        inputs_.record(shot.scene);  // before they are read, so that later changes are noticed
         session_ = std::make_unique<Session>(of_any_view(shot.scene), options, files_);
         dem_ = std::move(key);
         opened_ = true;
@@ -202,118 +205,28 @@ class Batch {
 
     const BatchOptions& options_;
     Moments& moments_;
+    SceneInputs& inputs_;
     FilesInUse& files_;
     std::unique_ptr<Session> session_;
     std::string dem_;
     bool opened_ = false;  ///< once
-    std::vector<HashedFile> hashes_;
-    std::mutex mutex_;  // of what the crew's threads tell
+    std::mutex mutex_;     // of what the crew's threads tell
     std::size_t failed_ = 0;
 };
 
-/// Effects as a text; equal ones are drawn by the same programs and values.
-std::string effects_key(const scene::Scene& scene) {
-    scene::Scene only;
-    only.effects = scene.effects;
-    return scene::scene_line(only);
-}
-
-/// Effects without values: what one reading of the plugins serves.
-std::string installed_key(const scene::Effects& effects) {
-    return fmt::format("{}", fmt::join(effects.presets, "\n")) + "\n\n" +
-           fmt::format("{}", fmt::join(effects.plugin_path, "\n"));
-}
-
-/// Effects whose switches and settings mean something, with absolute names of files.
-/// @param plugins  those that are installed for them; read where they have not been
-scene::Effects settled_effects(const scene::Effects& effects,
-                               std::unique_ptr<InstalledEffects>& plugins) {
-    if (!plugins) plugins = std::make_unique<InstalledEffects>(effects);
-    const effect::Selection selection =
-        effect::select(plugins->registry, plugins->presets, effects.switches);
-    shader::ParamStore values = plugins->values;
-    effect::apply_settings(values, plugins->registry, selection, plugins->presets,
-                           effects.settings);
-    scene::Effects settled = effects;
-    settled.settings = effect::with_absolute_files(std::move(settled.settings), plugins->values);
-    return settled;
-}
-
 }  // namespace
 
-void refuse_blank(std::string_view who) {
-    failed(
-        fmt::format("{}: no ground of the DEM is in the picture; turn the camera, or take it "
-                    "nonetheless with --allow-blank",
-                    who));
-}
-
-std::filesystem::path sidecar_of(std::filesystem::path picture) {
-    return picture += ".json";
-}
-
-std::filesystem::path sidecar_to_write(const std::filesystem::path& picture) {
-    std::filesystem::path sidecar = sidecar_of(picture);
-    std::error_code unknown;
-    const std::filesystem::file_status status = std::filesystem::status(sidecar, unknown);
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-        bad_input(
-            fmt::format("--sidecar: {}: is not a regular file; remove it, or give the "
-                        "picture another name",
-                        printable(sidecar.string())));
-    return sidecar;
-}
-
-bool has_sidecar(const std::filesystem::path& picture, bool audited) {
-    std::string text;
-    try {
-        text = read_text(sidecar_of(picture), "--sidecar");
-    } catch (const Error&) {
-        return false;
-    }
-    const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-    return json.is_object() && (!audited || json.contains("audit"));
-}
-
-void settle(std::vector<scene::Shot>& shots, Moments& moments) {
-    std::map<std::string, std::unique_ptr<InstalledEffects>> installed;
-    std::map<std::string, scene::Effects> settled;
+void settle(std::vector<scene::Shot>& shots, Moments& moments, SceneInputs& inputs) {
     for (scene::Shot& shot : shots) {
-        scene::Effects& effects = shot.scene.effects;
-        const auto [known, fresh] = settled.try_emplace(effects_key(shot.scene));
-        if (fresh) {
-            try {
-                known->second = settled_effects(effects, installed[installed_key(effects)]);
-            } catch (const Error& error) {
-                throw Error(error.code(), printable(shot.output.string()) + ": " + error.what());
-            }
+        try {
+            shot.scene.effects = inputs.settled(shot.scene.effects);
+        } catch (const Error& error) {
+            throw Error(error.code(), printable(shot.output.string()) + ": " + error.what());
         }
-        effects = known->second;
         shot.scene.moment.time = sun::exact_iso(shot.utc);
         shot.scene.moment.date.clear();
         shot.scene.view = moments.settled_view(shot.scene);
         shot.scene = scene::with_absolute_paths(std::move(shot.scene));
-    }
-}
-
-bool is_made(const scene::Shot& shot, const std::vector<std::filesystem::path>& inputs) {
-    std::error_code missing;
-    const auto made = std::filesystem::last_write_time(shot.output, missing);
-    if (missing) return false;
-    for (const std::filesystem::path& input : inputs)
-        if (const auto changed = std::filesystem::last_write_time(input, missing);
-            !missing && changed > made)
-            return false;
-    try {
-        const image::Metadata metadata = image::read_metadata(shot.output);
-        const auto scene = metadata.find(kSceneKeyword);
-        if (scene == metadata.end() || metadata.contains(kComparedKeyword) ||
-            scene->second != scene::scene_line(shot.scene))
-            return false;
-        const image::Image8 picture = image::read(shot.output);
-        return picture.width == shot.scene.width_px && picture.height == shot.scene.height_px;
-    } catch (const Error&) {
-        return false;  // it is no picture, or not a whole one
     }
 }
 
@@ -324,7 +237,7 @@ void order_for_drawing(std::vector<scene::Shot>& shots) {
     for (const scene::Shot& shot : shots) {
         const std::size_t dem = dems.try_emplace(dem_key(shot.scene), dems.size()).first->second;
         const std::size_t effect =
-            effects.try_emplace(effects_key(shot.scene), effects.size()).first->second;
+            effects.try_emplace(effects_key(shot.scene.effects), effects.size()).first->second;
         order.push_back(places.size());
         places.emplace_back(dem, effect);
     }
@@ -338,8 +251,8 @@ void order_for_drawing(std::vector<scene::Shot>& shots) {
 }
 
 std::size_t draw_batch(const std::vector<scene::Shot>& shots, const BatchOptions& options,
-                       Moments& moments, FilesInUse& files) {
-    return shots.empty() ? 0 : Batch(options, moments, files).run(shots);
+                       Moments& moments, SceneInputs& inputs, FilesInUse& files) {
+    return shots.empty() ? 0 : Batch(options, moments, inputs, files).run(shots);
 }
 
 double time_batch(const std::vector<scene::Shot>& shots, const BatchOptions& options,

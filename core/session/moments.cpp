@@ -25,12 +25,22 @@ std::string dem_key(const scene::Scene& scene) {
     return scene::scene_line(only);
 }
 
+/// What frames a view whose angles are left open.
+struct Moments::Shown {
+    scene::GroundNet net;
+    scene::DefaultDay day;
+    /// By the angles that are given: to find the others takes milliseconds, and many pictures of a
+    /// job have the same.
+    using Given = std::pair<std::optional<double>, std::optional<double>>;
+    std::map<Given, scene::Orbit> framed{};
+};
+
 struct Moments::Dem {
     std::shared_ptr<const dem::Source> source;
     std::shared_ptr<const LoadedDem> loaded;
-    std::optional<dem::Posts> posts;                 ///< of `loaded`
-    std::map<std::string, std::string> zones;        ///< of the middle, by the words for them
-    std::map<double, render::GroundToShow> to_show;  ///< by the exaggeration
+    std::optional<dem::Posts> posts;           ///< of `loaded`
+    std::map<std::string, std::string> zones;  ///< of the middle, by the words for them
+    std::map<double, Shown> shown;             ///< by the exaggeration
 
     const dem::Source& open() const { return *source; }
 };
@@ -51,24 +61,39 @@ Moments::Dem& Moments::dem_of(const scene::Scene& scene) {
 
 std::shared_ptr<const LoadedDem> Moments::loaded(const scene::Scene& scene) {
     Dem& dem = dem_of(scene);
-    if (!dem.loaded) dem.loaded = load_dem(dem.source, scene);
+    if (dem.loaded) return dem.loaded;
+    // Jobs go through their DEMs one after the other; of those before, small results are kept.
+    for (auto& [key, other] : dems_) {
+        other->posts.reset();
+        other->loaded.reset();
+    }
+    dem.loaded = load_dem(dem.source, scene);
+    if (!scene.view.eye) shown_of(scene);
     return dem.loaded;
+}
+
+Moments::Shown& Moments::shown_of(const scene::Scene& scene) {
+    const auto heights = loaded(scene);
+    auto& known = dem_of(scene).shown;
+    const auto found = known.find(scene.exaggeration);
+    if (found != known.end()) return found->second;
+    const render::Ground ground = ground_of(*heights);
+    Shown shown{render::ground_to_show(heights->field, ground, scene.exaggeration).net,
+                scene::DefaultDay(ground.frame.origin(), ground.block_m <= 0)};
+    return known.emplace(scene.exaggeration, std::move(shown)).first->second;
 }
 
 scene::View Moments::settled_view(const scene::Scene& scene) {
     scene::View view = scene.view;
     if (view.eye || (view.orbit.azimuth_deg && view.orbit.elevation_deg)) return view;
-    const auto heights = loaded(scene);
-    const render::Ground ground = ground_of(*heights);
-    auto& known = dem_of(scene).to_show;
-    auto found = known.find(scene.exaggeration);
-    if (found == known.end())
-        found = known
-                    .emplace(scene.exaggeration,
-                             render::ground_to_show(heights->field, ground, scene.exaggeration))
-                    .first;
-    const scene::DefaultDay day(ground.frame.origin(), ground.block_m <= 0);
-    view.orbit = scene::frame_ground(view.orbit, found->second.net, day).orbit;
+    auto& known = dem_of(scene).shown;
+    const auto found = known.find(scene.exaggeration);
+    Shown& shown = found == known.end() ? shown_of(scene) : found->second;
+    const auto [framed, fresh] =
+        shown.framed.try_emplace({view.orbit.azimuth_deg, view.orbit.elevation_deg});
+    if (fresh) framed->second = scene::frame_ground(view.orbit, shown.net, shown.day).orbit;
+    view.orbit.azimuth_deg = framed->second.azimuth_deg;
+    view.orbit.elevation_deg = framed->second.elevation_deg;
     return view;
 }
 

@@ -25,7 +25,8 @@ class Moments {
     /// parse()
     sun::ParsedTime of(const scene::Scene& scene);
 
-    /// The scene's DEM with its heights, which are read where they have not been.
+    /// The scene's DEM with its heights, which are read where they have not been. Those of the DEM
+    /// before are let go of: a job of many DEMs takes the memory of one.
     std::shared_ptr<const LoadedDem> loaded(const scene::Scene& scene);
 
     /// The scene's view with the angles that a session chooses where it leaves some open.
@@ -36,7 +37,9 @@ class Moments {
 
   private:
     struct Dem;
+    struct Shown;
     Dem& dem_of(const scene::Scene& scene);
+    Shown& shown_of(const scene::Scene& scene);
     sun::Instant usual_moment(const scene::Scene& scene);
     std::string zone_of_middle(const std::string& words, Dem& dem);
 

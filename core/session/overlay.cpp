@@ -39,11 +39,21 @@ chart::Ramp ramp_of(const std::vector<std::array<std::uint8_t, 4>>& colors) {
     return ramp;
 }
 
-chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band) {
+/// Whether a band says of each post that it is lit or not.
+bool is_mask(const dem::BandOver& band) {
+    return band.whole && std::all_of(band.values.begin(), band.values.end(), [](float value) {
+               return value == 0 || value == 1 || std::isnan(value);
+           });
+}
+
+chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band, bool mask) {
+    if (mask && asked.colours.empty()) return chart::named_ramp("shade", 0, 1);
     if (asked.colours.empty() && !asked.range)
         return band.colors.empty() ? usual_ramp(band.values, band.name, band.unit)
                                    : ramp_of(band.colors);
-    const auto [from, to] = asked.range.value_or(range_of(band.values));
+    // What is dark all over is still a mask of 0 and 1.
+    const auto [from, to] =
+        asked.range.value_or(mask ? std::pair(0.0, 1.0) : range_of(band.values));
     if (asked.colours.empty()) {
         chart::Ramp ramp = usual_ramp(band.values, band.name, band.unit);
         const double low = ramp.stops.front().value, high = ramp.stops.back().value;
@@ -51,8 +61,8 @@ chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band) {
             stop.value = from + (stop.value - low) / (high - low) * (to - from);
         return ramp;
     }
-    return chart::is_ramp_file(asked.colours) ? chart::read_ramp(asked.colours, from, to)
-                                              : chart::named_ramp(asked.colours, from, to);
+    return scene::is_colour_file(asked.colours) ? chart::read_ramp(asked.colours, from, to)
+                                                : chart::named_ramp(asked.colours, from, to);
 }
 
 }  // namespace
@@ -84,18 +94,36 @@ chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
     return chart::named_ramp("viridis", low, high);
 }
 
+std::optional<OverlayTime> time_of(const scene::Overlay& overlay) {
+    return overlay_time(dem::band_metadata(overlay.file, overlay.band));
+}
+
 Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {
     const dem::BandOver band = dem::read_band_over(grid, asked.file, asked.band);
-    chart::Legend legend{asked.title.empty() ? printable(band.name) : asked.title,
-                         printable(band.unit), ramp_of(asked, band)};
+    const std::optional<OverlayTime> time = overlay_time(band.about);
+    const bool mask = time && time->sun && is_mask(band);
+    chart::Legend legend{
+        .title = asked.title, .unit = printable(band.unit), .ramp = ramp_of(asked, band, mask)};
+    // A mask of many times has each time as the name of a band.
+    if (legend.title.empty()) legend.title = mask ? "direct sun" : printable(band.name);
     if (legend.title.empty())
         legend.title = printable(std::filesystem::path(asked.file).filename().string());
-    return overlay_of(band.values, std::move(legend), asked.opacity);
+    if (mask) {
+        const auto color = [&](double value) {
+            chart::Color result = legend.ramp.at(value);
+            result.opacity *= asked.opacity;
+            return result;
+        };
+        legend.classes = {{"in the sun", color(1)}, {"in the shade", color(0)}};
+    }
+    Overlay overlay = overlay_of(band.values, std::move(legend), asked.opacity);
+    overlay.time = time;
+    return overlay;
 }
 
 void add_files(const scene::Overlay& overlay, FilesInUse& files) {
     dem::add_all(std::span(&overlay.file, 1), files);
-    if (chart::is_ramp_file(overlay.colours)) files.add_input(overlay.colours, "the colours");
+    if (scene::is_colour_file(overlay.colours)) files.add_input(overlay.colours, "the colours");
 }
 
 }  // namespace relevo::session

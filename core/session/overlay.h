@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "base/array2d.h"
 #include "base/files_in_use.h"
@@ -9,6 +10,7 @@
 #include "image/image.h"
 #include "render/drape.h"
 #include "scene/scene.h"
+#include "session/overlay_time.h"
 
 /// Rasters that lie on the ground, with what their colours mean.
 namespace relevo::session {
@@ -16,6 +18,7 @@ namespace relevo::session {
 struct Overlay {
     std::shared_ptr<const render::Drape> drape;
     chart::Legend legend;
+    std::optional<OverlayTime> time{};  ///< where it is of the sun
 };
 
 /// @param values  over the DEM's grid, as dem::BandOver has them
@@ -26,6 +29,10 @@ Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double op
 /// @param name, unit  of the band, as ours and GDAL's have them
 chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
                        const std::string& unit);
+
+/// The time of a scene's overlay, of which nothing else is read; none where it is not of the sun.
+/// @throws Error (BadInput) as dem::band_metadata()
+std::optional<OverlayTime> time_of(const scene::Overlay& overlay);
 
 /// Reads the raster of a scene's overlay.
 /// @param grid  of the DEM's posts

@@ -7,9 +7,10 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/sha256.h"
+#include "base/text.h"
 #include "base/units.h"
-#include "dem/files_of.h"
 #include "dem/versions.h"
 #include "effect/selection.h"
 #include "render/ground.h"
@@ -72,29 +73,75 @@ scene::Scene settled_scene(const Session& session) {
     return scene;
 }
 
-image::Metadata metadata_of(const Session& session, const std::string& version,
+std::filesystem::path sidecar_of(std::filesystem::path picture) {
+    return picture += ".json";
+}
+
+std::filesystem::path sidecar_to_write(const std::filesystem::path& picture) {
+    std::filesystem::path sidecar = sidecar_of(picture);
+    std::error_code unknown;
+    const std::filesystem::file_status status = std::filesystem::status(sidecar, unknown);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        bad_input(
+            fmt::format("--sidecar: {}: is not a regular file; remove it, or give the "
+                        "picture another name",
+                        printable(sidecar.string())));
+    return sidecar;
+}
+
+SceneIn scene_in(const std::filesystem::path& picture, const scene::Scene& scene) {
+    // What a session fills into a scene, and the rest of the metadata, take less.
+    constexpr std::size_t kRest = 2048;
+    return image::metadata_fits(picture, {{kSceneKeyword, scene::whole_scene_line(scene)}}, kRest)
+               ? SceneIn::Picture
+               : SceneIn::Sidecar;
+}
+
+std::string says_where_scene_is(const std::filesystem::path& picture) {
+    return fmt::format("{}: the scene is too long for this format; it is in {}, keep both together",
+                       printable(picture.string()), printable(sidecar_of(picture).string()));
+}
+
+image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn where,
                             const std::vector<std::string>& compared) {
+    const scene::Scene scene = settled_scene(session);
+    const std::string line = scene::whole_scene_line(scene);
     image::Metadata metadata{
-        {"Software", "Relevo " + version},
+        {"Software", "Relevo " + inputs.version()},
         {"Description", fmt::format("{}; {}; sun at {}", session.place_text(),
                                     sun::to_iso(session.moment()), session.sun_text())},
-        {kSceneKeyword, scene::scene_line(settled_scene(session))}};
+        {kInputsKeyword, inputs.record(scene)}};
+    if (where == SceneIn::Picture)
+        metadata[kSceneKeyword] = line;
+    else
+        metadata[kSceneDigestKeyword] = sha256_of_text(line);
     if (!compared.empty()) metadata[kComparedKeyword] = fmt::format("{}", fmt::join(compared, ","));
     return metadata;
 }
 
-std::vector<HashedFile> hashed_files(const std::vector<std::string>& dems) {
-    std::vector<HashedFile> result;
+image::Metadata read_record(const std::filesystem::path& picture) {
+    image::Metadata metadata = image::read_metadata(picture);
+    const auto digest = metadata.find(kSceneDigestKeyword);
+    if (metadata.contains(kSceneKeyword) || digest == metadata.end()) return metadata;
+    const std::filesystem::path sidecar = sidecar_of(picture);
+    const auto refuse = [&](const char* why) {
+        bad_input(fmt::format("{}: its scene is in {}, which {}; put the picture's own file there",
+                              printable(picture.string()), printable(sidecar.string()), why));
+    };
     std::error_code ignored;
-    for (const std::filesystem::path& path : dem::files_of(dems))
-        if (std::filesystem::is_regular_file(path, ignored))
-            result.push_back({path.string(), sha256_of_file(path, "--sidecar")});
-    return result;
+    if (!std::filesystem::exists(sidecar, ignored)) refuse("is missing");
+    const auto json = ordered_json::parse(read_text(sidecar, "sidecar"), nullptr, false);
+    if (!json.is_object() || !json.contains("scene")) refuse("is no sidecar");
+    const std::string line =
+        json["scene"].dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+    if (sha256_of_text(line) != digest->second) refuse("has another scene");
+    metadata[kSceneKeyword] = line;
+    return metadata;
 }
 
-std::string sidecar_text(const Session& session, const std::string& version,
-                         const std::string& picture, const std::vector<HashedFile>& dem_files,
+std::string sidecar_text(const Session& session, SceneInputs& inputs, const std::string& picture,
                          const std::optional<ShadowAudit>& audit) {
+    const scene::Scene scene = settled_scene(session);
     ordered_json json;
     json["picture"] = picture;
     json["utc"] = sun::exact_iso(session.moment());
@@ -103,18 +150,19 @@ std::string sidecar_text(const Session& session, const std::string& version,
     json["effects"] = ordered_json::array();
     for (const effect::Effect* effect : session.effects().loaded.selection.effects)
         json["effects"].push_back(effect->id());
-    json["dem"] = dem_json(session, dem_files);
+    json["dem"] = dem_json(session, inputs.hashed_dem(scene));
     const gl::DeviceInfo& device = session.device();
     json["device"] = {{"renderer", device.renderer},
                       {"vendor", device.vendor},
                       {"version", device.version},
                       {"software", device.device.software}};
-    json["versions"] = {{"relevo", version},
+    json["versions"] = {{"relevo", inputs.version()},
                         {"gdal", dem::gdal_version()},
                         {"proj", dem::proj_version()},
                         {"time_zones", sun::zone_database_version()}};
     if (audit) json["audit"] = ordered_json::parse(audit->json_text());
-    json["scene"] = ordered_json::parse(scene::scene_line(settled_scene(session)));
+    json["inputs"] = ordered_json::parse(inputs.record(scene));
+    json["scene"] = ordered_json::parse(scene::whole_scene_line(scene));
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

@@ -90,6 +90,7 @@ struct Session::Impl {
 
     std::shared_ptr<const render::Drape> drape;
     std::optional<chart::Legend> legend;  // of the overlay
+    std::optional<OverlayTime> overlay_time;
     std::vector<std::string> stamp_notes;
 
     scene::Effects as_given;  ///< the scene's, as they were given
@@ -110,7 +111,10 @@ struct Session::Impl {
 
     Impl(scene::Scene given, Options o, FilesInUse& files)
         : scene(std::move(given)), options(std::move(o)) {
-        if (scene.overlay) add_files(*scene.overlay, files);
+        if (scene.overlay) {
+            add_files(*scene.overlay, files);
+            overlay_time = time_of(*scene.overlay);
+        }
         std::optional<sun::ParsedTime> time;
         const bool timed = !scene.moment.time.empty();
         if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
@@ -152,6 +156,14 @@ struct Session::Impl {
         const bool compared = !options.compared.empty();
         result.effects = ActiveEffects::of(compared ? with(asked, options.compared) : asked,
                                            /*aloud=*/true, ground_words());
+        // They are those of the scene's sun, and the overlay is of another's.
+        if (overlay_time)
+            for (const std::string& id : result.effects->switch_off_unasked("shadow"))
+                if (!drawn.effects)
+                    log::info(fmt::format(
+                        "{} is off, because the overlay shows the sun's light of its own time; "
+                        "--enable {} draws them too",
+                        id, id));
         if (compared)
             result.others =
                 ActiveEffects::of(session::without(asked, options.compared, *result.effects),
@@ -335,6 +347,11 @@ struct Session::Impl {
             Overlay overlay = read_overlay(*scene.overlay, terrain->grid());
             drape = overlay.drape;
             legend = std::move(overlay.legend);
+            if (overlay_time)
+                if (const std::string when = session::clock_text(*overlay_time, scene.moment.zone,
+                                                                 ground->frame.origin());
+                    !when.empty() && scene.overlay->title.empty())
+                    legend->title += ", " + when;
             terrain->drape(drape);
         }
         stages.emplace_back("upload", milliseconds_since(began));
@@ -595,6 +612,10 @@ std::vector<chart::Legend> Session::legends() const {
     std::vector<chart::Legend> all = colour_legends();
     if (impl_->legend) all.insert(all.begin(), *impl_->legend);
     return all;
+}
+
+const std::optional<OverlayTime>& Session::overlay_time() const {
+    return impl_->overlay_time;
 }
 
 const std::vector<std::string>& Session::stamp_notes() const {

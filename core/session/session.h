@@ -18,6 +18,7 @@
 #include "image/image.h"
 #include "render/renderer.h"
 #include "scene/scene.h"
+#include "session/overlay_time.h"
 #include "sun/zone.h"
 
 /// What every front end shares: a scene becomes frames, pictures and words about them.
@@ -131,6 +132,9 @@ class Session {
     void drape(std::shared_ptr<const render::Drape> drape);
     /// What colours on the ground mean: of the scene's overlay, and of effects that say it.
     std::vector<chart::Legend> legends() const;
+    /// When the scene's overlay is of; none where it is not of the sun. Stamps say it instead of
+    /// the scene's own time, and cast shadows, which are another sun's, are off unless asked for.
+    const std::optional<OverlayTime>& overlay_time() const;
     /// Likewise of effects alone.
     std::vector<chart::Legend> colour_legends() const;
     /// Whether native effects leave what they have made as it is, such as shadow maps while the sun

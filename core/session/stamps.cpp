@@ -52,8 +52,8 @@ class Stamper {
         if (wanted_.title)
             stamps.title = wanted_.title_text.empty() ? name_of(of_.scene) : wanted_.title_text;
         if (wanted_.attribution) stamps.attribution = wanted_.attribution_text;
-        if (wanted_.date) stamps.lines.push_back(of_.clock);
-        if (wanted_.sun) stamps.lines.push_back("Sun: " + of_.sun);
+        if (wanted_.date) add_line("", of_.clock, "date", stamps);
+        if (wanted_.sun) add_line("Sun: ", of_.sun, "sun", stamps);
         if (!seen_) return stamps;
         if (!middle_) {
             notes_.emplace_back(
@@ -79,6 +79,16 @@ class Stamper {
     std::vector<std::string> notes_;
 
   private:
+    /// What a raster of the sun does not say of itself is not stamped from elsewhere.
+    void add_line(const char* label, const std::string& words, const char* name,
+                  chart::Stamps& stamps) {
+        if (words.empty())
+            notes_.push_back(
+                fmt::format("stamp: {} is omitted: the overlay is not of one {}", name, name));
+        else
+            stamps.lines.push_back(label + words);
+    }
+
     chart::Stamps::Scale scale() const {
         const double depth_m = seen_->depth_m(middle_->x, middle_->y);
         const auto [least_m, most_m] = seen_->depth_range_m();
@@ -148,8 +158,12 @@ std::vector<std::string> add_stamps(const Session& session,
     const scene::Stamps& wanted = session.scene().stamps;
     Stamped stamped{session.scene(), *session.dem(), session.ground().frame, session.camera()};
     if (needs_depths(wanted)) session.read_depths(stamped.depths_m);
-    if (wanted.date) stamped.clock = session.clock_text();
-    if (wanted.sun) stamped.sun = session.sun_text();
+    const std::optional<OverlayTime>& laid = session.overlay_time();
+    if (wanted.date)
+        stamped.clock =
+            laid ? clock_text(*laid, session.scene().moment.zone, session.ground().frame.origin())
+                 : session.clock_text();
+    if (wanted.sun) stamped.sun = laid ? sun_text(*laid) : session.sun_text();
     return add_stamps(std::move(stamped), legends, picture);
 }
 

@@ -120,6 +120,16 @@ TEST(Legend, HasRoundValues) {
     EXPECT_TRUE(round_values(1, 1, 6).empty());
 }
 
+TEST(Legend, OfClassesHasAnEntryEachAndNoRamp) {
+    Legend mask{"direct sun", "1", named_ramp("shade", 0, 1)};
+    mask.classes = {{"in the sun", {0xffffff}}, {"in the shade", {0x14224d}}};
+    const Drawing drawing = legend(mask);
+    std::vector<std::string> words;
+    for (const Drawing::Item& item : drawing.items())
+        if (const auto* text = std::get_if<Drawing::Text>(&item)) words.push_back(text->words);
+    EXPECT_THAT(words, ElementsAre("direct sun", "in the sun", "in the shade"));
+}
+
 TEST(Legend, StandsOnAPictureWithItsTitleRampAndValues) {
     const Drawing drawing = legend({"Sun hours", "h", named_ramp("sun", 0, 14)});
     std::vector<std::string> words;

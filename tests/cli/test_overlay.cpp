@@ -96,6 +96,72 @@ TEST_F(OverlayOption, HasALegendUnlessNoneIsWanted) {
               std::vector<std::uint8_t>(without.row(200), without.row(201)));
 }
 
+/// How many pixels two pictures differ in.
+int differing(const image::Image8& a, const image::Image8& b) {
+    EXPECT_EQ(a.values.size(), b.values.size());
+    int count = 0;
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x)
+            count += std::abs(a.at(x, y, 0) - b.at(x, y, 0)) > 2 ||
+                     std::abs(a.at(x, y, 1) - b.at(x, y, 1)) > 2 ||
+                     std::abs(a.at(x, y, 2) - b.at(x, y, 2)) > 2;
+    return count;
+}
+
+TEST_F(OverlayOption, OfTheSunHasNoShadowsOfAnotherSunUnlessAskedFor) {
+    const std::string mask = raster("mask.tif", {"shadow", "--time", "2026-06-21T09:30"});
+    const std::vector<std::string> scene{"--overlay", mask, "--time", "2026-12-21T16:30"};
+    const auto taken_with = [&](const char* name, const std::vector<std::string>& more) {
+        std::vector<std::string> all = scene;
+        all.insert(all.end(), more.begin(), more.end());
+        return taken(name, all);
+    };
+    const image::Image8 usual = taken_with("usual.png", {});
+    EXPECT_EQ(differing(usual, taken_with("off.png", {"--disable", "shadows"})), 0);
+    EXPECT_GT(differing(usual, taken_with("on.png", {"--enable", "shadows"})), 1000);
+    std::filesystem::remove(dir_ / "loud.png");
+    const Result loud = relevo({"capture", bundled_dem(), "-o", (dir_ / "loud.png").string(),
+                                "--size", "64x48", scene[0], scene[1], scene[2], scene[3]});
+    EXPECT_NE(loud.err.find("relevo: shadows is off, because the overlay shows the sun's light of "
+                            "its own time; --enable shadows draws them too"),
+              std::string::npos)
+        << loud.err;
+    // Of what is no light of the sun they stay.
+    const std::vector<std::string> heights{"--overlay", bundled_dem(), "--overlay-opacity",
+                                           "0.5",       "--time",      "2026-12-21T16:30"};
+    std::vector<std::string> without = heights;
+    without.insert(without.end(), {"--disable", "shadows"});
+    EXPECT_GT(differing(taken("other.png", heights), taken("other_off.png", without)), 500);
+}
+
+TEST_F(OverlayOption, ARampIsTheBuiltInOneWhateverFileHasItsName) {
+    const std::string sky = raster("sky.tif", {"sky-view", "--directions", "8"});
+    const auto in_folder = [&](const char* name, const char* colours) {
+        const Result run = test::run(
+            "/bin/sh", {"-c",
+                        "cd \"$0\" && exec \"$1\" -q capture \"$2\" -o \"$3\" --overlay \"$4\" "
+                        "--overlay-colours \"$5\" --size 64x48 --device software --overwrite "
+                        "--save-scene scene.json",
+                        dir_.string(), (build_dir() / "bin/relevo").string(), bundled_dem(), name,
+                        sky, colours});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return image::read(dir_ / name);
+    };
+    const image::Image8 before = in_folder("before.png", "viridis");
+    std::ofstream(dir_ / "viridis") << "0 255 0 0\n1 255 0 0\n";
+    EXPECT_EQ(differing(in_folder("after.png", "viridis"), before), 0);
+    const image::Image8 file = in_folder("file.png", "./viridis");
+    EXPECT_GT(differing(file, before), 100);
+    // And so in the scene that is saved, and in the one that the picture carries.
+    for (const auto& [option, path] :
+         {std::pair("--scene", "scene.json"), std::pair("--from", "file.png")}) {
+        const Result again = relevo({"-q", "capture", option, (dir_ / path).string(), "-o",
+                                     (dir_ / "again.png").string(), "--overwrite"});
+        ASSERT_EQ(again.status, 0) << again.err;
+        EXPECT_EQ(differing(image::read(dir_ / "again.png"), file), 0) << option;
+    }
+}
+
 TEST_F(OverlayOption, PresetsThatColourTheGroundHaveALegendToo) {
     for (const char* preset : {"relief", "slope", "aspect"}) {
         const image::Image8 with = taken("with.png", {"--preset", preset}),

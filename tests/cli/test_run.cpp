@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
-#include "cli/program.h"
+#include "cli/job_fixture.h"
 #include "dem/fixture.h"
 #include "image/image.h"
 #include "support/support.h"
@@ -25,20 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-std::string bytes_of(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// The files below a folder, by their names there.
-std::map<std::string, std::string> files_in(const fs::path& folder) {
-    std::map<std::string, std::string> result;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-        if (entry.is_regular_file())
-            result[entry.path().lexically_relative(folder).string()] = bytes_of(entry.path());
-    return result;
-}
 
 /// The files that a page of the documentation shows, by their names: ```json day.json.
 std::map<std::string, std::string> files_shown(const char* page) {
@@ -55,17 +41,8 @@ std::map<std::string, std::string> files_shown(const char* page) {
     return result;
 }
 
-class Run : public testing::Test {
+class Run : public JobTest {
   protected:
-    fs::path write(const std::string& name, const std::string& text) const {
-        std::ofstream(dir_ / name) << text;
-        return dir_ / name;
-    }
-    /// A job of the bundled DEM with small pictures and these members.
-    fs::path job(const std::string& members, const std::string& name = "job.json") const {
-        return write(name, "{\"format\": 1, \"dem\": {\"files\": [\"" + bundled_dem() +
-                               "\"]}, \"picture\": {\"size\": [64, 48]},\n" + members + "}");
-    }
     /// Suns, cameras and effects in turns: much that one picture could leave to the next.
     fs::path mixed_job() const {
         return job(
@@ -77,21 +54,6 @@ class Run : public testing::Test {
             "[\"wet\"]}]}],\n"
             "\"output\": \"out/{time:%H%M}_{camera}_{effects}.png\"");
     }
-    std::string error(const fs::path& path, std::vector<std::string> more = {},
-                      int status = 3) const {
-        more.insert(more.begin(), {"run", path.string()});
-        const Result result = relevo(more);
-        EXPECT_EQ(result.status, status) << result.err;
-        EXPECT_EQ(result.out, "");
-        const std::string begin = "relevo: error: ";
-        const std::size_t at = result.err.rfind(begin);
-        return at == std::string::npos
-                   ? result.err
-                   : result.err.substr(at + begin.size(),
-                                       result.err.size() - at - begin.size() - 1);
-    }
-
-    fs::path dir_ = scratch_dir("run");
 };
 
 TEST_F(Run, TheExamplesOfTheDocumentationAreAsTheySay) {
@@ -184,17 +146,20 @@ TEST_F(Run, ResumeRefusesWhatIsNotTheSame) {
     const fs::path path = job("\"time\": {\"at\": \"2026-06-21T12:00\"}, \"output\": \"a.png\"");
     const std::string exists =
         fmt::format("run: {}: exists, the first of 1", (dir_ / "a.png").string());
-    const std::string other = exists +
-                              " that are not whole, of another scene, or older than the DEM; pass "
-                              "--overwrite to replace it";
+    const auto other = [&](const char* why) {
+        return fmt::format(
+            "run: {}: {}, the first of 1 that --resume cannot keep; pass --overwrite "
+            "to make it again",
+            (dir_ / "a.png").string(), why);
+    };
     ASSERT_EQ(relevo({"run", path.string()}).status, 0);
     EXPECT_EQ(error(path), exists +
                                "; pass --overwrite to replace it, or --resume to make what is "
                                "missing");
-    EXPECT_EQ(error(path, {"--resume", "--exposure", "1"}), other);
+    EXPECT_EQ(error(path, {"--resume", "--exposure", "1"}), other("it shows another scene"));
     const std::string whole = bytes_of(dir_ / "a.png");
     std::ofstream(dir_ / "a.png", std::ios::binary) << whole.substr(0, whole.size() - 200);
-    EXPECT_EQ(error(path, {"--resume"}), other);
+    EXPECT_EQ(error(path, {"--resume"}), other("it is not a whole picture"));
     EXPECT_EQ(relevo({"run", path.string(), "--resume", "--overwrite"}).status, 0);
     EXPECT_EQ(bytes_of(dir_ / "a.png"), whole);
 }
@@ -210,10 +175,9 @@ TEST_F(Run, APictureThatCannotBeMadeIsToldOfAndTheRestGoOn) {
     EXPECT_THAT(run.err, HasSubstr(fmt::format("relevo: error: {}: --eye: 46.00000 N 8.00000 E: "
                                                "outside the DEM or in a void",
                                                (dir_ / "off.png").string())));
-    EXPECT_THAT(run.err, HasSubstr(fmt::format(
-                             "relevo: error: {}: run: no ground of the DEM is in the picture; turn "
-                             "the camera, or take it nonetheless with --allow-blank\n",
-                             (dir_ / "sky.png").string())));
+    EXPECT_THAT(run.err, HasSubstr(fmt::format("relevo: error: 1 picture shows only sky (first: "
+                                               "{}); turn the camera or add --allow-blank\n",
+                                               (dir_ / "sky.png").string())));
     EXPECT_THAT(run.err, testing::EndsWith(fmt::format(
                              "relevo: error: run: 2 of 4 pictures could not be made, the first is "
                              "{}; --resume tries them again\n",
@@ -265,8 +229,8 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
               fmt::format("image: {}: unknown picture format; use png, jpg, webp, tif or exr",
                           (dir_ / "a.gif").string()));
     EXPECT_EQ(error(job(at + ", \"output\": \"{dem}.tif\""), {"-o", bundled_dem()}),
-              fmt::format("run: {0}: exists, the first of 1; pass --overwrite to replace it, or "
-                          "--resume to make what is missing",
+              fmt::format("run: {0}: is the DEM {0}, which would be lost; give the result another "
+                          "name",
                           bundled_dem()));
     EXPECT_EQ(error(job(at + ", \"output\": \"a.png\""), {"-o", ""}, 2),
               "-o: expected a template of names but got nothing");
@@ -385,9 +349,8 @@ TEST_F(Run, AnAuditSaysInTheSidecarWhetherShadowsAreThoseOfTheFigures) {
     const Result refused = relevo(resume);
     EXPECT_EQ(refused.status, 3);
     EXPECT_THAT(refused.err,
-                HasSubstr(fmt::format("{}: exists, the first of 2 that are not whole, of another "
-                                      "scene, older than the DEM, or without what their sidecars "
-                                      "shall say; pass --overwrite to replace them\n",
+                HasSubstr(fmt::format("{}: its sidecar has no audit, the first of 2 that --resume "
+                                      "cannot keep; pass --overwrite to make them again\n",
                                       (dir_ / "with.png").string())));
     std::vector<std::string> replace = resume;
     replace.push_back("--overwrite");
@@ -455,8 +418,8 @@ TEST_F(Run, ADryRunSaysWhatWouldHappenAndTouchesNothing) {
     EXPECT_EQ(resumed.out, b + "\n");
     EXPECT_THAT(resumed.err, HasSubstr("; 1 are there already and stay\n"));
     EXPECT_THAT(resumed.err,
-                HasSubstr(fmt::format("would be refused: run: {}: exists, the first of 1 that are "
-                                      "not whole",
+                HasSubstr(fmt::format("would be refused: run: {}: it is not a whole picture, the "
+                                      "first of 1 that --resume cannot keep",
                                       b)));
     EXPECT_THAT(dry({"-o", (dir_ / "job.json/{camera}.png").string()}).err,
                 HasSubstr(fmt::format("would be refused: run: {}: no file can be made in it, Not a "

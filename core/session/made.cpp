@@ -1,0 +1,111 @@
+#include "session/made.h"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/sha256.h"
+#include "base/text.h"
+#include "image/image.h"
+#include "session/record.h"
+
+namespace relevo::session {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+bool is_there(const fs::path& path) {
+    std::error_code missing;
+    return fs::exists(fs::symlink_status(path, missing));
+}
+
+/// Keys of SceneInputs::record(), and what a difference means.
+constexpr std::array kChanges{std::pair("dem", "its DEM has changed"),
+                              std::pair("overlay", "its overlay has changed"),
+                              std::pair("colours", "its colour file has changed"),
+                              std::pair("presets", "its preset has changed"),
+                              std::pair("plugins", "a plugin has changed"),
+                              std::pair("files", "a file that it was made from has changed")};
+
+/// Why one record is not another; empty where it is.
+std::string difference(const std::string& before, const std::string& now) {
+    if (before == now) return {};
+    const auto a = ordered_json::parse(before, nullptr, false);
+    const auto b = ordered_json::parse(now, nullptr, false);
+    if (!a.is_object()) return "it does not say what it was made from";
+    if (a.value("relevo", ordered_json()) != b.value("relevo", ordered_json()))
+        return fmt::format("Relevo {} made it, and this is {}",
+                           printable(a.value("relevo", ordered_json("?")).dump()),
+                           b.value("relevo", ordered_json()).dump());
+    for (const auto& [key, change] : kChanges)
+        if (a.value(key, ordered_json()) != b.value(key, ordered_json())) return change;
+    return "it was made from other files";
+}
+
+std::string fault_of_picture(const scene::Shot& shot, const std::string& record) {
+    try {
+        const image::Metadata metadata = image::read_metadata(shot.output);
+        const auto text = [&](const char* keyword) {
+            const auto found = metadata.find(keyword);
+            return found == metadata.end() ? std::string() : found->second;
+        };
+        const std::string line = scene::whole_scene_line(shot.scene), scene = text(kSceneKeyword),
+                          digest = text(kSceneDigestKeyword);
+        if (scene.empty() && digest.empty()) return "it contains no scene";
+        if (metadata.contains(kComparedKeyword) ||
+            (scene.empty() ? digest != sha256_of_text(line) : scene != line))
+            return "it shows another scene";
+        if (std::string why = difference(text(kInputsKeyword), record); !why.empty()) return why;
+        const image::Image8 picture = image::read(shot.output);
+        if (picture.width == shot.scene.width_px && picture.height == shot.scene.height_px)
+            return {};
+    } catch (const Error&) {
+        // It is no picture, or not a whole one.
+    }
+    return "it is not a whole picture";
+}
+
+std::string fault_of_sidecar(const scene::Shot& shot, const Wanted& wanted) {
+    std::error_code ignored;
+    const fs::path path = sidecar_of(shot.output);
+    if (!fs::is_regular_file(path, ignored)) return "its sidecar is no file";
+    std::string content;
+    try {
+        content = read_text(path, "--sidecar");
+    } catch (const Error&) {
+        return "its sidecar cannot be read";
+    }
+    const auto json = ordered_json::parse(content, nullptr, /*allow_exceptions=*/false);
+    if (!json.is_object() || !json.contains("scene")) return "its sidecar is not a whole one";
+    const auto text = [](const ordered_json& value) {
+        return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+    };
+    if (text(json["scene"]) != scene::whole_scene_line(shot.scene))
+        return "its sidecar is of another scene";
+    if (std::string why =
+            difference(json.contains("inputs") ? text(json["inputs"]) : "", wanted.record);
+        !why.empty())
+        return "of its sidecar, " + why;
+    if (wanted.audited && !json.contains("audit")) return "its sidecar has no audit";
+    return {};
+}
+
+}  // namespace
+
+OnDisk on_disk(const scene::Shot& shot, const Wanted& wanted) {
+    const bool picture = is_there(shot.output),
+               sidecar = wanted.sidecar && is_there(sidecar_of(shot.output));
+    if (!picture && !sidecar) return {};
+    std::string why;
+    if (sidecar) why = fault_of_sidecar(shot, wanted);
+    if (picture && why.empty()) why = fault_of_picture(shot, wanted.record);
+    if (!why.empty()) return {OnDisk::State::Other, std::move(why)};
+    const bool all = picture && sidecar == wanted.sidecar;
+    return {all ? OnDisk::State::Whole : OnDisk::State::Part, {}};
+}
+
+}  // namespace relevo::session

@@ -1,0 +1,77 @@
+#include "session/overlay_time.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/text.h"
+#include "session/stamps.h"
+
+namespace relevo::session {
+namespace {
+
+std::string value(const std::map<std::string, std::string>& about, const char* key) {
+    const auto found = about.find(key);
+    return found == about.end() ? std::string() : found->second;
+}
+
+/// None for what no program of ours wrote.
+std::optional<sun::ParsedTime> time_of(const std::string& text) {
+    try {
+        if (!text.empty()) return sun::parse_time(text);
+    } catch (const Error&) {
+    }
+    return std::nullopt;
+}
+
+/// "2026-06-21 10:12" of an ISO text, and "2026-06-21" at midnight.
+std::string words(const std::string& iso) {
+    const std::string date = iso.substr(0, 10), clock = iso.substr(11, 5);
+    return clock == "00:00" ? date : date + " " + clock;
+}
+
+}  // namespace
+
+std::optional<OverlayTime> overlay_time(const std::map<std::string, std::string>& about) {
+    OverlayTime time;
+    if (const auto utc = time_of(value(about, "TIME_UTC"))) time.utc = utc->utc;
+    const auto azimuth = parse_number(value(about, "SUN_AZIMUTH_DEG")),
+               apparent = parse_number(value(about, "SUN_APPARENT_ELEVATION_DEG"));
+    if (azimuth && apparent)
+        time.sun = {*azimuth, *apparent, parse_number(value(about, "SUN_ELEVATION_DEG"))};
+    const std::string from = value(about, "TIME_FROM"), to = value(about, "TIME_TO");
+    if (time_of(from) && time_of(to)) {
+        time.from = from;
+        time.to = to;
+    }
+    if (!time.sun && time.from.empty()) return std::nullopt;
+    return time;
+}
+
+std::string clock_text(const OverlayTime& time, const std::string& zone,
+                       const geo::Geodetic& middle) {
+    if (time.utc) return clock_text(*time.utc, zone, middle);
+    if (time.from.empty()) return {};
+    std::string to = time.to;
+    // A period of whole days ends when its last day does.
+    if (const bool days = words(time.from).size() == 10 && words(to).size() == 10; days)
+        to = sun::to_iso(time_of(to)->utc + -1.0, time_of(to)->zone).substr(0, 10) + "T00:00";
+    const std::string first = words(time.from), last = words(to);
+    if (first == last) return first;
+    // The second date of one day is not said again.
+    const bool one_day =
+        first.size() > 10 && last.size() > 10 && first.substr(0, 10) == last.substr(0, 10);
+    return fmt::format("{} to {}", first, one_day ? last.substr(11) : last);
+}
+
+std::string sun_text(const OverlayTime& time) {
+    if (!time.sun) return {};
+    const auto& [azimuth_deg, apparent_deg, elevation_deg] = *time.sun;
+    if (!elevation_deg || std::abs(*elevation_deg - apparent_deg) < 0.005)
+        return fmt::format("azimuth {:.2f}, elevation {:.2f}", azimuth_deg, apparent_deg);
+    return fmt::format("azimuth {:.2f}, elevation {:.2f} ({:.2f} with refraction)", azimuth_deg,
+                       *elevation_deg, apparent_deg);
+}
+
+}  // namespace relevo::session

@@ -1,0 +1,189 @@
+#include "session/scene_inputs.h"
+
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/sha256.h"
+#include "dem/files_of.h"
+#include "effect/native_module.h"
+#include "effect/selection.h"
+
+namespace relevo::session {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of a digest: enough to tell files apart that nobody has made to be confused.
+constexpr std::size_t kDigits = 32;
+
+/// Effects without values: what one reading of the plugins serves.
+std::string installed_key(const scene::Effects& effects) {
+    return fmt::format("{}\n\n{}", fmt::join(effects.presets, "\n"),
+                       fmt::join(effects.plugin_path, "\n"));
+}
+
+std::vector<fs::path> files_of(const effect::Effect& effect) {
+    const effect::Manifest& manifest = effect.manifest;
+    std::vector<fs::path> files{manifest.file};
+    files.insert(files.end(), manifest.glsl.begin(), manifest.glsl.end());
+    for (const effect::TextureSpec& texture : manifest.textures)
+        files.insert(files.end(), texture.files.begin(), texture.files.end());
+    if (manifest.module.empty()) return files;
+    try {
+        files.push_back(effect::module_file(manifest));
+    } catch (const Error&) {
+        // What loads it says so.
+    }
+    return files;
+}
+
+}  // namespace
+
+std::string effects_key(const scene::Effects& effects) {
+    scene::Scene only;
+    only.effects = effects;
+    return scene::scene_line(only);
+}
+
+struct SceneInputs::OfEffects {
+    scene::Effects settled;
+    /// Of plugins that may be on: which are depends on the DEM, too.
+    std::vector<std::pair<std::string, std::vector<fs::path>>> plugins;
+    std::vector<fs::path> presets, values;
+    const InstalledEffects* installed = nullptr;
+};
+
+SceneInputs::SceneInputs(std::string version) : version_(std::move(version)) {}
+SceneInputs::~SceneInputs() = default;
+
+const SceneInputs::OfEffects& SceneInputs::of(const scene::Effects& effects) {
+    std::unique_ptr<OfEffects>& known = effects_[effects_key(effects)];
+    if (known) return *known;
+    std::unique_ptr<InstalledEffects>& plugins = installed_[installed_key(effects)];
+    if (!plugins) plugins = std::make_unique<InstalledEffects>(effects);
+    auto fresh = std::make_unique<OfEffects>();
+    fresh->installed = plugins.get();
+    const effect::Selection selection =
+        effect::select(plugins->registry, plugins->presets, effects.switches);
+    shader::ParamStore values = plugins->values;
+    effect::apply_settings(values, plugins->registry, selection, plugins->presets,
+                           effects.settings);
+    fresh->settled = effects;
+    fresh->settled.settings =
+        effect::with_absolute_files(std::move(fresh->settled.settings), plugins->values);
+    for (const effect::Effect* effect : selection.effects)
+        fresh->plugins.emplace_back(effect->id(), files_of(*effect));
+    for (const effect::Preset& preset : plugins->presets)
+        fresh->presets.emplace_back(preset.file);
+    for (const shader::TextParam* text : values.texts())
+        if (const std::string file = values.text(text->address); text->is_file && !file.empty())
+            fresh->values.emplace_back(file);
+    known = std::move(fresh);
+    return *known;
+}
+
+const scene::Effects& SceneInputs::settled(const scene::Effects& effects) {
+    return of(effects).settled;
+}
+
+const std::vector<fs::path>& SceneInputs::raster_files(const std::vector<std::string>& names) {
+    const auto [known, fresh] = rasters_.try_emplace(names);
+    if (fresh) known->second = dem::files_of(names);
+    return known->second;
+}
+
+SceneInputs::Key SceneInputs::key_of(const scene::Scene& scene) {
+    Key key{&raster_files(scene.dems), nullptr, &of(scene.effects), {}};
+    if (!scene.overlay) return key;
+    key.overlay = &raster_files({scene.overlay->file});
+    if (scene::is_colour_file(scene.overlay->colours)) key.colours = scene.overlay->colours;
+    return key;
+}
+
+void SceneInputs::add_to(FilesInUse& files, const scene::Scene& scene) {
+    if (!added_.insert(key_of(scene)).second) return;
+    for (const fs::path& file : raster_files(scene.dems))
+        files.add_input(file, "the DEM");
+    if (scene.overlay) {
+        for (const fs::path& file : raster_files({scene.overlay->file}))
+            files.add_input(file, "the overlay");
+        if (scene::is_colour_file(scene.overlay->colours))
+            files.add_input(scene.overlay->colours, "the colours");
+    }
+    const OfEffects& effects = of(scene.effects);
+    for (const fs::path& file : effects.presets)
+        files.add_input(file, "the preset");
+    for (const effect::Effect& effect : effects.installed->registry.effects())
+        for (const fs::path& file : files_of(effect))
+            files.add_input(file, fmt::format("a file of the plugin {},", effect.id()));
+    for (const fs::path& file : effects.values)
+        files.add_input(file, "a file of --set,");
+}
+
+const std::string& SceneInputs::sha256(const fs::path& path) {
+    const auto [known, fresh] = hashes_.try_emplace(path);
+    if (!fresh) return known->second;
+    try {
+        known->second = sha256_of_file(path, "inputs");
+    } catch (const Error&) {
+        known->second = "unreadable";  // what needs it says so
+    }
+    return known->second;
+}
+
+std::string SceneInputs::digest(const std::vector<fs::path>& files) {
+    std::string sums;
+    for (const fs::path& file : files)
+        sums += sha256(file) + "\n";
+    return sha256_of_text(sums).substr(0, kDigits);
+}
+
+std::string SceneInputs::record(const scene::Scene& scene) {
+    std::string& known = records_[key_of(scene)];
+    if (known.empty()) known = record_of(scene);
+    return known;
+}
+
+std::string SceneInputs::record_of(const scene::Scene& scene) {
+    nlohmann::ordered_json json{{"relevo", version_}, {"dem", digest(raster_files(scene.dems))}};
+    if (scene.overlay) {
+        json["overlay"] = digest(raster_files({scene.overlay->file}));
+        if (scene::is_colour_file(scene.overlay->colours))
+            json["colours"] = digest({scene.overlay->colours});
+    }
+    const OfEffects& effects = of(scene.effects);
+    if (!effects.presets.empty()) json["presets"] = digest(effects.presets);
+    std::string plugins;
+    for (const auto& [id, files] : effects.plugins)
+        plugins += id + " " + digest(files) + "\n";
+    json["plugins"] = sha256_of_text(plugins).substr(0, kDigits);
+    if (!effects.values.empty()) json["files"] = digest(effects.values);
+    return json.dump();
+}
+
+std::vector<HashedFile> SceneInputs::hashed_dem(const scene::Scene& scene) {
+    std::vector<HashedFile> result;
+    std::error_code ignored;
+    for (const fs::path& path : raster_files(scene.dems)) {
+        if (!fs::is_regular_file(path, ignored)) continue;
+        std::string& known = hashes_[path];
+        if (known.empty() || known == "unreadable") known = sha256_of_file(path, "--sidecar");
+        result.push_back({path.string(), known});
+    }
+    return result;
+}
+
+std::vector<std::string> SceneInputs::remote_names(const scene::Scene& scene) {
+    std::vector<std::string> names = scene.dems, remote;
+    if (scene.overlay) names.push_back(scene.overlay->file);
+    for (const std::string& name : names)
+        if (name.starts_with("/vsi") && raster_files({name}).empty()) remote.push_back(name);
+    return remote;
+}
+
+}  // namespace relevo::session
