@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "dem/interpret.h"
+#include "dem/no_raster.h"
 #include "dem/remote.h"
 
 namespace relevo::dem {
@@ -185,7 +186,7 @@ std::string remedy_of(int error) {
 }  // namespace
 
 void refuse_unreadable(const std::string& path) {
-    if (path.empty()) refuse("\"\"", "no such file");
+    if (path.empty()) refuse("\"\"", "no such DEM file");
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     const bool may_be_gdals = path.starts_with("/vsi") || path.find(':') != std::string::npos;
@@ -194,7 +195,7 @@ void refuse_unreadable(const std::string& path) {
         if (!may_be_gdals || path.size() > PATH_MAX) {
             const int reason = error.value();
             refuse(path, reason == 0 || reason == ENOENT || reason == ENOTDIR
-                             ? std::string("no such file")
+                             ? no_file_text(path)
                              : fmt::format("cannot be read, {}", std::strerror(reason)));
         }
         file = file_in(path);

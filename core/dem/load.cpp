@@ -1,40 +1,21 @@
 #include "dem/load.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <new>
 #include <string>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "dem/interpret.h"
+#include "dem/unearthly.h"
 
 namespace relevo::dem {
 
 namespace {
-
-/// What to set as the unit of heights that the Earth has not: those units in which the Earth has
-/// all of them, where so many are off that it is no matter of single posts.
-std::string unit_advice(const Description& about) {
-    constexpr double kManyOfThem = 0.01;
-    constexpr std::array kUnits = {"ft", "dm", "cm", "mm"};
-    const Statistics& s = about.statistics;
-    std::vector<std::string> fitting;
-    for (const char* name : kUnits) {
-        const double per = known_unit(name)->metres / about.unit.metres;
-        if (per < 1 && is_of_the_earth(s.min_m * per) && is_of_the_earth(s.max_m * per))
-            fitting.push_back(
-                fmt::format("{} ({:.0f} to {:.0f} m)", name, s.min_m * per, s.max_m * per));
-    }
-    if (fitting.empty() ||
-        static_cast<double>(s.outliers) < kManyOfThem * static_cast<double>(s.valid))
-        return "sets the unit";
-    return fmt::format("sets the unit, perhaps {}", fmt::join(fitting, " or "));
-}
 
 /// A number as a file of this type stores it, as --nodata takes it: in as few digits, from six, as
 /// give it again.
@@ -59,20 +40,31 @@ void report_heights(const Source& source, Description& about, const std::optiona
             fmt::format("{}: no valid height: all {} posts are voids{}", about.path, s.holes,
                         about.nodata ? fmt::format(" (nodata {})", about.nodata_text()) : ""));
     const auto guess = [&](const std::string& sentence) {
-        about.assumptions.push_back(sentence);
-        about.guesses.push_back(sentence);
+        dem::guess(about, sentence);
         log::info(fmt::format("{}: {}", about.path, sentence));
     };
-    if (s.outliers > 0)
-        guess(
-            fmt::format("{} heights are below -11500 m or above 9000 m, impossible on Earth; "
-                        "--nodata V marks them as voids, --unit {}",
-                        s.outliers, unit_advice(about)));
     if (collar)
         guess(
             fmt::format("the whole edge is {:g} m high and differs from its neighbours by {:.0f} "
                         "m, perhaps fill of a rotated raster; --nodata {} marks it as void",
                         collar->height_m, collar->step_m, stored_text(about, source.stored(0, 0))));
+}
+
+void check_heights(Description& about, const Spikes& spikes, const LoadOptions& options) {
+    const std::string what = unearthly(about, spikes);
+    if (what.empty()) return;
+    const bool as_given = !options.unit.empty() || options.nodata || options.no_nodata;
+    if (!as_given) bad_input(fmt::format("{}: {}", about.path, what));
+    guess(about, what);
+    log::info(fmt::format("{}: {}", about.path, what));
+}
+
+void check_heights(Heightfield& field, const LoadOptions& options) {
+    check_heights(field.about,
+                  options.unit.empty() && spikes_matter(field.about, field.grid)
+                      ? find_spikes(field.height_m, field.grid.post_spacing_m())
+                      : Spikes{},
+                  options);
 }
 
 Heightfield load(const std::string& path, const LoadOptions& options) {
@@ -129,7 +121,9 @@ std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_
         source.cells_for_means(reduction) > 4 * static_cast<double>(most_posts))
         return std::nullopt;
     Heightfield field = read_reduced(source, reduction);
-    if (field.about.statistics.valid == 0) return std::nullopt;
+    // What check_heights() may refuse is not shown before.
+    if (field.about.statistics.valid == 0 || !unearthly(field.about, {}).empty())
+        return std::nullopt;
     return field;
 }
 

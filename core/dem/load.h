@@ -7,6 +7,7 @@
 #include "dem/collar.h"
 #include "dem/heightfield.h"
 #include "dem/source.h"
+#include "dem/spikes.h"
 
 namespace relevo::dem {
 
@@ -36,10 +37,19 @@ Heightfield load(const Source& source, std::int64_t max_posts);
 /// @throws Error (BadInput) as Source::read()
 std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_posts);
 
-/// Says what heights look wrong, in the description and with log::info.
+/// Says what heights look wrong but for those that check_heights() refuses, in the description and
+/// with log::info.
 /// @param source  they are from
 /// @param about   with its statistics
 /// @throws Error (BadInput) where not one post has a height
 void report_heights(const Source& source, Description& about, const std::optional<Collar>& collar);
+
+/// For whoever makes pictures or figures of heights: those that no ground of the Earth has are
+/// refused, unless the user has said by --unit or --nodata what they are; then they are mentioned.
+/// @param about   with its statistics
+/// @param spikes  of all posts or nearly so; none where they do not matter
+/// @throws Error (BadInput) with the units that fit
+void check_heights(Description& about, const Spikes& spikes, const LoadOptions& options);
+void check_heights(Heightfield& field, const LoadOptions& options);
 
 }  // namespace relevo::dem

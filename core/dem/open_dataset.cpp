@@ -17,6 +17,7 @@
 #include "dem/gdal_support.h"
 #include "dem/guard.h"
 #include "dem/interpret.h"
+#include "dem/no_raster.h"
 #include "dem/remote.h"
 
 namespace relevo::dem {
@@ -158,9 +159,9 @@ Dataset open_dataset(std::string& path) {
                                  driver));
     if (reason.find("does not exist") != std::string::npos ||
         reason.find("No such file") != std::string::npos)
-        refuse(path, "no such file");
+        refuse(path, no_file_text(path));
     if (reason.empty() || reason.find("not recognized as") != std::string::npos)
-        refuse(path, "not a raster in any format that GDAL reads");
+        refuse(path, no_raster_text(path));
     refuse(path, fmt::format("cannot be opened as a raster, {}{}", reason, remedy_for(reason)));
 }
 

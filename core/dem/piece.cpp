@@ -321,7 +321,14 @@ double settle_scale(const std::string& given, GDALRasterBandH band, const geo::C
                fmt::format("a scale of {:g} and an offset of {:g}, which make no heights; the "
                            "file is damaged",
                            about.scale, about.offset));
-    const bool down = crs.vertical() && crs.vertical()->down;
+    const bool depths = crs.vertical() && crs.vertical()->down;
+    // Bathymetric Attributed Grid standard (OGC 25-018): elevations are positive upwards, always.
+    const bool is_bag = about.driver == "BAG";
+    if (depths && is_bag)
+        about.assumptions.push_back(
+            "heights are positive upwards, as in all BAG files, though the vertical CRS has "
+            "depths");
+    const bool down = depths && !is_bag;
     if (down)
         about.assumptions.push_back("depths, positive downwards, are taken as heights below 0");
     return down ? -about.unit.metres : about.unit.metres;

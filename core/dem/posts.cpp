@@ -14,6 +14,7 @@
 #include "dem/load.h"
 #include "dem/survey.h"
 #include "dem/tile_cache.h"
+#include "dem/unearthly.h"
 
 namespace relevo::dem {
 namespace {
@@ -55,6 +56,7 @@ struct Posts::Impl {
     Array2d<float> block_highest_m;
     std::unique_ptr<TileCache> tiles;
     Array2d<float> thinned_m;  // of posts that are not in memory
+    Spikes spikes;             // of such posts, where they matter
     std::once_flag outside_once;
     Array2d<std::uint8_t> outside;  // of thinned posts, made where it is asked for; empty: none is
 
@@ -176,6 +178,7 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
     const int slab_rows = fitting(std::min<std::int64_t>(kSlab_rows, slab_posts / side));
     const int slab_columns = fitting(slab_posts / slab_rows);
     std::optional<CollarSteps> collar_steps = collar_steps_of(*source);
+    const bool look_for_spikes = spikes_matter(about, grid());
     Progress progress(about.path + ": reading all posts", double(columns) * rows);
     for (int row = 0; row < rows - 1;) {
         // Slabs share their last row and column with the next ones. What no file stores is one.
@@ -207,6 +210,10 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
                 keep_thinned(slab, [&](int c, int r) { return *read.at(c, r); });
                 if (collar_steps) collar_steps->add(height_m, {0, 0, slab.columns, slab.rows});
                 about.statistics += statistics(height_m, {0, 0, own_columns, own_rows});
+                // Those at the seams of slabs are too few to matter.
+                if (look_for_spikes)
+                    spikes += find_spikes(height_m, grid().post_spacing_m(),
+                                          {1, 1, slab.columns - 2, slab.rows - 2});
             }
             progress.add(double(own_columns) * own_rows);
             column += slab.columns - 1;
@@ -242,8 +249,10 @@ Posts Posts::load(std::span<const std::string> paths, const LoadOptions& options
     const Grid& grid = impl->own_source->grid();
     if (std::int64_t{grid.columns()} * grid.rows() > options.max_posts) {
         impl->take(*impl->own_source, options.max_posts);
+        check_heights(impl->about, impl->spikes, options);
     } else {
         impl->own_field.emplace(dem::load(*impl->own_source, options.max_posts));
+        check_heights(*impl->own_field, options);
         impl->own_source.reset();
         impl->take(*impl->own_field);
     }

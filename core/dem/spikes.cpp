@@ -9,6 +9,13 @@
 
 namespace relevo::dem {
 
+Spikes& Spikes::operator+=(const Spikes& other) {
+    count += other.count;
+    limit_m = other.limit_m;
+    worst_m = std::max(worst_m, other.worst_m);
+    return *this;
+}
+
 Spikes find_spikes(const Array2d<float>& height_m, const glm::dvec2& post_spacing_m) {
     return find_spikes(height_m, post_spacing_m, {0, 0, height_m.width(), height_m.height()});
 }

@@ -16,6 +16,9 @@ struct Spikes {
     int worst_column = 0;
     int worst_row = 0;
     double worst_m = 0;  ///< how far the worst one is from its nearest neighbour in height
+
+    /// Those of another window of the same DEM besides; where the worst is, is this one's.
+    Spikes& operator+=(const Spikes& other);
 };
 
 /// Looks for single posts that are higher than all of their eight neighbours, or lower, by more

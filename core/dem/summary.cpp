@@ -7,9 +7,12 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "base/log.h"
 #include "base/units.h"
+#include "dem/interpret.h"
 #include "dem/load.h"
 #include "dem/survey.h"
+#include "dem/unearthly.h"
 #include "geo/format.h"
 
 namespace relevo::dem {
@@ -116,6 +119,12 @@ Summary summarize(const Source& source, std::int64_t max_posts) {
     const Survey found = survey(source, max_posts);
     about.statistics = found.statistics;
     report_heights(source, about, found.collar);
+    if (const std::string what =
+            unearthly(about, spikes_matter(about, source.grid()) ? found.spikes : Spikes{});
+        !what.empty()) {
+        guess(about, what);
+        log::info(fmt::format("{}: {}", about.path, what));
+    }
     Summary s = summary_of(about, source.grid(), found.spikes);
     if (found.spikes.count > 0) {
         const int column = found.spikes.worst_column, row = found.spikes.worst_row;

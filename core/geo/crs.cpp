@@ -160,6 +160,27 @@ std::string readable_name(PJ_CONTEXT* context, const PJ* crs) {
     return fmt::format("{} on {}", method, readable_name(context, base.get()));
 }
 
+/// What body a CRS is of, by the size of its ellipsoid; empty for the Earth.
+std::string other_body(PJ_CONTEXT* context, const PJ* crs) {
+    struct Body {
+        const char* name;
+        double radius_m;
+    };
+    constexpr std::array kBodies = {Body{"the Moon", 1'737'400}, Body{"Mars", 3'396'190},
+                                    Body{"Mercury", 2'439'700}, Body{"Venus", 6'051'800}};
+    constexpr double kEarth_m = 6'378'137;
+    const auto like = [](double a, double b) { return std::abs(a / b - 1) < 0.01; };
+    const Pj ellipsoid(proj_get_ellipsoid(context, crs));
+    double radius_m = 0;
+    if (!ellipsoid || !proj_ellipsoid_get_parameters(context, ellipsoid.get(), &radius_m, nullptr,
+                                                     nullptr, nullptr))
+        return {};
+    if (like(radius_m, kEarth_m)) return {};
+    for (const Body& body : kBodies)
+        if (like(radius_m, body.radius_m)) return body.name;
+    return fmt::format("a body of {:.0f} km radius", radius_m / 1000);
+}
+
 /// Whether PROJ takes the text for an operation unless told that it defines a CRS.
 bool wants_type_crs(std::string_view text) {
     if (text.find("pipeline") != std::string_view::npos ||
@@ -326,6 +347,9 @@ Crs Crs::parse(std::string_view given, std::string_view who) {
     }
 
     const Pj base = unbound(c, horizontal.get());
+    if (const std::string body = other_body(c, base.get()); !body.empty())
+        bad_input(fmt::format("{}: {}: a coordinate system of {}; Relevo draws only the Earth", who,
+                              subject, body));
     const std::optional<Axis> axis = axis_of(c, base.get(), 0);
     if (!axis) unusable("its axes cannot be read");
     impl->axis = *axis;

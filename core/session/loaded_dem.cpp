@@ -67,6 +67,7 @@ std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> sou
                                           const scene::Scene& scene) {
     const auto began = Clock::now();
     dem::Heightfield field = dem::load(*source, scene.dem.max_posts);
+    dem::check_heights(field, scene.dem);
     check_heights(field.about);
     return loaded_dem(std::move(source), std::move(field), scene, began, /*stands_in=*/false);
 }

@@ -278,7 +278,7 @@ TEST(Dialect, EsriAsciiWithAndWithoutPrj) {
     raster.crs = "";
     EXPECT_EQ(test::error_of([&] { loaded("without.asc", raster); }),
               "exit 3: " + (folder() / "without.asc").string() +
-                  ": no coordinate reference system; pass --crs EPSG:n");
+                  ": does not say its coordinate system; add --crs, for example EPSG:3031");
     raster.geotransform = {{11, 0.001, 0, 47, 0, -0.001}};
     const Heightfield degrees_of = loaded("degrees.asc", raster);
     EXPECT_EQ(degrees_of.grid.crs().code(), "EPSG:4326");

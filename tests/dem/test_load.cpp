@@ -317,17 +317,6 @@ TEST(Load, LargerThanTheMemoryAllowedIsReduced) {
             "reduced from 100 x 60 to 50 x 30 posts, means of 2 x 2, to stay within --memory"));
 }
 
-TEST(Load, HeightsThatTheEarthHasNotAreMentioned) {
-    Raster raster;
-    raster.value = [](int column, int, int) { return column == 0 ? -32000.0 : 50; };
-    const Heightfield f = loaded("outliers.tif", raster);
-    EXPECT_EQ(f.about.statistics.outliers, 4);
-    EXPECT_THAT(f.about.assumptions,
-                Contains(testing::StartsWith(
-                    "4 heights are below -11500 m or above 9000 m, impossible on Earth; --nodata V "
-                    "marks them as voids, --unit sets the unit")));
-}
-
 TEST(Load, OtherFormats) {
     const struct {
         const char* driver;
@@ -356,37 +345,6 @@ TEST(Load, OtherFormats) {
 TEST(Load, InputsOfACommandLineAreNotNone) {
     EXPECT_EQ(test::error_of([&] { load(std::span<const std::string>{}); }),
               "exit 3: no DEM given; name one or more files");
-}
-
-TEST(Load, HeightsThatTheEarthHasNotMayBeInAnotherUnit) {
-    const auto advice = [](const char* name, double lowest, double highest,
-                           const LoadOptions& options = {}) {
-        Raster raster;
-        raster.columns = raster.rows = 20;
-        raster.type = "Float32";
-        raster.value = [=](int column, int row, int) {
-            return lowest + (highest - lowest) * (row * 20 + column) / 399;
-        };
-        const std::string said = loaded(name, raster, options).about.guesses.front();
-        return said.substr(said.rfind("--unit"));
-    };
-    EXPECT_EQ(advice("feet.tif", 200, 28000),
-              "--unit sets the unit, perhaps ft (61 to 8534 m) or dm (20 to 2800 m) or cm (2 to "
-              "280 m) or mm (0 to 28 m)");
-    EXPECT_EQ(advice("cm.tif", 41'000, 480'900),
-              "--unit sets the unit, perhaps cm (410 to 4809 m) or mm (41 to 481 m)");
-    EXPECT_EQ(advice("mm.tif", -100'000, 4'809'000),
-              "--unit sets the unit, perhaps mm (-100 to 4809 m)");
-    EXPECT_EQ(advice("none.tif", -2e6, 9.5e6), "--unit sets the unit");
-    // In centimetres taken for feet.
-    EXPECT_EQ(advice("cm_as_ft.tif", 41'000, 480'900, {.unit = "ft"}),
-              "--unit sets the unit, perhaps cm (410 to 4809 m) or mm (41 to 481 m)");
-    // A single post is no unit.
-    Raster spike;
-    spike.columns = spike.rows = 20;
-    spike.value = [](int column, int row, int) { return column + row == 0 ? 9500.0 : 500; };
-    EXPECT_THAT(loaded("one_spike.tif", spike).about.guesses.front(),
-                testing::EndsWith("--unit sets the unit"));
 }
 
 TEST(Load, TheAdviceOnAFrameIsInStoredNumbers) {

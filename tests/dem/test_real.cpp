@@ -136,6 +136,7 @@ const Listed kListed[] = {
      2465, 0},
     {"monterey_bay_topobathy.tif", "GTiff", "Float32", 540, 540, "EPSG:4326", 36.68, -121.87, 0.005,
      -2805.5F, 1515.9F, 0, 0.05F},
+    {"sample.bag", "BAG", "Float32", 100, 100, "", 50.118, -66.364, 0.001, 0, 99.99F, 0, 0.005F},
     {"hawaii_rotated20.tif", "GTiff", "Float32", 420, 380, "EPSG:32605", 19.81, -155.45, 0.005, 709,
      4197, 7188, 0.5F},
 };
@@ -223,7 +224,8 @@ TEST(RealDem, WithoutACrsOneMustBeGiven) {
     SKIP_WITHOUT_TEST_DATA(data);
     const std::string path = (data / "dem" / "avaGar.asc").string();
     EXPECT_EQ(test::error_of([&] { load(path); }),
-              "exit 3: " + path + ": no coordinate reference system; pass --crs EPSG:n");
+              "exit 3: " + path +
+                  ": does not say its coordinate system; add --crs, for example EPSG:3031");
     const Heightfield f = load(path, {.crs = "EPSG:31287"});
     EXPECT_NEAR(f.grid.post_spacing_m().x, 4.9977, 0.002);  // 0.03 % of scale
 }

@@ -249,9 +249,13 @@ TEST(Crs, UnusableTextsAreErrors) {
          "exit 3: --crs: EPSG:4978: a geocentric coordinate reference system, which cannot place a "
          "raster; give a geographic or projected one of the Earth with --crs EPSG:n"},
         {"IAU_2015:30100",
-         "exit 3: --crs: IAU_2015:30100: no way from it to WGS 84, Source and target ellipsoid do "
-         "not belong to the same celestial body; give a geographic or projected one of the Earth "
-         "with --crs EPSG:n"},
+         "exit 3: --crs: IAU_2015:30100: a coordinate system of the Moon; Relevo draws only the "
+         "Earth"},
+        {"+proj=longlat +a=3396190 +b=3376200",
+         "exit 3: --crs: unknown: a coordinate system of Mars; Relevo draws only the Earth"},
+        {"+proj=eqc +R=1000000",
+         "exit 3: --crs: +proj=eqc +R=1000000: a coordinate system of a body of 1000 km radius; "
+         "Relevo draws only the Earth"},
         {"PROJCS[\"broken\",GEOGCS[",
          "exit 3: --crs: PROJCS[\"broken\",GEOGCS[: not a coordinate reference system that PROJ "
          "knows, missing ]; write EPSG:n, WKT or a PROJ string"},
