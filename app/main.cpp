@@ -5,21 +5,16 @@
 #include <exception>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <new>
 #include <optional>
-#include <span>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <pthread.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -29,108 +24,14 @@
 #include "base/log.h"
 #include "base/output_file.h"
 #include "base/text.h"
-#include "cli/commands.h"
+#include "cli/command_line.h"
 
 namespace {
 
-/// "relevo sun position": the command that a message is about.
-std::string command_of(const CLI::App* app) {
-    const CLI::App* verb = app;
-    std::string command = app->get_name();
-    for (auto used = verb->get_subcommands(); !used.empty(); used = verb->get_subcommands()) {
-        verb = used.front();
-        command += " " + verb->get_name();
-    }
-    return command;
-}
-
-/// CLI11 would only say that a command is missing.
-/// @param words  of the command line, from the one on that should be a verb of `app`
-void check_verb(const CLI::App& app, std::span<const std::string> words) {
-    const std::string word = words.empty() ? "" : words.front();
-    const std::vector<const CLI::App*> verbs = app.get_subcommands({});
-    if (word.starts_with('-') || verbs.empty()) return;
-    std::vector<std::string> names;
-    for (const CLI::App* verb : verbs) {
-        if (verb->get_name() == word) return check_verb(*verb, words.subspan(1));
-        names.push_back(verb->get_name());
-    }
-    if (word.empty()) {
-        if (app.get_require_subcommand_min() == 0) return;
-        relevo::bad_usage(fmt::format("{}: no command given; there are {}; each has --help",
-                                      app.get_name(), fmt::join(names, ", ")));
-    }
-    const std::optional<std::string> near = relevo::nearest(word, names);
-    relevo::bad_usage(fmt::format("{}: no such command; {}", word,
-                                  near ? fmt::format("did you mean {}?", *near)
-                                       : fmt::format("there are {}", fmt::join(names, ", "))));
-}
-
-/// `relevo DEM...` and `relevo` alone open the window: where no verb is named but what may be a
-/// file is, or nothing at all, the verb is put in.
-std::vector<std::string> with_verb(const CLI::App& app, std::vector<std::string> words) {
-    const auto first = std::find_if(words.begin(), words.end(), [](const std::string& word) {
-        return word != "-q" && word != "--quiet" && word != "-v" && word != "--verbose";
-    });
-    const auto names_a_file = [&](const std::string& word) {
-        const std::vector<const CLI::App*> verbs = app.get_subcommands({});
-        const bool is_verb = std::any_of(verbs.begin(), verbs.end(), [&](const CLI::App* verb) {
-            return verb->get_name() == word;
-        });
-        std::error_code ignored;
-        return !word.starts_with('-') && !is_verb &&
-               (word.find_first_of("./:") != std::string::npos ||
-                std::filesystem::exists(word, ignored));
-    };
-    if (first == words.end() || names_a_file(*first)) words.insert(first, "view");
-    return words;
-}
-
-/// --help-all with the verbs of verbs, which CLI11 only names.
-class HelpOfAll : public CLI::Formatter {
-  public:
-    std::string make_expanded(const CLI::App* verb) const override {
-        std::string text = CLI::Formatter::make_expanded(verb);
-        for (const CLI::App* inner : verb->get_subcommands({}))
-            text += "\n" + verb->get_name() + " " + make_expanded(inner);
-        return text;
-    }
-};
-
 int run(int argc, char** argv) {
     CLI::App app{"Relevo: shows any DEM in the sunlight of a date", "relevo"};
-    app.require_subcommand(1);
-    app.formatter(std::make_shared<HelpOfAll>());
-    app.set_version_flag("--version", "relevo " RELEVO_VERSION);
-    app.set_help_all_flag("--help-all", "Help for all commands");
-    app.add_flag_callback(
-        "-q,--quiet", [] { relevo::log::set_level(relevo::log::Level::Warning); },
-        "Warnings and errors only");
-    app.add_flag_callback(
-        "-v,--verbose", [] { relevo::log::set_level(relevo::log::Level::Debug); },
-        "More messages on standard error");
-    app.fallthrough();
-    relevo::cli::add_view(app);
-    relevo::cli::add_capture(app);
-    relevo::cli::add_run(app);
-    relevo::cli::add_compare(app);
-    relevo::cli::add_info(app);
-    relevo::cli::add_sun(app);
-    relevo::cli::add_plugins(app);
-    relevo::cli::add_doctor(app);
-    std::vector<std::string> words = with_verb(app, {argv + std::min(argc, 1), argv + argc});
-    check_verb(app, words);
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
-    try {
-        app.parse(std::move(words));
-    } catch (const CLI::ParseError& error) {
-        // Help and version are "errors" of CLI11 with status 0; the others are usage errors.
-        if (error.get_exit_code() != 0)
-            relevo::bad_usage(fmt::format("{}; see {} --help", error.what(), command_of(&app)));
-        std::ostringstream text;
-        app.exit(error, text, text);
-        fmt::print("{}", text.str());
-    }
+    relevo::cli::add_verbs(app);
+    relevo::cli::parse(app, {argv + std::min(argc, 1), argv + argc});
     return 0;
 }
 

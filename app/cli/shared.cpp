@@ -86,8 +86,7 @@ void TimeArguments::add_to(CLI::App& verb) {
                     "--date: sunset-30min, sunrise@46.55,8.56");
     verb.add_option("--date", date, "Day of the event in --time: 2026-06-21");
     verb.add_option("--tz", zone,
-                    "Time zone: Europe/Zurich, +05:30, solar, or auto, that of the place (auto)")
-        ->check(zone_name());
+                    "Time zone: Europe/Zurich, +05:30, solar, or auto, that of the place (auto)");
 }
 
 bool TimeArguments::given() const {
@@ -199,18 +198,6 @@ CLI::Validator any_number() {
             ""};
 }
 
-CLI::Validator zone_name() {
-    return {[](const std::string& text) {
-                return trimmed(text).empty()
-                           ? fmt::format(
-                                 "expected a zone such as Europe/Zurich, +05:30, auto or "
-                                 "solar but got \"{}\"",
-                                 text)
-                           : std::string();
-            },
-            ""};
-}
-
 CLI::Validator whole_number() {
     return {[](const std::string& text) {
                 int value = 0;
@@ -241,7 +228,8 @@ glm::ivec2 parse_size(const std::string& text) {
             *height <= scene::kMaxSide_px)
             return {static_cast<int>(*width), static_cast<int>(*height)};
     }
-    bad_usage(fmt::format("--size: expected WIDTHxHEIGHT, each 1 to 16384, but got \"{}\"", text));
+    bad_usage(fmt::format(
+        "--size: expected WIDTHxHEIGHT such as 1920x1080, each 1 to 16384, but got \"{}\"", text));
 }
 
 }  // namespace relevo::cli

@@ -75,9 +75,6 @@ CLI::Validator in_range(double min, double max);
 /// Any number that is one: no infinity, nothing but digits and an exponent.
 CLI::Validator any_number();
 
-/// A name of a time zone, whatever it is: not a blank, which would silently be the place's zone.
-CLI::Validator zone_name();
-
 /// A whole number that an int holds; else "expected a whole number but got 1.5".
 CLI::Validator whole_number();
 

@@ -176,6 +176,12 @@ std::string describe(const Json& value) {
 }
 
 Json parse_json(std::string_view who, std::string_view file, std::string_view text) {
+    // A file of another kind, a DEM for example, has no syntax to be wrong in.
+    std::string_view begin = text.substr(0, 512);
+    if (begin.starts_with("\xef\xbb\xbf")) begin.remove_prefix(3);
+    begin = trimmed(begin);
+    if (!begin.empty() && std::string_view("{[\"-0123456789tfn").find(begin[0]) == begin.npos)
+        bad_input(fmt::format("{}: {}: not JSON, expected a file that begins with {{", who, file));
     if (text.size() > kMaxJsonBytes)
         bad_input(fmt::format("{}: {}: expected at most {} KiB but got {}", who, file,
                               kMaxJsonBytes >> 10, (text.size() + 1023) >> 10));

@@ -61,7 +61,8 @@ Setting parse_setting(std::string_view text) {
     const std::size_t dot = text.find('.');
     if (equals == std::string_view::npos || dot == std::string_view::npos || dot == 0 ||
         dot > equals)
-        bad_usage(fmt::format("--set: expected PLUGIN.PARAMETER=VALUE but got \"{}\"", text));
+        bad_usage(fmt::format(
+            "--set: expected PLUGIN.PARAMETER=VALUE without blanks but got \"{}\"", text));
     return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1)), 0};
 }
 

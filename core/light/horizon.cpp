@@ -184,11 +184,20 @@ std::string nearest_height_text(const dem::Posts& posts, const glm::dvec2& post)
 /// @throws Error (BadInput) `horizon: LAT,LON: what`
 std::pair<glm::dvec2, double> ground_at(const dem::Posts& posts, const geo::Geodetic& place) {
     const dem::Grid& grid = posts.grid();
+    const auto is_inside = [&](const glm::dvec2& post) {
+        return post.x >= 0 && post.y >= 0 && post.x <= grid.columns() - 1 &&
+               post.y <= grid.rows() - 1;
+    };
     glm::dvec2 post = grid.post(place);
     post = {snapped(post.x), snapped(post.y)};
-    if (!(post.x >= 0 && post.y >= 0 && post.x <= grid.columns() - 1 && post.y <= grid.rows() - 1))
-        bad_input(fmt::format("horizon: {}: outside of the DEM, expected a point within {}",
-                              place_text(place), cover_text(grid)));
+    if (!is_inside(post)) {
+        const geo::Geodetic swapped{place.lon_rad, place.lat_rad, 0};
+        const bool is_swapped =
+            std::abs(swapped.lat_rad) <= kPi / 2 && is_inside(grid.post(swapped));
+        bad_input(fmt::format("horizon: {}: outside of the DEM, expected a point within {}{}",
+                              place_text(place), cover_text(grid),
+                              is_swapped ? "; latitude comes first" : ""));
+    }
     const double height_m = posts.height_at(post.x, post.y);
     if (std::isnan(height_m))
         bad_input(fmt::format("horizon: {}: the point is {}{}", place_text(place),

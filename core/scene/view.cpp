@@ -24,11 +24,19 @@ glm::dvec3 position_of(const Standpoint& standpoint, std::string_view option,
     geo::Geodetic place = standpoint.place;
     if (standpoint.above_ground) {
         const double ground_m = ground_height_m(place);
-        if (std::isnan(ground_m))
+        if (std::isnan(ground_m)) {
+            const geo::Geodetic swapped{place.lon_rad, place.lat_rad, 0};
+            if (std::abs(swapped.lat_rad) <= kPi / 2 && !std::isnan(ground_height_m(swapped)))
+                bad_input(
+                    fmt::format("{}: {}: outside the DEM; latitude comes first, perhaps "
+                                "{:.10g},{:.10g}",
+                                option, geo::degrees_text(place), degrees(swapped.lat_rad),
+                                degrees(swapped.lon_rad)));
             bad_input(fmt::format(
                 "{}: {}: outside the DEM or in a void, so there is no ground height; give one "
                 "above the DEM's zero, as in {:.10g},{:.10g},500",
                 option, geo::degrees_text(place), degrees(place.lat_rad), degrees(place.lon_rad)));
+        }
         place.height_m += ground_m * exaggeration;
     } else {
         place.height_m *= exaggeration;
@@ -127,6 +135,16 @@ bool read_side(std::string_view word, View& view) {
     return false;
 }
 
+/// "; did you mean north?" of a word that is nearly a side's; else empty.
+std::string meant_side(std::string_view word) {
+    std::vector<std::string> words{"top"};
+    for (const Side& side : kSides)
+        words.emplace_back(side.word);
+    const std::optional<std::string> near = nearest(word, words);
+    if (near == word) return "; a side comes first, as in north,el=40";
+    return near ? fmt::format("; did you mean {}?", *near) : "";
+}
+
 }  // namespace
 
 View parse_view(std::string_view text) {
@@ -143,8 +161,8 @@ View parse_view(std::string_view text) {
         if (!value || (key != "az" && key != "el" && key != "zoom"))
             bad_usage(
                 fmt::format("--view: {}: expected top, north, north-east, ... north-west, or "
-                            "az=DEG,el=DEG,zoom=FACTOR, but got \"{}\"",
-                            text, piece));
+                            "az=DEG,el=DEG,zoom=FACTOR, but got \"{}\"{}",
+                            text, piece, meant_side(piece)));
         if (key == "az") orbit.azimuth_deg = within_a_turn_deg(*value);
         if (key == "el") orbit.elevation_deg = *value;
         if (key == "zoom") orbit.zoom = *value;

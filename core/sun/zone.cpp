@@ -42,6 +42,12 @@ std::optional<std::string> suggestion(std::string_view name) {
     return std::nullopt;
 }
 
+/// "PST", "AEST": capitals alone. The nearest name in spelling would be a wrong one.
+bool is_abbreviation(std::string_view text) {
+    return text.size() <= 5 &&
+           std::all_of(text.begin(), text.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+}
+
 /// The rule for times after the last change listed in a zone's file, a POSIX TZ text: its last
 /// line (RFC 8536, 3.3).
 std::string rule_after_the_last_change(const std::string& name) {
@@ -107,6 +113,12 @@ Zone Zone::named(std::string_view text) {
     }
 
     if (auto zone = find(trimmed_text)) return *std::move(zone);
+    if (trimmed_text.starts_with("UTC") || trimmed_text.starts_with("GMT"))
+        reader.fail("no such time zone; write the offset alone, such as +02:00");
+    if (is_abbreviation(trimmed_text))
+        reader.fail(
+            "an abbreviation, which several time zones share; write a name such as Europe/Zurich "
+            "or an offset such as +02:00");
     const auto meant = suggestion(trimmed_text);
     reader.fail(meant ? fmt::format("no such time zone; did you mean {}?", *meant)
                       : "no such time zone, expected a name of the IANA database such as "

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -47,9 +48,10 @@ TEST(BadDem, EachHasItsMessage) {
         std::string path, message;
     };
     for (const Case& c :
-         {Case{"/nowhere/alps.tif", "no such file"},
+         {Case{"/nowhere/alps.tif", "no such DEM file; there is no folder /nowhere"},
           Case{(dir() / "notes.txt").string(), "not a raster in any format that GDAL reads"},
-          Case{written("no_crs.tif", no_crs), "no coordinate reference system; pass --crs EPSG:n"},
+          Case{written("no_crs.tif", no_crs),
+               "does not say its coordinate system; add --crs, for example EPSG:3031"},
           Case{written("empty.tif", empty), "no valid height: all 24 posts are voids"},
           Case{written("one_post.tif", one_post),
                "size, expected at least 2 x 2 posts but got 1 x 1"},
@@ -154,8 +156,9 @@ TEST(BadEffect, EachHasItsMessage) {
                       "parameter: terrain.norm: no such parameter; did you mean terrain.normal?");
     expect_no_picture(with({"--set", "terrain.normal=7"}), 3,
                       "parameter: terrain.normal: expected one of fragment, vertex but got \"7\"");
-    expect_no_picture(with({"--set", "terrain.normal"}), 2,
-                      "--set: expected PLUGIN.PARAMETER=VALUE but got \"terrain.normal\"");
+    expect_no_picture(
+        with({"--set", "terrain.normal"}), 2,
+        "--set: expected PLUGIN.PARAMETER=VALUE without blanks but got \"terrain.normal\"");
 }
 
 TEST(BadOutput, EachHasItsMessage) {
@@ -170,8 +173,9 @@ TEST(BadOutput, EachHasItsMessage) {
     std::string kept;
     std::ifstream(there) >> kept;
     EXPECT_EQ(kept, "precious");
-    expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--size", "0x10"}, 2,
-                      "--size: expected WIDTHxHEIGHT, each 1 to 16384, but got \"0x10\"");
+    expect_no_picture(
+        {"capture", bundled_dem(), "-o", out_png(), "--size", "0x10"}, 2,
+        "--size: expected WIDTHxHEIGHT such as 1920x1080, each 1 to 16384, but got \"0x10\"");
 }
 
 TEST(BadDevice, NoneIsExitFour) {
@@ -200,7 +204,9 @@ TEST(BadUsage, EachHasItsMessage) {
                       "sun: no command given; there are position, day, horizon, carpet, when, "
                       "shadow, hours, sky-view, horizons, along; each has --help");
     expect_no_picture({"plugins", "x"}, 2, "x: no such command; there are list, info");
-    expect_no_picture({"capture"}, 2, "DEM is required; see relevo capture --help");
+    expect_no_picture(
+        {"capture"}, 2,
+        "DEM is missing; write relevo capture DEM --output FILE; see relevo capture --help");
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--fov", "500"}, 2,
                       "--fov: expected 0.1 to 170 but got 500; see relevo capture --help");
     for (const auto& [option, value] :
@@ -222,16 +228,19 @@ TEST(BadUsage, EachHasItsMessage) {
                 (zoom[1] == 'e' ? std::string(zoom).replace(1, 1, zoom[2] == '-' ? "e" : "e+")
                                 : zoom));
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--foo"}, 2,
-                      "The following argument was not expected: --foo; see relevo capture --help");
+                      "--foo: no such option; did you mean --fov? See relevo capture --help");
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--view", "az=10,tilt=3"}, 2,
                       "--view: az=10,tilt=3: expected top, north, north-east, ... north-west, or "
                       "az=DEG,el=DEG,zoom=FACTOR, but got \"tilt=3\"");
     // A word stands first; north-up is none.
-    for (const char* view : {"el=40,north", "north-up"})
+    for (const auto& [view, word, remedy] :
+         {std::tuple{"el=40,north", "north", "; a side comes first, as in north,el=40"},
+          {"north-up", "north-up", ""},
+          {"nort", "nort", "; did you mean north?"}})
         expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--view", view}, 2,
                           fmt::format("--view: {}: expected top, north, north-east, ... "
-                                      "north-west, or az=DEG,el=DEG,zoom=FACTOR, but got \"{}\"",
-                                      view, std::string_view(view).substr(view[0] == 'e' ? 6 : 0)));
+                                      "north-west, or az=DEG,el=DEG,zoom=FACTOR, but got \"{}\"{}",
+                                      view, word, remedy));
     expect_no_picture({"capture", bundled_dem(), "-o", out_png(), "--heading", "10"}, 2,
                       "--look-at, --heading and --pitch need --eye");
     expect_no_picture(

@@ -241,8 +241,9 @@ TEST_F(Capture, OfASavedSceneIsTheSamePicture) {
                    fmt::format("--save-scene: {0}: is the scene {0}, which would be overwritten; "
                                "give the result another name",
                                file));
-    expect_failure({"capture", "-o", (dir_ / "c.png").string()}, 2,
-                   "DEM is required; see relevo capture --help");
+    expect_failure(
+        {"capture", "-o", (dir_ / "c.png").string()}, 2,
+        "DEM is missing; write relevo capture DEM --output FILE; see relevo capture --help");
 }
 
 TEST_F(Capture, TimingsNameEveryStage) {

@@ -206,7 +206,7 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
               (dir_ / "a.png").string() + ": effects: hase: no such plugin; did you mean haze?");
     EXPECT_EQ(
         error(write("job.json", "{\"format\": 1, \"dem\": {\"files\": [\"no.tif\"]}," + at + "}")),
-        fmt::format("{}: no such file", (dir_ / "no.tif").string()));
+        fmt::format("{}: no such DEM file", (dir_ / "no.tif").string()));
     EXPECT_EQ(error(job("\"sweep\": [{\"cameras\": []}]")),
               "job: " + file + ":2: sweep[0].cameras: expected values but the list is empty");
     EXPECT_EQ(error(job(at + ", \"sweep\": [{\"set\": \"haze.density\", \"from\": 0, \"to\": 1, "

@@ -17,9 +17,10 @@ TEST(Setting, IsAddressAndValue) {
     EXPECT_EQ(setting.address, "layering.label");
     EXPECT_EQ(setting.text, "a=b");
     for (const char* bad : {"haze", "haze.density", "haze=1.0", ".density=1", ""})
-        EXPECT_EQ(
-            error_of([&] { parse_setting(bad); }),
-            std::string("exit 2: --set: expected PLUGIN.PARAMETER=VALUE but got \"") + bad + "\"");
+        EXPECT_EQ(error_of([&] { parse_setting(bad); }),
+                  std::string(
+                      "exit 2: --set: expected PLUGIN.PARAMETER=VALUE without blanks but got \"") +
+                      bad + "\"");
 }
 
 TEST(Preset, IsReadWhole) {

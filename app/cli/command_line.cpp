@@ -1,0 +1,271 @@
+#include "cli/command_line.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "cli/commands.h"
+
+namespace relevo::cli {
+namespace {
+
+/// The verb that a line names: "relevo sun position" as its command.
+struct Named {
+    const CLI::App* verb;
+    std::string command;
+};
+
+Named named_verb(const CLI::App& app) {
+    Named named{&app, app.get_name()};
+    for (auto used = app.get_subcommands(); !used.empty(); used = named.verb->get_subcommands())
+        named = {used.front(), named.command + " " + used.front()->get_name()};
+    return named;
+}
+
+bool is_global_flag(const std::string& word) {
+    return word == "-q" || word == "--quiet" || word == "-v" || word == "--verbose";
+}
+
+/// CLI11 would only say that a command is missing.
+/// @param words  of the command line, from the one on that should be a verb of `app`
+/// @returns the verbs that are named, each after a blank: " sun position"
+std::string check_verb(const CLI::App& app, std::span<const std::string> words) {
+    const std::string word = words.empty() ? "" : words.front();
+    const std::vector<const CLI::App*> verbs = app.get_subcommands({});
+    if (word.starts_with('-') || verbs.empty()) return {};
+    std::vector<std::string> names;
+    for (const CLI::App* verb : verbs) {
+        if (verb->get_name() == word) return " " + word + check_verb(*verb, words.subspan(1));
+        names.push_back(verb->get_name());
+    }
+    if (word.empty()) {
+        if (app.get_require_subcommand_min() == 0) return {};
+        bad_usage(fmt::format("{}: no command given; there are {}; each has --help", app.get_name(),
+                              fmt::join(names, ", ")));
+    }
+    if (word == "help") bad_usage("help: no such command; write relevo --help");
+    const std::optional<std::string> near = nearest(word, names);
+    bad_usage(fmt::format("{}: no such command; {}", word,
+                          near ? fmt::format("did you mean {}?", *near)
+                               : fmt::format("there are {}", fmt::join(names, ", "))));
+}
+
+/// `relevo DEM...` and `relevo` alone open the window: where no verb is named but what may be a
+/// file is, or nothing at all, the verb is put in.
+std::vector<std::string> with_verb(const CLI::App& app, std::vector<std::string> words) {
+    const auto first = std::find_if_not(words.begin(), words.end(), is_global_flag);
+    const auto names_a_file = [&](const std::string& word) {
+        const std::vector<const CLI::App*> verbs = app.get_subcommands({});
+        const bool is_verb = std::any_of(verbs.begin(), verbs.end(), [&](const CLI::App* verb) {
+            return verb->get_name() == word;
+        });
+        std::error_code ignored;
+        return !word.starts_with('-') && !is_verb &&
+               (word.find_first_of("./:") != std::string::npos ||
+                std::filesystem::exists(word, ignored));
+    };
+    if (first == words.end() || names_a_file(*first)) words.insert(first, "view");
+    return words;
+}
+
+/// --help-all with the verbs of verbs, which CLI11 only names.
+class HelpOfAll : public CLI::Formatter {
+  public:
+    std::string make_expanded(const CLI::App* verb) const override {
+        std::string text = CLI::Formatter::make_expanded(verb);
+        for (const CLI::App* inner : verb->get_subcommands({}))
+            text += "\n" + verb->get_name() + " " + make_expanded(inner);
+        return text;
+    }
+};
+
+/// "--output", "-o": what options of a verb, and of those above it, are called.
+std::vector<std::string> option_names(const CLI::App* verb) {
+    std::vector<std::string> names;
+    for (; verb; verb = verb->get_parent())
+        for (const CLI::Option* option : verb->get_options()) {
+            for (const std::string& name : option->get_lnames())
+                names.push_back("--" + name);
+            for (const std::string& name : option->get_snames())
+                names.push_back("-" + name);
+        }
+    return names;
+}
+
+/// @throws Error (Usage) `what; see relevo capture --help`
+[[noreturn]] void refuse(const std::string& what, const std::string& command) {
+    bad_usage(fmt::format("{}{} {} --help", what, what.ends_with('?') ? " See" : "; see", command));
+}
+
+constexpr const char* kNoValue = "expected a value but got \"\"; is a shell variable unset?";
+
+/// What is wrong with a word that was taken as an option's value; empty if nothing is.
+std::string value_error(const CLI::App* verb, const CLI::Option* option, const std::string& value) {
+    if (trimmed(value).empty()) return kNoValue;
+    if (!option->get_snames().empty() && value.starts_with('='))
+        return fmt::format("write -{} {}, without the =", option->get_snames().front(),
+                           value.substr(1));
+    const std::vector<std::string> names = option_names(verb);
+    if (value.starts_with('-') && std::find(names.begin(), names.end(), value) != names.end())
+        return fmt::format("expected a value but got the option {}", value);
+    return {};
+}
+
+/// Has every option of a verb, and of those below it, refuse values that are none.
+void check_values(CLI::App& verb) {
+    for (CLI::Option* option : verb.get_options()) {
+        if (option->get_items_expected_max() == 0) continue;  // a flag
+        if (option->get_items_expected_min() == 0) continue;  // an empty list is one, too
+        // transform() puts it before the option's own checks; nothing is transformed.
+        option->transform(CLI::Validator(
+            [&verb, option](std::string& value) { return value_error(&verb, option, value); }, ""));
+    }
+    for (CLI::App* inner : verb.get_subcommands({}))
+        check_values(*inner);
+}
+
+/// Refuses what CLI11 would read as something else: `--unit=`, which takes the next word, and
+/// dashes that a word processor has made of hyphens, which are names of files.
+/// @param command  that the words are of
+void check_words(const std::vector<std::string>& words, const std::string& command) {
+    constexpr std::array<std::string_view, 3> kDashes = {"\u2013", "\u2014", "-\u2013"};
+    for (const std::string& word : words) {
+        if (word == "--") return;
+        for (const std::string_view dash : kDashes)
+            if (word.starts_with(dash))
+                refuse(fmt::format("{}: begins with a dash; write --{} with hyphens", word,
+                                   word.substr(dash.size())),
+                       command);
+        if (word.starts_with("--") && word.find('=') == word.size() - 1)
+            refuse(fmt::format("{}: {}", word.substr(0, word.size() - 1), kNoValue), command);
+    }
+}
+
+/// The verbs that have an option: "relevo capture", "relevo sun day".
+void add_owners(const CLI::App* verb, const std::string& command, const std::string& option,
+                std::vector<std::string>& owners) {
+    for (const CLI::Option* own : verb->get_options())
+        if (own->check_name(option)) owners.push_back(command);
+    for (const CLI::App* inner : verb->get_subcommands({}))
+        add_owners(inner, command + " " + inner->get_name(), option, owners);
+}
+
+/// What to say of words that no option took.
+std::string unknown_words(const CLI::App& app, const Named& named,
+                          const std::vector<std::string>& words) {
+    const std::string& word = words.front();
+    if (!word.starts_with('-'))
+        return fmt::format(
+            "{}: belongs to no option; write values of several parts with commas and without "
+            "blanks, or in quotes",
+            printable(word));
+    const std::string option = word.substr(0, word.find('='));
+    std::vector<std::string> owners;
+    add_owners(&app, app.get_name(), option, owners);
+    constexpr std::size_t kMostNamed = 3;
+    if (!owners.empty())
+        return fmt::format("{}: not an option of {}, but of {}{}", option, named.command,
+                           fmt::join(owners.begin(),
+                                     owners.begin() + static_cast<std::ptrdiff_t>(
+                                                          std::min(owners.size(), kMostNamed)),
+                                     ", "),
+                           owners.size() > kMostNamed ? ", ..." : "");
+    const std::optional<std::string> near = nearest(option, option_names(named.verb));
+    return fmt::format("{}: no such option{}", printable(option),
+                       near ? fmt::format("; did you mean {}?", *near) : "");
+}
+
+/// What an option's value looks like.
+std::string example_of(const std::string& option) {
+    if (option == "--output") return "FILE";
+    if (option == "--at" || option == "--over") return "46.55,8.56";
+    if (option == "--time") return "2026-06-21T12:00";
+    return option == "--year" ? "2026" : "VALUE";
+}
+
+/// "relevo capture DEM --output FILE": a verb with what it needs.
+std::string usage_of(const Named& named) {
+    std::string text = named.command;
+    for (const CLI::Option* option : named.verb->get_options()) {
+        if (!option->get_required()) continue;
+        const std::string name = option->get_name(option->get_positional());
+        text += " " + name;
+        if (!option->get_positional()) text += " " + example_of(name);
+    }
+    return text;
+}
+
+/// What CLI11 says of a line, in our words where it has none of ours.
+std::string text_of(const CLI::App& app, const Named& named, const CLI::ParseError& error) {
+    const std::string what = error.what();
+    const std::vector<std::string> extras = app.remaining(true);
+    const bool no_verb = what.starts_with("A subcommand");
+    if ((no_verb || dynamic_cast<const CLI::ExtrasError*>(&error)) && !extras.empty())
+        return unknown_words(app, named, extras);
+    if (no_verb) return "no command given";
+    if (const std::size_t end = what.rfind(" is required"); end != what.npos)
+        return fmt::format("{} is missing; write {}", what.substr(0, end), usage_of(named));
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && what.ends_with(" missing"))
+        return fmt::format("{}: expected a value after it", what.substr(0, what.find(':')));
+    return what;
+}
+
+[[noreturn]] void refuse(const CLI::App& app, const CLI::ParseError& error) {
+    const Named named = named_verb(app);
+    refuse(text_of(app, named, error), named.command);
+}
+
+}  // namespace
+
+void add_verbs(CLI::App& app) {
+    app.require_subcommand(1);
+    app.formatter(std::make_shared<HelpOfAll>());
+    app.set_version_flag("--version", "relevo " RELEVO_VERSION);
+    app.set_help_all_flag("--help-all", "Help for all commands");
+    app.add_flag_callback(
+        "-q,--quiet", [] { log::set_level(log::Level::Warning); }, "Warnings and errors only");
+    app.add_flag_callback(
+        "-v,--verbose", [] { log::set_level(log::Level::Debug); },
+        "More messages on standard error");
+    app.fallthrough();
+    add_view(app);
+    add_capture(app);
+    add_run(app);
+    add_compare(app);
+    add_info(app);
+    add_sun(app);
+    add_plugins(app);
+    add_doctor(app);
+    check_values(app);
+}
+
+void parse(CLI::App& app, std::vector<std::string> words) {
+    words = with_verb(app, std::move(words));
+    const auto first = std::find_if_not(words.begin(), words.end(), is_global_flag);
+    check_words(words, app.get_name() + check_verb(app, {first, words.end()}));
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    try {
+        app.parse(std::move(words));
+    } catch (const CLI::ParseError& error) {
+        // Help and version are "errors" of CLI11 with status 0; the others are usage errors.
+        if (error.get_exit_code() != 0) refuse(app, error);
+        std::ostringstream text;
+        app.exit(error, text, text);
+        fmt::print("{}", text.str());
+    }
+}
+
+}  // namespace relevo::cli
