@@ -247,7 +247,8 @@ void capture(const Arguments& arguments) {
     if (sidecar_file)
         sidecar_file->write(
             session::sidecar_text(session, inputs, output.filename().string(), audit));
-    if (scene_in == session::SceneIn::Sidecar) log::info(session::says_where_scene_is(output));
+    if (scene_in == session::SceneIn::Sidecar)
+        log::warning(session::says_where_scene_is(output));
     timings.write(session, arguments.repeat);
     files.finish_outputs();
     notices.release();

@@ -275,7 +275,7 @@ class Run {
         const auto first = std::find_if(shots_.begin(), shots_.end(), beside);
         if (first == shots_.end()) return;
         const auto more = std::count_if(std::next(first), shots_.end(), beside);
-        log::info(session::says_where_scene_is(first->output) +
+        log::warning(session::says_where_scene_is(first->output) +
                   (more > 0 ? fmt::format("; the same for {} more", more) : ""));
     }
 

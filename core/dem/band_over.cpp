@@ -203,8 +203,13 @@ std::string extent_text(const Grid& grid) {
             low = glm::min(low, glm::dvec2(degrees(at.lat_rad), degrees(lon_rad)));
             high = glm::max(high, glm::dvec2(degrees(at.lat_rad), degrees(lon_rad)));
         }
-    return fmt::format("latitude {:.4g} to {:.4g}, longitude {:.4g} to {:.4g}", low.x, high.x,
-                       low.y, high.y);
+    constexpr double kAllRound_deg = 350;  // about a pole
+    const auto from_west = [](double lon_deg) { return std::remainder(lon_deg, 360.0); };
+    return fmt::format(
+        "latitude {:.3f} to {:.3f}, {}", low.x, high.x,
+        high.y - low.y > kAllRound_deg
+            ? "all longitudes"
+            : fmt::format("longitude {:.3f} to {:.3f}", from_west(low.y), from_west(high.y)));
 }
 
 std::vector<std::array<std::uint8_t, 4>> colors_of(GDALRasterBandH band) {

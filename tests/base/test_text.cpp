@@ -26,6 +26,7 @@ TEST(Text, NumbersFillTheWholeText) {
 TEST(Text, NearestSuggestsOnlyCloseWords) {
     const std::vector<std::string> words{"haze", "sky", "layering"};
     EXPECT_EQ(nearest("hase", words), "haze");
+    EXPECT_EQ(nearest("haez", words), "haze");
     EXPECT_EQ(nearest("layerin", words), "layering");
     EXPECT_FALSE(nearest("vsm", words));
 }

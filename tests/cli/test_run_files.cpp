@@ -232,7 +232,7 @@ TEST_F(RunFiles, ASceneThatAJpegHasNoRoomForIsInTheFileBesideIt) {
     const Result run = relevo({"run", path.string()});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_THAT(run.err, HasSubstr(fmt::format(
-                             "relevo: {0}: the scene is too long for this format; it is in "
+                             "relevo: warning: {0}: the scene is too long for this format; it is in "
                              "{0}.json, keep both together\n",
                              (dir_ / "a.jpg").string())));
     EXPECT_FALSE(image::read_metadata(dir_ / "a.jpg").contains("relevo:scene"));

@@ -263,6 +263,32 @@ TEST(SunHours, ABrokenMorningBeginsWithItsFirstLight) {
     EXPECT_NEAR(day.last_h.at(10, 10), 11.37 + 4.15, 0.05);
 }
 
+TEST(SunHours, AFenceInTheMorningLeavesTheFirstLightFirst) {
+    // The same place and day; pales stand 600 m off, at every third degree of azimuth from 127 on,
+    // so that the sun comes and goes every 12 minutes from its rise on, at 125.6 degrees.
+    constexpr int kColumn = 20, kRow = 20, kFar_posts = 60, kPales = 8;
+    const auto is_pale = [](int column, int row) {
+        for (int pale = 0; pale < kPales; ++pale) {
+            const double azimuth = radians(127.0 + 3 * pale);
+            if (column == kColumn + std::lround(kFar_posts * std::sin(azimuth)) &&
+                row == kRow - std::lround(kFar_posts * std::cos(azimuth)))
+                return true;
+        }
+        return false;
+    };
+    const dem::Heightfield field = test::field_of(
+        101, 101, {499900, 10, 0, 5205100, 0, -10}, "EPSG:32632",
+        [&](int column, int row) { return is_pale(column, row) ? 150.0 : 0.0; });
+    const Instant begin = utc("2026-12-21T00:00Z");
+    SunHoursOptions options;
+    options.step_s = 60;
+    options.spells = true;
+    const SunHours day = sun_hours(dem::Posts(field), begin, begin + 86400.0, options);
+    EXPECT_GE(day.spells.at(kColumn, kRow), 6);
+    EXPECT_NEAR(day.first_h.at(kColumn, kRow), 11.37 - 4.15, 0.05);
+    EXPECT_NEAR(day.last_h.at(kColumn, kRow), 11.37 + 4.15, 0.05);
+}
+
 TEST(SunHours, ManyDaysAreAsLongAsTheirDays) {
     const dem::Heightfield field = test::bundled("jacksboro.tif");
     const dem::Posts posts(field);

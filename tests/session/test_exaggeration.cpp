@@ -33,7 +33,8 @@ TEST(ExaggeratedRecord, SaysTheEyesHeightAsItWasAskedFor) {
         FilesInUse files;
         Session session(scene, {.device = "software"}, files);
         session.draw();
-        const auto json = nlohmann::json::parse(sidecar_text(session, "test", "a.png", {}));
+        SceneInputs inputs("test");
+        const auto json = nlohmann::json::parse(sidecar_text(session, inputs, "a.png"));
         EXPECT_NEAR(json["camera"]["height_m"], 1500, 1e-3) << exaggeration;
         EXPECT_NEAR(json["camera"]["lat_deg"], 36.3, 1e-6);
         EXPECT_NEAR(json["camera"]["lon_deg"], -84.2, 1e-6);
