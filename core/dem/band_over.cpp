@@ -194,7 +194,7 @@ std::string extent_text(const Grid& grid) {
     glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
     const glm::dvec2 last(grid.columns() - 0.5, grid.rows() - 0.5);
     for (int i = 0; i <= kSamples; ++i)
-        for (int j = 0; j <= kSamples; j += i % kSamples == 0 ? 1 : kSamples) {
+        for (int j = 0; j <= kSamples; ++j) {
             const glm::dvec2 post =
                 glm::mix(glm::dvec2(-0.5), last, glm::dvec2(i, j) / double{kSamples});
             const geo::Geodetic at = grid.place(post.x, post.y);

@@ -163,12 +163,12 @@ TEST(BandOver, WhatItCannotReadIsRefused) {
     EXPECT_EQ(
         error_of([&] { read_band_over(grid(), far, 1); }),
         "exit 3: " + far +
-            ": the overlay does not cover this DEM; it is at latitude 46.95 to 46.95, longitude "
-            "10.31 to 10.32, the DEM at latitude 46.94 to 46.95, longitude 9 to 9.016");
+            ": the overlay does not cover this DEM; it is at latitude 46.945 to 46.946, longitude "
+            "10.314 to 10.316, the DEM at latitude 46.945 to 46.954, longitude 9.000 to 9.016");
     const Grid arctic(161, 161, {-400000, 5000, 0, 400000, 0, -5000},
                       geo::Crs::parse("EPSG:3413", "test"));
     EXPECT_THAT(error_of([&] { read_band_over(arctic, far, 1); }),
-                testing::EndsWith("the DEM at latitude 84.816 to 90.000, all longitudes"));
+                testing::EndsWith("the DEM at latitude 84.749 to 90.000, all longitudes"));
     const std::string empty = write_raster(
         folder() / "empty.tif",
         {.columns = 41, .rows = 31, .nodata = 7, .value = [](int, int, int) { return 7.0; }});
