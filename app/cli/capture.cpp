@@ -188,7 +188,12 @@ void capture(const Arguments& arguments) {
     image::check_format(output, scene.width_px, scene.height_px);
     FilesInUse files;
     if (!arguments.scene.file.empty()) files.add_input(arguments.scene.file, "the scene");
-    if (!arguments.from.empty()) files.add_input(arguments.from, "the picture");
+    if (!arguments.from.empty()) {
+        files.add_input(arguments.from, "the picture");
+        const std::filesystem::path beside = session::sidecar_of(arguments.from);
+        std::error_code ignored;
+        if (std::filesystem::exists(beside, ignored)) files.add_input(beside, "its sidecar");
+    }
     dem::add_named(scene.dems, files);  // before any output is opened
     const auto open = [&](const std::string& path, const char* who) {
         return path.empty() ? nullptr : &files.open_output(path, arguments.overwrite, who);
@@ -213,8 +218,10 @@ void capture(const Arguments& arguments) {
     image::load_format(output);
     session::SceneInputs inputs(RELEVO_VERSION);
     // Hashes files while a session opens. What is wrong with the scene the session says.
-    const auto recorded = std::async(std::launch::async | std::launch::deferred,
-                                     [&, of = scene] { inputs.record(of); });
+    scene::Scene hashed = scene::with_absolute_paths(scene);
+    hashed.effects = session::with(std::move(hashed.effects), compared);
+    const auto recorded =
+        std::async(std::launch::async | std::launch::deferred, [&] { inputs.record(hashed); });
     session::Session session(scene, options, files);
     for (const auto& [stage, took_ms] : session.stages())
         timings.add(stage, took_ms);
@@ -230,7 +237,7 @@ void capture(const Arguments& arguments) {
         return picture;
     };
     recorded.wait();
-    const image::Metadata metadata = session::metadata_of(session, inputs, scene_in, compared);
+    const image::Metadata metadata = session::metadata_of(session, inputs, scene_in);
     if (options.radiance)
         write_picture(picture_file, metadata, timings, [&] { return shown(session.radiance()); });
     else
@@ -247,8 +254,7 @@ void capture(const Arguments& arguments) {
     if (sidecar_file)
         sidecar_file->write(
             session::sidecar_text(session, inputs, output.filename().string(), audit));
-    if (scene_in == session::SceneIn::Sidecar)
-        log::warning(session::says_where_scene_is(output));
+    if (scene_in == session::SceneIn::Sidecar) log::warning(session::says_where_scene_is(output));
     timings.write(session, arguments.repeat);
     files.finish_outputs();
     notices.release();

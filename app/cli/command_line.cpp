@@ -137,18 +137,39 @@ void check_values(CLI::App& verb) {
         check_values(*inner);
 }
 
+bool is_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/// "--size" of an option whose hyphens have become dashes; nothing of other words.
+std::optional<std::string> with_hyphens(std::string_view word) {
+    constexpr std::array<std::string_view, 2> kDashes = {"\u2013", "\u2014"};
+    bool has_dash = false;
+    while (true) {
+        const auto dash = std::find_if(kDashes.begin(), kDashes.end(),
+                                       [&](std::string_view one) { return word.starts_with(one); });
+        if (dash == kDashes.end() && !word.starts_with('-')) break;
+        has_dash = has_dash || dash != kDashes.end();
+        word.remove_prefix(dash != kDashes.end() ? dash->size() : 1);
+    }
+    const std::string_view name = word.substr(0, word.find('='));
+    const bool is_name =
+        !name.empty() && is_letter(name.front()) &&
+        std::all_of(name.begin(), name.end(), [](char c) { return is_letter(c) || c == '-'; });
+    if (!has_dash || !is_name) return std::nullopt;
+    return fmt::format("{}{}", name.size() == 1 ? "-" : "--", word);
+}
+
 /// Refuses what CLI11 would read as something else: `--unit=`, which takes the next word, and
 /// dashes that a word processor has made of hyphens, which are names of files.
 /// @param command  that the words are of
 void check_words(const std::vector<std::string>& words, const std::string& command) {
-    constexpr std::array<std::string_view, 3> kDashes = {"\u2013", "\u2014", "-\u2013"};
     for (const std::string& word : words) {
         if (word == "--") return;
-        for (const std::string_view dash : kDashes)
-            if (word.starts_with(dash))
-                refuse(fmt::format("{}: begins with a dash; write --{} with hyphens", word,
-                                   word.substr(dash.size())),
-                       command);
+        if (const std::optional<std::string> meant = with_hyphens(word))
+            refuse(fmt::format("{}: begins with a dash; write {} with hyphens", word, *meant),
+                   command);
+        if (word == "--only=") refuse("--only: write --only '' for no effects", command);
         if (word.starts_with("--") && word.find('=') == word.size() - 1)
             refuse(fmt::format("{}: {}", word.substr(0, word.size() - 1), kNoValue), command);
     }
@@ -163,11 +184,17 @@ void add_owners(const CLI::App* verb, const std::string& command, const std::str
         add_owners(inner, command + " " + inner->get_name(), option, owners);
 }
 
+/// Whether a word is meant as an option: -33.9 is a number.
+bool is_option(std::string_view word) {
+    return word.starts_with('-') && (word.size() < 2 || word[1] < '0' || word[1] > '9') &&
+           !word.starts_with("-.");
+}
+
 /// What to say of words that no option took.
 std::string unknown_words(const CLI::App& app, const Named& named,
                           const std::vector<std::string>& words) {
     const std::string& word = words.front();
-    if (!word.starts_with('-'))
+    if (!is_option(word))
         return fmt::format(
             "{}: belongs to no option; write values of several parts with commas and without "
             "blanks, or in quotes",
@@ -176,6 +203,8 @@ std::string unknown_words(const CLI::App& app, const Named& named,
     std::vector<std::string> owners;
     add_owners(&app, app.get_name(), option, owners);
     constexpr std::size_t kMostNamed = 3;
+    if (std::find(owners.begin(), owners.end(), named.command) != owners.end())
+        return fmt::format("{}: write it after {}", option, named.command);
     if (!owners.empty())
         return fmt::format("{}: not an option of {}, but of {}{}", option, named.command,
                            fmt::join(owners.begin(),
@@ -216,6 +245,10 @@ std::string text_of(const CLI::App& app, const Named& named, const CLI::ParseErr
     if ((no_verb || dynamic_cast<const CLI::ExtrasError*>(&error)) && !extras.empty())
         return unknown_words(app, named, extras);
     if (no_verb) return "no command given";
+    // A required option may be misspelt.
+    if (const auto misspelt = std::find_if(extras.begin(), extras.end(), is_option);
+        misspelt != extras.end())
+        return unknown_words(app, named, {*misspelt});
     if (const std::size_t end = what.rfind(" is required"); end != what.npos)
         return fmt::format("{} is missing; write {}", what.substr(0, end), usage_of(named));
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) && what.ends_with(" missing"))

@@ -106,6 +106,8 @@ class Run {
     explicit Run(const Arguments& arguments) : arguments_(arguments) {}
 
     void run() {
+        if (!arguments_.dry_run)
+            moments_.before_reading([this](const auto& scene) { hash(scene); });
         shots_ = shots();
         for (const scene::Shot& shot : shots_)
             image::check_format(shot.output, shot.scene.width_px, shot.scene.height_px);
@@ -126,6 +128,15 @@ class Run {
     }
 
   private:
+    /// Hashes the files of a scene, so that changes after they were read are noticed.
+    void hash(const scene::Scene& scene) {
+        try {
+            inputs_.record(scene);
+        } catch (const Error&) {
+            // What settles the scene says what is wrong with it.
+        }
+    }
+
     std::vector<scene::Shot> shots() {
         scene::Job job = scene::read_job(
             arguments_.job, [&](scene::Scene& scene) { arguments_.scene.apply_to(scene); });
@@ -210,7 +221,7 @@ class Run {
         if (!remote.empty())
             log::warning(
                 fmt::format("run: {}: is not on this machine; --resume does not notice "
-                            "where it has changed",
+                            "whether it has changed",
                             printable(*remote.begin())));
         std::vector<session::OnDisk> found(shots_.size());
         parallel_for(0, static_cast<int>(shots_.size()), 1, [&](int first, int last) {
@@ -276,7 +287,7 @@ class Run {
         if (first == shots_.end()) return;
         const auto more = std::count_if(std::next(first), shots_.end(), beside);
         log::warning(session::says_where_scene_is(first->output) +
-                  (more > 0 ? fmt::format("; the same for {} more", more) : ""));
+                     (more > 0 ? fmt::format("; the same for {} more", more) : ""));
     }
 
     void draw() {
@@ -394,7 +405,7 @@ void add_run(CLI::App& app) {
                         "Template of the file names, {dem}_{time:%Y%m%dT%H%M}_{n:04}.png");
     verb.add_flag("--overwrite", arguments->overwrite, "Replace existing files");
     verb.add_flag("--resume", arguments->resume,
-                  "Skip pictures that exist, complete and of the same scene");
+                  "Skip pictures that exist, complete, of the same scene and from the same files");
     verb.add_option("--shard", arguments->shard,
                     "Make one part of the pictures: I/N, or array in an array task of a scheduler");
     verb.add_flag("--dry-run", arguments->dry_run, "List the files and estimate the time");

@@ -77,7 +77,8 @@ bool MainWindow::is_answered() const {
 std::vector<chart::Legend> MainWindow::legends() const {
     std::vector<chart::Legend> all = picture_->legends;
     if (state_.overlay && state_.overlay->error.empty())
-        all.insert(all.begin(), state_.overlay->overlay.legend);
+        all.insert(all.begin(), session::dated_legend(state_.overlay->overlay, whole().moment.zone,
+                                                      opened_->ground.frame.origin()));
     return all;
 }
 
@@ -88,7 +89,10 @@ void MainWindow::take_picture() {
     say_or_fail([&] {
         std::string note = overlay_note();
         if (!note.empty()) note = "; its scene is" + note.substr(1);
-        done(save_picture(*picture_, whole(), *opened_, legends()) + note);
+        const bool laid = state_.overlay && state_.overlay->error.empty();
+        done(save_picture(*picture_, whole(), *opened_,
+                          {legends(), laid ? state_.overlay->overlay.time : std::nullopt}) +
+             note);
     });
 }
 

@@ -114,15 +114,19 @@ std::string sun_of(const Picture& picture, const scene::Scene& scene,
 }  // namespace
 
 std::string save_picture(const Picture& picture, const scene::Scene& scene, const Opened& opened,
-                         const std::vector<chart::Legend>& legends) {
+                         const Coloured& coloured) {
     image::Image8 image = image::from_device(picture.width_px, picture.height_px, picture.rgba);
     const geo::LocalFrame& frame = opened.ground.frame;
     session::Stamped stamped{scene, *opened.dem, frame, picture.camera};
     if (session::needs_depths(scene.stamps)) stamped.depths_m = picture.depths_m;
+    const std::optional<session::OverlayTime>& laid = coloured.overlay_time;
     if (scene.stamps.date)
-        stamped.clock = session::clock_text(picture.utc, scene.moment.zone, frame.origin());
-    if (scene.stamps.sun) stamped.sun = sun_of(picture, scene, opened.ground);
-    const std::vector<std::string> notes = session::add_stamps(std::move(stamped), legends, image);
+        stamped.clock = laid ? session::clock_text(*laid, scene.moment.zone, frame.origin())
+                             : session::clock_text(picture.utc, scene.moment.zone, frame.origin());
+    if (scene.stamps.sun)
+        stamped.sun = laid ? session::sun_text(*laid) : sun_of(picture, scene, opened.ground);
+    const std::vector<std::string> notes =
+        session::add_stamps(std::move(stamped), coloured.legends, image);
     const image::Metadata metadata{{"Software", "Relevo"},
                                    {"Description", capture_command(scene, "picture.png")},
                                    {session::kSceneKeyword, scene::scene_line(scene)}};

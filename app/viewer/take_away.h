@@ -1,11 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "base/output_file.h"
 #include "chart/legend.h"
 #include "scene/scene.h"
+#include "session/overlay_time.h"
 #include "viewer/document.h"
 #include "viewer/scene_thread.h"
 #include "viewer/sun_model.h"
@@ -29,11 +32,19 @@ std::string save_scene(const scene::Scene& scene);
 /// Likewise a job of the scene at every hour of a day, from sunrise to sunset where the sun rises
 /// and sets on it.
 std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone);
-/// Likewise a picture, with the scene's stamps and the command that takes it.
-/// @param scene    of the picture, with an eye
-/// @param opened   its DEM
-/// @param legends  of what its colours mean
+
+/// What colours of a picture mean, and the time of the sun that they show where it is not the
+/// scene's.
+struct Coloured {
+    std::vector<chart::Legend> legends;
+    std::optional<session::OverlayTime> overlay_time;
+};
+
+/// Saves a picture with the scene's stamps and the command that takes it.
+/// @param scene   of the picture, with an eye
+/// @param opened  its DEM
+/// @returns as save_job()
 std::string save_picture(const Picture& picture, const scene::Scene& scene, const Opened& opened,
-                         const std::vector<chart::Legend>& legends);
+                         const Coloured& coloured);
 
 }  // namespace relevo::viewer

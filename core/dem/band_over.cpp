@@ -65,6 +65,7 @@ class Places {
           raster_(raster),
           step_(glm::dvec2(dem.columns() - 1, dem.rows() - 1) /
                 glm::dvec2(glm::max(values - 1, glm::ivec2(1)))),
+          same_crs_(dem.crs().text() == raster.crs().text()),
           linear_(is_linear()) {
         if (linear_) return;
         net_ = Array2d<glm::dvec2>((values.x - 1) / kNet + 2, (values.y - 1) / kNet + 2);
@@ -94,13 +95,20 @@ class Places {
 
     glm::dvec2 exact(const glm::dvec2& value) const {
         const glm::dvec2 post = value * step_;
+        if (same_crs_) {
+            // Coordinates beyond 180 degrees east are counted on in one of them alone.
+            const glm::dvec2 at = linear(post);
+            if (at.x >= -0.5 && at.y >= -0.5 && at.x <= raster_.columns() - 0.5 &&
+                at.y <= raster_.rows() - 0.5)
+                return at;
+        }
         return raster_.post(dem_.place(post.x, post.y));
     }
 
     /// Whether both have one CRS and count its longitudes alike: 190 degrees may be -170 there.
     bool is_linear() const {
         constexpr int kSamples = 32;
-        if (dem_.crs().text() != raster_.crs().text()) return false;
+        if (!same_crs_) return false;
         const glm::dvec2 last(dem_.columns() - 1, dem_.rows() - 1);
         for (int j = 0; j <= kSamples; ++j)
             for (int i = 0; i <= kSamples; ++i) {
@@ -142,6 +150,7 @@ class Places {
     const Grid& dem_;
     const Grid& raster_;
     glm::dvec2 step_;  ///< posts of the DEM from value to value
+    bool same_crs_;
     bool linear_;
     Array2d<glm::dvec2> net_;
     Array2d<std::uint8_t> uneven_;

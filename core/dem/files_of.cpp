@@ -6,6 +6,7 @@
 #include <gdal.h>
 
 #include "base/error.h"
+#include "dem/folder.h"
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
 
@@ -70,7 +71,8 @@ class Collector {
 std::vector<std::filesystem::path> files_of(std::span<const std::string> paths) {
     Collector collector;
     for (const std::string& path : paths)
-        collector.add(path, 0);
+        for (const std::string& raster : rasters_of_quietly(path))
+            collector.add(raster, 0);
     return collector.take();
 }
 

@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 #include <gdal.h>
 
+#include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
 #include "dem/gdal_support.h"
@@ -193,7 +194,9 @@ void drop_parts(std::vector<RasterFile>& rasters) {
     keep_cells(rasters);
 }
 
-std::vector<std::string> rasters_of(const std::string& path) {
+namespace {
+
+std::vector<std::string> rasters_of(const std::string& path, bool aloud) {
     std::error_code error;
     if (!fs::is_directory(path, error)) return {path};
     prepare_gdal();
@@ -213,8 +216,22 @@ std::vector<std::string> rasters_of(const std::string& path) {
         found.names.insert(without_ending(one));
         paths.push_back(one.path.string());
     }
-    tell_of_others(path, found);
+    if (aloud) tell_of_others(path, found);
     return paths;
+}
+
+}  // namespace
+
+std::vector<std::string> rasters_of(const std::string& path) {
+    return rasters_of(path, /*aloud=*/true);
+}
+
+std::vector<std::string> rasters_of_quietly(const std::string& path) {
+    try {
+        return rasters_of(path, /*aloud=*/false);
+    } catch (const Error&) {
+        return {};
+    }
 }
 
 }  // namespace relevo::dem

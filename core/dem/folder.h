@@ -17,6 +17,9 @@ namespace relevo::dem {
 /// @throws Error (BadInput) where a folder has no raster in it or cannot be read
 std::vector<std::string> rasters_of(const std::string& path);
 
+/// The same without a word; empty where rasters_of() throws.
+std::vector<std::string> rasters_of_quietly(const std::string& path);
+
 /// A file that GDAL takes for a raster.
 struct RasterFile {
     std::filesystem::path path;

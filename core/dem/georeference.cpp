@@ -122,9 +122,9 @@ geo::Crs crs_of(const std::string& path, GDALDatasetH dataset, const std::option
     } else if (affine) {
         if (!like_degrees(*affine, GDALGetRasterXSize(dataset), GDALGetRasterYSize(dataset)))
             refuse(path,
-                   fmt::format(
-                       "does not say its coordinate system{}; add --crs, for example EPSG:3031",
-                       in_file.reason.empty() ? "" : fmt::format(" ({})", in_file.reason)));
+                   fmt::format("does not say its coordinate system{}; add --crs, for example "
+                               "EPSG:32632 (UTM 32 N)",
+                               in_file.reason.empty() ? "" : fmt::format(" ({})", in_file.reason)));
         guess(about,
               "the CRS is WGS 84: the file names none, and its coordinates look like degrees; "
               "--crs sets another");

@@ -186,7 +186,7 @@ std::string remedy_of(int error) {
 }  // namespace
 
 void refuse_unreadable(const std::string& path) {
-    if (path.empty()) refuse("\"\"", "no such DEM file");
+    if (path.empty()) refuse("\"\"", "no such file");
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     const bool may_be_gdals = path.starts_with("/vsi") || path.find(':') != std::string::npos;

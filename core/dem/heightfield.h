@@ -59,9 +59,10 @@ struct Description {
 
     Unit unit;  ///< of the heights in the file, after scale and offset
     UnitSource unit_source = UnitSource::Assumed;
-    double scale = 1;              ///< height = (stored * scale + offset) in `unit`
-    double offset = 0;             ///< in `unit`
-    std::optional<double> nodata;  ///< the stored value that marks a hole, declared or given
+    bool has_several_units = false;  ///< of files that are joined; `unit` is that of the finest
+    double scale = 1;                ///< height = (stored * scale + offset) in `unit`
+    double offset = 0;               ///< in `unit`
+    std::optional<double> nodata;    ///< the stored value that marks a hole, declared or given
 
     /// What marks holes besides NaN: "nodata" (declared), "option", "found" (undeclared),
     /// "encoding", "mask", "alpha".

@@ -50,21 +50,36 @@ void report_heights(const Source& source, Description& about, const std::optiona
                         collar->height_m, collar->step_m, stored_text(about, source.stored(0, 0))));
 }
 
+namespace {
+
+/// Whether the user has said what the heights are.
+bool is_as_given(const LoadOptions& options) {
+    return !options.unit.empty() || options.nodata || options.no_nodata;
+}
+
+/// Those that may speak of a wrong unit.
+Spikes spikes_of_unit(const Heightfield& field) {
+    return spikes_matter(field.about, field.grid)
+               ? find_spikes(field.height_m, field.grid.post_spacing_m())
+               : Spikes{};
+}
+
+}  // namespace
+
 void check_heights(Description& about, const Spikes& spikes, const LoadOptions& options) {
     const std::string what = unearthly(about, spikes);
     if (what.empty()) return;
-    const bool as_given = !options.unit.empty() || options.nodata || options.no_nodata;
-    if (!as_given) bad_input(fmt::format("{}: {}", about.path, what));
+    if (!is_as_given(options)) bad_input(fmt::format("{}: {}", about.path, what));
     guess(about, what);
     log::info(fmt::format("{}: {}", about.path, what));
 }
 
 void check_heights(Heightfield& field, const LoadOptions& options) {
-    check_heights(field.about,
-                  options.unit.empty() && spikes_matter(field.about, field.grid)
-                      ? find_spikes(field.height_m, field.grid.post_spacing_m())
-                      : Spikes{},
-                  options);
+    check_heights(field.about, spikes_of_unit(field), options);
+}
+
+bool is_refused(const Heightfield& field, const LoadOptions& options) {
+    return !is_as_given(options) && !unearthly(field.about, spikes_of_unit(field)).empty();
 }
 
 Heightfield load(const std::string& path, const LoadOptions& options) {
@@ -121,9 +136,7 @@ std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_
         source.cells_for_means(reduction) > 4 * static_cast<double>(most_posts))
         return std::nullopt;
     Heightfield field = read_reduced(source, reduction);
-    // What check_heights() may refuse is not shown before.
-    if (field.about.statistics.valid == 0 || !unearthly(field.about, {}).empty())
-        return std::nullopt;
+    if (field.about.statistics.valid == 0) return std::nullopt;
     return field;
 }
 

@@ -31,7 +31,7 @@ Heightfield load(std::span<const std::string> paths, const LoadOptions& options 
 Heightfield load(const Source& source, std::int64_t max_posts);
 
 /// Means of at most so many posts where overviews give them without the posts being read: what can
-/// be shown until load() is through. Says nothing of what looks wrong.
+/// be shown until load() is through. Says nothing of what looks wrong, see is_refused().
 /// @param most_posts  that are kept; files are read for up to four times as many cells
 /// @returns none where more would have to be read, all posts are that few, or no mean has a height
 /// @throws Error (BadInput) as Source::read()
@@ -44,12 +44,15 @@ std::optional<Heightfield> load_quickly(const Source& source, std::int64_t most_
 /// @throws Error (BadInput) where not one post has a height
 void report_heights(const Source& source, Description& about, const std::optional<Collar>& collar);
 
-/// For whoever makes pictures or figures of heights: those that no ground of the Earth has are
-/// refused, unless the user has said by --unit or --nodata what they are; then they are mentioned.
+/// Refuses heights that no ground of the Earth has, before pictures or figures are made of them.
+/// Where the user has said by --unit or --nodata what the heights are, they are only reported.
 /// @param about   with its statistics
 /// @param spikes  of all posts or nearly so; none where they do not matter
 /// @throws Error (BadInput) with the units that fit
 void check_heights(Description& about, const Spikes& spikes, const LoadOptions& options);
 void check_heights(Heightfield& field, const LoadOptions& options);
+
+/// Whether check_heights() would refuse the field.
+bool is_refused(const Heightfield& field, const LoadOptions& options);
 
 }  // namespace relevo::dem

@@ -226,7 +226,9 @@ Grid grid_around(std::vector<Piece>& pieces, const Grid& grid, double& covered) 
 void describe_differences(const std::vector<Piece>& pieces, Description& about) {
     const std::string units =
         differing(pieces, [](const Piece& piece) { return piece.about.unit.name; });
-    if (!units.empty()) guess(about, fmt::format("heights are in {}: each file in its own", units));
+    about.has_several_units = !units.empty();
+    if (about.has_several_units)
+        guess(about, fmt::format("heights are in {}: each file in its own", units));
     const std::string datums = differing(pieces, [](const Piece& piece) {
         return piece.about.vertical_datum.empty() ? "no stated datum" : piece.about.vertical_datum;
     });

@@ -28,12 +28,19 @@ std::optional<std::string> near_name(const fs::path& folder, const std::string& 
     return nearest(name, names);
 }
 
+/// "NETCDF:/data/a.nc:z", which names a part of a file to one of GDAL's drivers.
+bool is_gdal_name(std::string_view path) {
+    const std::size_t colon = path.find(':');
+    return colon != path.npos && path.find('/') > colon;
+}
+
 }  // namespace
 
 std::string no_file_text(const std::string& path) {
     const fs::path file(path);
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    const std::string text = "no such DEM file";
+    const std::string text = "no such file";
+    if (path.starts_with("/vsi") || is_gdal_name(path)) return text;
     if (!file.has_parent_path() && path.find('=') != std::string::npos)
         return text + "; an option's value is one word, as in --view az=210,el=30";
     std::error_code error;
@@ -57,9 +64,10 @@ std::string no_raster_text(const std::string& path) {
     const bool is_json = trimmed(head).starts_with('{');
     const bool is_ours = is_json && has("\"format\"") && (has("\"dem\"") || has("\"scene\""));
     if (is_ours && (has("\"shots\"") || has("\"sweep\"") || has("\"combine\"")))
-        return "a job of Relevo, not a DEM; draw it with relevo run";
-    if (is_ours) return "a scene of Relevo, not a DEM; draw it with relevo capture --scene";
-    if ((is_json && has("\"coordinates\"")) || has("<gpx") || has("<kml"))
+        return "a job of Relevo, not a raster; draw it with relevo run";
+    if (is_ours) return "a scene of Relevo, not a raster; draw it with relevo capture --scene";
+    if (has("<kml")) return "places or a track (KML), not heights; make GPX or GeoJSON of it";
+    if ((is_json && has("\"coordinates\"")) || has("<gpx"))
         return "places or a track, not heights; name the DEM first, and this file as relevo sun "
                "along or --points take it";
     if (head.starts_with("LASF"))

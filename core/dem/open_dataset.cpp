@@ -157,8 +157,10 @@ Dataset open_dataset(std::string& path) {
                                  "a name on the command line; make a file of it with "
                                  "gdal_translate",
                                  driver));
-    if (reason.find("does not exist") != std::string::npos ||
-        reason.find("No such file") != std::string::npos)
+    VSIStatBufL status{};
+    const bool is_there = VSIStatL(path.c_str(), &status) == 0;
+    if (!is_there && (reason.find("does not exist") != std::string::npos ||
+                      reason.find("No such file") != std::string::npos))
         refuse(path, no_file_text(path));
     if (reason.empty() || reason.find("not recognized as") != std::string::npos)
         refuse(path, no_raster_text(path));

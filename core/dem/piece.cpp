@@ -122,6 +122,10 @@ void settle_nodata(GDALRasterBandH band, const LoadOptions& options, int sampled
         about.nodata.reset();
         band_scale.beyond = std::numeric_limits<double>::infinity();
     } else if (options.nodata) {
+        if (declared && about.nodata != options.nodata)
+            about.warnings.push_back(
+                fmt::format("--nodata {} replaces the declared {}: posts of {} are heights now",
+                            *options.nodata, about.nodata_text(), about.nodata_text()));
         about.nodata = options.nodata;
         about.assumptions.push_back(fmt::format("{} marks voids, as given", *options.nodata));
         piece.knows_holes = piece.knows_holes && declared;

@@ -112,6 +112,14 @@ bool is_turned(const Summary& s) {
     return std::abs(std::sin(2 * s.row_azimuth_rad)) > 2 * kTurned;
 }
 
+/// Says of heights that every command but this one refuses them.
+void report_unearthly(Description& about, const Grid& grid, const Spikes& spikes) {
+    const std::string what = unearthly(about, spikes_matter(about, grid) ? spikes : Spikes{});
+    if (what.empty()) return;
+    guess(about, what);
+    log::info(fmt::format("{}: {}", about.path, what));
+}
+
 }  // namespace
 
 Summary summarize(const Source& source, std::int64_t max_posts) {
@@ -119,12 +127,7 @@ Summary summarize(const Source& source, std::int64_t max_posts) {
     const Survey found = survey(source, max_posts);
     about.statistics = found.statistics;
     report_heights(source, about, found.collar);
-    if (const std::string what =
-            unearthly(about, spikes_matter(about, source.grid()) ? found.spikes : Spikes{});
-        !what.empty()) {
-        guess(about, what);
-        log::info(fmt::format("{}: {}", about.path, what));
-    }
+    report_unearthly(about, source.grid(), found.spikes);
     Summary s = summary_of(about, source.grid(), found.spikes);
     if (found.spikes.count > 0) {
         const int column = found.spikes.worst_column, row = found.spikes.worst_row;
@@ -136,7 +139,9 @@ Summary summarize(const Source& source, std::int64_t max_posts) {
 
 Summary summarize(const Heightfield& field) {
     const Spikes spikes = find_spikes(field.height_m, field.grid.post_spacing_m());
-    Summary s = summary_of(field.about, field.grid, spikes);
+    Description about = field.about;
+    report_unearthly(about, field.grid, spikes);
+    Summary s = summary_of(about, field.grid, spikes);
     if (spikes.count > 0) s.worst_spike = field.place(spikes.worst_column, spikes.worst_row);
     return s;
 }

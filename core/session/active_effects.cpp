@@ -66,14 +66,18 @@ std::vector<std::string> ActiveEffects::switch_off_unasked(std::string_view word
         return std::find(ids.begin(), ids.end(), id) != ids.end();
     };
     std::vector<std::string> off;
-    for (const effect::Effect* effect : loaded.selection.effects) {
-        const std::string& id = effect->id();
-        if (effect->provides(word) && !has(switches.enable, id) &&
-            !(switches.only && has(*switches.only, id)))
-            off.push_back(id);
+    bool any = false;
+    // All of them: where one is off, another one may take its place.
+    for (const effect::Effect& effect : registry.effects()) {
+        const std::string& id = effect.id();
+        if (!effect.provides(word) || has(switches.enable, id) || has(switches.disable, id) ||
+            (switches.only && has(*switches.only, id)))
+            continue;
+        if (loaded.selection.has(id)) off.push_back(id);
+        switches.disable.push_back(id);
+        any = true;
     }
-    if (off.empty()) return off;
-    switches.disable.insert(switches.disable.end(), off.begin(), off.end());
+    if (!any) return off;
     loaded =
         effect::select_and_load(registry, presets, switches, values, {}, std::move(loaded), ground);
     return off;

@@ -134,6 +134,7 @@ class Batch {
         if (options_.sidecar || scene_is == SceneIn::Sidecar)
             outputs->sidecar.emplace(
                 files_.open_alone(sidecar_to_write(shot.output), overwrite, "--sidecar"));
+        inputs_.record(shot.scene);  // before files are read, so that later changes are noticed
         session_->show(shot.scene, shot.utc);
         session_->draw();
         if (!options_.allow_blank && !session_->shows_ground()) return blank(shot);
@@ -197,7 +198,6 @@ class Batch {
         session_.reset();
         moments_.keep_only(shot.scene);
         options.dem = moments_.loaded(shot.scene);
-        inputs_.record(shot.scene);  // before they are read, so that later changes are noticed
         session_ = std::make_unique<Session>(of_any_view(shot.scene), options, files_);
         dem_ = std::move(key);
         opened_ = true;
@@ -226,7 +226,7 @@ void settle(std::vector<scene::Shot>& shots, Moments& moments, SceneInputs& inpu
         shot.scene.moment.time = sun::exact_iso(shot.utc);
         shot.scene.moment.date.clear();
         shot.scene.view = moments.settled_view(shot.scene);
-        shot.scene = scene::with_absolute_paths(std::move(shot.scene));
+        shot.scene = moments.with_absolute_paths(std::move(shot.scene));
     }
 }
 

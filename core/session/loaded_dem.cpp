@@ -80,7 +80,7 @@ std::shared_ptr<const LoadedDem> load_stand_in(std::shared_ptr<const dem::Source
     // Of more posts than memory holds, means are read anyway.
     if (posts <= kManyPosts || posts > scene.dem.max_posts) return nullptr;
     std::optional<dem::Heightfield> field = dem::load_quickly(*source, kStandInPosts);
-    if (!field) return nullptr;
+    if (!field || dem::is_refused(*field, scene.dem)) return nullptr;
     return loaded_dem(std::move(source), std::move(*field), scene, began, /*stands_in=*/true);
 }
 

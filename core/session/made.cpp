@@ -24,18 +24,17 @@ bool is_there(const fs::path& path) {
 }
 
 /// Keys of SceneInputs::record(), and what a difference means.
-constexpr std::array kChanges{std::pair("dem", "its DEM has changed"),
-                              std::pair("overlay", "its overlay has changed"),
-                              std::pair("colours", "its colour file has changed"),
-                              std::pair("presets", "its preset has changed"),
+constexpr std::array kChanges{std::pair("dem", "the DEM has changed"),
+                              std::pair("overlay", "the overlay has changed"),
+                              std::pair("colours", "the colour file has changed"),
+                              std::pair("presets", "the preset has changed"),
                               std::pair("plugins", "a plugin has changed"),
                               std::pair("files", "a file that it was made from has changed")};
 
 /// Why one record is not another; empty where it is.
 std::string difference(const std::string& before, const std::string& now) {
     if (before == now) return {};
-    const auto a = ordered_json::parse(before, nullptr, false);
-    const auto b = ordered_json::parse(now, nullptr, false);
+    const ordered_json a = parse_record(before), b = parse_record(now);
     if (!a.is_object()) return "it does not say what it was made from";
     if (a.value("relevo", ordered_json()) != b.value("relevo", ordered_json()))
         return fmt::format("Relevo {} made it, and this is {}",
@@ -72,14 +71,14 @@ std::string fault_of_picture(const scene::Shot& shot, const std::string& record)
 std::string fault_of_sidecar(const scene::Shot& shot, const Wanted& wanted) {
     std::error_code ignored;
     const fs::path path = sidecar_of(shot.output);
-    if (!fs::is_regular_file(path, ignored)) return "its sidecar is no file";
+    if (!fs::is_regular_file(path, ignored)) return "its sidecar is not a file";
     std::string content;
     try {
         content = read_text(path, "--sidecar");
     } catch (const Error&) {
         return "its sidecar cannot be read";
     }
-    const auto json = ordered_json::parse(content, nullptr, /*allow_exceptions=*/false);
+    const ordered_json json = parse_record(content);
     if (!json.is_object() || !json.contains("scene")) return "its sidecar is not a whole one";
     const auto text = [](const ordered_json& value) {
         return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
@@ -89,7 +88,7 @@ std::string fault_of_sidecar(const scene::Shot& shot, const Wanted& wanted) {
     if (std::string why =
             difference(json.contains("inputs") ? text(json["inputs"]) : "", wanted.record);
         !why.empty())
-        return "of its sidecar, " + why;
+        return "its sidecar: " + why;
     if (wanted.audited && !json.contains("audit")) return "its sidecar has no audit";
     return {};
 }

@@ -22,7 +22,7 @@ std::string dem_key(const scene::Scene& scene) {
     only.dem = scene.dem;
     only.holes = scene.holes;
     only.overlay = scene.overlay;
-    return scene::scene_line(only);
+    return scene::whole_scene_line(only);
 }
 
 /// What frames a view whose angles are left open.
@@ -48,8 +48,34 @@ struct Moments::Dem {
 Moments::Moments() = default;
 Moments::~Moments() = default;
 
+void Moments::before_reading(std::function<void(const scene::Scene&)> call) {
+    before_reading_ = std::move(call);
+}
+
+scene::Scene Moments::with_absolute_paths(scene::Scene scene) {
+    std::vector<std::string> given = std::exchange(scene.dems, {});
+    scene = scene::with_absolute_paths(std::move(scene));
+    const auto [known, fresh] = absolute_.try_emplace(std::move(given));
+    if (fresh) {
+        scene::Scene only;
+        only.dems = known->first;
+        known->second = scene::with_absolute_paths(std::move(only)).dems;
+    }
+    scene.dems = known->second;
+    return scene;
+}
+
+std::string Moments::key_of(const scene::Scene& scene) {
+    scene::Scene only;
+    only.dems = scene.dems;
+    only.dem = scene.dem;
+    only.holes = scene.holes;
+    only.overlay = scene.overlay;
+    return dem_key(with_absolute_paths(std::move(only)));
+}
+
 Moments::Dem& Moments::dem_of(const scene::Scene& scene) {
-    std::unique_ptr<Dem>& dem = dems_[dem_key(scene)];
+    std::unique_ptr<Dem>& dem = dems_[key_of(scene)];
     if (!dem) {
         auto opened = std::make_unique<Dem>();
         opened->source =
@@ -67,6 +93,7 @@ std::shared_ptr<const LoadedDem> Moments::loaded(const scene::Scene& scene) {
         other->posts.reset();
         other->loaded.reset();
     }
+    if (before_reading_) before_reading_(with_absolute_paths(scene));
     dem.loaded = load_dem(dem.source, scene);
     if (!scene.view.eye) shown_of(scene);
     return dem.loaded;
@@ -112,7 +139,7 @@ sun::Instant Moments::usual_moment(const scene::Scene& scene) {
 }
 
 void Moments::keep_only(const scene::Scene& scene) {
-    std::erase_if(dems_, [key = dem_key(scene)](const auto& dem) { return dem.first != key; });
+    std::erase_if(dems_, [key = key_of(scene)](const auto& dem) { return dem.first != key; });
 }
 
 /// The zone in the DEM's middle by a name that needs no map.

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "scene/job.h"
 #include "session/session.h"
@@ -10,6 +12,7 @@
 namespace relevo::session {
 
 /// Which DEM a scene shows and how it is read; equal texts are one DEM.
+/// @param scene  with absolute paths
 std::string dem_key(const scene::Scene& scene);
 
 /// Finds the moments of many scenes, by the DEMs that they show: each is opened once. What is
@@ -20,6 +23,13 @@ class Moments {
     ~Moments();
     Moments(const Moments&) = delete;
     Moments& operator=(const Moments&) = delete;
+
+    /// Is called before the heights of a scene's DEM are read, with absolute paths.
+    void before_reading(std::function<void(const scene::Scene&)> call);
+
+    /// As scene::with_absolute_paths(), which asks the file system once for each list of DEMs: jobs
+    /// have many pictures of the same ones.
+    scene::Scene with_absolute_paths(scene::Scene scene);
 
     /// A scene's moment; without words the hour that shows relief. @throws Error as words.h's
     /// parse()
@@ -39,10 +49,13 @@ class Moments {
     struct Dem;
     struct Shown;
     Dem& dem_of(const scene::Scene& scene);
+    std::string key_of(const scene::Scene& scene);
     Shown& shown_of(const scene::Scene& scene);
     sun::Instant usual_moment(const scene::Scene& scene);
     std::string zone_of_middle(const std::string& words, Dem& dem);
 
+    std::function<void(const scene::Scene&)> before_reading_;
+    std::map<std::vector<std::string>, std::vector<std::string>> absolute_;  // names of DEMs
     std::map<std::string, std::unique_ptr<Dem>> dems_;
     std::string told_;
 };

@@ -47,7 +47,7 @@ bool is_mask(const dem::BandOver& band) {
 }
 
 chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band, bool mask) {
-    if (mask && asked.colours.empty()) return chart::named_ramp("shade", 0, 1);
+    if (mask && asked.colours.empty() && !asked.range) return chart::named_ramp("shade", 0, 1);
     if (asked.colours.empty() && !asked.range)
         return band.colors.empty() ? usual_ramp(band.values, band.name, band.unit)
                                    : ramp_of(band.colors);
@@ -118,7 +118,17 @@ Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {
     }
     Overlay overlay = overlay_of(band.values, std::move(legend), asked.opacity);
     overlay.time = time;
+    overlay.has_given_title = !asked.title.empty();
     return overlay;
+}
+
+chart::Legend dated_legend(const Overlay& overlay, const std::string& zone,
+                           const geo::Geodetic& middle) {
+    chart::Legend legend = overlay.legend;
+    if (!overlay.time || overlay.has_given_title) return legend;
+    if (const std::string when = clock_text(*overlay.time, zone, middle); !when.empty())
+        legend.title += ", " + when;
+    return legend;
 }
 
 void add_files(const scene::Overlay& overlay, FilesInUse& files) {

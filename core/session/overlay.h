@@ -19,7 +19,13 @@ struct Overlay {
     std::shared_ptr<const render::Drape> drape;
     chart::Legend legend;
     std::optional<OverlayTime> time{};  ///< where it is of the sun
+    bool has_given_title = false;
 };
+
+/// The legend, with the time of an overlay of the sun in its title unless the title was given.
+/// @param zone, middle  as clock_text()
+chart::Legend dated_legend(const Overlay& overlay, const std::string& zone,
+                           const geo::Geodetic& middle);
 
 /// @param values  over the DEM's grid, as dem::BandOver has them
 Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double opacity);

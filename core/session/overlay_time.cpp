@@ -19,7 +19,9 @@ std::string value(const std::map<std::string, std::string>& about, const char* k
 /// None for what no program of ours wrote.
 std::optional<sun::ParsedTime> time_of(const std::string& text) {
     try {
-        if (!text.empty()) return sun::parse_time(text);
+        // "now" would be another time with every picture.
+        if (!text.empty() && text.front() >= '0' && text.front() <= '9')
+            return sun::parse_time(text);
     } catch (const Error&) {
     }
     return std::nullopt;
@@ -40,10 +42,10 @@ std::optional<OverlayTime> overlay_time(const std::map<std::string, std::string>
                apparent = parse_number(value(about, "SUN_APPARENT_ELEVATION_DEG"));
     if (azimuth && apparent)
         time.sun = {*azimuth, *apparent, parse_number(value(about, "SUN_ELEVATION_DEG"))};
-    const std::string from = value(about, "TIME_FROM"), to = value(about, "TIME_TO");
-    if (time_of(from) && time_of(to)) {
-        time.from = from;
-        time.to = to;
+    const auto from = time_of(value(about, "TIME_FROM")), to = time_of(value(about, "TIME_TO"));
+    if (from && to) {
+        time.from = sun::to_iso(from->utc, from->zone);
+        time.to = sun::to_iso(to->utc, to->zone);
     }
     if (!time.sun && time.from.empty()) return std::nullopt;
     return time;

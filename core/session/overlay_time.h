@@ -7,7 +7,7 @@
 #include "geo/geodetic.h"
 #include "sun/zone.h"
 
-/// When a raster that lies on the ground is of.
+/// The time whose sun a raster on the ground shows.
 namespace relevo::session {
 
 /// The sun whose light a raster of `relevo sun` shows, as its metadata say: at one time or place in

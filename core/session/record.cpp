@@ -64,6 +64,12 @@ ordered_json dem_json(const Session& session, const std::vector<HashedFile>& fil
     return json;
 }
 
+/// With the effects that a comparison shows.
+scene::Scene drawn(scene::Scene scene, const Session& session) {
+    scene.effects = with(std::move(scene.effects), session.compared());
+    return scene;
+}
+
 }  // namespace
 
 scene::Scene settled_scene(const Session& session) {
@@ -102,21 +108,28 @@ std::string says_where_scene_is(const std::filesystem::path& picture) {
                        printable(picture.string()), printable(sidecar_of(picture).string()));
 }
 
-image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn where,
-                            const std::vector<std::string>& compared) {
+image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn where) {
     const scene::Scene scene = settled_scene(session);
     const std::string line = scene::whole_scene_line(scene);
     image::Metadata metadata{
         {"Software", "Relevo " + inputs.version()},
         {"Description", fmt::format("{}; {}; sun at {}", session.place_text(),
                                     sun::to_iso(session.moment()), session.sun_text())},
-        {kInputsKeyword, inputs.record(scene)}};
+        {kInputsKeyword, inputs.record(drawn(scene, session))}};
     if (where == SceneIn::Picture)
         metadata[kSceneKeyword] = line;
     else
         metadata[kSceneDigestKeyword] = sha256_of_text(line);
-    if (!compared.empty()) metadata[kComparedKeyword] = fmt::format("{}", fmt::join(compared, ","));
+    if (!session.compared().empty())
+        metadata[kComparedKeyword] = fmt::format("{}", fmt::join(session.compared(), ","));
     return metadata;
+}
+
+ordered_json parse_record(const std::string& text) {
+    constexpr int kDeepest = 32;
+    return ordered_json::parse(
+        text, [](int depth, auto, const auto&) { return depth <= kDeepest; },
+        /*allow_exceptions=*/false);
 }
 
 image::Metadata read_record(const std::filesystem::path& picture) {
@@ -130,8 +143,8 @@ image::Metadata read_record(const std::filesystem::path& picture) {
     };
     std::error_code ignored;
     if (!std::filesystem::exists(sidecar, ignored)) refuse("is missing");
-    const auto json = ordered_json::parse(read_text(sidecar, "sidecar"), nullptr, false);
-    if (!json.is_object() || !json.contains("scene")) refuse("is no sidecar");
+    const auto json = parse_record(read_text(sidecar, "sidecar"));
+    if (!json.is_object() || !json.contains("scene")) refuse("is not a sidecar");
     const std::string line =
         json["scene"].dump(-1, ' ', false, ordered_json::error_handler_t::replace);
     if (sha256_of_text(line) != digest->second) refuse("has another scene");
@@ -161,7 +174,7 @@ std::string sidecar_text(const Session& session, SceneInputs& inputs, const std:
                         {"proj", dem::proj_version()},
                         {"time_zones", sun::zone_database_version()}};
     if (audit) json["audit"] = ordered_json::parse(audit->json_text());
-    json["inputs"] = ordered_json::parse(inputs.record(scene));
+    json["inputs"] = ordered_json::parse(inputs.record(drawn(scene, session)));
     json["scene"] = ordered_json::parse(scene::whole_scene_line(scene));
     return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "image/image.h"
 #include "session/audit.h"
 #include "session/scene_inputs.h"
@@ -43,12 +45,15 @@ SceneIn scene_in(const std::filesystem::path& picture, const scene::Scene& scene
 
 /// What is written into every picture: `Software`, `Description`, what it was made from, and the
 /// scene or its digest.
-/// @param compared  Options::compared
-image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn where,
-                            const std::vector<std::string>& compared = {});
+image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn where);
 
 /// One line about a scene that does not fit, for people.
 std::string says_where_scene_is(const std::filesystem::path& picture);
+
+/// JSON of a record, which anybody may have written: what is nested deeper than records are is left
+/// out, since to write it again would take a stack of that depth.
+/// @returns a discarded value for what is no JSON
+nlohmann::ordered_json parse_record(const std::string& text);
 
 /// The metadata of a picture with its scene, also where that is in the sidecar.
 /// @throws Error (BadInput) as image::read_metadata(), and where the picture's scene is in a

@@ -1,6 +1,8 @@
 #include "session/scene_inputs.h"
 
+#include <algorithm>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +12,7 @@
 #include "base/error.h"
 #include "base/sha256.h"
 #include "dem/files_of.h"
+#include "dem/remote.h"
 #include "effect/native_module.h"
 #include "effect/selection.h"
 
@@ -27,6 +30,20 @@ std::string installed_key(const scene::Effects& effects) {
                        fmt::join(effects.plugin_path, "\n"));
 }
 
+/// All files below a folder, which a module may read when it runs.
+std::vector<fs::path> files_in(const fs::path& folder) {
+    constexpr std::size_t kMost = 1000;  // of a plugin; more is a mistake
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (fs::recursive_directory_iterator entry(folder, error), end;
+         !error && entry != end && files.size() < kMost; entry.increment(error)) {
+        std::error_code ignored;
+        if (entry->is_regular_file(ignored)) files.push_back(entry->path());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
 std::vector<fs::path> files_of(const effect::Effect& effect) {
     const effect::Manifest& manifest = effect.manifest;
     std::vector<fs::path> files{manifest.file};
@@ -39,7 +56,27 @@ std::vector<fs::path> files_of(const effect::Effect& effect) {
     } catch (const Error&) {
         // What loads it says so.
     }
+    const std::vector<fs::path> own = files_in(manifest.folder);
+    files.insert(files.end(), own.begin(), own.end());
     return files;
+}
+
+/// Size and time of a file, in place of its content.
+std::string stamp_of(const fs::path& file) {
+    std::error_code size_error, time_error;
+    const auto bytes = fs::file_size(file, size_error);
+    const auto written = fs::last_write_time(file, time_error).time_since_epoch();
+    return size_error || time_error ? "unreadable" : fmt::format("{} {}", bytes, written.count());
+}
+
+std::uintmax_t bytes_of(const std::vector<fs::path>& files) {
+    std::uintmax_t sum = 0;
+    for (const fs::path& file : files) {
+        std::error_code error;
+        const auto bytes = fs::file_size(file, error);
+        if (!error) sum += bytes;
+    }
+    return sum;
 }
 
 }  // namespace
@@ -47,7 +84,11 @@ std::vector<fs::path> files_of(const effect::Effect& effect) {
 std::string effects_key(const scene::Effects& effects) {
     scene::Scene only;
     only.effects = effects;
-    return scene::scene_line(only);
+    std::string key = scene::scene_line(only);
+    // Names of files in settings are seen from there.
+    for (const effect::Setting& setting : effects.settings)
+        key += "\n" + setting.folder;
+    return key;
 }
 
 struct SceneInputs::OfEffects {
@@ -93,7 +134,12 @@ const scene::Effects& SceneInputs::settled(const scene::Effects& effects) {
 
 const std::vector<fs::path>& SceneInputs::raster_files(const std::vector<std::string>& names) {
     const auto [known, fresh] = rasters_.try_emplace(names);
-    if (fresh) known->second = dem::files_of(names);
+    // Nothing is asked of the net or of a pipe twice.
+    std::vector<std::string> local = names;
+    std::erase_if(local, [](const std::string& name) {
+        return dem::is_remote(name) || name.starts_with("/vsistdin");
+    });
+    if (fresh && !local.empty()) known->second = dem::files_of(local);
     return known->second;
 }
 
@@ -136,6 +182,16 @@ const std::string& SceneInputs::sha256(const fs::path& path) {
     return known->second;
 }
 
+std::string SceneInputs::digest_of_rasters(const std::vector<std::string>& names) {
+    constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;  // hashed in about a second
+    const std::vector<fs::path>& files = raster_files(names);
+    if (bytes_of(files) <= kMostBytes) return digest(files);
+    std::string stamps;
+    for (const fs::path& file : files)
+        stamps += stamp_of(file) + "\n";
+    return sha256_of_text(stamps).substr(0, kDigits);
+}
+
 std::string SceneInputs::digest(const std::vector<fs::path>& files) {
     std::string sums;
     for (const fs::path& file : files)
@@ -150,9 +206,9 @@ std::string SceneInputs::record(const scene::Scene& scene) {
 }
 
 std::string SceneInputs::record_of(const scene::Scene& scene) {
-    nlohmann::ordered_json json{{"relevo", version_}, {"dem", digest(raster_files(scene.dems))}};
+    nlohmann::ordered_json json{{"relevo", version_}, {"dem", digest_of_rasters(scene.dems)}};
     if (scene.overlay) {
-        json["overlay"] = digest(raster_files({scene.overlay->file}));
+        json["overlay"] = digest_of_rasters({scene.overlay->file});
         if (scene::is_colour_file(scene.overlay->colours))
             json["colours"] = digest({scene.overlay->colours});
     }
@@ -182,7 +238,7 @@ std::vector<std::string> SceneInputs::remote_names(const scene::Scene& scene) {
     std::vector<std::string> names = scene.dems, remote;
     if (scene.overlay) names.push_back(scene.overlay->file);
     for (const std::string& name : names)
-        if (name.starts_with("/vsi") && raster_files({name}).empty()) remote.push_back(name);
+        if (raster_files({name}).empty()) remote.push_back(name);
     return remote;
 }
 

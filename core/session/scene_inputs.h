@@ -43,14 +43,16 @@ class SceneInputs {
     /// What the scene's picture is made from, as one line of JSON: the program's version, and a
     /// digest of the content of the files of each kind ("dem", "overlay", "colours", "presets",
     /// "plugins", "files"). Names and times of files are not in it, so that copies are the same and
-    /// clocks do not matter. Remote files are not read for it.
+    /// clocks do not matter; but the files of a raster of more than 1 GiB are known by their sizes
+    /// and times. Remote files are not read for it.
     /// @throws Error as settled()
     std::string record(const scene::Scene& scene);
 
     /// The files of the scene's DEM. @throws Error (BadInput) where one cannot be read
     std::vector<HashedFile> hashed_dem(const scene::Scene& scene);
 
-    /// Names of the scene's DEM and overlay that are on another machine: changes go unnoticed.
+    /// Names of the scene's DEM and overlay that are no files of this machine: changes go
+    /// unnoticed.
     std::vector<std::string> remote_names(const scene::Scene& scene);
 
   private:
@@ -59,6 +61,7 @@ class SceneInputs {
     const std::vector<std::filesystem::path>& raster_files(const std::vector<std::string>& names);
     const std::string& sha256(const std::filesystem::path& path);
     std::string digest(const std::vector<std::filesystem::path>& files);
+    std::string digest_of_rasters(const std::vector<std::string>& names);
     /// What a scene's files are known by: lists that are kept, and the name of the colours.
     struct Key {
         const void* dems = nullptr;

@@ -89,7 +89,7 @@ struct Session::Impl {
     std::optional<render::Terrain> terrain;
 
     std::shared_ptr<const render::Drape> drape;
-    std::optional<chart::Legend> legend;  // of the overlay
+    std::optional<Overlay> overlay;  // the scene's
     std::optional<OverlayTime> overlay_time;
     std::vector<std::string> stamp_notes;
 
@@ -344,14 +344,8 @@ struct Session::Impl {
                 .sky = std::exchange(sky_ahead, {})},
             loaded->source.get());
         if (scene.overlay) {
-            Overlay overlay = read_overlay(*scene.overlay, terrain->grid());
-            drape = overlay.drape;
-            legend = std::move(overlay.legend);
-            if (overlay_time)
-                if (const std::string when = session::clock_text(*overlay_time, scene.moment.zone,
-                                                                 ground->frame.origin());
-                    !when.empty() && scene.overlay->title.empty())
-                    legend->title += ", " + when;
+            overlay = read_overlay(*scene.overlay, terrain->grid());
+            drape = overlay->drape;
             terrain->drape(drape);
         }
         stages.emplace_back("upload", milliseconds_since(began));
@@ -610,8 +604,14 @@ std::vector<chart::Legend> Session::colour_legends() const {
 
 std::vector<chart::Legend> Session::legends() const {
     std::vector<chart::Legend> all = colour_legends();
-    if (impl_->legend) all.insert(all.begin(), *impl_->legend);
+    if (impl_->overlay)
+        all.insert(all.begin(), dated_legend(*impl_->overlay, impl_->scene.moment.zone,
+                                             impl_->ground->frame.origin()));
     return all;
+}
+
+const std::vector<std::string>& Session::compared() const {
+    return impl_->options.compared;
 }
 
 const std::optional<OverlayTime>& Session::overlay_time() const {

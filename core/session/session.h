@@ -132,6 +132,8 @@ class Session {
     void drape(std::shared_ptr<const render::Drape> drape);
     /// What colours on the ground mean: of the scene's overlay, and of effects that say it.
     std::vector<chart::Legend> legends() const;
+    /// Options::compared.
+    const std::vector<std::string>& compared() const;
     /// When the scene's overlay is of; none where it is not of the sun. Stamps say it instead of
     /// the scene's own time, and cast shadows, which are another sun's, are off unless asked for.
     const std::optional<OverlayTime>& overlay_time() const;

@@ -42,6 +42,12 @@ std::optional<std::string> suggestion(std::string_view name) {
     return std::nullopt;
 }
 
+/// Whether a zone's name, or its city, is the text but for capitals: "Europe/Oslo" is OSLO.
+bool is_named_in(std::string_view zone, std::string_view text) {
+    return equal_ignoring_case(zone, text) ||
+           equal_ignoring_case(zone.substr(zone.rfind('/') + 1), text);
+}
+
 /// "PST", "AEST": capitals alone. The nearest name in spelling would be a wrong one.
 bool is_abbreviation(std::string_view text) {
     return text.size() <= 5 &&
@@ -115,11 +121,11 @@ Zone Zone::named(std::string_view text) {
     if (auto zone = find(trimmed_text)) return *std::move(zone);
     if (trimmed_text.starts_with("UTC") || trimmed_text.starts_with("GMT"))
         reader.fail("no such time zone; write the offset alone, such as +02:00");
-    if (is_abbreviation(trimmed_text))
+    const auto meant = suggestion(trimmed_text);
+    if (is_abbreviation(trimmed_text) && !(meant && is_named_in(*meant, trimmed_text)))
         reader.fail(
             "an abbreviation, which several time zones share; write a name such as Europe/Zurich "
             "or an offset such as +02:00");
-    const auto meant = suggestion(trimmed_text);
     reader.fail(meant ? fmt::format("no such time zone; did you mean {}?", *meant)
                       : "no such time zone, expected a name of the IANA database such as "
                         "Europe/Zurich or an offset such as +02:00");

@@ -48,10 +48,10 @@ TEST(BadDem, EachHasItsMessage) {
         std::string path, message;
     };
     for (const Case& c :
-         {Case{"/nowhere/alps.tif", "no such DEM file; there is no folder /nowhere"},
+         {Case{"/nowhere/alps.tif", "no such file; there is no folder /nowhere"},
           Case{(dir() / "notes.txt").string(), "not a raster in any format that GDAL reads"},
           Case{written("no_crs.tif", no_crs),
-               "does not say its coordinate system; add --crs, for example EPSG:3031"},
+               "does not say its coordinate system; add --crs, for example EPSG:32632 (UTM 32 N)"},
           Case{written("empty.tif", empty), "no valid height: all 24 posts are voids"},
           Case{written("one_post.tif", one_post),
                "size, expected at least 2 x 2 posts but got 1 x 1"},

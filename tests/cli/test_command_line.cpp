@@ -91,6 +91,36 @@ TEST(CommandLine, TheNameOfAnOptionIsNoValueOfAnother) {
               "exit 2: --time: expected a value but got the option -o; see relevo capture --help");
     EXPECT_EQ(said_of({"capture", "a.tif", "-o=a.png"}),
               "exit 2: --output: write -o a.png, without the =; see relevo capture --help");
+    EXPECT_EQ(said_of({"capture", "a.tif", "--only=", "-o", "a.png"}),
+              "exit 2: --only: write --only '' for no effects; see relevo capture --help");
+}
+
+TEST(CommandLine, DashesOfAWordProcessorAreSaidOfOptionsAlone) {
+    EXPECT_EQ(said_of({"capture", "a.tif", "\u2013o", "a.png"}),
+              "exit 2: \u2013o: begins with a dash; write -o with hyphens; see relevo capture "
+              "--help");
+    for (const char* size : {"\u2014size=64x48", "\u2013\u2013size=64x48", "-\u2013size=64x48"})
+        EXPECT_EQ(said_of({"capture", "a.tif", size, "-o", "a.png"}),
+                  fmt::format("exit 2: {}: begins with a dash; write --size=64x48 with hyphens; "
+                              "see relevo capture --help",
+                              size));
+    EXPECT_EQ(said_of({"capture", "a.tif", "--title", "\u2014 Zermatt \u2014"}),
+              "exit 2: --output is missing; write relevo capture DEM --output FILE; see relevo "
+              "capture --help");
+}
+
+TEST(CommandLine, WordsInTheWrongPlaceAreToldApartFromMisspeltOnes) {
+    EXPECT_EQ(said_of({"--size", "640x480", "capture", "a.tif", "-o", "a.png"}),
+              "exit 2: --size: write it after relevo capture; see relevo capture --help");
+    EXPECT_EQ(said_of({"capture", "a.tif", "--ouput", "a.png"}),
+              "exit 2: --ouput: no such option; did you mean --output? See relevo capture --help");
+    for (const char* longitude : {"8.56", "-121.5"})
+        EXPECT_EQ(
+            said_of({"sun", "position", "--at", "46.8", longitude, "--time", "2026-06-21"}),
+            fmt::format("exit 2: {}: belongs to no option; write values of several parts with "
+                        "commas and without blanks, or in quotes; see relevo sun position "
+                        "--help",
+                        longitude));
 }
 
 }  // namespace

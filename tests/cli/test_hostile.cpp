@@ -102,12 +102,15 @@ TEST_F(Pipes, AsASidecarAreRefused) {
     std::ofstream(dir_ / "job.json")
         << R"({"format": 1, "dem": {"files": ["a.tif"]}, "time": {"at": "2026-06-21T12:00Z"},
                "picture": {"size": [64, 48]}, "output": "out.png"})";
-    for (const char* option : {"--overwrite", "--resume"}) {
-        const Result job =
-            in_time({"-q", "run", "--device", "software", out("job.json"), "--sidecar", option});
-        EXPECT_EQ(job.status, 5) << job.err;
-        EXPECT_THAT(job.err, HasSubstr(sidecar + ": is not a regular file"));
-    }
+    const auto job = [&](const char* option) {
+        return in_time({"-q", "run", "--device", "software", out("job.json"), "--sidecar", option});
+    };
+    const Result replaced = job("--overwrite");
+    EXPECT_EQ(replaced.status, 5) << replaced.err;
+    EXPECT_THAT(replaced.err, HasSubstr(sidecar + ": is not a regular file"));
+    const Result resumed = job("--resume");
+    EXPECT_EQ(resumed.status, 3) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr(out("out.png") + ": its sidecar is not a file"));
 }
 
 TEST(Names, OfBandsHaveNoControlCharacters) {

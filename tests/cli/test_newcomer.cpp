@@ -64,7 +64,7 @@ TEST(Newcomer, MissingAndDividedWords) {
                    "--unit: expected a value but got \"\"; is a shell variable unset? See relevo "
                    "capture --help");
     expect_failure(capture({"--view", "az=210", "el=30"}), 3,
-                   "el=30: no such DEM file; an option's value is one word, as in --view "
+                   "el=30: no such file; an option's value is one word, as in --view "
                    "az=210,el=30");
     expect_failure(capture({"--set", "haze.density", "=", "0.2"}), 2,
                    "--set: expected PLUGIN.PARAMETER=VALUE without blanks but got "
@@ -81,7 +81,7 @@ TEST(Newcomer, FilesThatAreNoDem) {
     write_raster(dir() / "alps.tif", {});
     expect_failure(
         capture({}, path("alsp.tif")), 3,
-        fmt::format("{}: no such DEM file; did you mean {}?", path("alsp.tif"), path("alps.tif")));
+        fmt::format("{}: no such file; did you mean {}?", path("alsp.tif"), path("alps.tif")));
     Raster photo;
     photo.type = "Byte";
     photo.bands = 3;
@@ -95,9 +95,10 @@ TEST(Newcomer, FilesThatAreNoDem) {
     Raster nowhere;
     nowhere.crs = "";
     write_raster(dir() / "nowhere.tif", nowhere);
-    expect_failure(capture({}, path("nowhere.tif")), 3,
-                   path("nowhere.tif") +
-                       ": does not say its coordinate system; add --crs, for example EPSG:3031");
+    expect_failure(
+        capture({}, path("nowhere.tif")), 3,
+        path("nowhere.tif") +
+            ": does not say its coordinate system; add --crs, for example EPSG:32632 (UTM 32 N)");
     std::filesystem::create_directory(path("empty"));
     expect_failure(capture({}, path("empty")), 3,
                    path("empty") +
@@ -105,14 +106,14 @@ TEST(Newcomer, FilesThatAreNoDem) {
                        "rasters");
     std::ofstream(path("day.json")) << R"({"format": 1, "dem": {"files": []}, "sweep": []})";
     expect_failure(capture({}, path("day.json")), 3,
-                   path("day.json") + ": a job of Relevo, not a DEM; draw it with relevo run");
+                   path("day.json") + ": a job of Relevo, not a raster; draw it with relevo run");
     Raster centimetres;
     centimetres.columns = centimetres.rows = 20;
     centimetres.value = [](int column, int, int) { return 31'000.0 + column; };
     write_raster(dir() / "cm.tif", centimetres);
     expect_failure(capture({}, path("cm.tif")), 3,
                    path("cm.tif") +
-                       ": 400 of 400 heights are beyond any on Earth (31000 to 31019 m); add "
+                       ": 400 of 400 heights are outside -11500 to 9000 m (31000 to 31019 m); add "
                        "--unit dm (3100 to 3102 m) or cm (310 to 310 m) or mm (31 to 31 m), "
                        "--nodata V if the stored value V marks voids, or --unit m if they are "
                        "right");

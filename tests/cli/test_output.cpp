@@ -396,8 +396,8 @@ TEST_F(Output, NamesThatAreNoTextBreakNeitherJsonNorMessages) {
     EXPECT_EQ(nlohmann::json::parse(info.out)["path"], path("a\xef\xbf\xbd\x1b\nb.tif"));
     const std::string forged = path("none\nrelevo: error: /etc/passwd: all is well");
     expect_failure({"info", forged}, 3,
-                   path("none\\nrelevo: error: /etc/passwd: all is well") + ": no such DEM file; there is no folder " +
-                       path("none\\nrelevo: error: /etc"));
+                   path("none\\nrelevo: error: /etc/passwd: all is well") +
+                       ": no such file; there is no folder " + path("none\\nrelevo: error: /etc"));
     expect_failure({"capture", bundled_dem(), "-o", path("a\x1b[2J\nrelevo: done.gif")}, 3,
                    "image: " + path("a\\x1b[2J\\nrelevo: done.gif") +
                        ": unknown picture format; use png, jpg, webp, tif or exr");

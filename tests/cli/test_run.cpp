@@ -206,7 +206,7 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
               (dir_ / "a.png").string() + ": effects: hase: no such plugin; did you mean haze?");
     EXPECT_EQ(
         error(write("job.json", "{\"format\": 1, \"dem\": {\"files\": [\"no.tif\"]}," + at + "}")),
-        fmt::format("{}: no such DEM file", (dir_ / "no.tif").string()));
+        fmt::format("{}: no such file", (dir_ / "no.tif").string()));
     EXPECT_EQ(error(job("\"sweep\": [{\"cameras\": []}]")),
               "job: " + file + ":2: sweep[0].cameras: expected values but the list is empty");
     EXPECT_EQ(error(job(at + ", \"sweep\": [{\"set\": \"haze.density\", \"from\": 0, \"to\": 1, "
@@ -229,11 +229,12 @@ TEST_F(Run, BadJobsSayWhatIsWrong) {
               fmt::format("image: {}: unknown picture format; use png, jpg, webp, tif or exr",
                           (dir_ / "a.gif").string()));
     EXPECT_EQ(error(job(at + ", \"output\": \"{dem}.tif\""), {"-o", bundled_dem()}),
-              fmt::format("run: {0}: is the DEM {0}, which would be lost; give the result another "
-                          "name",
+              fmt::format("run: {0}: is the DEM {0}, which would be overwritten; give the result "
+                          "another name",
                           bundled_dem()));
     EXPECT_EQ(error(job(at + ", \"output\": \"a.png\""), {"-o", ""}, 2),
-              "-o: expected a template of names but got nothing");
+              "--output: expected a value but got \"\"; is a shell variable unset? See relevo run "
+              "--help");
     EXPECT_EQ(error(job(at + ", \"output\": \"a.png\""), {"--shard", "array"}, 2),
               "--shard: array: expected a task of an array of Slurm, PBS, LSF, Grid Engine or AWS "
               "Batch, but none of their variables is set; write --shard I/N");

@@ -62,10 +62,10 @@ TEST_F(RunFiles, ResumeNoticesEveryInputWhoseContentChangedWhateverItsTime) {
     ASSERT_EQ(first.status, 0) << first.err;
     const auto old = fs::file_time_type::clock::now() - std::chrono::hours(24 * 365);
     const std::vector<std::pair<const char*, const char*>> inputs{
-        {"dem.tif", "its DEM has changed"},
-        {"overlay.tif", "its overlay has changed"},
-        {"colours.txt", "its colour file has changed"},
-        {"look.json", "its preset has changed"},
+        {"dem.tif", "the DEM has changed"},
+        {"overlay.tif", "the overlay has changed"},
+        {"colours.txt", "the colour file has changed"},
+        {"look.json", "the preset has changed"},
         {"plugins/red/red.glsl", "a plugin has changed"}};
     for (const auto& [name, why] : inputs) {
         const std::string before = bytes_of(dir_ / name);
@@ -82,6 +82,38 @@ TEST_F(RunFiles, ResumeNoticesEveryInputWhoseContentChangedWhateverItsTime) {
         EXPECT_THAT(resumed(path).err, HasSubstr("0 pictures in 0 s; 1 were there already"))
             << name << " is as it was, and newer than the picture";
     }
+}
+
+TEST_F(RunFiles, ResumeNoticesATileOfAFolder) {
+    fs::create_directories(dir_ / "tiles");
+    Raster plain;
+    plain.columns = plain.rows = 20;
+    for (const char* name : {"tiles/west.tif", "tiles/east.tif"}) {
+        write_raster(dir_ / name, plain);
+        (*plain.geotransform)[0] += 20 * (*plain.geotransform)[1];
+    }
+    const fs::path path =
+        write("job.json",
+              "{\"format\": 1, \"dem\": {\"files\": [\"tiles\"]}, \"picture\": {\"size\": [64, "
+              "48]}, \"time\": {\"at\": \"2026-06-21T12:00Z\"}, \"output\": \"a.png\"}");
+    ASSERT_EQ(resumed(path).status, 0);
+    std::string east = bytes_of(dir_ / "tiles/east.tif");
+    east[east.size() - 3] ^= 1;
+    write("tiles/east.tif", east);
+    EXPECT_THAT(resumed(path).err, HasSubstr(cannot_keep("the DEM has changed")));
+    // And no picture may take the place of one.
+    EXPECT_THAT(error(path, {"-o", (dir_ / "tiles/east.tif").string(), "--overwrite"}),
+                HasSubstr("the DEM"));
+    EXPECT_EQ(bytes_of(dir_ / "tiles/east.tif"), east);
+}
+
+TEST_F(RunFiles, ADeepRecordIsNoRecord) {
+    const fs::path path = job("\"time\": {\"at\": \"2026-06-21T12:00Z\"}, \"output\": \"a.png\"");
+    ASSERT_EQ(relevo({"run", path.string(), "--sidecar"}).status, 0);
+    constexpr std::size_t kDeep = 1'000'000;
+    write("a.png.json", "{\"scene\": " + std::string(kDeep, '[') + std::string(kDeep, ']') + "}");
+    EXPECT_THAT(relevo({"run", path.string(), "--resume", "--sidecar"}).err,
+                HasSubstr(cannot_keep("its sidecar is of another scene")));
 }
 
 TEST_F(RunFiles, ResumeKeepsNoSidecarOfAnotherDate) {
@@ -231,10 +263,11 @@ TEST_F(RunFiles, ASceneThatAJpegHasNoRoomForIsInTheFileBesideIt) {
     const fs::path path = job(members + ", \"output\": \"a.jpg\"");
     const Result run = relevo({"run", path.string()});
     ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_THAT(run.err, HasSubstr(fmt::format(
-                             "relevo: warning: {0}: the scene is too long for this format; it is in "
-                             "{0}.json, keep both together\n",
-                             (dir_ / "a.jpg").string())));
+    EXPECT_THAT(run.err,
+                HasSubstr(fmt::format(
+                    "relevo: warning: {0}: the scene is too long for this format; it is in "
+                    "{0}.json, keep both together\n",
+                    (dir_ / "a.jpg").string())));
     EXPECT_FALSE(image::read_metadata(dir_ / "a.jpg").contains("relevo:scene"));
     EXPECT_THAT(relevo({"run", path.string(), "--resume"}).err,
                 HasSubstr("0 pictures in 0 s; 1 were there already"));

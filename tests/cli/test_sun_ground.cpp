@@ -277,23 +277,28 @@ TEST(Eye, OfNoLandscapeIsRefused) {
     }
 }
 
-TEST(Ground, InCentimetresIsDrawnAndSaid) {
+TEST(Ground, InCentimetresIsRefusedUnlessItsUnitIsGiven) {
     const std::string path = ridge("centimetres.tif", 52'000, 1000);
-    const Result picture = relevo({"capture", path, "-o", out("cm.png"), "--size", "64x48",
-                                   "--time", "2026-06-21T12:00Z", "--only", "", "--overwrite",
-                                   "--allow-blank"});  // a mast of 520 km is narrower than a pixel
+    const auto captured = [&](const char* unit) {
+        return relevo({"capture", path, "-o", out("cm.png"), "--size", "64x48", "--time",
+                       "2026-06-21T12:00Z", "--only", "", "--overwrite", "--unit", unit});
+    };
+    const Result picture = captured("cm");
     EXPECT_EQ(picture.status, 0) << picture.err;
-    EXPECT_EQ(image::read(out("cm.png")).width, 64);
+    EXPECT_EQ(captured("m").status, 0);  // who insists gets a mast of 520 km
     EXPECT_EQ(relevo({"info", path, "--time", "2026-06-21T12:00Z"}).status, 0);
     for (const auto& arguments : {verb("day", path, kEvening), verb("horizon", path, {})}) {
         const Result run = relevo(with(arguments, {"-q"}));
         EXPECT_EQ(run.status, 3);
-        EXPECT_EQ(count(run.err,
+        EXPECT_NE(run.err.find("add --unit cm (998 to 5200 m) or mm"), run.err.npos) << run.err;
+        const Result insisted = relevo(with(arguments, {"-q", "--unit", "m"}));
+        EXPECT_EQ(insisted.status, 3);
+        EXPECT_EQ(count(insisted.err,
                         "the ground is at 100000 m there, expected a height of the Earth; "
                         "pass --unit cm where the DEM's heights are centimetres, or "
                         "--nodata V where V is no height\n"),
                   1)
-            << run.err;
+            << insisted.err;
     }
     // As it says.
     EXPECT_EQ(relevo(with(verb("day", path, kEvening), {"--unit", "cm", "-q"})).status, 0);

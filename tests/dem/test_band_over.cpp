@@ -138,6 +138,24 @@ TEST(BandOver, AcrossTheDateLineEveryPostHasTheValueOfItsPlace) {
             EXPECT_LT(worst_off(dem, raster), kMostOff) << dem.crs().name() << " on " << raster;
 }
 
+TEST(BandOver, ARasterOfTheDemsOwnGridLiesOnItAcrossTheDateLine) {
+    Raster own;
+    own.columns = 200;
+    own.rows = 90;
+    own.geotransform = {{19500000 - 2500, 5000, 0, 800000 + 2500, 0, -5000}};
+    own.crs = "EPSG:3857";
+    own.value = [](int column, int row, int) { return 1000.0 * row + column; };
+    const std::string path = write_raster(folder() / "own.tif", own);
+    const Grid dem(200, 90, {19500000, 5000, 0, 800000, 0, -5000},
+                   geo::Crs::parse("EPSG:3857", "test"));
+    const BandOver over = read_band_over(dem, path, 1);
+    int wrong = 0;
+    for (int row = 0; row < 90; ++row)
+        for (int column = 0; column < 200; ++column)
+            wrong += !(std::abs(over.values.at(column, row) - (1000.0 * row + column)) < 0.01);
+    EXPECT_EQ(wrong, 0);
+}
+
 TEST(BandOver, AroundAPoleEveryPostHasTheValueOfItsPlace) {
     const std::string earth = write_earth("earth.tif", -180);
     const Grid arctic(161, 161, {-400000, 5000, 0, 400000, 0, -5000},

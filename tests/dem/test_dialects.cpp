@@ -276,9 +276,10 @@ TEST(Dialect, EsriAsciiWithAndWithoutPrj) {
     raster.crs = "EPSG:32632";
     EXPECT_EQ(loaded("with.asc", raster).grid.crs().name(), "WGS 84 / UTM zone 32N");
     raster.crs = "";
-    EXPECT_EQ(test::error_of([&] { loaded("without.asc", raster); }),
-              "exit 3: " + (folder() / "without.asc").string() +
-                  ": does not say its coordinate system; add --crs, for example EPSG:3031");
+    EXPECT_EQ(
+        test::error_of([&] { loaded("without.asc", raster); }),
+        "exit 3: " + (folder() / "without.asc").string() +
+            ": does not say its coordinate system; add --crs, for example EPSG:32632 (UTM 32 N)");
     raster.geotransform = {{11, 0.001, 0, 47, 0, -0.001}};
     const Heightfield degrees_of = loaded("degrees.asc", raster);
     EXPECT_EQ(degrees_of.grid.crs().code(), "EPSG:4326");

@@ -38,20 +38,18 @@ std::string written(const char* name, const std::string& text) {
 }
 
 TEST(LoadError, MissingFile) {
-    EXPECT_EQ(refusal("/nowhere/alps.tif"), "no such DEM file; there is no folder /nowhere");
-    EXPECT_THAT(refusal("NETCDF:/nowhere/alps.nc:z"), testing::StartsWith("no such DEM file"));
-    EXPECT_THAT(refusal("/vsizip//nowhere/alps.zip/alps.tif"),
-                testing::StartsWith("no such DEM file"));
-    EXPECT_EQ(test::error_of([] { load(""); }), "exit 3: \"\": no such DEM file");
+    EXPECT_EQ(refusal("/nowhere/alps.tif"), "no such file; there is no folder /nowhere");
+    EXPECT_EQ(refusal("NETCDF:/nowhere/alps.nc:z"), "no such file");
+    EXPECT_EQ(refusal("/vsizip//nowhere/alps.zip/alps.tif"), "no such file");
+    EXPECT_EQ(test::error_of([] { load(""); }), "exit 3: \"\": no such file");
 }
 
 TEST(LoadError, WhatWasMeantIsGuessedFromTheName) {
     write_raster(folder() / "tyrol_30m.tif", {});
-    EXPECT_EQ(
-        refusal((folder() / "tyrol_30.tif").string()),
-        fmt::format("no such DEM file; did you mean {}?", (folder() / "tyrol_30m.tif").string()));
+    EXPECT_EQ(refusal((folder() / "tyrol_30.tif").string()),
+              fmt::format("no such file; did you mean {}?", (folder() / "tyrol_30m.tif").string()));
     EXPECT_EQ(refusal("el=30"),
-              "no such DEM file; an option's value is one word, as in --view az=210,el=30");
+              "no such file; an option's value is one word, as in --view az=210,el=30");
 }
 
 TEST(LoadError, AFileOfAnotherKindIsNamed) {
@@ -59,12 +57,14 @@ TEST(LoadError, AFileOfAnotherKindIsNamed) {
         "places or a track, not heights; name the DEM first, and this file as relevo sun along or "
         "--points take it";
     EXPECT_EQ(refusal(written("job.json", R"({"format": 1, "dem": {}, "sweep": []})")),
-              "a job of Relevo, not a DEM; draw it with relevo run");
+              "a job of Relevo, not a raster; draw it with relevo run");
     EXPECT_EQ(refusal(written("scene.json", R"({"format": 1, "dem": {"files": []}})")),
-              "a scene of Relevo, not a DEM; draw it with relevo capture --scene");
+              "a scene of Relevo, not a raster; draw it with relevo capture --scene");
     EXPECT_EQ(refusal(written("a.geojson", R"({"type": "Point", "coordinates": [8, 46]})")),
               places);
     EXPECT_EQ(refusal(written("a.gpx", "<?xml version='1.0'?><gpx></gpx>")), places);
+    EXPECT_EQ(refusal(written("a.kml", "<?xml version='1.0'?><kml></kml>")),
+              "places or a track (KML), not heights; make GPX or GeoJSON of it");
     EXPECT_EQ(refusal(written("a.las", "LASF........")),
               "a point cloud, not a raster; make a raster of it first, for example with PDAL");
 }
@@ -154,7 +154,7 @@ TEST(LoadError, NoCrs) {
     Raster raster;
     raster.crs = "";
     EXPECT_EQ(refusal("no_crs.tif", raster),
-              "does not say its coordinate system; add --crs, for example EPSG:3031");
+              "does not say its coordinate system; add --crs, for example EPSG:32632 (UTM 32 N)");
 }
 
 TEST(LoadError, UnusableCrs) {

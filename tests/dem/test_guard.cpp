@@ -217,8 +217,7 @@ TEST(Guard, TheSystemsReasonIsSaid) {
     EXPECT_EQ(refusal(longest), "cannot be read, File name too long");
     const std::string dangling = (folder() / "dangling.tif").string();
     std::filesystem::create_symlink("nowhere.tif", dangling);
-    EXPECT_EQ(refusal(dangling),
-              "no such DEM file; it is a link to nowhere.tif, which is not there");
+    EXPECT_EQ(refusal(dangling), "no such file; it is a link to nowhere.tif, which is not there");
 
     const std::string path = write_raster(folder() / "closed.tif", {});
     ASSERT_EQ(chmod(path.c_str(), 0), 0);

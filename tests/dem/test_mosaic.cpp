@@ -284,7 +284,7 @@ TEST(Mosaic, WhatCannotBeJoinedHasItsMessage) {
     EXPECT_EQ(test::error_of([&] {
                   load(Paths{one, "/nowhere/b.tif"});
               }),
-              "exit 3: /nowhere/b.tif: no such DEM file; there is no folder /nowhere");
+              "exit 3: /nowhere/b.tif: no such file; there is no folder /nowhere");
     Raster turned = tile(0, 0, 6, 4);
     turned.geotransform = {{500000, 26, 15, 5200000, 15, -26}};
     Raster turned_more = turned;

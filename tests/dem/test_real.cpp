@@ -223,9 +223,10 @@ TEST(RealDem, SummitsStandWhereMapsHaveThem) {
 TEST(RealDem, WithoutACrsOneMustBeGiven) {
     SKIP_WITHOUT_TEST_DATA(data);
     const std::string path = (data / "dem" / "avaGar.asc").string();
-    EXPECT_EQ(test::error_of([&] { load(path); }),
-              "exit 3: " + path +
-                  ": does not say its coordinate system; add --crs, for example EPSG:3031");
+    EXPECT_EQ(
+        test::error_of([&] { load(path); }),
+        "exit 3: " + path +
+            ": does not say its coordinate system; add --crs, for example EPSG:32632 (UTM 32 N)");
     const Heightfield f = load(path, {.crs = "EPSG:31287"});
     EXPECT_NEAR(f.grid.post_spacing_m().x, 4.9977, 0.002);  // 0.03 % of scale
 }

@@ -35,7 +35,6 @@ std::string refusal(const std::string& path, const LoadOptions& options = {}) {
     return said.starts_with(begin) ? said.substr(begin.size()) : said;
 }
 
-// 31 000 is above Everest in metres, feet and decimetres are no mountain's of that relief.
 TEST(Unearthly, HeightsOutsideOfTheEarthsAreRefusedWithTheUnitsThatFit) {
     struct Case {
         const char* name;
@@ -44,36 +43,72 @@ TEST(Unearthly, HeightsOutsideOfTheEarthsAreRefusedWithTheUnitsThatFit) {
     };
     for (const Case& c : {
              Case{"land_cm.tif", 29'332, 31'000,
-                  "--unit dm (2933 to 3100 m) or cm (293 to 310 m) or mm (29 to 31 m), "},
+                  "--unit dm (2933 to 3100 m) or cm (293 to 310 m) or mm (29 to 31 m), or "},
              {"feet.tif", 200, 28'000,
               "--unit ft (61 to 8534 m) or dm (20 to 2800 m) or cm (2 to 280 m) or mm (0 to 28 "
-              "m), "},
-             {"cm.tif", 41'000, 480'900, "--unit cm (410 to 4809 m) or mm (41 to 481 m), "},
-             {"mm.tif", -100'000, 4'809'000, "--unit mm (-100 to 4809 m), "},
+              "m), or "},
+             {"cm.tif", 41'000, 480'900, "--unit cm (410 to 4809 m) or mm (41 to 481 m), or "},
+             {"mm.tif", -100'000, 4'809'000, "--unit mm (-100 to 4809 m), or "},
              {"none.tif", -2e6, 9.5e6, ""},
          })
-        EXPECT_THAT(refusal(write_raster(folder() / c.name, rising(c.lowest, c.highest))),
-                    testing::EndsWith(fmt::format(
-                        "heights are beyond any on Earth ({:.0f} to {:.0f} m); add {}--nodata V if "
-                        "the stored value V marks voids, or --unit m if they are right",
-                        c.lowest, c.highest, c.advice)));
+        EXPECT_THAT(
+            refusal(write_raster(folder() / c.name, rising(c.lowest, c.highest))),
+            testing::EndsWith(fmt::format(
+                "heights are outside -11500 to 9000 m ({:.0f} to {:.0f} m); add {}--nodata V if "
+                "the stored value V marks voids, or --unit m if they are right",
+                c.lowest, c.highest, c.advice)));
 }
 
 TEST(Unearthly, ASinglePostIsNoMatterOfTheUnit) {
     Raster raster;
     raster.value = [](int column, int row, int) { return column + row == 0 ? -32000.0 : 50; };
     raster.columns = raster.rows = 20;
-    EXPECT_EQ(refusal(write_raster(folder() / "one.tif", raster)),
-              "1 of 400 heights are beyond any on Earth (-32000 to 50 m); add --nodata V if the "
-              "stored value V marks voids, or --unit m if they are right");
+    EXPECT_EQ(
+        refusal(write_raster(folder() / "one.tif", raster)),
+        "1 of 400 heights are outside -11500 to 9000 m (-32000 to 50 m); add --nodata V if the "
+        "stored value V marks voids, or --unit m if they are right");
 }
 
-// A tower of Babel: the heights of a hostile file.
+TEST(Unearthly, AFewSummitsInFeetAreAMatterOfTheUnit) {
+    Raster raster = rising(0, 8000);
+    raster.columns = raster.rows = 100;
+    raster.value = [](int column, int row, int) {
+        return column + row < 7 ? 14'410.0 : 60.0 * row;  // 28 posts in 10,000
+    };
+    EXPECT_THAT(refusal(write_raster(folder() / "rainier.tif", raster)),
+                testing::HasSubstr("28 of 10000 heights are outside -11500 to 9000 m (0 to 14410 "
+                                   "m); add --unit ft (0 to 4392 m) or dm"));
+}
+
+TEST(Unearthly, AWrongEncodingIsAnsweredWithTheOtherOne) {
+    Raster tile;
+    tile.columns = tile.rows = 16;
+    tile.bands = 3;
+    tile.type = "Byte";
+    // Terrarium of 500 m: 33268 = 129 * 256 + 244.
+    tile.value = [](int, int, int band) { return band == 1 ? 129.0 : band == 2 ? 244.0 : 0.0; };
+    EXPECT_THAT(
+        refusal(write_raster(folder() / "tile.tif", tile), {.encoding = Encoding::TerrainRgb}),
+        testing::HasSubstr("; try the other --encoding, or --unit m if they are right"));
+}
+
+TEST(Unearthly, GivenNodataThatReplacesTheDeclaredOneIsSaid) {
+    Raster raster = rising(100, 900);
+    raster.nodata = -9999;
+    const std::string path = write_raster(folder() / "replaced.tif", raster);
+    EXPECT_THAT(Posts::load(std::span(&path, 1), {.nodata = -32768}).about().warnings,
+                testing::ElementsAre("--nodata -32768 replaces the declared -9999: posts of -9999 "
+                                     "are heights now"));
+    EXPECT_THAT(Posts::load(std::span(&path, 1), {.nodata = -9999}).about().warnings,
+                testing::IsEmpty());
+}
+
+// As in a hostile file.
 TEST(Unearthly, ADemOfTenThousandKilometresHeightNamesFileAndOption) {
     const std::string path = write_raster(folder() / "high.tif", rising(100, 9.99e6));
     EXPECT_EQ(error_of([&] { Posts::load(std::span(&path, 1)); }),
               fmt::format(
-                  "exit 3: {}: 399 of 400 heights are beyond any on Earth (100 to 9990000 m); "
+                  "exit 3: {}: 399 of 400 heights are outside -11500 to 9000 m (100 to 9990000 m); "
                   "add --nodata V if the stored value V marks voids, or --unit m if they are right",
                   path));
 }
@@ -86,7 +121,7 @@ TEST(Unearthly, WhoSaysWhatTheHeightsAreIsBelieved) {
     EXPECT_EQ(refusal(path, {.no_nodata = true}), "no error");
     // It is said all the same.
     EXPECT_THAT(Posts::load(std::span(&path, 1), {.unit = "m"}).about().guesses,
-                testing::Contains(testing::HasSubstr("beyond any on Earth")));
+                testing::Contains(testing::HasSubstr("outside -11500 to 9000 m")));
 }
 
 /// Sea floor with the noise of soundings, in centimetres: what stands out by 9 m does so by 900.
@@ -102,17 +137,18 @@ Raster soundings(double spacing_m, double noise) {
 
 TEST(Unearthly, SpikesAllOverRaiseTheQuestionOfTheUnit) {
     const std::string path = write_raster(folder() / "soundings.tif", soundings(30, 900));
-    EXPECT_EQ(
-        refusal(path),
-        "49 of 400 heights are 180 m or more off all their neighbours (-10000 to -1100 m), as in a "
-        "wrong unit; add --unit dm (-1000 to -110 m) or cm (-100 to -11 m) or mm (-10 to -1 m), "
-        "--nodata V if the stored value V marks voids, or --unit m if they are right");
+    EXPECT_EQ(refusal(path),
+              "49 of 400 heights differ from all neighbours by 180 m or more (-10000 to -1100 m), "
+              "so the unit may be wrong; add --unit dm (-1000 to -110 m) or cm (-100 to -11 m) or "
+              "mm (-10 to -1 m), or --nodata V if the stored value V marks voids, or --unit m if "
+              "they are right");
     EXPECT_EQ(refusal(path, {.unit = "cm"}), "no error");
     // Also where memory does not hold all posts.
-    EXPECT_THAT(refusal(path, {.max_posts = 300}), testing::HasSubstr("off all their neighbours"));
+    EXPECT_THAT(refusal(path, {.max_posts = 300}),
+                testing::HasSubstr("differ from all neighbours"));
     // Posts so far apart may be seamounts; and a unit that the file has is its own matter.
     EXPECT_THAT(refusal(write_raster(folder() / "wide.tif", soundings(900, 2000))),
-                testing::HasSubstr("off all their neighbours"));
+                testing::HasSubstr("differ from all neighbours"));
     EXPECT_EQ(refusal(write_raster(folder() / "wider.tif", soundings(1100, 2000))), "no error");
     Raster in_metres = soundings(30, 900);
     in_metres.unit = "m";
@@ -124,6 +160,8 @@ TEST(Unearthly, InfoSaysItAndGoesOn) {
     const Summary summary = summarize(Source::open(path), 1 << 20);
     EXPECT_EQ(summary.outliers, 400);
     EXPECT_THAT(summary.assumptions, testing::Contains(testing::HasSubstr("cm (293 to 310 m)")));
+    EXPECT_THAT(summarize(load(path)).assumptions,
+                testing::Contains(testing::HasSubstr("cm (293 to 310 m)")));
 }
 
 TEST(Unearthly, NoRealDemIsRefusedButThatInCentimetres) {

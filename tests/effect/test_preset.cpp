@@ -114,8 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"Syntax", "{\n\"only\": [}",
             "2: syntax error while parsing value - unexpected '}'; expected '[', '{', or a "
             "literal"},
-        Bad{"UnknownKey", "{\n\"onyl\": []}",
-            "2: onyl: no such key; there are description, only, enable, disable, set"},
+        Bad{"UnknownKey", "{\n\"onyl\": []}", "2: onyl: no such key; did you mean \"only\"?"},
         Bad{"NearKey", "{\n\"enabled\": []}", "2: enabled: no such key; did you mean \"enable\"?"},
         Bad{"NoList", "{\n\"only\": \"haze\"}",
             "2: only: expected a list of texts but got \"haze\""},

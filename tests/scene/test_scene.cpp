@@ -121,7 +121,7 @@ TEST_F(SceneFile, StampsThatAreNoneAreRefused) {
               "2: stamps.attribution: expected the words that name the data's source, which show "
               "asks for");
     EXPECT_EQ(error(with("\"stamps\": {\"titel\": \"x\"}")),
-              "2: stamps.titel: no such key; there are legend, title, attribution, show");
+              "2: stamps.titel: no such key; did you mean \"title\"?");
 }
 
 TEST_F(SceneFile, MistakesNameTheirPlace) {

@@ -54,6 +54,10 @@ TEST(OverlayTime, WhatIsOfNoSunHasNone) {
     EXPECT_EQ(clock_of({{"AREA_OR_POINT", "Area"}, {"DIRECTIONS", "36"}}), "none");
     EXPECT_EQ(period("yesterday", "today"), "none");
     EXPECT_EQ(clock_of({{"TIME_UTC", "2026-06-21T07:30Z"}}), "none");
+    // Times that other programs may write, or nobody.
+    EXPECT_EQ(period("now", "now"), "none");
+    EXPECT_EQ(period("sunrise", "sunset"), "none");
+    EXPECT_EQ(period("2026-06-21T08:00Z", "2026-06-21T12:30Z"), "2026-06-21 08:00 to 12:30");
 }
 
 }  // namespace

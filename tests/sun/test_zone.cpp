@@ -180,6 +180,8 @@ TEST(Zone, UnknownZonesAreErrorsWithTheNearestName) {
                                    ": no such time zone; did you mean Europe/Zurich?");
     EXPECT_EQ(error("new york"),
               "exit 3: time zone: new york: no such time zone; did you mean America/New_York?");
+    EXPECT_EQ(error("OSLO"),
+              "exit 3: time zone: OSLO: no such time zone; did you mean Europe/Oslo?");
     EXPECT_EQ(error("Middle-earth/Shire"),
               "exit 3: time zone: Middle-earth/Shire: no such time zone, expected a name of the "
               "IANA database such as Europe/Zurich or an offset such as +02:00");
