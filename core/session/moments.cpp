@@ -16,13 +16,22 @@
 
 namespace relevo::session {
 
-std::string dem_key(const scene::Scene& scene) {
+namespace {
+
+/// Of a scene what dem_key() is made of.
+scene::Scene dem_of_scene(const scene::Scene& scene) {
     scene::Scene only;
     only.dems = scene.dems;
     only.dem = scene.dem;
     only.holes = scene.holes;
     only.overlay = scene.overlay;
-    return scene::whole_scene_line(only);
+    return only;
+}
+
+}  // namespace
+
+std::string dem_key(const scene::Scene& scene) {
+    return scene::whole_scene_line(dem_of_scene(scene));
 }
 
 /// What frames a view whose angles are left open.
@@ -66,12 +75,7 @@ scene::Scene Moments::with_absolute_paths(scene::Scene scene) {
 }
 
 std::string Moments::key_of(const scene::Scene& scene) {
-    scene::Scene only;
-    only.dems = scene.dems;
-    only.dem = scene.dem;
-    only.holes = scene.holes;
-    only.overlay = scene.overlay;
-    return dem_key(with_absolute_paths(std::move(only)));
+    return scene::whole_scene_line(with_absolute_paths(dem_of_scene(scene)));
 }
 
 Moments::Dem& Moments::dem_of(const scene::Scene& scene) {

@@ -115,7 +115,7 @@ TEST(Newcomer, FilesThatAreNoDem) {
                    path("cm.tif") +
                        ": 400 of 400 heights are outside -11500 to 9000 m (31000 to 31019 m); add "
                        "--unit dm (3100 to 3102 m) or cm (310 to 310 m) or mm (31 to 31 m), "
-                       "--nodata V if the stored value V marks voids, or --unit m if they are "
+                       "or --nodata V if the stored value V marks voids, or --unit m if they are "
                        "right");
 }
 

@@ -86,6 +86,7 @@ TEST_F(RunFiles, ResumeNoticesEveryInputWhoseContentChangedWhateverItsTime) {
 
 TEST_F(RunFiles, ResumeNoticesATileOfAFolder) {
     fs::create_directories(dir_ / "tiles");
+    fs::create_directories(dir_ / "plugins");
     Raster plain;
     plain.columns = plain.rows = 20;
     for (const char* name : {"tiles/west.tif", "tiles/east.tif"}) {
@@ -294,7 +295,7 @@ TEST_F(RunFiles, ASceneThatAJpegHasNoRoomForIsInTheFileBesideIt) {
     EXPECT_EQ(pair.status, 0) << pair.err;
     EXPECT_TRUE(bytes_of(dir_ / "a.jpg.json") == bytes_of(dir_ / "kept.json"));
     write("a.jpg.json", "{}");
-    refused("is no sidecar");
+    refused("is not a sidecar");
     write("a.jpg.json", "{\"scene\": {\"format\": 1}}");
     refused("has another scene");
 }

@@ -276,9 +276,9 @@ TEST(SunHours, AFenceInTheMorningLeavesTheFirstLightFirst) {
         }
         return false;
     };
-    const dem::Heightfield field = test::field_of(
-        101, 101, {499900, 10, 0, 5205100, 0, -10}, "EPSG:32632",
-        [&](int column, int row) { return is_pale(column, row) ? 150.0 : 0.0; });
+    const dem::Heightfield field =
+        test::field_of(101, 101, {499900, 10, 0, 5205100, 0, -10}, "EPSG:32632",
+                       [&](int column, int row) { return is_pale(column, row) ? 150.0 : 0.0; });
     const Instant begin = utc("2026-12-21T00:00Z");
     SunHoursOptions options;
     options.step_s = 60;
