@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <malloc.h>
+
 namespace relevo::viewer {
 
 /// Ends what is not wanted any more on threads of its own, so that nobody waits for the work that
@@ -18,8 +20,12 @@ class Discard {
             return one.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
         });
         if (unwanted)
-            ending_.push_back(std::async(std::launch::async,
-                                         [one = std::move(unwanted)]() mutable { one.reset(); }));
+            ending_.push_back(std::async(std::launch::async, [one = std::move(unwanted)]() mutable {
+                one.reset();
+                // Else what threads have freed stays with the program: a DEM paged through after
+                // the other took 1.2 GiB in the end.
+                malloc_trim(0);
+            }));
     }
     /// Waits. @returns whether all has ended by then
     bool ends_within(std::chrono::milliseconds time) const {

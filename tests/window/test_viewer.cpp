@@ -135,10 +135,11 @@ TEST_F(Viewer, IsSharpWhileTheHandHoldsStill) {
         act({"mousemove", "850", "400", "sleep", "0.3", "mousedown", "3"});
         act({"mousemove", std::to_string(850 + x / 2), std::to_string(400 + y / 2), "sleep", "0.1",
              "mousemove", std::to_string(850 + x), std::to_string(400 + y)});
-        ASSERT_TRUE(settles());
+        constexpr int kLong = 25;  // a frame may be long on a machine with other work
+        ASSERT_TRUE(settles(kLong));
         const image::Image8 held = display_.screen();
         act({"mouseup", "3"});
-        ASSERT_TRUE(settles());
+        ASSERT_TRUE(settles(kLong));
         EXPECT_LT(test::difference(display_.screen(), held), 1e-4) << x << " " << y;
     }
 }

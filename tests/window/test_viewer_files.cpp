@@ -1,8 +1,11 @@
 // The window's points, files, and what it remembers.
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <thread>
+
+#include <fmt/ranges.h>
 
 #include "viewer/fonts.h"
 #include "window/viewer_fixture.h"
@@ -225,6 +228,34 @@ TEST_F(Viewer, EscGivesUpOpeningADem) {
     EXPECT_THAT(program_->title(), testing::HasSubstr("jacksboro.tif"));
     act({"key", "ctrl+q"});
     EXPECT_EQ(program_->status(), 0) << program_->output();
+}
+
+TEST_F(Viewer, PagedThroughDemsGiveTheirMemoryBack) {
+    std::filesystem::create_directories(folder_ / "maps");
+    constexpr int kDems = 7;
+    test::WindowedProgram make(display_, test::build_dir() / "bin/make_dem",
+                               {dem_, "1600", "1600", (folder_ / "maps/0.tif").string()});
+    ASSERT_EQ(make.status(120), 0) << make.output();
+    for (int i = 1; i < kDems; ++i)
+        std::filesystem::copy_file(folder_ / "maps/0.tif", folder_ / fmt::format("maps/{}.tif", i));
+    open({(folder_ / "maps/0.tif").string()});
+    const auto resident_mib = [&] {
+        std::ifstream status(fmt::format("/proc/{}/status", program_->process()));
+        for (std::string line; std::getline(status, line);)
+            if (line.starts_with("RssAnon:")) return std::stoi(line.substr(8)) / 1024;
+        return -1;
+    };
+    std::vector<int> held_mib{resident_mib()};
+    for (int i = 1; i < kDems; ++i) {
+        act({"key", "ctrl+Next"});
+        ASSERT_TRUE(wait(
+            [&] { return program_->title().find(fmt::format("{}.tif", i)) != std::string::npos; }));
+        ASSERT_TRUE(settles());
+        held_mib.push_back(resident_mib());
+    }
+    fmt::print("[ measured ] MiB after each DEM: {}\n", fmt::join(held_mib, ", "));
+    ASSERT_GT(held_mib.front(), 0);
+    EXPECT_LT(held_mib.back(), held_mib[0] + 200);
 }
 
 TEST_F(Viewer, KeepsViewsAndSettingsTillTheNextTime) {

@@ -67,7 +67,8 @@ class Viewer : public testing::Test {
         return windows.substr(0, windows.find('\n'));
     }
     /// Waits until the screen shows something, and the same for a while.
-    bool settles() {
+    /// @param looks  so many in a row, 60 ms apart
+    bool settles(int looks = 6) {
         image::Image8 before = display_.screen();
         int same = 0;
         return wait([&] {
@@ -75,7 +76,7 @@ class Viewer : public testing::Test {
             image::Image8 now = display_.screen();
             same = test::difference(now, before) < 1e-4 && brightness(now) > 30 ? same + 1 : 0;
             before = std::move(now);
-            return same >= 6;
+            return same >= looks;
         });
     }
     static double brightness(const image::Image8& picture) {
