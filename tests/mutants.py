@@ -172,8 +172,8 @@ def filters(tests):
     return by_layer
 
 
-def failed_of(layer, patterns, slip):
-    """The names of the tests of a program that fail with a slip."""
+def failed_of(layer, patterns, slip, first_alone):
+    """The names of the tests of a program that fail with a slip, or of the first one."""
     environment = dict(os.environ)
     environment.pop("RELEVO_SLIP", None)
     if slip:
@@ -181,7 +181,8 @@ def failed_of(layer, patterns, slip):
     if (ROOT.parent / "shared").is_dir():
         environment.setdefault("RELEVO_TEST_DATA", str(ROOT.parent / "shared"))
     folder = BUILD / "tests" / layer
-    process = subprocess.Popen([BUILD / "bin" / f"test_{layer}", "--gtest_filter=" + ":".join(patterns)],
+    process = subprocess.Popen([BUILD / "bin" / f"test_{layer}", "--gtest_filter=" + ":".join(patterns),
+                                *(["--gtest_fail_fast"] if first_alone else [])],
                                cwd=folder if folder.is_dir() else BUILD, env=environment, start_new_session=True,
                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     try:
@@ -203,9 +204,9 @@ def programs():
     return sorted(path.name.removeprefix("test_") for path in (BUILD / "bin").glob("test_*"))
 
 
-def run_tests(by_layer, slip, jobs):
+def run_tests(by_layer, slip, jobs, first_alone=False):
     with ThreadPoolExecutor(jobs) as pool:  # programs side by side, for two runs of one would share their folders
-        found = pool.map(lambda item: failed_of(*item, slip), by_layer.items())
+        found = pool.map(lambda item: failed_of(*item, slip, first_alone), by_layer.items())
         return set().union(*found)
 
 
@@ -221,13 +222,13 @@ class Run:
         if wrong := build(self.targets, self.jobs):
             fail(wrong)
 
-    def failed_with(self, slip, by_layer):
+    def failed_with(self, slip, by_layer, first_alone):
         if slip["kind"] != "text":
-            return run_tests(by_layer, slip["id"], self.jobs)
+            return run_tests(by_layer, slip["id"], self.jobs, first_alone)
         self.copy.put(slip["file"], changed=slip)
         try:
             self.build()
-            return run_tests(by_layer, None, self.jobs)
+            return run_tests(by_layer, None, self.jobs, first_alone)
         finally:
             self.copy.put(slip["file"])
 
@@ -244,7 +245,7 @@ class Run:
         missed = []
         for slip in sorted(slips, key=lambda one: one["kind"] == "text"):
             begin = time.monotonic()
-            found = sorted(self.failed_with(slip, tests_of(slip)) - broken)
+            found = sorted(self.failed_with(slip, tests_of(slip), self.only_expected and not broken) - broken)
             if not found:
                 missed.append(slip)
             more = f" and {len(found) - 3} more" if len(found) > 3 else ""

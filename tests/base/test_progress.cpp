@@ -50,6 +50,14 @@ class Terminal {
     int mine_ = -1, theirs_ = -1;
 };
 
+TEST(Progress, DurationsAreInTheUnitThatFits) {
+    EXPECT_EQ(duration_text(99), "99 s");
+    EXPECT_EQ(duration_text(100), "2 min");
+    EXPECT_EQ(duration_text(5999), "100 min");
+    EXPECT_EQ(duration_text(7200), "2 h");
+    EXPECT_EQ(duration_text(36 * 3600), "36 h");
+}
+
 TEST(ProgressBar, IsOnATerminalAloneAndGoesWithItself) {
     const Terminal terminal;
     std::array<int, 2> pipe_ends{};

@@ -548,6 +548,7 @@ TEST_F(Run, CompareTellsPicturesApart) {
                           first.string(), second.string()));
     EXPECT_EQ(image::read(dir_ / "d.png").values[5], 255);
     EXPECT_EQ(relevo({"compare", first.string(), second.string(), "--tolerance", "3"}).status, 0);
+    EXPECT_EQ(relevo({"compare", first.string(), second.string(), "--tolerance", "2"}).status, 6);
     image::write(dir_ / "c.png", image::Image8(3, 2, 3));
     EXPECT_EQ(relevo({"compare", first.string(), (dir_ / "c.png").string()}).status, 6);
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <random>
 #include <string>
 
 #include <glm/geometric.hpp>
@@ -80,6 +81,52 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
     session.look(view_of(pose_of(camera, land), land));
     session.draw();
     EXPECT_LE(test::difference(image_of(*picture), session.picture(), 1), 2e-4);
+}
+
+TEST_F(Viewer, NoEyeIsUnderTheDrawnGround) {
+    scene::Scene scene;
+    scene.dems = {dem_};
+    scene.moment.time = "2026-06-21T12:00Z";
+    scene.exaggeration = 5;  // slopes of 45 degrees between posts of 80 m
+    constexpr int kSide_px = 33, kSites = 40;
+    constexpr double kEye_m = 2;
+    viewer::SceneThread thread(scene, "software", [] {});
+    viewer::Wanted wanted;
+    wanted.width_px = wanted.height_px = kSide_px;
+    std::uint64_t number = 0;
+    const auto depth_ahead_m = [&](const scene::View& view) {
+        wanted.view = view;
+        thread.want(wanted);
+        std::shared_ptr<const viewer::Picture> picture;
+        EXPECT_TRUE(wait([&] {
+            thread.check();
+            picture = thread.newer_than(number);
+            return picture && picture->sharp && picture->answers == thread.wants();
+        }));
+        number = picture->number;
+        return picture->depths_m.at(kSide_px * kSide_px / 2);
+    };
+    thread.want(wanted);
+    ASSERT_TRUE(wait([&] { return thread.opened() != nullptr; }));
+    const dem::Grid& grid = thread.opened()->dem->field.grid;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> share(0.02, 0.98);
+    int under = 0, off = 0;
+    for (int site = 0; site < kSites; ++site) {
+        scene::View view;
+        const double column = share(random) * (grid.columns() - 1);
+        view.eye = scene::Standpoint{grid.place(column, share(random) * (grid.rows() - 1)),
+                                     /*above_ground=*/true};
+        view.eye->place.height_m = kEye_m;
+        view.pitch_deg = 90;
+        under += !std::isinf(depth_ahead_m(view));
+        view.pitch_deg = -90;
+        off += !(std::abs(depth_ahead_m(view) - kEye_m) < 0.03);
+    }
+    fmt::print("[ standing ] window: {} sites, {} under the drawn ground, {} off\n", kSites, under,
+               off);
+    EXPECT_EQ(under, 0);
+    EXPECT_EQ(off, 0);
 }
 
 TEST_F(Viewer, APictureOfALargeDemWaitsForAllOfIt) {
