@@ -134,6 +134,10 @@ TEST(ClimateMap, MappedIceOfABoxIsTheSameFromEitherSideOfTheDateLine) {
         const double west = map.around(geodetic_deg(lat_deg, 179.99), 8).mapped_ice;
         const double east = map.around(geodetic_deg(lat_deg, -179.99), 8).mapped_ice;
         EXPECT_NEAR(west, east, 0.08) << lat_deg;
+        // One place, by either name.
+        EXPECT_NEAR(map.around(geodetic_deg(lat_deg, 180), 8).mapped_ice,
+                    map.around(geodetic_deg(lat_deg, -180), 8).mapped_ice, 1e-12)
+            << lat_deg;
         mixed += west > 0.2 && west < 0.8;
     }
     EXPECT_GT(mixed, 3);  // or it would show nothing

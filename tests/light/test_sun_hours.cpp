@@ -287,6 +287,17 @@ TEST(SunHours, AFenceInTheMorningLeavesTheFirstLightFirst) {
     EXPECT_GE(day.spells.at(kColumn, kRow), 6);
     EXPECT_NEAR(day.first_h.at(kColumn, kRow), 11.37 - 4.15, 0.05);
     EXPECT_NEAR(day.last_h.at(kColumn, kRow), 11.37 + 4.15, 0.05);
+    // All over the shade of the fence: what comes later does not change the first light.
+    const SunHours morning = sun_hours(dem::Posts(field), begin, begin + 7.75 * 3600, options);
+    int again = 0;
+    for (int row = 0; row < day.first_h.height(); ++row)
+        for (int column = 0; column < day.first_h.width(); ++column) {
+            const float first_h = morning.first_h.at(column, row);
+            if (!(first_h < 7.7F)) continue;  // none, or as it ends
+            EXPECT_NEAR(day.first_h.at(column, row), first_h, 0.005) << column << " " << row;
+            again += first_h > 7.5F && day.spells.at(column, row) > 1;
+        }
+    EXPECT_GT(again, 20);
 }
 
 TEST(SunHours, ManyDaysAreAsLongAsTheirDays) {
