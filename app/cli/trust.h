@@ -49,7 +49,7 @@ class Trust {
     std::vector<std::string> named_;      ///< folders of the command line, absolute
     std::map<std::string, Known> known_;  ///< by the name in a scene
     std::vector<std::string> left_out_;   ///< folders, absolute
-    std::vector<std::string> modules_;    ///< likewise, of plugins whose modules are not loaded
+    std::vector<std::string> modules_;    ///< folders of plugins whose modules are not loaded
 };
 
 }  // namespace relevo::cli

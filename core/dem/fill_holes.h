@@ -25,8 +25,9 @@ inline constexpr int kSmallHole_posts = 64;
 inline constexpr std::uint8_t kFilled = 1, kCovered = 2;
 
 struct FilledHoles {
-    Array2d<float> height_m;       ///< NaN in the holes that are left; empty where none was filled
-    Array2d<std::uint8_t> filled;  ///< kFilled or kCovered where it was, else 0; empty likewise
+    Array2d<float> height_m;  ///< NaN in the holes that are left; empty where none was filled
+    Array2d<std::uint8_t>
+        filled;  ///< kFilled or kCovered where it was, else 0; empty where none was
     std::int64_t filled_posts = 0, covered_posts = 0, cut_posts = 0;
 
     std::int64_t posts = 0;  ///< of the whole DEM

@@ -2,14 +2,14 @@
 
 #include <string>
 
-// What to say of names and files that are no DEM. Inside of the layer only.
+// Messages for names and files that are not DEMs. Inside of the layer only.
 
 namespace relevo::dem {
 
-/// Of a name under which there is no file: what was probably meant.
+/// A message for a name without a file, with the name that was probably meant.
 std::string no_file_text(const std::string& path);
 
-/// Of a file that GDAL takes for no raster: what it is instead, where its first bytes say so.
+/// A message for a file that GDAL does not read: what it is, if its first bytes show that.
 std::string no_raster_text(const std::string& path);
 
 }  // namespace relevo::dem

@@ -17,7 +17,8 @@ struct Spikes {
     int worst_row = 0;
     double worst_m = 0;  ///< how far the worst one is from its nearest neighbour in height
 
-    /// Those of another window of the same DEM besides; where the worst is, is this one's.
+    /// Adds those of another window of the same DEM. The place of the worst stays that of this
+    /// window.
     Spikes& operator+=(const Spikes& other);
 };
 

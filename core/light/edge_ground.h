@@ -71,7 +71,7 @@ inline constexpr const char* kBeyondTheDem =
 class RayEdges {
   public:
     /// @param path     of the rays over `window`
-    /// @param marks    posts all over what is wanted of the window; empty: all of it is wanted
+    /// @param marks    posts for which edges are needed; empty: all of the window
     /// @param reach_m  how far beyond the window edges matter
     RayEdges(const dem::Posts& posts, const SweepSun& path, const SweepWindow& window,
              const std::vector<GridPair>& marks, double reach_m);
@@ -82,7 +82,7 @@ class RayEdges {
     struct OfRun {
         const float* height_m;    ///< minus infinity where there is no edge within reach
         const float* distance_m;  ///< from where the ray through the reference is at the reference
-        double from_m;            ///< where that ray is at the run, measured likewise
+        double from_m;            ///< where that ray is at the run, from the same point
     };
     OfRun of(const SweepRun& run) const;
 

@@ -297,8 +297,8 @@ class TileEdges {
 void each_edge(const SunSky& sky, const Sweep& sweep, const SunTile& tile, double offset_rad,
                TileValues& scratch, const Sweep::Use& use);
 
-/// Likewise with the tangent of the horizon's elevation from the ground at each post, the ground
-/// beyond the DEM being seen where nothing of it is higher.
+/// The same with the tangent of the elevation of the horizon, from the ground at each post. Where
+/// nothing of the DEM is higher, it is that of the ground beyond the DEM.
 void each_horizon(const SunSky& direction, const Sweep& sweep, const SunTile& tile,
                   const Sweep::Use& use);
 
