@@ -25,17 +25,17 @@ struct Job {
     int inside = 0;  ///< helpers at work
     std::exception_ptr error;
 
-    /// Works on pieces until none is left. @returns what the first failing piece threw here
+    /// Works on pieces until none is left, or one fails. @returns what that one threw
     std::exception_ptr work() {
-        std::exception_ptr thrown;
         for (;;) {
             const std::int64_t first = next.fetch_add(piece);
-            if (first >= end) return thrown;
+            if (first >= end) return {};
             try {
                 body(static_cast<int>(first),
                      static_cast<int>(std::min<std::int64_t>(end, first + piece)));
             } catch (...) {
-                if (!thrown) thrown = std::current_exception();
+                next = end;  // no other piece begins
+                return std::current_exception();
             }
         }
     }

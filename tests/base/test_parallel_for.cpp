@@ -1,4 +1,5 @@
 #include <atomic>
+#include <chrono>
 #include <limits>
 #include <mutex>
 #include <set>
@@ -36,6 +37,20 @@ TEST(ParallelFor, PassesAnErrorOn) {
                   });
               }),
               "exit 3: piece 0");
+}
+
+TEST(ParallelFor, BeginsNoPieceAfterAnError) {
+    if (thread_count() < 2) GTEST_SKIP() << "one thread does all in one piece";
+    std::atomic<int> begun = 0;
+    EXPECT_EQ(test::error_of([&] {
+                  parallel_for(0, 1 << 20, 1, [&](int first, int) {
+                      ++begun;
+                      if (first == 0) bad_input("piece 0");
+                      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+                  });
+              }),
+              "exit 3: piece 0");
+    EXPECT_LT(begun, 2 * thread_count());
 }
 
 TEST(ParallelFor, DoesWithoutThreadsThatTheSystemDoesNotGive) {
