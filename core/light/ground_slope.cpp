@@ -42,7 +42,9 @@ class Around {
         const float there_m = stored_m(columns, rows);
         if (!std::isnan(there_m)) return there_m;
         const float opposite_m = stored_m(-columns, -rows);
-        return std::isnan(opposite_m) ? here_m_ : 2 * double{here_m_} - opposite_m;
+        if (!std::isnan(opposite_m)) return 2 * double{here_m_} - opposite_m;
+        // In a corner neither is there.
+        return columns != 0 && rows != 0 ? at_m(columns, 0) + at_m(0, rows) - here_m_ : here_m_;
     }
 
     float stored_m(int columns, int rows) const {

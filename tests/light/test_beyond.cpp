@@ -55,6 +55,26 @@ TEST(TerrainBeyond, MattersNotWhereTheDemsOwnGroundHidesTheSun) {
     EXPECT_FALSE(terrain_beyond(posts, {}, {sun_in_the_south(-3)}, {}));
 }
 
+TEST(TerrainBeyond, IsHiddenByTheCurvedEarth) {
+    // A plain of 100 km at 100 m, and a summit. A sun of 1 degree over its middle stands 0.55
+    // degrees high over the northern edge, 50 km farther from it. Seen from there, what ends just
+    // beyond the southern edge has to be as high as 100 km * tan 0.55 degrees and the 683 m that
+    // the Earth sinks by with a refraction of 0.13: 1743 m in all, from 100 m on.
+    const dem::Heightfield field = test::field_of(
+        201, 201, {450000, 500, 0, 0, 0, -500}, "EPSG:32631",
+        [=](int column, int row) { return column == 100 && row == 100 ? 4000.0 : 100.0; });
+    const dem::Posts posts(field);
+    const auto matters = [&](double highest_m) {
+        return terrain_beyond(
+                   posts, {0, 0, 60, 1}, {sun_in_the_south(1)},
+                   {.refraction = 0.13, .air = {}, .soft = false, .part = {}, .done = {}},
+                   highest_m)
+            .has_value();
+    };
+    EXPECT_FALSE(matters(1690));
+    EXPECT_TRUE(matters(1800));
+}
+
 TEST(TerrainBeyond, IsTheSameHoweverLittleMemoryThereIs) {
     test::Raster raster;
     raster.columns = 1400;

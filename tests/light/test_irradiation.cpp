@@ -9,6 +9,7 @@
 
 #include "light/clear_sky.h"
 #include "light/fields.h"
+#include "light/ground_slope.h"
 #include "light/sun_hours.h"
 #include "sun/position.h"
 #include "sun/zone.h"
@@ -88,6 +89,25 @@ TEST(Irradiation, OfASlopeIsThatOfTheModelForOneDayAndForMany) {
         expect_share(found.reflected_kwh.at(40, 40),
                      kAlbedo * (1 - sky) * (by_hand.level_beam + by_hand.diffuse), 0.01,
                      "reflected" + of);
+    }
+}
+
+TEST(GroundSlope, OfAPlaneIsTheSameOnTheEdgeAndBesideAVoid) {
+    constexpr int kSide = 41;
+    const dem::Heightfield field = test::field_of(
+        kSide, kSide, {498800, 30, 0, 5206200, 0, -30}, kUtm32, [](int column, int row) {
+            return column == 20 && row == 20 ? std::nan("")
+                                             : 1000 + 30 * (0.3 * column - 0.4 * row) + 480;
+        });
+    const dem::Posts posts(field);
+    const SweepWindow all{0, 0, kSide, kSide};
+    const PartHeights heights(posts, all);
+    TileValues east(all, 0), north(all, 0);
+    ground_slope(posts.grid(), heights.view, all, east, north);
+    for (const auto& [column, row] :
+         {std::pair{10, 10}, {0, 20}, {40, 20}, {20, 0}, {20, 40}, {0, 0}, {40, 40}, {21, 20}}) {
+        EXPECT_NEAR(east.row(row)[column], 0.3, 0.002) << column << " " << row;
+        EXPECT_NEAR(north.row(row)[column], 0.4, 0.002) << column << " " << row;
     }
 }
 

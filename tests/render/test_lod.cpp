@@ -285,5 +285,20 @@ TEST(TileTree, BoxesHoldTheRoundEarth) {
     EXPECT_LT(outside_m, 0.5);
 }
 
+TEST(TileTree, ExaggeratedGroundIsDrawnFineFromFartherAway) {
+    const dem::Heightfield rough =
+        test::field_of(301, 301, {500000, 30, 0, 5200000, 0, -30}, "EPSG:32632",
+                       [](int column, int row) { return 20.0 * ((7 * column + 3 * row) % 5); });
+    const dem::Pyramid pyramid(rough.height_m);
+    const geo::LocalFrame frame(rough.grid.center());
+    TileTree tree(pyramid, rough.grid, frame);
+    LodView view;
+    view.eye_m = glm::dvec3(0, 0, 5000);
+    view.tolerance = 1e-3;
+    const double as_it_is_m = tree.ranges(view).levels[0].range_m;
+    view.exaggeration = 5;
+    EXPECT_NEAR(tree.ranges(view).levels[0].range_m, 5 * as_it_is_m, 0.01 * as_it_is_m);
+}
+
 }  // namespace
 }  // namespace relevo::render

@@ -1,4 +1,5 @@
 // Colours on the ground: the legend's are those of the picture, where they belong.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -8,6 +9,8 @@
 
 #include "base/units.h"
 #include "dem/fixture.h"
+#include "session/active_effects.h"
+#include "session/colour_legends.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
 #include "support/support.h"
@@ -113,6 +116,31 @@ TEST(ColourLegend, OfDirectionsIsThePictures) {
         return azimuth < 0 ? azimuth + 360 : azimuth;
     };
     EXPECT_GT(share_right(session, azimuth_deg, 8), 0.97);
+}
+
+TEST(ColourLegend, OfLandAndSeaGoesFromTheFloorToTheSummit) {
+    scene::Effects relief;
+    relief.presets = {"relief"};
+    const auto effects = ActiveEffects::of(relief, /*aloud=*/false);
+    const std::vector<chart::Legend> legends = colour_legends(*effects, {-2000, 1500, true});
+    const auto height = std::find_if(legends.begin(), legends.end(),
+                                     [](const auto& one) { return one.title == "Height"; });
+    ASSERT_NE(height, legends.end());
+    const chart::Ramp& ramp = height->ramp;
+    EXPECT_EQ(ramp.stops.front().value, -2000);
+    EXPECT_EQ(ramp.stops.back().value, 1500);
+    for (std::size_t i = 1; i < ramp.stops.size(); ++i)
+        EXPECT_LT(ramp.stops[i - 1].value, ramp.stops[i].value) << i;
+    // The deeper, the darker; shallow water is light, and all of it is blue.
+    const auto channel = [&](double height_m, int shift) {
+        return static_cast<int>(ramp.at(height_m).rgb >> shift & 255);
+    };
+    for (const double height_m : {-2000.0, -1000.0, -10.0})
+        EXPECT_GT(channel(height_m, 0), channel(height_m, 16) + 30) << height_m;
+    EXPECT_LT(channel(-2000, 8) + 60, channel(-10, 8));
+    EXPECT_GT(channel(300, 8), channel(300, 0)) << "land is no sea";
+    // Without a floor there is no such sea.
+    EXPECT_GE(colour_legends(*effects, {-2000, 1500, false}).front().ramp.stops.front().value, 0);
 }
 
 TEST(Skylight, TakesFromHollowsWhatTheGroundThatStandsThereDoesNotSend) {

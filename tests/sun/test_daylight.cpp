@@ -48,6 +48,17 @@ TEST(Twilight, IsAsBrightAsTheAlmanacSays) {
     EXPECT_NEAR(sky_illuminance_lux(radians(90)), 16300, 1);  // IESNA RP-21: 0.8 + 15.5 klx
 }
 
+TEST(Twilight, IsBluerThanTheDay) {
+    const auto blue = [](double h_deg) {
+        const glm::dvec3 light = sky_irradiance(radians(h_deg));
+        return light.b / light.r;
+    };
+    EXPECT_NEAR(blue(40), blue(1e-9), 1e-9);
+    EXPECT_NEAR(blue(-3), (1.72 + 2.42) / (0.79 + 0.62), 1e-9);  // half way
+    EXPECT_NEAR(blue(-6), 2.42 / 0.62, 1e-9);
+    EXPECT_NEAR(blue(-15), blue(-6), 1e-9);
+}
+
 TEST(Exposure, GrowsAsLightFadesButNotToDay) {
     double before = 0;
     double level_before = 1e9;

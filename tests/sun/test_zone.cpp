@@ -124,6 +124,9 @@ TEST(Zone, RulesOfPosixInEveryForm) {
               "2023-04-01T15:00:00Z +10:30 +1030; 202");
     // Days of the year: J60 is 1 March in every year, 60 is 1 March in leap years' 29 days only.
     EXPECT_EQ(moments("AAA0BBB,J60/0,J300/0").substr(0, 21), "2023-03-01T00:00:00Z ");
+    const std::string both = moments("AAA0BBB,J60/0,J300/0");
+    EXPECT_NE(both.find("2024-03-01T00:00:00Z "), std::string::npos) << both;
+    EXPECT_NE(both.find("2024-10-26T23:00:00Z "), std::string::npos) << both;
     EXPECT_EQ(moments("AAA0BBB,60/0,300/0").substr(0, 21), "2023-03-02T00:00:00Z ");
     for (const char* none : {"", "UTC0", "<+0530>-5:30", "CET-1CEST", "CET-1CEST,M13.1.0,M3.1.0",
                              "CET-1CEST,M3.5.0", "C%T-1", "CET-1CEST,M3.5.0,M10.5.0x"})
