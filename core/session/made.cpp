@@ -34,7 +34,10 @@ constexpr std::array kChanges{std::pair("dem", "the DEM has changed"),
 /// Why one record is not another; empty where it is.
 std::string difference(const std::string& before, const std::string& now) {
     if (before == now) return {};
-    const ordered_json a = parse_record(before), b = parse_record(now);
+    const auto parsed = [](const std::string& text) {
+        return ordered_json::parse(shallow_json(text), nullptr, /*allow_exceptions=*/false);
+    };
+    const ordered_json a = parsed(before), b = parsed(now);
     if (!a.is_object()) return "it does not say what it was made from";
     if (a.value("relevo", ordered_json()) != b.value("relevo", ordered_json()))
         return fmt::format("Relevo {} made it, and this is {}",
@@ -78,7 +81,7 @@ std::string fault_of_sidecar(const scene::Shot& shot, const Wanted& wanted) {
     } catch (const Error&) {
         return "its sidecar cannot be read";
     }
-    const ordered_json json = parse_record(content);
+    const auto json = ordered_json::parse(shallow_json(content), nullptr, false);
     if (!json.is_object() || !json.contains("scene")) return "its sidecar is not a whole one";
     const auto text = [](const ordered_json& value) {
         return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);

@@ -125,11 +125,13 @@ image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn
     return metadata;
 }
 
-ordered_json parse_record(const std::string& text) {
+std::string shallow_json(const std::string& text) {
     constexpr int kDeepest = 32;
-    return ordered_json::parse(
+    const auto json = ordered_json::parse(
         text, [](int depth, auto, const auto&) { return depth <= kDeepest; },
         /*allow_exceptions=*/false);
+    return json.is_discarded() ? std::string()
+                               : json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 image::Metadata read_record(const std::filesystem::path& picture) {
@@ -143,7 +145,8 @@ image::Metadata read_record(const std::filesystem::path& picture) {
     };
     std::error_code ignored;
     if (!std::filesystem::exists(sidecar, ignored)) refuse("is missing");
-    const auto json = parse_record(read_text(sidecar, "sidecar"));
+    const auto json =
+        ordered_json::parse(shallow_json(read_text(sidecar, "sidecar")), nullptr, false);
     if (!json.is_object() || !json.contains("scene")) refuse("is not a sidecar");
     const std::string line =
         json["scene"].dump(-1, ' ', false, ordered_json::error_handler_t::replace);

@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "image/image.h"
 #include "session/audit.h"
 #include "session/scene_inputs.h"
@@ -50,10 +48,9 @@ image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn
 /// One line about a scene that does not fit, for people.
 std::string says_where_scene_is(const std::filesystem::path& picture);
 
-/// JSON of a record, which anybody may have written: what is nested deeper than records are is left
-/// out, since to write it again would take a stack of that depth.
-/// @returns a discarded value for what is no JSON
-nlohmann::ordered_json parse_record(const std::string& text);
+/// The JSON of a record, which anybody may have written, without what is nested deeper than records
+/// are: to write that again would take a stack of its depth. Empty for what is not JSON.
+std::string shallow_json(const std::string& text);
 
 /// The metadata of a picture with its scene, also where that is in the sidecar.
 /// @throws Error (BadInput) as image::read_metadata(), and where the picture's scene is in a
