@@ -131,17 +131,20 @@ TEST_F(Viewer, ShowsTheWholeDemBesideThePanels) {
 
 TEST_F(Viewer, IsSharpWhileTheHandHoldsStill) {
     open({dem_, "--time", "2026-06-21T20:00:00Z"});
-    for (const auto& [x, y] : {std::pair{60, 30}, {-85, 11}, {37, -23}, {101, 17}}) {
+    // Whether the picture of a hand that holds still for so many looks is that of one that let go.
+    const auto is_sharp = [&](int x, int y, int looks) {
         act({"mousemove", "850", "400", "sleep", "0.3", "mousedown", "3"});
         act({"mousemove", std::to_string(850 + x / 2), std::to_string(400 + y / 2), "sleep", "0.1",
              "mousemove", std::to_string(850 + x), std::to_string(400 + y)});
-        constexpr int kLong = 25;  // a frame may be long on a machine with other work
-        ASSERT_TRUE(settles(kLong));
+        EXPECT_TRUE(settles(looks));
         const image::Image8 held = display_.screen();
         act({"mouseup", "3"});
-        ASSERT_TRUE(settles(kLong));
-        EXPECT_LT(test::difference(display_.screen(), held), 1e-4) << x << " " << y;
-    }
+        EXPECT_TRUE(settles(looks));
+        return test::difference(display_.screen(), held) < 1e-4;
+    };
+    // On a machine with other work a frame may take seconds, and nothing changes meanwhile.
+    for (const auto& [x, y] : {std::pair{60, 30}, {-85, 11}, {37, -23}, {101, 17}})
+        EXPECT_TRUE(is_sharp(x, y, 8) || is_sharp(x, y, 25) || is_sharp(x, y, 60)) << x << " " << y;
 }
 
 TEST_F(Viewer, GoesToAPlaceThatIsWritten) {
@@ -332,7 +335,9 @@ TEST_F(Viewer, ComparesWithWhatWas) {
     ASSERT_TRUE(settles());
     // The line is dragged: more of it stays as it was.
     ASSERT_TRUE(changes([&] { drag(1, 640, 300, 400, 0); }, 0.01));
-    EXPECT_LT(half_differs(display_.screen(), 0, 1000), half_differs(after, 0, 1000) / 4);
+    EXPECT_TRUE(wait([&] {
+        return half_differs(display_.screen(), 0, 1000) < half_differs(after, 0, 1000) / 4;
+    }));
 }
 
 TEST_F(Viewer, ComparesWithoutReadingTheDemAgain) {
