@@ -1,11 +1,17 @@
 // Whether figures that have been made are those that are wanted.
 #include <cmath>
+#include <filesystem>
+#include <span>
 
 #include <gtest/gtest.h>
 
+#include "base/output_file.h"
+#include "dem/band_over.h"
+#include "dem/fixture.h"
 #include "light/fields.h"
 #include "session/sun_raster.h"
 #include "sun/time.h"
+#include "support/support.h"
 
 namespace relevo::session {
 namespace {
@@ -63,6 +69,30 @@ TEST(SunRasterWanted, WhatAFigureDoesNotDependOnLeavesItTheSame) {
     sky.refraction = "none";
     EXPECT_TRUE(same_figures(mask, day(SunFigure::Shadow)));
     EXPECT_TRUE(same_figures(sky, day(SunFigure::SkyView)));
+}
+
+TEST(SunRasterParts, AFileHasTheVoidsOfAllOfItsParts) {
+    const auto is_void = [](int column, int row) {
+        for (const auto& [x, y] : {std::pair{50, 50}, {500, 100}, {100, 500}})
+            if (column >= x && column < x + 5 && row >= y && row < y + 5) return true;
+        return false;
+    };
+    test::Raster raster;
+    raster.columns = raster.rows = 600;
+    raster.nodata = -9999;
+    raster.value = [&](int column, int row, int) {
+        return is_void(column, row) ? -9999.0 : 100 + 20 * std::sin(column * 0.1) + 0.1 * row;
+    };
+    const std::filesystem::path folder = test::scratch_dir("sun_raster");
+    const std::string dem = test::write_raster(folder / "dem.tif", raster);
+    const dem::Posts posts =
+        dem::Posts::load(std::span(&dem, 1), {.max_posts = std::int64_t{1} << 16});
+    ASSERT_FALSE(posts.in_memory());
+    const std::filesystem::path written = folder / "mask.tif";
+    OutputFile file(written, /*overwrite=*/true, "test");
+    write_sun_raster(file, posts, day(SunFigure::Shadow), nullptr, 20000, "test");
+    file.finish();
+    EXPECT_EQ(dem::band_metadata(written.string(), 1).at("HOLES"), "75");
 }
 
 TEST(SunRasterParts, HoldEachPostOnceWhateverTheShape) {
