@@ -201,7 +201,8 @@ void capture(const Arguments& arguments) {
     OutputFile& picture_file = *open(arguments.output, "image");
     Timings timings(open(arguments.timings, "--timings"));
     OutputFile* const scene_file = open(arguments.save_scene, "--save-scene");
-    const session::SceneIn scene_in = session::scene_in(output, scene::with_absolute_paths(scene));
+    scene::Scene hashed = scene::with_absolute_paths(scene);
+    const session::SceneIn scene_in = session::scene_in(output, hashed);
     const bool sidecar =
         arguments.sidecar || arguments.audit || scene_in == session::SceneIn::Sidecar;
     OutputFile* const sidecar_file =
@@ -218,7 +219,6 @@ void capture(const Arguments& arguments) {
     image::load_format(output);
     session::SceneInputs inputs(RELEVO_VERSION);
     // Hashes files while a session opens. What is wrong with the scene the session says.
-    scene::Scene hashed = scene::with_absolute_paths(scene);
     hashed.effects = session::with(std::move(hashed.effects), compared);
     const auto recorded =
         std::async(std::launch::async | std::launch::deferred, [&] { inputs.record(hashed); });

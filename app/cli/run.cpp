@@ -190,7 +190,7 @@ class Run {
         return wants_sidecar() || beside_.contains(shot.output);
     }
 
-    /// Why the pictures cannot be made where other files have their names; empty: they can.
+    /// @returns why the pictures cannot be made because files have their names; empty if they can
     std::string what_is_in_the_way() {
         std::string first;
         for (const scene::Shot& shot : shots_) {
@@ -209,7 +209,8 @@ class Run {
             printable(first), there_, there_ == 1 ? "it" : "them");
     }
 
-    /// Leaves out pictures that are made already. @returns as what_is_in_the_way()
+    /// Removes the pictures from the list that exist and can be kept.
+    /// @returns why other files cannot be kept; empty if all can
     std::string leave_out_made() {
         std::vector<session::Wanted> wanted;
         std::set<std::string> remote;
@@ -388,7 +389,7 @@ class Run {
     session::SceneInputs inputs_{RELEVO_VERSION};
     std::set<fs::path> beside_;  ///< pictures whose scene is in a sidecar, for want of room
     std::set<fs::path> parts_;   ///< pictures of which, or of whose sidecar, --resume finds one
-    std::size_t made_ = 0;       ///< pictures that --resume leaves out
+    std::size_t made_ = 0;       ///< pictures that --resume keeps
     std::size_t there_ = 0;      ///< names of the others that files have already
 };
 

@@ -29,7 +29,7 @@ std::optional<Identity> identity_of(const std::filesystem::path& path) {
     return Identity{status.st_dev, status.st_ino};
 }
 
-/// Where a result of that name goes: its links are followed, as far as they lead.
+/// The file that a write to `path` reaches, through symbolic links.
 std::filesystem::path destination(std::filesystem::path path) {
     constexpr int kMostLinks = 40;  // as the kernel follows
     std::error_code error;

@@ -17,7 +17,7 @@ struct BandOver {
     /// rows lie on the DEM's.
     Array2d<float> values;
     std::string name;                          ///< the band's description; empty where it has none
-    std::string unit;                          ///< likewise
+    std::string unit;                          ///< of the values; empty if unknown
     std::map<std::string, std::string> about;  ///< metadata of the raster, and over them the band's
     bool whole = false;  ///< stored as whole numbers of 8 bits: classes, a mask
     /// RGBA of the values 0, 1, ...; empty where the band has no colour table.

@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
@@ -14,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/input_file.h"
+#include "base/line_counting_iterator.h"
 #include "base/text.h"
 #include "base/units.h"
 #include "geo/crs.h"
@@ -48,38 +48,6 @@ struct Thing {
     }
 };
 constexpr std::array<std::string_view, 3> kNameKeys = {"name", "title", "id"};
-
-/// Characters of a text, counting its lines as the parser takes them.
-class CountingIterator {
-  public:
-    using iterator_category = std::input_iterator_tag;
-    using value_type = char;
-    using difference_type = std::ptrdiff_t;
-    using pointer = const char*;
-    using reference = const char&;
-
-    CountingIterator(const char* at, std::size_t* line) : at_(at), line_(line) {}
-    reference operator*() const { return *at_; }
-    CountingIterator& operator++() {
-        *line_ += *at_++ == '\n';
-        return *this;
-    }
-    CountingIterator operator++(int) {
-        CountingIterator before = *this;
-        ++*this;
-        return before;
-    }
-    friend bool operator==(const CountingIterator& a, const CountingIterator& b) {
-        return a.at_ == b.at_;
-    }
-    friend bool operator!=(const CountingIterator& a, const CountingIterator& b) {
-        return !(a == b);
-    }
-
-  private:
-    const char* at_;
-    std::size_t* line_;
-};
 
 /// Makes Things of the parser's events; members that GeoJSON does not have are skipped.
 class Builder : public nlohmann::json_sax<nlohmann::json> {
@@ -229,7 +197,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
             if (level.key == "id" && is_text) things_.back().id = text;
             if (level.key == "crs" && kind == Kind::String) things_.back().crs = text;
             if (level.key == "geometry" && kind != Kind::Null)
-                refuse("a geometry that is no object");
+                refuse("a geometry that is not an object");
             if (level.key == "coordinates") refuse("coordinates that are no list of numbers");
         } else if (level.role == Role::Things) {
             refuse("a list of features or geometries, expected objects in it");
@@ -378,8 +346,8 @@ GeoJson read_geojson(const FileErrors& errors) {
     const std::string text = text_of(errors);
     std::size_t line = 1;
     Builder builder(errors, line);
-    nlohmann::json::sax_parse(CountingIterator(text.data(), &line),
-                              CountingIterator(text.data() + text.size(), &line), &builder);
+    nlohmann::json::sax_parse(LineCountingIterator(text.data(), &line),
+                              LineCountingIterator(text.data() + text.size(), &line), &builder);
     GeoJson result;
     Sorter(errors, result).visit(builder.take(), {});
     return result;

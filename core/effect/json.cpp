@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 
 #include <fmt/format.h>
@@ -10,43 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/line_counting_iterator.h"
 #include "base/text.h"
 
 namespace relevo::effect {
 namespace {
-
-/// Characters of a text, counting its lines as the parser takes them.
-class CountingIterator {
-  public:
-    using iterator_category = std::input_iterator_tag;
-    using value_type = char;
-    using difference_type = std::ptrdiff_t;
-    using pointer = const char*;
-    using reference = const char&;
-
-    CountingIterator(const char* at, int* line) : at_(at), line_(line) {}
-    reference operator*() const { return *at_; }
-    CountingIterator& operator++() {
-        if (*at_ == '\n') ++*line_;
-        ++at_;
-        return *this;
-    }
-    CountingIterator operator++(int) {
-        CountingIterator before = *this;
-        ++*this;
-        return before;
-    }
-    friend bool operator==(const CountingIterator& a, const CountingIterator& b) {
-        return a.at_ == b.at_;
-    }
-    friend bool operator!=(const CountingIterator& a, const CountingIterator& b) {
-        return a.at_ != b.at_;
-    }
-
-  private:
-    const char* at_;
-    int* line_;
-};
 
 /// Builds a Json from the parser's events.
 class Builder : public nlohmann::json_sax<nlohmann::json> {
@@ -187,8 +154,8 @@ Json parse_json(std::string_view who, std::string_view file, std::string_view te
                               kMaxJsonBytes >> 10, (text.size() + 1023) >> 10));
     int line = 1;
     Builder builder(who, file, line);
-    nlohmann::json::sax_parse(CountingIterator(text.data(), &line),
-                              CountingIterator(text.data() + text.size(), &line), &builder);
+    nlohmann::json::sax_parse(LineCountingIterator(text.data(), &line),
+                              LineCountingIterator(text.data() + text.size(), &line), &builder);
     return builder.take();
 }
 

@@ -32,11 +32,10 @@ std::string installed_key(const scene::Effects& effects) {
 
 /// All files below a folder, which a module may read when it runs.
 std::vector<fs::path> files_in(const fs::path& folder) {
-    constexpr std::size_t kMost = 1000;  // of a plugin; more is a mistake
     std::vector<fs::path> files;
     std::error_code error;
-    for (fs::recursive_directory_iterator entry(folder, error), end;
-         !error && entry != end && files.size() < kMost; entry.increment(error)) {
+    for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
         std::error_code ignored;
         if (entry->is_regular_file(ignored)) files.push_back(entry->path());
     }

@@ -11,35 +11,23 @@ Grid grid() {
     return {10, 8, {500000, 100, 0, 5200000, 0, -100}, geo::Crs::parse("EPSG:32632", "test")};
 }
 
-Window clipped(const char* text) {
-    return window_of(grid(), parse_clip(text, "--clip"), "--clip");
+void expect_posts(const char* text, const Window& posts) {
+    const Window found = window_of(grid(), parse_clip(text, "--clip"), "--clip");
+    EXPECT_EQ(found.column, posts.column) << text;
+    EXPECT_EQ(found.row, posts.row) << text;
+    EXPECT_EQ(found.columns, posts.columns) << text;
+    EXPECT_EQ(found.rows, posts.rows) << text;
 }
 
 TEST(Clip, HasThePostsOnItsSidesAndBetween) {
     // From the third column to the seventh, from the fourth row to the sixth.
-    const Window exact = clipped("500200,5199500,500600,5199700");
-    EXPECT_EQ(exact.column, 2);
-    EXPECT_EQ(exact.row, 3);
-    EXPECT_EQ(exact.columns, 5);
-    EXPECT_EQ(exact.rows, 3);
-    const Window between = clipped("500150,5199450,500650,5199750");
-    EXPECT_EQ(between.column, 2);
-    EXPECT_EQ(between.row, 3);
-    EXPECT_EQ(between.columns, 5);
-    EXPECT_EQ(between.rows, 3);
+    expect_posts("500200,5199500,500600,5199700", {2, 3, 5, 3});
+    expect_posts("500150,5199450,500650,5199750", {2, 3, 5, 3});
 }
 
 TEST(Clip, EndsWithTheDem) {
-    const Window all = clipped("400000,5000000,600000,5300000");
-    EXPECT_EQ(all.column, 0);
-    EXPECT_EQ(all.row, 0);
-    EXPECT_EQ(all.columns, 10);
-    EXPECT_EQ(all.rows, 8);
-    const Window corner = clipped("500850,5000000,600000,5199350");
-    EXPECT_EQ(corner.column, 9);
-    EXPECT_EQ(corner.row, 7);
-    EXPECT_EQ(corner.columns, 1);
-    EXPECT_EQ(corner.rows, 1);
+    expect_posts("400000,5000000,600000,5300000", {0, 0, 10, 8});
+    expect_posts("500850,5000000,600000,5199350", {9, 7, 1, 1});
 }
 
 }  // namespace
