@@ -15,6 +15,7 @@ pkg_check_modules(openimageio REQUIRED IMPORTED_TARGET OpenImageIO)  # its CMake
 find_package(GDAL CONFIG REQUIRED)
 find_package(date REQUIRED)
 find_package(glm REQUIRED)
+find_package(hwy REQUIRED CONFIG)
 pkg_check_modules(erfa REQUIRED IMPORTED_TARGET erfa)
 pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(egl REQUIRED IMPORTED_TARGET egl)

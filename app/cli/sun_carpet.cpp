@@ -8,7 +8,7 @@
 #include "cli/sun.h"
 #include "cli/sun_options.h"
 #include "geo/format.h"
-#include "light/carpet.h"
+#include "light/point/carpet.h"
 
 namespace relevo::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "cli/sun_options.h"
 #include "cli/sun_points.h"
 #include "geo/format.h"
-#include "light/horizon_files.h"
+#include "output/horizon_files.h"
 
 namespace relevo::cli {
 namespace {
@@ -245,9 +245,9 @@ void run(const Arguments& arguments) {
     warn_of(doubt);
 
     const auto table = [&] {
-        return format == "pvlib"    ? light::pvlib_text(profile)
-               : format == "pvgis"  ? light::pvgis_text(profile)
-               : format == "pvsyst" ? light::pvsyst_text(profile, horizon.place())
+        return format == "pvlib"    ? output::pvlib_text(profile)
+               : format == "pvgis"  ? output::pvgis_text(profile)
+               : format == "pvsyst" ? output::pvsyst_text(profile, horizon.place())
                                     : csv_of(horizon, profile, doubt);
     };
     output.deliver({.drawing = [&] { return draw(arguments, asked, horizon, profile); },

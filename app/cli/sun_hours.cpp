@@ -1,4 +1,4 @@
-#include "light/sun_hours.h"
+#include "light/raster/sun_hours.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,8 +43,8 @@ Array2d<float> in_minutes(Array2d<float> hours) {
     return hours;
 }
 
-std::vector<light::RasterBand> bands_of(const std::vector<std::string>& wanted) {
-    std::vector<light::RasterBand> bands;
+std::vector<output::RasterBand> bands_of(const std::vector<std::string>& wanted) {
+    std::vector<output::RasterBand> bands;
     for (const std::string& band : wanted) {
         if (band == "hours") bands.push_back(session::sun_hours_band());
         if (band == "first") bands.push_back({"minutes to the first light", "min"});
@@ -185,7 +185,7 @@ void run(const Arguments& arguments) {
         options.irradiation = {.linke = arguments.linke.value_or(3),
                                .albedo = arguments.albedo.value_or(0.2),
                                .sky_directions = 36};
-    RasterRun raster(arguments.raster, file, ground, light::RasterType::Float,
+    RasterRun raster(arguments.raster, file, ground, output::RasterType::Float,
                      bands_of(arguments.bands), 1,
                      (options.spells ? 44 : 22) + (options.irradiation ? 32 : 0));
     options.done = raster.done();

@@ -14,9 +14,9 @@
 #include "cli/shared.h"
 #include "dem/posts.h"
 #include "geo/format.h"
-#include "light/direct_light.h"
-#include "light/doubt.h"
-#include "light/horizon.h"
+#include "light/point/direct_light.h"
+#include "light/point/doubt.h"
+#include "light/point/horizon.h"
 #include "sun/events.h"
 
 /// What the verbs under `relevo sun` share.

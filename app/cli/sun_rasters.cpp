@@ -13,8 +13,8 @@
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
-#include "light/horizon.h"
-#include "light/sweep.h"
+#include "light/point/horizon.h"
+#include "light/sweep/sweep.h"
 #include "session/sun_raster.h"
 
 namespace relevo::cli {
@@ -62,7 +62,7 @@ void RasterArguments::add_to(CLI::App& verb) {
 }
 
 OutputFile& RasterArguments::open(FilesInUse& files) const {
-    light::check_creation_options(creation_options);
+    output::check_creation_options(creation_options);
     return *output.open(files, dem);
 }
 
@@ -83,13 +83,13 @@ RasterGround RasterArguments::load() const {
     return {std::move(posts), window, std::move(parts)};
 }
 
-light::RasterMetadata RasterArguments::about(const RasterGround& ground,
-                                             const std::string& definition, std::int64_t holes,
-                                             light::RasterMetadata more) const {
+output::RasterMetadata RasterArguments::about(const RasterGround& ground,
+                                              const std::string& definition, std::int64_t holes,
+                                              output::RasterMetadata more) const {
     std::optional<dem::Window> part;
     if (!ground.whole()) part = ground.window;
-    light::RasterMetadata about = session::raster_metadata(ground.posts, RELEVO_VERSION, definition,
-                                                           terrestrial_refraction, holes, part);
+    output::RasterMetadata about = session::raster_metadata(
+        ground.posts, RELEVO_VERSION, definition, terrestrial_refraction, holes, part);
     for (auto& item : more)
         about.push_back(std::move(item));
     return about;
@@ -109,14 +109,14 @@ double posts_of(const dem::Window& window) {
 }  // namespace
 
 RasterRun::RasterRun(const RasterArguments& arguments, OutputFile& file, const RasterGround& ground,
-                     light::RasterType type, const std::vector<light::RasterBand>& bands,
+                     output::RasterType type, const std::vector<output::RasterBand>& bands,
                      std::size_t calls, int bytes_a_post)
     : arguments_(arguments),
       ground_(ground),
       calls_(calls),
       bands_(bands.size()),
       bytes_a_post_(bytes_a_post),
-      bytes_a_value_(type == light::RasterType::Float ? 4 : 1) {
+      bytes_a_value_(type == output::RasterType::Float ? 4 : 1) {
     if (!arguments.dry_run) {
         writer_.emplace(file, ground.grid(), type, bands, arguments.creation_options);
         bar_.emplace(printable(file.path().string()));
@@ -169,7 +169,7 @@ void RasterRun::warn_of(const std::function<std::optional<light::Beyond>()>& loo
 }
 
 bool RasterRun::finish(const std::string& definition, std::int64_t holes,
-                       light::RasterMetadata more) {
+                       output::RasterMetadata more) {
     bar_.reset();
     if (!writer_) {
         tell();

@@ -8,8 +8,8 @@
 #include "base/progress.h"
 #include "cli/sun_options.h"
 #include "dem/clip.h"
-#include "light/beyond.h"
-#include "light/raster.h"
+#include "light/raster/beyond.h"
+#include "output/raster_writer.h"
 
 /// What the verbs that give a figure for every post of a DEM share.
 namespace relevo::cli {
@@ -41,8 +41,8 @@ struct RasterArguments {
     /// @throws Error (Usage, BadInput) as dem::load, dem::parse_clip and dem::window_of
     RasterGround load() const;
     /// What every such file says of itself; `more` besides.
-    light::RasterMetadata about(const RasterGround& ground, const std::string& definition,
-                                std::int64_t holes, light::RasterMetadata more) const;
+    output::RasterMetadata about(const RasterGround& ground, const std::string& definition,
+                                 std::int64_t holes, output::RasterMetadata more) const;
 };
 
 /// A raster being made: part by part, with a bar on a terminal. With --dry-run so much of it is
@@ -52,7 +52,7 @@ class RasterRun {
     /// @param calls           of core's functions that each part takes
     /// @param bytes_a_post    of memory while computing, besides the DEM's heights (measured)
     RasterRun(const RasterArguments& arguments, OutputFile& file, const RasterGround& ground,
-              light::RasterType type, const std::vector<light::RasterBand>& bands,
+              output::RasterType type, const std::vector<output::RasterBand>& bands,
               std::size_t calls, int bytes_a_post);
 
     /// Calls `body` with one part after the other.
@@ -73,7 +73,7 @@ class RasterRun {
                  const std::string& would);
     /// Gives the file its name; for a dry run says instead what it has found out.
     /// @return whether there is a file
-    bool finish(const std::string& definition, std::int64_t holes, light::RasterMetadata more);
+    bool finish(const std::string& definition, std::int64_t holes, output::RasterMetadata more);
 
   private:
     void tell() const;
@@ -83,7 +83,7 @@ class RasterRun {
     const RasterGround& ground_;
     std::int64_t inner_voids_ = 0;
     std::string beyond_;
-    std::optional<light::RasterWriter> writer_;
+    std::optional<output::RasterWriter> writer_;
     std::optional<ProgressBar> bar_;
     std::size_t calls_, bands_;
     int bytes_a_post_, bytes_a_value_;

@@ -12,7 +12,7 @@
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
 #include "dem/places.h"
-#include "light/shadows.h"
+#include "light/raster/shadows.h"
 #include "session/sun_raster.h"
 
 namespace relevo::cli {
@@ -116,17 +116,17 @@ std::vector<Asked> all_suns(const Arguments& arguments, const std::vector<dem::N
 }
 
 /// Where the sun stands, and when.
-light::RasterMetadata about_sun(const Asked& asked) {
+output::RasterMetadata about_sun(const Asked& asked) {
     session::SunOverMiddle over{asked.sun, asked.apparent_rad, {}};
     if (asked.when) over.utc = asked.when->utc;
     return session::metadata_of(over);
 }
 
 /// One sun's band needs no other name than what it is; of many it is their time.
-std::vector<light::RasterBand> bands_of(const std::vector<Asked>& suns, bool timed, bool soft) {
-    std::vector<light::RasterBand> bands;
+std::vector<output::RasterBand> bands_of(const std::vector<Asked>& suns, bool timed, bool soft) {
+    std::vector<output::RasterBand> bands;
     for (const Asked& asked : suns) {
-        light::RasterBand band = session::shadow_band(soft);
+        output::RasterBand band = session::shadow_band(soft);
         if (timed) {
             band.name = sun::to_iso(asked.when->utc, asked.when->zone);
             if (!asked.name.empty()) band.name += " " + asked.name;
@@ -221,7 +221,7 @@ void run(const Arguments& arguments) {
         air = session::air_of_posts(arguments.refraction.name(), posts);
     }
     RasterRun raster(arguments.raster, file, ground,
-                     options.soft ? light::RasterType::Float : light::RasterType::Byte,
+                     options.soft ? output::RasterType::Float : output::RasterType::Byte,
                      bands_of(suns, timed, options.soft), suns.size(), 8);
     raster.warn_of(
         [&] {
@@ -234,7 +234,7 @@ void run(const Arguments& arguments) {
         light::kHides);
     std::vector<Counts> counts(suns.size());
     const std::string definition = light_all(posts, suns, options, raster, counts);
-    light::RasterMetadata more{{"REFRACTION", air}};
+    output::RasterMetadata more{{"REFRACTION", air}};
     if (!timed)
         for (auto& item : about_sun(suns.front()))
             more.push_back(std::move(item));

@@ -7,7 +7,7 @@
 #include "base/units.h"
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"
-#include "light/horizons.h"
+#include "light/raster/horizons.h"
 #include "session/sun_raster.h"
 
 namespace relevo::cli {
@@ -30,7 +30,7 @@ void run_sky_view(const Arguments& arguments) {
     FilesInUse files;
     OutputFile& file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
-    RasterRun raster(arguments.raster, file, ground, light::RasterType::Float,
+    RasterRun raster(arguments.raster, file, ground, output::RasterType::Float,
                      {session::sky_view_band()}, 1, 22);
     light::SkyViewOptions options{.directions = arguments.directions,
                                   .refraction = arguments.raster.terrestrial_refraction,
@@ -68,13 +68,13 @@ void run_horizons(const Arguments& arguments) {
     OutputFile& file = arguments.raster.open(files);
     const RasterGround ground = arguments.raster.load();
     const std::vector<double> azimuth_rad = azimuths_of(arguments.directions);
-    std::vector<light::RasterBand> bands;
+    std::vector<output::RasterBand> bands;
     for (const double azimuth : azimuth_rad) {
         const std::string azimuth_deg = fmt::format("{:.10g}", degrees(azimuth));
         bands.push_back(
             {"horizon towards azimuth " + azimuth_deg, "deg", {{"AZIMUTH_DEG", azimuth_deg}}});
     }
-    RasterRun raster(arguments.raster, file, ground, light::RasterType::Float, bands,
+    RasterRun raster(arguments.raster, file, ground, output::RasterType::Float, bands,
                      azimuth_rad.size(), 12);
     raster.warn_of(
         [&] {

@@ -11,8 +11,8 @@
 #include "cli/sun_options.h"
 #include "cli/sun_points.h"
 #include "geo/format.h"
-#include "light/alignment.h"
-#include "light/doubt.h"
+#include "light/point/alignment.h"
+#include "light/point/doubt.h"
 
 namespace relevo::cli {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "base/units.h"
 #include "chart/carpet_chart.h"
-#include "light/carpet.h"
-#include "light/direct_light.h"
-#include "light/doubt.h"
-#include "light/horizon.h"
+#include "light/point/carpet.h"
+#include "light/point/direct_light.h"
+#include "light/point/doubt.h"
+#include "light/point/horizon.h"
 #include "session/words.h"
 #include "viewer/latest_work.h"
 

@@ -242,7 +242,7 @@ struct OverlayWork::Impl {
     }
 
     static void colour(OverlayShown& shown) {
-        const light::RasterBand band = session::band_of(shown.of.raster.figure);
+        const output::RasterBand band = session::band_of(shown.of.raster.figure);
         const Array2d<float>& values = shown.raster->values;
         shown.overlay = session::overlay_of(
             values, {shown.of.title, band.unit, session::usual_ramp(values, band.name, band.unit)},

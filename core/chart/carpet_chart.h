@@ -4,7 +4,7 @@
 #include <string>
 
 #include "chart/drawing.h"
-#include "light/carpet.h"
+#include "light/point/carpet.h"
 
 namespace relevo::chart {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "chart/drawing.h"
-#include "light/direct_light.h"
+#include "light/point/direct_light.h"
 #include "sun/observer.h"
 #include "sun/position_table.h"
 #include "sun/refraction.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "chart/drawing.h"
-#include "light/direct_light.h"
+#include "light/point/direct_light.h"
 
 namespace relevo::chart {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "chart/drawing.h"
-#include "light/direct_light.h"
+#include "light/point/direct_light.h"
 #include "sun/events.h"
 
 namespace relevo::chart {

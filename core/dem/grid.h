@@ -4,6 +4,7 @@
 
 #include <glm/glm.hpp>
 
+#include "base/window.h"
 #include "geo/crs.h"
 #include "geo/geodetic.h"
 
@@ -28,15 +29,7 @@ struct Affine {
     friend bool operator==(const Affine&, const Affine&) = default;
 };
 
-/// A rectangle of posts, [column, column + columns) by [row, row + rows).
-struct Window {
-    int column = 0;
-    int row = 0;
-    int columns = 0;
-    int rows = 0;
-
-    friend bool operator==(const Window&, const Window&) = default;
-};
+using relevo::Window;
 
 /// Where the posts of a raster are on the Earth. Row 0 is the first row of the file, whichever way
 /// it runs; a post is the centre of its cell (files that say pixel-is-point are read so that this

@@ -25,8 +25,8 @@
 #include "base/wide_loops.h"
 #include "dem/posts.h"
 #include "geo/ellipsoid.h"
-#include "light/horizons.h"
-#include "light/margins.h"
+#include "light/raster/clearance.h"
+#include "light/raster/horizons.h"
 
 namespace relevo::render {
 namespace {
@@ -75,7 +75,7 @@ struct Bytes2 {
 constexpr std::uint32_t kHoles = 0x7bff7bffU;  // GroundLight::kHole twice
 
 /// Margins as two halves, the upper limb's in the low one, and the share of the disc that is seen.
-RELEVO_WIDE_LOOPS void encode(const light::MarginRun& run, std::uint32_t* halves,
+RELEVO_WIDE_LOOPS void encode(const light::ClearanceRun& run, std::uint32_t* halves,
                               std::uint16_t* shares) {
     const float *const uppers = run.upper_m, *const lowers = run.lower_m;
     const int count = run.count;
@@ -253,7 +253,7 @@ struct GroundLight::Impl {
     /// Posts, or means of them, and what is the same for all suns.
     struct Level {
         DrawnPosts ground;
-        std::optional<light::Margins> margins;  // of the posts above
+        std::optional<light::Clearances> margins;  // of the posts above
         AirMade air;
     };
     std::map<int, Level> levels;   // by reduction
@@ -263,7 +263,6 @@ struct GroundLight::Impl {
     std::optional<SunMade> sun;
     double told_error_rad = 0;
 
-    bool by_columns = false;             // rows of the textures are columns of the DEM
     Array2d<std::uint32_t> halves;       // upper limb's margin in the low half, lower one's above
     Array2d<std::uint16_t> post_shares;  // value and coverage, a byte each
     std::optional<gl::Texture> margin_texture;
@@ -304,26 +303,18 @@ struct GroundLight::Impl {
         here.margins.emplace(*here.ground.posts, options);
     }
 
-    /// The textures' rows are the lines that sweeps go by, so that nothing has to be turned.
-    void turn(bool along_columns) {
+    void make_room() {
         const dem::Grid& grid = level->ground.posts->grid();
-        glm::ivec2 size(grid.columns(), grid.rows());
-        if (along_columns) size = {size.y, size.x};
-        if (halves.width() == size.x && halves.height() == size.y) {
-            by_columns = along_columns;
-            return;
-        }
-        by_columns = along_columns;
-        halves = Array2d<std::uint32_t>(size.x, size.y);
-        post_shares = Array2d<std::uint16_t>(size.x, size.y);
+        if (halves.width() == grid.columns() && halves.height() == grid.rows()) return;
+        halves = Array2d<std::uint32_t>(grid.columns(), grid.rows());
+        post_shares = Array2d<std::uint16_t>(grid.columns(), grid.rows());
         margin_texture.emplace(gl::TextureKind::D2, gl::Format::RG16F,
-                               gl::Extent{size.x, size.y, 1}, 1, "light_margins");
+                               gl::Extent{grid.columns(), grid.rows(), 1}, 1, "light_margins");
         margin_texture->set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
     }
 
-    void take(const light::MarginRun& run) {
-        const int x = run.first, y = run.line;
-        encode(run, &halves.at(x, y), &post_shares.at(x, y));
+    void take(const light::ClearanceRun& run) {
+        encode(run, &halves.at(run.column, run.row), &post_shares.at(run.column, run.row));
     }
 
     /// All posts are in the shade, or none.
@@ -336,11 +327,11 @@ struct GroundLight::Impl {
     /// Margins of a sun, where the DEM has one; false on maps of the world, whose rows end in
     /// poles.
     bool find_margins(const light::SunOverDem& over) {
+        make_room();
         if (!has_sun) return false;
         try {
-            const light::Margins::Found found = level->margins->each(
-                frame.origin(), over, [&](bool along_columns) { turn(along_columns); },
-                [&](const light::MarginRun& run) { take(run); });
+            const light::Clearances::Found found = level->margins->each(
+                frame.origin(), over, [&](const light::ClearanceRun& run) { take(run); });
             if (found.night) set_all(false);
             tell(found.error_rad);
         } catch (const Error& error) {
@@ -409,10 +400,7 @@ void GroundLight::follow(const SunLight& light, double exaggeration, double pixe
     const glm::dvec3& d = light.direction;
     const light::SunOverDem over{std::atan2(d.x, d.y), std::atan2(d.z, std::hypot(d.x, d.y)),
                                  light.semidiameter_rad};
-    if (!my.find_margins(over)) {
-        my.turn(my.by_columns);
-        my.set_all(true);
-    }
+    if (!my.find_margins(over)) my.set_all(true);
     my.upload_sun();
     my.sun = wanted;
 }
@@ -454,8 +442,7 @@ void GroundLight::describe(FrameBlock& block) const {
     const int sky_reduction = my.sky_found ? my.sky_found->ground.reduction : 1;
     const double exaggeration = my.level ? my.level->ground.exaggeration : 1;
     block.light_grid = {static_cast<float>(1 / (given * reduction)),
-                        static_cast<float>(1 / (given * sky_reduction)),
-                        my.by_columns ? 1.0F : 0.0F,
+                        static_cast<float>(1 / (given * sky_reduction)), 0,
                         static_cast<float>(kMarginPosts * reduction *
                                            std::max(spacing_m.x, spacing_m.y) * exaggeration)};
     const geo::Geodetic centre = grid.center();

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "dem/posts.h"
-#include "light/shadows.h"
+#include "light/raster/shadows.h"
 #include "session/active_effects.h"
 
 namespace relevo::session {

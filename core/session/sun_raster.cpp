@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "light/beyond.h"
-#include "light/horizons.h"
-#include "light/sun_hours.h"
+#include "light/raster/beyond.h"
+#include "light/raster/horizons.h"
+#include "light/raster/sun_hours.h"
 #include "session/words.h"
 #include "sun/position.h"
 
@@ -68,7 +68,7 @@ SunRaster sky_of(const dem::Posts& posts, const dem::Window& part,
 }
 
 /// What only one kind of raster says of itself.
-light::RasterMetadata metadata_of(const dem::Posts& posts, const SunRasterWanted& wanted) {
+output::RasterMetadata metadata_of(const dem::Posts& posts, const SunRasterWanted& wanted) {
     const auto air = [&] { return air_of_posts(wanted.refraction, posts); };
     if (wanted.figure == SunFigure::SkyView)
         return {{"DIRECTIONS", fmt::format("{}", kSkyDirections)}};
@@ -77,7 +77,7 @@ light::RasterMetadata metadata_of(const dem::Posts& posts, const SunRasterWanted
                 {"TIME_TO", sun::to_iso(wanted.end, wanted.zone)},
                 {"TIME_ZONE", wanted.zone.name()},
                 {"REFRACTION", air()}};
-    light::RasterMetadata about{{"REFRACTION", air()}};
+    output::RasterMetadata about{{"REFRACTION", air()}};
     for (auto& item : metadata_of(sun_over_middle(posts, wanted.begin, wanted.refraction)))
         about.push_back(std::move(item));
     return about;
@@ -105,19 +105,19 @@ std::optional<light::Beyond> beyond_of(const dem::Posts& posts, const SunRasterW
 
 }  // namespace
 
-light::RasterBand sun_hours_band() {
+output::RasterBand sun_hours_band() {
     return {"sun hours", "h"};
 }
 
-light::RasterBand shadow_band(bool soft) {
+output::RasterBand shadow_band(bool soft) {
     return {soft ? "visible fraction of the solar disc" : "direct sun", "1"};
 }
 
-light::RasterBand sky_view_band() {
+output::RasterBand sky_view_band() {
     return {"sky-view factor", "1"};
 }
 
-light::RasterBand band_of(SunFigure figure) {
+output::RasterBand band_of(SunFigure figure) {
     if (figure == SunFigure::Hours) return sun_hours_band();
     return figure == SunFigure::Shadow ? shadow_band(false) : sky_view_band();
 }
@@ -129,8 +129,8 @@ SunOverMiddle sun_over_middle(const dem::Posts& posts, sun::Instant utc,
     return {light::SunOverDem::of(position), air.apparent_rad(position.elevation_rad), utc};
 }
 
-light::RasterMetadata metadata_of(const SunOverMiddle& sun) {
-    light::RasterMetadata about{
+output::RasterMetadata metadata_of(const SunOverMiddle& sun) {
+    output::RasterMetadata about{
         {"SUN_AZIMUTH_DEG", fmt::format("{:.5f}", degrees(sun.sun.azimuth_rad))},
         {"SUN_APPARENT_ELEVATION_DEG", fmt::format("{:.5f}", degrees(sun.apparent_rad))},
         {"SUN_PLACE", "the middle of the DEM; azimuth from true north"}};
@@ -147,10 +147,10 @@ std::string air_of_posts(const std::string& refraction, const dem::Posts& posts)
     return refraction_at(refraction, middle_of(posts)).description();
 }
 
-light::RasterMetadata raster_metadata(const dem::Posts& posts, const std::string& version,
-                                      const std::string& definition, double terrestrial_refraction,
-                                      std::int64_t holes, const std::optional<dem::Window>& clip) {
-    light::RasterMetadata about{
+output::RasterMetadata raster_metadata(const dem::Posts& posts, const std::string& version,
+                                       const std::string& definition, double terrestrial_refraction,
+                                       std::int64_t holes, const std::optional<dem::Window>& clip) {
+    output::RasterMetadata about{
         {"TIFFTAG_SOFTWARE", "Relevo " + version},
         {"DEFINITION", definition},
         {"DEM", posts.about().path},
@@ -205,9 +205,9 @@ void write_sun_raster(OutputFile& file, const dem::Posts& posts, const SunRaster
                       const std::function<void(double)>& done) {
     const dem::Grid& grid = posts.grid();
     const bool is_mask = wanted.figure == SunFigure::Shadow;
-    light::RasterWriter writer(file, grid,
-                               is_mask ? light::RasterType::Byte : light::RasterType::Float,
-                               {band_of(wanted.figure)});
+    output::RasterWriter writer(file, grid,
+                                is_mask ? output::RasterType::Byte : output::RasterType::Float,
+                                {band_of(wanted.figure)});
     const auto put = [&](const dem::Window& part, const SunRaster& raster) {
         if (is_mask)
             writer.put(0, part.column, part.row, mask_of(raster.values));
@@ -230,7 +230,7 @@ void write_sun_raster(OutputFile& file, const dem::Posts& posts, const SunRaster
             definition = raster.definition;
             holes += raster.holes;
         }
-    light::RasterMetadata about =
+    output::RasterMetadata about =
         raster_metadata(posts, version, definition, kTerrestrialRefraction, holes);
     for (auto& item : metadata_of(posts, wanted))
         about.push_back(std::move(item));

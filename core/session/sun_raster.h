@@ -8,8 +8,8 @@
 #include "base/array2d.h"
 #include "base/output_file.h"
 #include "dem/posts.h"
-#include "light/raster.h"
-#include "light/shadows.h"
+#include "light/raster/shadows.h"
+#include "output/raster_writer.h"
 #include "sun/zone.h"
 
 /// Rasters of the sun over a DEM, as the command line and the window make them alike.
@@ -21,9 +21,9 @@ inline constexpr double kSunStep_s = 180;
 inline constexpr int kSkyDirections = 36;
 
 /// Bands as files have them.
-light::RasterBand sun_hours_band();
-light::RasterBand shadow_band(bool soft);
-light::RasterBand sky_view_band();
+output::RasterBand sun_hours_band();
+output::RasterBand shadow_band(bool soft);
+output::RasterBand sky_view_band();
 
 /// The sun over the middle of a DEM.
 struct SunOverMiddle {
@@ -38,7 +38,7 @@ SunOverMiddle sun_over_middle(const dem::Posts& posts, sun::Instant utc,
                               const std::string& refraction);
 
 /// Where the sun stands, and when.
-light::RasterMetadata metadata_of(const SunOverMiddle& sun);
+output::RasterMetadata metadata_of(const SunOverMiddle& sun);
 
 /// A refraction's model in words, over each post.
 std::string air_of_posts(const std::string& refraction, const dem::Posts& posts);
@@ -46,10 +46,10 @@ std::string air_of_posts(const std::string& refraction, const dem::Posts& posts)
 /// What every raster of light says of itself.
 /// @param version  of the program
 /// @param clip     of the DEM's posts, where it is not all of them
-light::RasterMetadata raster_metadata(const dem::Posts& posts, const std::string& version,
-                                      const std::string& definition, double terrestrial_refraction,
-                                      std::int64_t holes,
-                                      const std::optional<dem::Window>& clip = {});
+output::RasterMetadata raster_metadata(const dem::Posts& posts, const std::string& version,
+                                       const std::string& definition, double terrestrial_refraction,
+                                       std::int64_t holes,
+                                       const std::optional<dem::Window>& clip = {});
 
 /// 0 in the shade, 1 lit, 255 without a figure. @param lit  as light::Shadows
 Array2d<std::uint8_t> mask_of(const Array2d<float>& lit);
@@ -81,7 +81,7 @@ struct SunRaster {
     std::string definition;
 };
 
-light::RasterBand band_of(SunFigure figure);
+output::RasterBand band_of(SunFigure figure);
 
 /// @param part  as in light::ShadowOptions; without columns: all
 /// @param done  likewise; what it throws ends the work
@@ -94,7 +94,7 @@ SunRaster sun_raster(const dem::Posts& posts, const SunRasterWanted& wanted,
 /// @param most     posts of a part
 /// @param version  of the program
 /// @param done     told which share has been done since it was told last; what it throws ends it
-/// @throws Error as sun_raster() and light::RasterWriter
+/// @throws Error as sun_raster() and output::RasterWriter
 void write_sun_raster(OutputFile& file, const dem::Posts& posts, const SunRasterWanted& wanted,
                       const SunRaster* whole, std::int64_t most, const std::string& version,
                       const std::function<void(double)>& done = {});

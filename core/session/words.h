@@ -5,7 +5,7 @@
 
 #include "dem/source.h"
 #include "geo/format.h"
-#include "light/event_time.h"
+#include "light/point/event_time.h"
 #include "scene/scene.h"
 #include "sun/position.h"
 #include "sun/refraction.h"

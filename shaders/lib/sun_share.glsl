@@ -1,6 +1,6 @@
 //! provides  sun_share: how much of the sun's disc a point of the ground sees past the ground of the DEM
 //! reads     light_margins, light_shares (core/render/ground_light.h)
-//! source    core/light/sweep.h finds the shadows' edges
+//! source    core/light/raster/clearance.h finds the clearances
 
 //@ include lib/moved.glsl
 
@@ -28,7 +28,6 @@ vec2 sun_way(in vec3 to_sun, in vec3 up) {
     vec3 east = east_at(up);
     vec2 level = frame.light_map.x > 0.5 ? vec2(dot(to_sun, east), dot(to_sun, cross(up, east))) : to_sun.xy;
     vec2 way = level.x * frame.light_axes.xy + level.y * frame.light_axes.zw;
-    way = frame.light_grid.z > 0.5 ? way.yx : way;
     return way * inversesqrt(max(dot(way, way), 1e-30));
 }
 
@@ -74,7 +73,6 @@ float sun_share_of_margins(in vec2 node, in vec2 way, in float pixel, in float m
 /// @param to_sun  as the point sees it, unit
 float sun_share(in Surface s, in vec3 to_sun) {
     vec2 node = (s.post + 0.5) * frame.light_grid.x - 0.5;
-    node = frame.light_grid.z > 0.5 ? node.yx : node;
     float pixel = s.pixel_posts * frame.light_grid.x, moved_m = surface_moved_up_m(s);
     float near = sun_share_of_margins(node, sun_way(to_sun, s.up), min(pixel, 1.0), moved_m);
     // Pixels that hold several posts see the mean of what those see.

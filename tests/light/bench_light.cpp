@@ -3,17 +3,19 @@
 //   cmake -B build/bench -DCMAKE_BUILD_TYPE=Release -DRELEVO_TESTS=ON &&
 //   build/bench/bin/bench_light
 
+#include <algorithm>
 #include <cmath>
 
 #include <benchmark/benchmark.h>
 
 #include "base/units.h"
 #include "dem/load.h"
-#include "light/horizon.h"
-#include "light/horizons.h"
-#include "light/shadows.h"
-#include "light/sun_hours.h"
-#include "light/sweep.h"
+#include "light/point/horizon.h"
+#include "light/raster/horizons.h"
+#include "light/raster/shadows.h"
+#include "light/raster/sun_hours.h"
+#include "light/sweep/kernels.h"
+#include "light/sweep/sweep.h"
 #include "sun/zone.h"
 #include "support/support.h"
 
@@ -70,24 +72,28 @@ void horizon_profile(benchmark::State& state) {
 BENCHMARK(horizon_profile)->Arg(3600)->Arg(18000)->Unit(benchmark::kMillisecond);
 
 /// One sun over all posts; items are posts, each a cell-step.
-/// @param state  azimuth from the grid's north, lanes of vectors
+/// @param state  azimuth from the grid's north, floats of vectors
 void sweep_moment(benchmark::State& state) {
     const Array2d<float>& height_m = field().height_m;
     const Sweep sweep(height_m.data(), height_m.width(), height_m.height(), height_m.width());
     const glm::dvec2 spacing_m = field().grid.post_spacing_m();
     const double azimuth_rad = radians(static_cast<double>(state.range(0)));
-    const SweepSun sun = sun_over_map(
-        {spacing_m.x, spacing_m.y}, {std::sin(azimuth_rad), -std::cos(azimuth_rad)}, radians(20),
-        {height_m.width() / 2.0, height_m.height() / 2.0}, 0.87 / 6371000);
-    Array2d<float> edge_m(height_m.width(), height_m.height());
+    const SweepSun sun =
+        sun_over_map(spacing_m, {std::sin(azimuth_rad), -std::cos(azimuth_rad)}, radians(20),
+                     {height_m.width() / 2, height_m.height() / 2}, 0.87 / 6371000);
+    Array2d<float> shadow_m(height_m.width(), height_m.height());
+    set_widest_vector(static_cast<int>(state.range(1)));
     for (auto _ : state)
-        sweep.shadow_edge(sun, {0, 0, edge_m.width(), edge_m.height()}, edge_m.data(),
-                          edge_m.width(), static_cast<int>(state.range(1)));
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(edge_m.size()));
+        sweep.each_shadow(sun, {{0, 0, shadow_m.width(), shadow_m.height()}}, Sweep::kNoFloor_m,
+                          [&](const SweepRun& run) {
+                              std::copy_n(run.found, run.count, &shadow_m.at(run.column, run.row));
+                          });
+    set_widest_vector(kVectorFloats);
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(shadow_m.size()));
 }
 BENCHMARK(sweep_moment)
     ->ArgsProduct({{0, 135, 160, 250}, {4, 8, 16}})
-    ->ArgNames({"azimuth", "lanes"})
+    ->ArgNames({"azimuth", "floats"})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

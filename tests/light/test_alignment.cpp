@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "light/alignment.h"
 #include "light/fields.h"
+#include "light/point/alignment.h"
 #include "sun/position.h"
 #include "sun/position_table.h"
 

@@ -4,8 +4,8 @@
 
 #include "base/units.h"
 #include "dem/fixture.h"
-#include "light/beyond.h"
 #include "light/fields.h"
+#include "light/raster/beyond.h"
 #include "sun/zone.h"
 
 namespace relevo::light {

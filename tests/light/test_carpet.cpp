@@ -1,8 +1,8 @@
 #include <numeric>
 
 #include "base/units.h"
-#include "light/carpet.h"
 #include "light/fields.h"
+#include "light/point/carpet.h"
 #include "sun/position.h"
 
 namespace relevo::light {

@@ -6,9 +6,9 @@
 #include "base/array2d.h"
 #include "base/units.h"
 #include "cli/raster.h"
-#include "light/clear_sky.h"
 #include "light/fields.h"
-#include "light/sun_hours.h"
+#include "light/point/clear_sky.h"
+#include "light/raster/sun_hours.h"
 #include "sun/zone.h"
 #include "support/support.h"
 

@@ -6,8 +6,8 @@
 
 #include "base/text.h"
 #include "base/units.h"
-#include "light/direct_light.h"
 #include "light/fields.h"
+#include "light/point/direct_light.h"
 #include "sun/position.h"
 #include "sun/position_table.h"
 

@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "base/units.h"
-#include "light/carpet.h"
-#include "light/doubt.h"
 #include "light/fields.h"
+#include "light/point/carpet.h"
+#include "light/point/doubt.h"
 
 namespace relevo::light {
 namespace {

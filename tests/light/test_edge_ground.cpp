@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "light/carpet.h"
-#include "light/direct_light.h"
-#include "light/doubt.h"
 #include "light/fields.h"
-#include "light/horizon.h"
-#include "light/horizons.h"
-#include "light/sun_hours.h"
+#include "light/point/carpet.h"
+#include "light/point/direct_light.h"
+#include "light/point/doubt.h"
+#include "light/point/horizon.h"
+#include "light/raster/horizons.h"
+#include "light/raster/sun_hours.h"
 #include "sun/time.h"
 #include "sun/zone.h"
 

@@ -1,9 +1,9 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "light/direct_light.h"
-#include "light/event_time.h"
 #include "light/fields.h"
+#include "light/point/direct_light.h"
+#include "light/point/event_time.h"
 
 namespace relevo::light {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "base/units.h"
 #include "dem/fixture.h"
-#include "light/direct_light.h"
 #include "light/fields.h"
+#include "light/point/direct_light.h"
 
 namespace relevo::light {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/units.h"
 #include "geo/local_frame.h"
 #include "light/fields.h"
-#include "light/horizon.h"
+#include "light/point/horizon.h"
 
 namespace relevo::light {
 namespace {

@@ -7,10 +7,10 @@
 #include <glm/vec3.hpp>
 #include <gtest/gtest.h>
 
-#include "light/clear_sky.h"
 #include "light/fields.h"
-#include "light/ground_slope.h"
-#include "light/sun_hours.h"
+#include "light/point/clear_sky.h"
+#include "light/raster/ground_slope.h"
+#include "light/raster/sun_hours.h"
 #include "sun/position.h"
 #include "sun/zone.h"
 
@@ -100,14 +100,13 @@ TEST(GroundSlope, OfAPlaneIsTheSameOnTheEdgeAndBesideAVoid) {
                                              : 1000 + 30 * (0.3 * column - 0.4 * row) + 480;
         });
     const dem::Posts posts(field);
-    const SweepWindow all{0, 0, kSide, kSide};
-    const PartHeights heights(posts, all);
-    TileValues east(all, 0), north(all, 0);
-    ground_slope(posts.grid(), heights.view, all, east, north);
+    const Window all{0, 0, kSide, kSide};
+    const GroundSlope slope(posts.grid(), WindowHeights(posts, all), all);
+    const Array2d<float>&east = slope.east, &north = slope.north;
     for (const auto& [column, row] :
          {std::pair{10, 10}, {0, 20}, {40, 20}, {20, 0}, {20, 40}, {0, 0}, {40, 40}, {21, 20}}) {
-        EXPECT_NEAR(east.row(row)[column], 0.3, 0.002) << column << " " << row;
-        EXPECT_NEAR(north.row(row)[column], 0.4, 0.002) << column << " " << row;
+        EXPECT_NEAR(east.at(column, row), 0.3, 0.002) << column << " " << row;
+        EXPECT_NEAR(north.at(column, row), 0.4, 0.002) << column << " " << row;
     }
 }
 

@@ -9,8 +9,8 @@
 #include "base/parallel_for.h"
 #include "base/units.h"
 #include "light/fields.h"
-#include "light/horizon.h"
-#include "light/shadows.h"
+#include "light/point/horizon.h"
+#include "light/raster/shadows.h"
 #include "sun/zone.h"
 #include "support/support.h"
 

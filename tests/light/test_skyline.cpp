@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "base/units.h"
-#include "light/skyline.h"
+#include "light/point/skyline.h"
 #include "support/support.h"
 
 namespace relevo::light {

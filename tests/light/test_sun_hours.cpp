@@ -9,10 +9,10 @@
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "light/direct_light.h"
 #include "light/fields.h"
-#include "light/horizon.h"
-#include "light/sun_hours.h"
+#include "light/point/direct_light.h"
+#include "light/point/horizon.h"
+#include "light/raster/sun_hours.h"
 #include "sun/zone.h"
 #include "support/support.h"
 
@@ -131,7 +131,7 @@ void compare_with_places(const std::string& name, const dem::Heightfield& field,
     fmt::print(
         "[ accuracy ] {}, {}: sun hours of {} posts against exact ones: mean {:.2f} min "
         "(limit 1.5), 99 % within {:.1f} (limit 6); {} windows\n",
-        name, date, count, mean(minutes), quantile(minutes, 0.99), day.windows);
+        name, date, count, mean(minutes), quantile(minutes, 0.99), day.tiles);
     EXPECT_LE(mean(minutes), 1.5) << name;
     EXPECT_LE(quantile(minutes, 0.99), 6) << name;
 }

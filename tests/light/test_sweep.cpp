@@ -14,7 +14,8 @@
 #include "base/parallel_for.h"
 #include "base/units.h"
 #include "light/fields.h"
-#include "light/sweep.h"
+#include "light/sweep/kernels.h"
+#include "light/sweep/sweep.h"
 #include "support/support.h"
 
 namespace relevo::light {
@@ -36,10 +37,10 @@ Heights heights_of(int columns, int rows, const std::function<double(int, int)>&
 /// A sun over a plane or round map, by its azimuth from the top of the grid, clockwise.
 struct MapSun {
     double azimuth_deg, elevation_deg;
-    GridPair spacing_m{30, 30};
+    glm::dvec2 spacing_m{30, 30};
     double curvature = 0;
 
-    GridPair direction() const {
+    glm::dvec2 direction() const {
         // Exact for the compass rose.
         const auto part = [](double deg) {
             const double turned = std::remainder(deg, 360);
@@ -53,15 +54,18 @@ struct MapSun {
     }
 };
 
-Heights edge_of(const Heights& heights, const SweepSun& sun, const SweepWindow& window,
-                int lanes = Sweep::kMostLanes) {
+Heights edge_of(const Heights& heights, const SweepSun& sun, const Window& window,
+                float floor_m = Sweep::kNoFloor_m) {
     Heights edge(window.columns, window.rows);
     Sweep(heights.data(), heights.width(), heights.height(), heights.width())
-        .shadow_edge(sun, window, edge.data(), edge.width(), lanes);
+        .each_shadow(sun, {window}, floor_m, [&](const SweepRun& run) {
+            std::copy_n(run.found, run.count,
+                        &edge.at(run.column - window.column, run.row - window.row));
+        });
     return edge;
 }
-Heights edge_of(const Heights& heights, const SweepSun& sun, int lanes = Sweep::kMostLanes) {
-    return edge_of(heights, sun, {0, 0, heights.width(), heights.height()}, lanes);
+Heights edge_of(const Heights& heights, const SweepSun& sun) {
+    return edge_of(heights, sun, {0, 0, heights.width(), heights.height()});
 }
 
 /// The same for one post in double precision: its own ray over all crossings with rows and columns,
@@ -76,8 +80,7 @@ double marched_edge_m(const Heights& heights, const MapSun& map, int column, int
     const double least_m =
         std::isnan(heights.at(column, row)) ? -1e9 : heights.at(column, row) - 1.0;
     const auto crossing = [&](double c, double r, bool on_row) {
-        const double s =
-            std::hypot((c - column) * map.spacing_m.column, (r - row) * map.spacing_m.row);
+        const double s = std::hypot((c - column) * map.spacing_m.x, (r - row) * map.spacing_m.y);
         const double at = on_row ? c : r, last = (on_row ? heights.width() : heights.height()) - 1;
         if (at < -1e-9 || at > last + 1e-9) return false;
         const double fall = tangent * s + a_metre * s * s / 2;
@@ -93,18 +96,18 @@ double marched_edge_m(const Heights& heights, const MapSun& map, int column, int
         if (!std::isnan(h)) edge_m = std::max(edge_m, h - fall);
         return true;
     };
-    const GridPair way = sun.towards;
-    for (int r = row + (way.row > 0 ? 1 : -1);
-         way.row != 0 && r >= 0 && r<heights.height(); r += way.row> 0 ? 1 : -1)
-        if (!crossing(column + (r - row) / way.row * way.column, r, true)) break;
-    for (int c = column + (way.column > 0 ? 1 : -1);
-         way.column != 0 && c >= 0 && c<heights.width(); c += way.column> 0 ? 1 : -1)
-        if (!crossing(c, row + (c - column) / way.column * way.row, false)) break;
+    const glm::dvec2 way = sun.ray.first;
+    for (int r = row + (way.y > 0 ? 1 : -1);
+         way.y != 0 && r >= 0 && r<heights.height(); r += way.y> 0 ? 1 : -1)
+        if (!crossing(column + (r - row) / way.y * way.x, r, true)) break;
+    for (int c = column + (way.x > 0 ? 1 : -1);
+         way.x != 0 && c >= 0 && c<heights.width(); c += way.x> 0 ? 1 : -1)
+        if (!crossing(c, row + (c - column) / way.x * way.y, false)) break;
     return edge_m;
 }
 
 /// @return the posts of a window
-Heights marched_edges(const Heights& heights, const MapSun& sun, const SweepWindow& window) {
+Heights marched_edges(const Heights& heights, const MapSun& sun, const Window& window) {
     Heights edges(window.columns, window.rows);
     const double highest_m = dem::statistics(heights).max_m;
     parallel_for(0, window.rows, 1, [&](int first, int last) {
@@ -151,8 +154,8 @@ const std::vector<double> kAzimuths{0,   22.5,  44.9,  45,    45.1, 67.5,  89.9,
                                     225, 247.5, 270.1, 292.5, 315,  337.5};
 
 /// Shares of posts that a sweep and a march of every post disagree about, for suns of all azimuths.
-void compare_all(const std::string& name, const Heights& heights, const GridPair& spacing_m,
-                 const SweepWindow& window) {
+void compare_all(const std::string& name, const Heights& heights, const glm::dvec2& spacing_m,
+                 const Window& window) {
     Heights inside(window.columns, window.rows);
     for (int row = 0; row < window.rows; ++row)
         for (int column = 0; column < window.columns; ++column)
@@ -234,8 +237,8 @@ void expect_shade(const Heights& heights, const MapSun& sun,
     int differ = 0;
     for (int row = 0; row < heights.height(); ++row)
         for (int column = 0; column < heights.width(); ++column) {
-            const double x_m = (column - (heights.width() - 1) / 2) * sun.spacing_m.column;
-            const double y_m = ((heights.height() - 1) / 2 - row) * sun.spacing_m.row;
+            const double x_m = (column - (heights.width() - 1) / 2) * sun.spacing_m.x;
+            const double y_m = ((heights.height() - 1) / 2 - row) * sun.spacing_m.y;
             differ += shaded(x_m, y_m) != (heights.at(column, row) < edge.at(column, row));
         }
     const double share = differ / double(heights.size());
@@ -246,23 +249,23 @@ void expect_shade(const Heights& heights, const MapSun& sun,
 
 TEST(Sweep, ConeShadesTheTriangleBehindIt) {
     constexpr double kRadius_m = 600, kHeight_m = 500;
-    const GridPair spacing{10, 14};
+    const glm::dvec2 spacing{10, 14};
     const Heights cone = heights_of(401, 301, [&](int column, int row) {
-        const double r_m = std::hypot((column - 200) * spacing.column, (150 - row) * spacing.row);
+        const double r_m = std::hypot((column - 200) * spacing.x, (150 - row) * spacing.y);
         return std::max(0.0, kHeight_m * (1 - r_m / kRadius_m));
     });
     for (const double azimuth_deg : {0.0, 30.0, 45.0, 77.0, 90.0, 200.0, 291.0}) {
         const MapSun sun{azimuth_deg, 20, spacing};
         const double tip_m = kHeight_m / std::tan(radians(20));
         const double sine = kRadius_m / tip_m;
-        const GridPair to_sun = sun.direction();
+        const glm::dvec2 to_sun = sun.direction();
         expect_shade(
             cone, sun,
             [&](double x_m, double y_m) {
                 // Along and across the way from the sun; the tangents from the tip of the shadow to
                 // the foot, and on the cone itself the lines where they touch, up to the top.
-                const double along = -(x_m * to_sun.column - y_m * to_sun.row);
-                const double across = std::abs(x_m * -to_sun.row - y_m * to_sun.column);
+                const double along = -(x_m * to_sun.x - y_m * to_sun.y);
+                const double across = std::abs(x_m * -to_sun.y - y_m * to_sun.x);
                 const double touch = kRadius_m * sine;
                 const double foot_across = kRadius_m * std::sqrt(1 - sine * sine);
                 if (std::hypot(along, across) < kRadius_m)
@@ -319,7 +322,7 @@ TEST(Sweep, TurnsWithTheGround) {
     // Odd numbers: a post is in the middle, which lines are counted from.
     const int columns = 403, rows = 343;
     const Heights heights = heights_of(columns, rows, [&](int c, int r) { return all.at(c, r); });
-    const GridPair spacing{75, 92};
+    const glm::dvec2 spacing{75, 92};
     const Heights mirrored =
         heights_of(columns, rows, [&](int c, int r) { return heights.at(columns - 1 - c, r); });
     const Heights flipped =
@@ -329,7 +332,8 @@ TEST(Sweep, TurnsWithTheGround) {
     for (const double azimuth_deg : {0.0, 20.0, 45.0, 71.0, 90.0, 110.0, 205.0}) {
         const MapSun sun{azimuth_deg, 6, spacing, 0.87 / 6371000};
         const Heights edge = edge_of(heights, sun.over(heights));
-        const auto edge_under = [&](const Heights& ground, double azimuth, const GridPair& posts) {
+        const auto edge_under = [&](const Heights& ground, double azimuth,
+                                    const glm::dvec2& posts) {
             return edge_of(ground, MapSun{azimuth, 6, posts, sun.curvature}.over(ground));
         };
         const Heights a = edge_under(mirrored, -azimuth_deg, spacing);
@@ -340,7 +344,7 @@ TEST(Sweep, TurnsWithTheGround) {
         expect_near(edge,
                     heights_of(columns, rows, [&](int c, int r) { return b.at(c, rows - 1 - r); }),
                     0.01, 200);
-        const Heights d = edge_under(turned, 270 - azimuth_deg, {spacing.row, spacing.column});
+        const Heights d = edge_under(turned, 270 - azimuth_deg, {spacing.y, spacing.x});
         expect_near(edge, heights_of(columns, rows, [&](int c, int r) { return d.at(r, c); }), 0.01,
                     200);
     }
@@ -351,9 +355,12 @@ TEST(Sweep, HoldsTheSameBitsForAnyWidthOfVectorsAndAnyWindow) {
     for (const double azimuth_deg : {0.0, 33.0, 90.0, 160.0, 250.0, 359.0}) {
         const SweepSun sun = MapSun{azimuth_deg, 4, {75, 92}, 0.87 / 6371000}.over(heights);
         const Heights whole = edge_of(heights, sun);
-        EXPECT_EQ(whole, edge_of(heights, sun, 4));
-        EXPECT_EQ(whole, edge_of(heights, sun, 8));
-        const SweepWindow window{37, 101, 201, 99};
+        for (const int floats : {1, 4, 8}) {
+            set_widest_vector(floats);
+            EXPECT_EQ(whole, edge_of(heights, sun)) << floats;
+        }
+        set_widest_vector(kVectorFloats);
+        const Window window{37, 101, 201, 99};
         const Heights part = edge_of(heights, sun, window);
         for (int row = 0; row < window.rows; ++row)
             for (int column = 0; column < window.columns; ++column) {
@@ -371,304 +378,24 @@ TEST(Sweep, RaysAlongTheBorderHaveTheSameBitsForAnyWindow) {
     // the other side of the post has met the wall.
     const Heights heights =
         heights_of(403, 64, [](int column, int) { return column == 270 ? 3000 : 0; });
-    const Sweep sweep(heights.data(), heights.width(), heights.height(), heights.width());
-    const float floor_m = sweep.lowest_m() - 300;
-    const auto edge_of_window = [&](const SweepSun& sun, const SweepWindow& window) {
-        Heights edge(window.columns, window.rows);
-        sweep.each_edge(
-            sun, window,
-            [&](const SweepRun& run) {
-                for (int i = 0; i < run.count; ++i)
-                    edge.at((run.along_column ? run.line : run.first + i) - window.column,
-                            (run.along_column ? run.first + i : run.line) - window.row) =
-                        run.found[i];
-            },
-            Sweep::kMostLanes, floor_m);
-        return edge;
+    const float floor_m = -300;
+    const auto edge_of_window = [&](const SweepSun& sun, const Window& window) {
+        return edge_of(heights, sun, window, floor_m);
     };
-    const SweepWindow whole{0, 0, heights.width(), heights.height()};
-    const SweepWindow part{300, 0, 90, heights.height()};
+    const Window whole{0, 0, heights.width(), heights.height()};
+    const Window part{300, 0, 90, heights.height()};
     for (const auto& [reference, turn, bend] :
          {std::array{386.0, 7e-7, 1.3e-9}, std::array{254.0, 1.6e-7, 4.8e-9},
           std::array{378.0, -2e-6, 1.4e-9}, std::array{384.0, 1.9e-5, 1.8e-11}}) {
         SweepSun sun = MapSun{270, 12, {75, 92}, 0.87 / 6371000}.over(heights);
-        sun.reference = {reference, 31};
-        sun.towards.row = turn;
-        sun.bend.row = bend;
+        sun.ray.reference = {reference, 31};
+        sun.ray.first.y = turn;
+        sun.ray.second.y = bend;
         const Heights all = edge_of_window(sun, whole), some = edge_of_window(sun, part);
         for (int row = 0; row < part.rows; ++row)
             for (int column = 0; column < part.columns; ++column)
                 ASSERT_EQ(some.at(column, row), all.at(part.column + column, row))
                     << reference << ": " << column << " " << row;
-    }
-}
-
-constexpr double kCurvature = 0.87 / 6371000;
-constexpr float kFloor_m = 300;  // under the lowest post
-
-/// Suns one after the other, block by block, against each by itself.
-struct Together {
-    const Heights& heights;
-    SweepWindow window;
-    std::vector<SweepSun> suns;
-    bool all_posts;
-    std::vector<double> lifts{0};  // of tangents, by airs of which each is taken for some posts
-    bool as_one = false;           // those are looked up together
-    long looked_at = 0, left_lit = 0, left_dark = 0, other = 0;
-
-    SweepSun sun(std::size_t k, std::size_t air) const {
-        SweepSun sun = suns[k];
-        sun.tangent += lifts[air];
-        return sun;
-    }
-
-    /// Where a post is in arrays of the window.
-    std::size_t index(const SweepRun& run, int i) const {
-        const int column = run.along_column ? run.line : run.first + i,
-                  row = run.along_column ? run.first + i : run.line;
-        return static_cast<std::size_t>(row - window.row) *
-                   static_cast<std::size_t>(window.columns) +
-               static_cast<std::size_t>(column - window.column);
-    }
-    std::size_t posts() const {
-        return static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows);
-    }
-
-    using Edges = std::vector<std::vector<std::vector<float>>>;  // of each sun, each air, each post
-
-    /// @param dark  gets the posts that are in the shade at first
-    Edges edges(const Sweep& sweep, bool of_all_posts, std::vector<bool>& dark) const {
-        std::vector<Sweep::Blocks::Sun> moments;
-        for (std::size_t k = 0; k < suns.size(); ++k) {
-            Sweep::Blocks::Band band;
-            if (as_one) band.suns.push_back({suns[k], lifts});
-            for (std::size_t air = 0; air < lifts.size() && !as_one; ++air)
-                band.suns.push_back({sun(k, air)});
-            moments.push_back({{band}, of_all_posts});
-        }
-        const std::vector<std::vector<float>> none(lifts.size(),
-                                                   std::vector<float>(posts(), kHole));
-        Edges found(suns.size(), none);
-        EXPECT_TRUE(Sweep::Blocks::go_together(moments));
-        Sweep::Blocks blocks(sweep, moments, window, sweep.lowest_m() - kFloor_m, kCurvature);
-        const auto keep = [&](std::vector<float>& to, const SweepRun& run, const float* edge_m) {
-            for (int i = 0; i < run.count; ++i)
-                to[index(run, i)] = edge_m[i];
-        };
-        while (blocks.next()) {
-            blocks.each_dark([&](const SweepRun& run) {
-                for (int i = 0; i < run.count; ++i)
-                    dark[index(run, i)] = true;
-            });
-            for (std::size_t k = 0; k < suns.size(); ++k)
-                for (std::size_t some = 0; some < (as_one ? 1 : lifts.size()); ++some)
-                    blocks.each_edge(k, 0, some, [&](const SweepRun& run, const float* const* of) {
-                        EXPECT_EQ(run.found, of[0]);
-                        for (std::size_t i = 0; i < (as_one ? lifts.size() : 1); ++i)
-                            keep(found[k][some + i], run, of[i]);
-                    });
-        }
-        return found;
-    }
-
-    void compare() {
-        const Sweep sweep(heights.data(), heights.width(), heights.height(), heights.width());
-        std::mutex mutex;
-        std::vector<bool> dark(posts());
-        const Edges found = edges(sweep, all_posts, dark);
-        std::vector<bool> none(posts());
-        const Edges all = as_one ? edges(sweep, true, none) : found;
-        for (std::size_t air = 0; air < lifts.size(); ++air) {
-            std::vector<bool> dark_so_far = dark;
-            for (std::size_t k = 0; k < suns.size(); ++k)
-                sweep.each_edge(
-                    sun(k, air), window,
-                    [&](const SweepRun& run) {
-                        const std::lock_guard lock(mutex);
-                        for (int i = 0; i < run.count; ++i) {
-                            const std::size_t at = index(run, i);
-                            const float edge_m = as_one ? all[k][air][at] : run.found[i];
-                            other += !(std::abs(edge_m - run.found[i]) < 0.01);
-                            compare_post(run, i, edge_m, found[k][air][at], dark_so_far,
-                                         sun(k, air), sweep.lowest_m());
-                        }
-                    },
-                    Sweep::kMostLanes, sweep.lowest_m() - kFloor_m);
-        }
-    }
-
-    /// @param dark  posts that have been in the shade so far
-    void compare_post(const SweepRun& run, int i, float edge_m, float found,
-                      std::vector<bool>& dark, const SweepSun& sun, float lowest_m) {
-        const float height_m = run.height_m[i];
-        const std::size_t at = index(run, i);
-        const double t = run.along_column ? sun.tangent_at(run.line, run.first + i)
-                                          : sun.tangent_at(run.first + i, run.line);
-        const double earth_m = t < 0 ? lowest_m + t * t / (2 * kCurvature) : kNone;
-        const bool is_dark = height_m < edge_m || height_m < earth_m;
-        if (!std::isnan(found)) {
-            ++looked_at;
-            // What the Earth hides anyway may be seen lower.
-            if (found != edge_m && std::max(found, edge_m) > earth_m - 0.1)
-                ADD_FAILURE() << run.line << " " << run.first + i;
-            dark[at] = is_dark;
-            return;
-        }
-        ++(dark[at] ? left_dark : left_lit);
-        if (!std::isnan(height_m) && dark[at] != is_dark)
-            ADD_FAILURE() << "left out and taken for " << (dark[at] ? "dark" : "lit");
-    }
-};
-
-TEST(Sweep, BlocksHaveTheBitsOfEachSunAndLeaveOutWhatIsKnown) {
-    Heights heights = test::bundled("jacksboro.tif").height_m;
-    for (int row = 100; row < 120; ++row)
-        heights.at(150, row) = kHole;
-    const SweepWindow whole{0, 0, heights.width(), heights.height()}, part{37, 101, 301, 199};
-    for (const double azimuth_deg : {20.0, 100.0, 200.0, 290.0, 359.0})
-        for (const double elevation_deg : {-1.2, 3.0, 12.0, 30.0, 60.0}) {
-            std::vector<SweepSun> suns;
-            for (int k = 0; k < 6; ++k)
-                suns.push_back(
-                    MapSun{azimuth_deg + 0.3 * k, elevation_deg + 0.2 * k, {75, 92}, kCurvature}
-                        .over(heights));
-            for (const SweepWindow& window : {whole, part}) {
-                Together all{heights, window, suns, true}, some{heights, window, suns, false};
-                all.compare();
-                EXPECT_EQ(all.left_lit + all.left_dark, 0);
-                some.compare();
-                const auto posts = static_cast<double>(some.posts() * suns.size());
-                if (elevation_deg == 60) {
-                    EXPECT_GT(some.left_lit / posts, 0.8) << azimuth_deg;
-                } else if (elevation_deg < 0) {
-                    EXPECT_GT(some.left_dark / posts, 0.2) << azimuth_deg;
-                }
-                EXPECT_FALSE(testing::Test::HasFailure()) << azimuth_deg << " " << elevation_deg;
-                if (testing::Test::HasFailure()) return;
-            }
-        }
-}
-
-/// Steps, single rocks, slopes and holes, all of any size; or a plane with rocks.
-Heights broken_ground(std::mt19937& random, int columns, int rows) {
-    const auto any = [&](double least, double most) {
-        return std::uniform_real_distribution(least, most)(random);
-    };
-    const bool is_plane = any(0, 1) < 0.5;
-    const double step_m = is_plane ? 0 : std::exp(any(0, 6)), across = any(0.01, 0.3),
-                 along = any(0.01, 0.3), slope = any(-10, 10),
-                 rough_m = is_plane || any(0, 1) < 0.6 ? 0 : any(0, 20),
-                 rocks = std::exp(any(-9, -5));
-    Heights heights = heights_of(columns, rows, [&](int column, int row) {
-        const double wave = std::sin(across * column + 3) * std::sin(along * row + 1);
-        return 500 + step_m * std::floor(2 * wave) + slope * row + any(-rough_m, rough_m);
-    });
-    for (float& height_m : heights)
-        if (any(0, 1) < rocks)
-            height_m = any(0, 1) < 0.3 ? kHole : height_m + static_cast<float>(any(1, 300));
-    return heights;
-}
-
-TEST(Sweep, BlocksLeaveOutNothingElseOfAnyGround) {
-    std::mt19937 random(7);
-    const auto any = [&](double least, double most) {
-        return std::uniform_real_distribution(least, most)(random);
-    };
-    const auto whole = [&](int least, int most) {
-        return std::uniform_int_distribution(least, most)(random);
-    };
-    long looked_at = 0, left_lit = 0, left_dark = 0, other = 0;
-    for (int round = 0; round < 2000; ++round) {
-        const Heights heights = broken_ground(random, whole(1, 130), whole(1, 130));
-        const int column = whole(0, heights.width() - 1), row = whole(0, heights.height() - 1);
-        const SweepWindow part{column, row, whole(1, heights.width() - column),
-                               whole(1, heights.height() - row)};
-        const double azimuth_deg = any(0, 360), elevation_deg = std::pow(any(0, 8), 2) - 2;
-        const GridPair spacing_m{any(20, 40), any(20, 40)};
-        std::vector<SweepSun> suns;
-        std::optional<bool> along_columns;
-        for (int k = 0; k < 7; ++k) {
-            SweepSun sun =
-                MapSun{azimuth_deg + 0.4 * k, elevation_deg + 0.3 * k, spacing_m, kCurvature}.over(
-                    heights);
-            if (!along_columns) along_columns = sun.along_columns();
-            sun.columns_set = along_columns;  // some go over the other way then
-            suns.push_back(sun);
-        }
-        Together some{heights,
-                      round % 2 == 0 ? part : SweepWindow{0, 0, heights.width(), heights.height()},
-                      suns, false};
-        if (round % 3 == 0) some.lifts = {0, any(-0.01, 0.01)};
-        some.as_one = round % 3 > 0 && round % 4 > 0;
-        while (some.as_one && std::ssize(some.lifts) < whole(1, Sweep::Blocks::kMostLevels))
-            some.lifts.push_back(any(-0.02, 0.02));
-        std::vector<Sweep::Blocks::Sun> moments;
-        for (const SweepSun& sun : suns)
-            moments.push_back({{{{{sun}}}}, false});
-        if (!Sweep::Blocks::go_together(moments)) continue;
-        some.compare();
-        looked_at += some.looked_at, left_lit += some.left_lit, left_dark += some.left_dark;
-        other += some.other;
-        ASSERT_FALSE(testing::Test::HasFailure())
-            << "round " << round << ": azimuth " << azimuth_deg << ", elevation " << elevation_deg;
-    }
-    const auto all = static_cast<double>(looked_at + left_lit + left_dark);
-    fmt::print(
-        "[ accuracy ] of any ground {:.0f} % of the posts are looked at, {:.0f} % are left lit "
-        "and {:.0f} % dark, none of them otherwise; {} of {} edges are other ones than of suns "
-        "that are swept by themselves\n",
-        100 * double(looked_at) / all, 100 * double(left_lit) / all, 100 * double(left_dark) / all,
-        other, looked_at + left_lit + left_dark);
-    EXPECT_LT(static_cast<double>(other), all / 1e5);  // at the floor, where floats round otherwise
-    EXPECT_GT(left_lit, all / 20);
-    EXPECT_GT(left_dark, all / 50);
-}
-
-// A post has the mean of two lines, of which one is on the wall and the post's own ray not.
-TEST(Sweep, BlocksLeaveOutNothingElseBesideAWallAlongRays) {
-    const Heights wall =
-        heights_of(60, 55, [](int column, int row) { return (column < 5 ? 500 : 253) - 5 * row; });
-    long left_lit = 0;
-    for (double azimuth_deg = 354; azimuth_deg < 359; azimuth_deg += 0.05)
-        for (double elevation_deg = 27; elevation_deg < 32; elevation_deg += 0.5) {
-            std::vector<SweepSun> suns;
-            for (int k = 0; k < 7; ++k)
-                suns.push_back(
-                    MapSun{azimuth_deg + 0.4 * k, elevation_deg + 0.3 * k, {39.2, 20.9}, kCurvature}
-                        .over(wall));
-            Together some{wall, {0, 0, 60, 55}, suns, false};
-            some.compare();
-            left_lit += some.left_lit;
-            ASSERT_FALSE(testing::Test::HasFailure()) << azimuth_deg << " " << elevation_deg;
-        }
-    EXPECT_GT(left_lit, 0);
-}
-
-// A ray that goes aside by more than a column from row to row meets one between them, whose next
-// post may be far higher.
-TEST(Sweep, BlocksLeaveOutNothingElseBehindAStepBetweenRows) {
-    const auto compare = [](const Heights& heights, const SweepWindow& window, double spacing_m,
-                            double tangent) {
-        SweepSun sun = sun_over_map(
-            {spacing_m, spacing_m}, {1.2 / std::hypot(1.2, 1), -1 / std::hypot(1.2, 1)},
-            std::atan(tangent), {heights.width() / 2.0, heights.width() / 2.0});
-        sun.columns_set = false;
-        Together some{heights, window, std::vector(6, sun), false};
-        some.compare();
-    };
-    for (int rows = 33; rows < 37; ++rows) {
-        const Heights last = heights_of(32, rows, [&](int column, int row) {
-            return column == 17 && row == rows - 1 ? 300 : 0;
-        });
-        compare(last, {0, 0, 32, rows}, 10, 0.3);
-        const Heights edge = heights_of(
-            32, 64, [&](int column, int row) { return column >= 17 && row >= rows - 1 ? 300 : 0; });
-        compare(edge, {0, 0, 32, rows}, 10, 0.3);
-        const Heights inside = heights_of(64, 64, [&](int column, int row) {
-            const int step = column >= 16 ? 0 : -200;
-            return 1000 + (row < rows - 1 ? step - 190 : step + 240 * (row - rows + 1));
-        });
-        compare(inside, {0, 0, 64, 64}, 30, 20 / (30 * std::hypot(1.2, 1)));
     }
 }
 
@@ -679,16 +406,15 @@ TEST(Sweep, ARayThatTurnsBackBeforeItsGroundIsFollowedFromWhereItComes) {
         const Heights heights =
             heights_of(60, 200, [&](int, int row) { return row == wall ? 500.0 : 0.0; });
         SweepSun sun;
-        sun.reference = {30, wall + 25.0};
-        sun.towards = {0, -0.01};
-        sun.bend = {0, 1e-4 / (2 * (sun.reference.row - turn - 0.3))};
+        sun.ray.reference = {30, wall + 25.0};
+        sun.ray.first = {0, -0.01};
+        sun.ray.second = {0, 1e-4 / (2 * (sun.ray.reference.y - turn - 0.3))};
         sun.tangent = 0.1;
-        sun.columns_set = false;
-        ASSERT_TRUE(std::isnan(sun.distance_m(turn - 1))) << turn;
-        const SweepWindow window{0, wall + 10, 60, 30};
+        ASSERT_TRUE(std::isnan(sun.ray.distance_m(turn - 1))) << turn;
+        const Window window{0, wall + 10, 60, 30};
         const Heights edge = edge_of(heights, sun, window);
         for (int row = 0; row < window.rows; ++row) {
-            const double way_m = sun.distance_m(wall) - sun.distance_m(window.row + row);
+            const double way_m = sun.ray.distance_m(wall) - sun.ray.distance_m(window.row + row);
             EXPECT_NEAR(edge.at(30, row), 500 - sun.tangent * way_m, 0.01) << turn << ", " << row;
         }
     }

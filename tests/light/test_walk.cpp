@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "base/units.h"
-#include "light/direct_light.h"
 #include "light/fields.h"
-#include "light/walk.h"
+#include "light/point/direct_light.h"
+#include "light/point/walk.h"
 #include "sun/position.h"
 
 namespace relevo::light {

@@ -10,8 +10,8 @@
 
 #include "base/units.h"
 #include "dem/posts.h"
-#include "light/horizons.h"
-#include "light/shadows.h"
+#include "light/raster/horizons.h"
+#include "light/raster/shadows.h"
 #include "session/seen_ground.h"
 #include "session/session.h"
 #include "sun/position.h"

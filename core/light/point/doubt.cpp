@@ -1,0 +1,108 @@
+#include "light/point/doubt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+#include "base/units.h"
+#include "sun/position.h"
+#include "sun/position_table.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// The sun turns by 0.0042 degrees a second, faster only where it stands high.
+constexpr double kStep_s = 30;
+
+double assumed_m(const TerrainHorizon& horizon, const std::optional<double>& highest_m) {
+    return highest_m.value_or(std::min<double>(horizon.posts().highest_m(), kHighestTerrain_m));
+}
+
+}  // namespace
+
+Doubt doubt_of(const TerrainHorizon& horizon, const std::vector<HorizonPoint>& profile,
+               const std::optional<double>& highest_m) {
+    Doubt doubt;
+    doubt.highest_m = assumed_m(horizon, highest_m);
+    doubt.open = horizon.open_sectors(profile, doubt.highest_m);
+    std::vector<bool> holes;
+    for (const HorizonPoint& point : profile)
+        holes.push_back(point.hole);
+    doubt.holes = sectors_of(holes);
+    return doubt;
+}
+
+Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
+               const std::vector<HorizonPoint>& profile, const std::optional<double>& highest_m) {
+    Doubt doubt;
+    doubt.matters = Matters::Sun;
+    doubt.highest_m = assumed_m(light.horizon(), highest_m);
+    const auto n = profile.size();
+    std::vector<double> lowest_rad(n, kInfinity);
+    std::vector<bool> holes(n, false);
+    if (days.empty()) return doubt;
+    const sun::PositionTable table(days.front().span.begin, days.back().span.end);
+    // Every direction from one moment to the next, at the lower of the two elevations.
+    const auto walk = [&](const sun::Instant& from, const sun::Instant& to, const auto& visit) {
+        const double length_s = to - from;
+        const int steps = std::max(1, static_cast<int>(std::ceil(length_s / kStep_s)));
+        double before_index = 0, before_rad = 0;
+        for (int i = 0; i <= steps; ++i) {
+            const glm::dvec3 sun =
+                table.vector_au(i == steps ? to : from + length_s * i / steps, light.observer());
+            const double index = sun::azimuth_of(sun) / (2 * kPi) * double(n);
+            const double elevation_rad = light.refraction().apparent_rad(sun::elevation_of(sun));
+            if (i > 0) {
+                const double turn = std::remainder(index - before_index, double(n));
+                const auto first = std::lround(before_index + std::min(0.0, turn));
+                const auto last = std::lround(before_index + std::max(0.0, turn));
+                for (long k = first; k <= last; ++k)
+                    visit(static_cast<std::size_t>((k % long(n) + long(n)) % long(n)),
+                          std::min(elevation_rad, before_rad));
+            }
+            before_index = index;
+            before_rad = elevation_rad;
+        }
+    };
+    for (const LightDay& day : days) {
+        doubt.not_known_s += day.not_known_s;
+        for (const LitInterval& lit : day.lit) {
+            for (const LightEdge& edge : {lit.begin, lit.end})
+                if (edge.elevation_rad < (doubt.lowest_sun ? doubt.lowest_sun->elevation_rad : 0))
+                    doubt.lowest_sun = edge;
+            walk(lit.begin.utc, lit.end.utc, [&](std::size_t k, double elevation_rad) {
+                lowest_rad[k] = std::min(lowest_rad[k], elevation_rad);
+            });
+            for (const sun::TimeSpan& span : lit.not_known)
+                walk(span.begin, span.end, [&](std::size_t k, double) { holes[k] = true; });
+        }
+    }
+    doubt.open = light.horizon().open_sectors(profile, doubt.highest_m, lowest_rad);
+    doubt.holes = sectors_of(holes);
+    return doubt;
+}
+
+Doubt doubt_of(const TerrainHorizon& horizon, const Alignments& found,
+               const std::optional<double>& highest_m) {
+    Doubt doubt;
+    doubt.matters = Matters::Alignment;
+    doubt.highest_m = assumed_m(horizon, highest_m);
+    const auto look = [&](double azimuth_rad, double elevation_rad, double until_m) {
+        if (const auto open = horizon.open_beyond(horizon.at(azimuth_rad), doubt.highest_m,
+                                                  elevation_rad, until_m))
+            doubt.open.push_back(*open);
+    };
+    if (found.sight.visible)
+        look(found.sight.azimuth_rad, found.sight.elevation_rad, found.sight.distance_m);
+    for (const Alignment& passage : found.passages)
+        if (passage.sun_visible) look(passage.azimuth_rad, passage.elevation_rad, kInfinity);
+    std::sort(doubt.open.begin(), doubt.open.end(), [](const Sector& a, const Sector& b) {
+        return a.from_azimuth_rad < b.from_azimuth_rad;
+    });
+    return doubt;
+}
+
+}  // namespace relevo::light

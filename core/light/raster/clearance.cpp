@@ -1,0 +1,82 @@
+#include "light/raster/clearance.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "base/error.h"
+#include "light/raster/post_loops.h"
+#include "light/raster/shadow_heights.h"
+
+namespace relevo::light {
+namespace {
+
+/// A DEM in more tiles than this is looked at with a sun that is off by more.
+constexpr std::size_t kMostTiles = 4096;
+constexpr double kLooser = 4;
+constexpr double kLoosest_rad = radians(12);
+
+struct Division {
+    std::vector<SunTile> tiles;
+    double error_rad = 0;
+};
+
+Division division_of(const SunField& sun) {
+    const Window all = sun.terrain().window();
+    for (double tolerance_rad = kSunTolerance_rad;; tolerance_rad *= kLooser) {
+        const bool last = tolerance_rad * kLooser > kLoosest_rad;
+        try {
+            const std::size_t most = last ? static_cast<std::size_t>(-1) : kMostTiles;
+            Division division{divide(sun, all, all, tolerance_rad, most), 0};
+            if (division.tiles.size() > most) continue;
+            if (tolerance_rad > kSunTolerance_rad) division.error_rad = tolerance_rad;
+            return division;
+        } catch (const Error&) {
+            if (last) throw;
+        }
+    }
+}
+
+}  // namespace
+
+Clearances::Clearances(const dem::Posts& posts, const ShadowOptions& options)
+    : terrain_(posts, {options.refraction, options.air}, true) {}
+
+Clearances::Found Clearances::each(const geo::Geodetic& place, const SunOverDem& sun,
+                                   const Use& use) const {
+    const SunField field(terrain_, place, sun);
+    if (field.is_night()) return {true, 0};
+    const Division division = division_of(field);
+    const Window all = terrain_.window();
+    const WindowHeights heights(terrain_.posts(), all);
+    const double radius_rad = sun.semidiameter_rad;
+    Array2d<float> lower(all.columns, all.rows), middle;
+    const auto find = [&](double offset_rad, Array2d<float>& to) {
+        each_shadow(field, division.tiles, all, offset_rad, [&](const SweepRun& run) {
+            find_clearances(heights.view.at(run.column, run.row), run.found, run.count,
+                            &to.at(run.column, run.row));
+        });
+    };
+    find(-radius_rad, lower);
+    if (radius_rad > 0) {
+        middle = Array2d<float>(all.columns, all.rows);
+        find(0, middle);
+    }
+    each_shadow(field, division.tiles, all, radius_rad, [&](const SweepRun& run) {
+        constexpr int kPart = 512;
+        std::array<float, kPart> upper_m;
+        for (int done = 0; done < run.count; done += kPart) {
+            const int column = run.column + done, count = std::min(run.count - done, kPart);
+            find_clearances(heights.view.at(column, run.row), run.found + done, count,
+                            upper_m.data());
+            float* const lower_m = &lower.at(column, run.row);
+            if (radius_rad > 0)
+                straighten(upper_m.data(), &middle.at(column, run.row), count, lower_m);
+            use({run.row, column, count, upper_m.data(), lower_m});
+        }
+    });
+    return {false, division.error_rad};
+}
+
+}  // namespace relevo::light

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "dem/posts.h"
+#include "light/point/edge_ground.h"
+#include "light/raster/sun_field.h"
+
+namespace relevo::light {
+
+/// The edges of a DEM that the rays of a tile meet, one for each line of posts along a ray. They
+/// are found among dem::Posts::thinned_m(), so that they do not depend on what of the DEM memory
+/// holds.
+class GroundBeyond {
+  public:
+    /// @param reach_m  how far beyond the tile edges matter
+    GroundBeyond(const dem::Posts& posts, const SunTile& tile, double reach_m);
+
+    /// The edges as seen from posts next to each other in a row.
+    /// @param height_m    gets their heights; minus infinity where there is no edge within reach
+    /// @param distance_m  gets how far off they are
+    void find(int row, int column, int count, float* height_m, float* distance_m) const;
+
+  private:
+    Edge edge_of(const dem::Posts& posts, double line, double begin_m, double end_m,
+                 double step_m) const;
+
+    Ray ray_;  // along rows of the sweep
+    bool along_columns_;
+    int first_row_ = 0;  // of the tile's, as the sweep goes
+    std::vector<double> row_distance_m_, row_shift_;
+    int first_line_ = 0;  // columns from the reference's ray on
+    std::vector<float> height_m_, distance_m_;
+};
+
+}  // namespace relevo::light

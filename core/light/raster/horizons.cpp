@@ -1,0 +1,125 @@
+#include "light/raster/horizons.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "light/point/edge_ground.h"
+#include "light/raster/ground_slope.h"
+#include "light/raster/post_loops.h"
+#include "light/raster/shadow_heights.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr double kHorizonTolerance_rad = radians(0.1);  // of a direction
+constexpr double kSkyTolerance_rad = radians(0.5);      // directions that are summed up
+constexpr int kLeastDirections = 4, kMostDirections = 3600;
+
+std::string surroundings(double refraction) {
+    return fmt::format(
+        "ground of the DEM alone, on the WGS 84 ellipsoid with terrestrial refraction k = {:.4g}{}",
+        refraction, kBeyondTheDem);
+}
+
+/// Adds up what each direction gives to the sky view of the ground.
+void add_directions(const SunPlan& plan, const SkyViewOptions& options, const Window& part,
+                    const GroundSlope& slope, Array2d<float>& sum) {
+    for (std::size_t k = 0; k < plan.suns().size(); ++k) {
+        const double azimuth_rad = 2 * kPi * static_cast<double>(k) / options.directions;
+        const auto sin_azimuth = static_cast<float>(std::sin(azimuth_rad)),
+                   cos_azimuth = static_cast<float>(std::cos(azimuth_rad));
+        const PlannedSun& direction = plan.suns()[k];
+        each_horizon(direction.field, direction.tiles, part,
+                     [&](const SunTile&, const SweepRun& run) {
+                         const int x = run.column - part.column, y = run.row - part.row;
+                         add_sky(run.found, &slope.east.at(x, y), &slope.north.at(x, y), run.count,
+                                 sin_azimuth, cos_azimuth, &sum.at(x, y));
+                     });
+        if (options.done) options.done(1.0 / options.directions);
+    }
+}
+
+}  // namespace
+
+Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, double refraction,
+                  const Window& of) {
+    SunPlan plan(posts, {refraction, {}}, of);
+    plan.add_directions(azimuth_rad, kHorizonTolerance_rad);
+    const Window& part = plan.window();
+    const WindowHeights heights(posts, part);
+    Horizons result;
+    result.azimuth_rad = std::move(azimuth_rad);
+    for (const PlannedSun& direction : plan.suns()) {
+        Array2d<float>& to = result.elevation_rad.emplace_back(part.columns, part.rows);
+        each_horizon(direction.field, direction.tiles, part,
+                     [&](const SunTile&, const SweepRun& run) {
+                         find_elevations(run.found, heights.view.at(run.column, run.row), run.count,
+                                         &to.at(run.column - part.column, run.row - part.row));
+                     });
+    }
+    if (!result.elevation_rad.empty())
+        for (const float elevation : result.elevation_rad.front())
+            result.holes += std::isnan(elevation);
+    result.definition =
+        "elevation of the horizon as seen from the ground; " + surroundings(refraction);
+    return result;
+}
+
+void add_sky_view_directions(SunPlan& plan, int directions) {
+    if (directions < kLeastDirections || directions > kMostDirections)
+        bad_input(fmt::format("sky view: {} directions: expected {} to {}", directions,
+                              kLeastDirections, kMostDirections));
+    std::vector<double> azimuth_rad;
+    for (int k = 0; k < directions; ++k)
+        azimuth_rad.push_back(2 * kPi * k / directions);
+    plan.add_directions(azimuth_rad, kSkyTolerance_rad);
+}
+
+SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
+    SunPlan plan(posts, {options.refraction, {}}, options.part);
+    add_sky_view_directions(plan, options.directions);
+    return sky_view(plan, options);
+}
+
+SkyView sky_view(const SunPlan& plan, const SkyViewOptions& options) {
+    const dem::Posts& posts = plan.terrain().posts();
+    const Window part = window_or_all(options.part, posts.grid());
+    const WindowHeights heights(posts, part);
+    GroundSlope slope =
+        options.level ? GroundSlope(part) : GroundSlope(posts.grid(), heights, part);
+    SkyView result;
+    result.share = Array2d<float>(part.columns, part.rows, 0);
+    add_directions(plan, options, part, slope, result.share);
+    std::int64_t seen = 0;
+    for (int y = 0; y < part.rows; ++y)
+        for (int x = 0; x < part.columns; ++x) {
+            float& share = result.share.at(x, y);
+            const float height_m = heights.at(part.column + x, part.row + y);
+            share = std::isnan(height_m)
+                        ? height_m
+                        : std::min(1.0F, share / static_cast<float>(options.directions));
+            if (options.of_open_slope) {
+                // An endless plane sees half of one and the cosine of its slope.
+                const float e = slope.east.at(x, y), n = slope.north.at(x, y);
+                share = std::min(1.0F, share * 2 / (1 + 1 / std::sqrt(1 + e * e + n * n)));
+            }
+            if (std::isnan(share)) continue;
+            result.mean += double{share};
+            ++seen;
+        }
+    result.mean /= static_cast<double>(seen);
+    result.holes = static_cast<std::int64_t>(result.share.size()) - seen;
+    result.definition = fmt::format(
+        "share of a uniform sky's light that falls on {}, of {} directions (Dozier and Frew 1990); "
+        "{}",
+        options.level ? "a level plane" : "the ground as it is inclined", options.directions,
+        surroundings(options.refraction));
+    return result;
+}
+
+}  // namespace relevo::light

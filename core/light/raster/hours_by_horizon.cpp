@@ -1,0 +1,241 @@
+#include "light/raster/hours_by_horizon.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "base/parallel_for.h"
+#include "base/units.h"
+#include "light/raster/post_loops.h"
+#include "light/raster/shadow_heights.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr double kDay_s = 86400, kHour_s = 3600;
+constexpr double kTolerance_rad = radians(0.1);  // of suns that are put together anyway
+
+/// Where a post's horizon is in a direction's tables.
+struct Entry {
+    std::size_t below;
+    float part;  // on to the next entry
+
+    float of(const float* over) const {
+        return over[below] + part * (over[below + 1] - over[below]);
+    }
+};
+
+/// By how much the sun is higher at posts than in the middle of a block, as the ground turns
+/// towards it: linear over a tile.
+struct Lift {
+    double at_reference_rad;
+    glm::dvec2 reference, per_post;
+
+    Lift(const SunField& field, const SunTile& tile) : reference(tile.ray.reference) {
+        const auto elevation = [&](double column, double row) {
+            return field.at(glm::dvec2(column, row)).elevation_rad;
+        };
+        const auto [x, y] = std::pair(reference.x, reference.y);
+        at_reference_rad = elevation(x, y);
+        per_post = {(elevation(x + 1, y) - elevation(x - 1, y)) / 2,
+                    (elevation(x, y + 1) - elevation(x, y - 1)) / 2};
+    }
+    double at(double column, double row) const {
+        return at_reference_rad + per_post.x * (column - reference.x) +
+               per_post.y * (row - reference.y);
+    }
+};
+
+}  // namespace
+
+HorizonHours::HorizonHours(const SunTerrain& terrain, const Window& window, sun::Instant begin,
+                           double length_s, const SunHoursOptions& options)
+    : terrain_(terrain),
+      options_(options),
+      begin_(begin),
+      length_s_(length_s),
+      table_(begin, begin + length_s) {
+    for (const Window& each : windows())
+        if (!common(each, window).is_empty()) {
+            blocks_.push_back(block_of(each, window));
+            const Window wanted = common(each, window);
+            all_ += double(wanted.columns) * wanted.rows *
+                    static_cast<double>(blocks_.back().directions.size());
+        }
+}
+
+int HorizonHours::most_tiles() const {
+    std::size_t most = 0;
+    for (const Block& block : blocks_)
+        for (const Direction& direction : block.directions)
+            most = std::max(most, direction.tiles.size());
+    return static_cast<int>(most);
+}
+
+std::vector<Window> HorizonHours::windows() const {
+    constexpr double kBlock_m = 200e3;
+    const Window all = terrain_.window();
+    const glm::dvec2& spacing_m = terrain_.spacing_m();
+    const int columns = std::max(1, static_cast<int>(kBlock_m / spacing_m.x)),
+              rows = std::max(1, static_cast<int>(kBlock_m / spacing_m.y));
+    std::vector<Window> windows;
+    for (int row = 0; row < all.rows; row += rows)
+        for (int column = 0; column < all.columns; column += columns)
+            windows.push_back(common(all, {column, row, columns, rows}));
+    return windows;
+}
+
+HorizonHours::Block HorizonHours::block_of(const Window& window, const Window& wanted) const {
+    const geo::Geodetic middle = terrain_.grid().place(window.column + (window.columns - 1) / 2.0,
+                                                       window.row + (window.rows - 1) / 2.0);
+    Tables tables = tables_over(middle);
+    Block block{window, {}};
+    for (auto& [low, high] : tables) {
+        if (low.empty()) continue;
+        SunField field(terrain_, middle, {low.azimuth_rad(), 0, 0});
+        low.sum_up();
+        high.sum_up();
+        block.directions.push_back({field, {}, std::move(low), std::move(high)});
+    }
+    parallel_for(0, static_cast<int>(block.directions.size()), 1, [&](int first, int last) {
+        for (int i = first; i < last; ++i) {
+            Direction& direction = block.directions[static_cast<std::size_t>(i)];
+            direction.tiles = divide(direction.field, window, wanted, kTolerance_rad);
+        }
+    });
+    return block;
+}
+
+HorizonHours::Sample HorizonHours::sample(double from_s, double until_s,
+                                          const sun::Observer& observer) const {
+    const glm::dvec3 towards_au = table_.vector_au(begin_ + (from_s + until_s) / 2, observer);
+    Sample sun{sun::azimuth_of(towards_au),
+               sun::elevation_of(towards_au),
+               (until_s - from_s) / kHour_s,
+               {},
+               {}};
+    if (sun.elevation_rad < DirectionTable::kLowest_rad) return sun;
+    for (const SunTerrain::Air air : {SunTerrain::kOfLowest, SunTerrain::kOfHighest}) {
+        sun.apparent_rad[air] = terrain_.apparent_rad(sun.elevation_rad, air);
+        if (!options_.irradiation) continue;
+        const double height_m =
+            terrain_.lowest_m() +
+            (air == SunTerrain::kOfLowest ? 0 : std::max(1.0, terrain_.relief_m()));
+        sun.beam_wh[air] =
+            sun.hours * ClearSky(options_.irradiation->linke, glm::length(towards_au))
+                            .beam(sun.elevation_rad, height_m);
+    }
+    return sun;
+}
+
+HorizonHours::Tables HorizonHours::tables_over(const geo::Geodetic& middle) const {
+    Tables tables;
+    const sun::Observer observer(middle);
+    const double step_s = length_s_ > 40 * kDay_s ? 120 : 60;
+    const auto steps = static_cast<std::int64_t>(std::ceil(length_s_ / step_s - 1e-9));
+    const auto add = [&](const Sample& sun) {
+        if (sun.elevation_rad < DirectionTable::kLowest_rad) return;
+        const double turns = sun.azimuth_rad / (2 * kPi);
+        const auto k = std::min(kDirections - 1,
+                                static_cast<std::size_t>(turns * static_cast<double>(kDirections)));
+        for (std::size_t air = 0; air < 2; ++air)
+            tables[k][air].add(sun.azimuth_rad, sun.apparent_rad[air], sun.hours,
+                               sun.beam_wh[air] * std::cos(sun.elevation_rad),
+                               sun.beam_wh[air] * std::sin(sun.elevation_rad));
+    };
+    // On several threads, some at once; they are added in their order.
+    constexpr std::int64_t kTogether = 1 << 14;
+    std::vector<Sample> samples;
+    for (std::int64_t done = 0; done < steps; done += kTogether) {
+        samples.resize(static_cast<std::size_t>(std::min(kTogether, steps - done)));
+        parallel_for(0, static_cast<int>(samples.size()), 256, [&](int first, int last) {
+            for (int i = first; i < last; ++i) {
+                const double from_s = static_cast<double>(done + i) * step_s;
+                samples[static_cast<std::size_t>(i)] =
+                    sample(from_s, std::min(from_s + step_s, length_s_), observer);
+            }
+        });
+        for (const Sample& sun : samples)
+            add(sun);
+    }
+    return tables;
+}
+
+void HorizonHours::add(const Window& part, SunHours& result) const {
+    std::optional<InclinedGround> ground;
+    Array2d<float> air;
+    if (options_.irradiation) {
+        ground.emplace(terrain_, part);
+        const WindowHeights heights(terrain_.posts(), part);
+        air = Array2d<float>(part.columns, part.rows);
+        for (int y = 0; y < part.rows; ++y)
+            for (int x = 0; x < part.columns; ++x)
+                air.at(x, y) = static_cast<float>(
+                    air_left(terrain_, heights.at(part.column + x, part.row + y)));
+    }
+    for (const Block& block : blocks_) {
+        const Window some = common(block.window, part);
+        for (const Direction& direction : block.directions) {
+            if (some.is_empty()) break;
+            add_direction(direction, part, ground ? &*ground : nullptr, air, result);
+            const double done = double(some.columns) * some.rows / all_;
+            if (options_.done) options_.done(done);
+        }
+    }
+}
+
+void HorizonHours::add_direction(const Direction& direction, const Window& part,
+                                 const InclinedGround* ground, const Array2d<float>& air,
+                                 SunHours& result) const {
+    const DirectionTable &low = direction.low, &high = direction.high;
+    const WindowHeights heights(terrain_.posts(), part);
+    const auto bottom_m = static_cast<float>(terrain_.lowest_m()),
+               a_metre = static_cast<float>(1 / std::max(1.0, terrain_.relief_m())),
+               sin_azimuth = static_cast<float>(std::sin(low.azimuth_rad())),
+               cos_azimuth = static_cast<float>(std::cos(low.azimuth_rad()));
+    const auto add_beam = [&](const Entry& entry, float lift, int x, int y) {
+        const auto between = [&](const float* in_low, const float* in_high) {
+            const float l = entry.of(in_low);
+            return l + air.at(x, y) * (entry.of(in_high) - l);
+        };
+        const float level = between(low.level_wh_over(), high.level_wh_over()),
+                    up = between(low.up_wh_over(), high.up_wh_over());
+        const float e = ground->slope.east.at(x, y), n = ground->slope.north.at(x, y);
+        // The sun stands higher there by the lift.
+        const float onto =
+            (up + lift * level) - (e * sin_azimuth + n * cos_azimuth) * (level - lift * up);
+        const float gain = onto / std::sqrt(1 + e * e + n * n);
+        result.beam_kwh.at(x, y) += gain > 0 ? gain : 0;
+    };
+    std::vector<Lift> lifts;
+    for (const SunTile& tile : direction.tiles)
+        lifts.emplace_back(direction.field, tile);
+    const SunTile* const first_tile = direction.tiles.data();
+    each_horizon(direction.field, direction.tiles, part,
+                 [&](const SunTile& tile, const SweepRun& run) {
+                     const Lift& lift = lifts[static_cast<std::size_t>(&tile - first_tile)];
+                     const float* const height_m = heights.view.at(run.column, run.row);
+                     const auto first = static_cast<float>(lift.at(run.column, run.row)),
+                                a_post = static_cast<float>(lift.per_post.x);
+                     std::array<float, kLongestRun> at;
+                     find_entries(run.found, run.count,
+                                  first + static_cast<float>(DirectionTable::kLowest_rad), a_post,
+                                  static_cast<float>(DirectionTable::kEntry_rad),
+                                  DirectionTable::kEntries, at.data());
+                     const int x = run.column - part.column, y = run.row - part.row;
+                     for (int i = 0; i < run.count; ++i) {
+                         const float whole = std::floor(at[static_cast<std::size_t>(i)]);
+                         const Entry entry{static_cast<std::size_t>(whole),
+                                           at[static_cast<std::size_t>(i)] - whole};
+                         const float in_low = entry.of(low.hours_over()),
+                                     in_high = entry.of(high.hours_over());
+                         result.hours.at(x + i, y) +=
+                             in_low + (height_m[i] - bottom_m) * a_metre * (in_high - in_low);
+                         if (ground)
+                             add_beam(entry, first + a_post * static_cast<float>(i), x + i, y);
+                     }
+                 });
+}
+
+}  // namespace relevo::light

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "base/array2d.h"
+#include "light/point/clear_sky.h"
+#include "light/raster/ground_slope.h"
+#include "light/raster/sun_hours.h"
+#include "light/raster/sun_plan.h"
+#include "sun/position_table.h"
+
+/// What posts get from the sun and the sky; a part of sun_hours().
+namespace relevo::light {
+
+/// How much of the air that is over the lowest post is not over a height: 0 there, 1 at the
+/// highest.
+double air_left(const SunTerrain& terrain, double height_m);
+
+/// What the ground of a window does with beams.
+struct InclinedGround {
+    Window window;
+    GroundSlope slope;
+
+    InclinedGround(const SunTerrain& terrain, const Window& of)
+        : window(of), slope(terrain.grid(), WindowHeights(terrain.posts(), of), of) {}
+};
+
+/// Places all over a DEM, for what changes slowly over the Earth.
+class Nodes {
+  public:
+    explicit Nodes(const dem::Grid& grid);
+
+    int count() const { return columns_ * rows_; }
+    glm::dvec2 post(int node) const {
+        return {node % columns_ * column_step_, node / columns_ * row_step_};
+    }
+    /// The nodes around a post, and their weights.
+    struct Around {
+        std::array<std::size_t, 4> node;
+        std::array<double, 4> weight;
+    };
+    Around around(double column, double row) const;
+
+  private:
+    double column_step_, row_step_;
+    int columns_, rows_;
+};
+
+/// The beams of the sun between two moments.
+class SunBeams {
+  public:
+    /// @param table     of the sun for all of the time
+    /// @param before_s  the first moment, from the table's beginning; the second one is the sun's
+    SunBeams(const SunTerrain& terrain, const sun::PositionTable& table, double before_s,
+             double at_s, double linke);
+
+    /// Adds what posts get: as long as their clearances, linear from one moment to the next, are
+    /// over 0.
+    /// @param clearance_m  at the first moment; shadows of the second are of the run
+    void add(const SweepRun& run, const float* height_m, const float* clearance_m,
+             const InclinedGround& ground, float* beam_wh) const;
+
+  private:
+    static constexpr std::size_t kHeights = 17;
+    struct Beam {
+        glm::dvec3 direction{0};  // local ENU
+        /// Irradiance at heights from the lowest post to the highest one, `step_m_` apart.
+        std::array<float, kHeights> given{};
+        double more = 0;  // as share, for each unit that the sine of the elevation grows by
+    };
+    glm::dvec3 direction(double column, double row) const;
+
+    Nodes nodes_;
+    std::vector<Beam> beams_;
+    double lowest_m_, step_m_, hours_;
+};
+
+/// Energy of the sun on level and open ground, over a DEM.
+class OpenSky {
+  public:
+    OpenSky(const SunTerrain& terrain, sun::Instant begin, double length_s, double linke);
+
+    struct Energy {
+        double beam_low_wh = 0, beam_high_wh = 0;  ///< at the lowest post and at the highest
+        double diffuse_wh = 0;
+    };
+    Energy at(double column, double row) const;
+
+  private:
+    Nodes nodes_;
+    std::vector<Energy> energies_;
+};
+
+/// Adds the light of the sky and of the ground around to a result that has hours and beams.
+void add_sky_light(const SunTerrain& terrain, sun::Instant begin, double length_s,
+                   const SunHoursOptions& options, const Window& part, SunHours& result);
+
+}  // namespace relevo::light

@@ -1,0 +1,149 @@
+// Compiled once for each kind of vector that the processor may have.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "light/raster/post_loops.cpp"
+#include "light/raster/post_loops.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+#include "light/raster/clearance.h"
+#include "light/raster/quick_math.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relevo::light::HWY_NAMESPACE {
+
+// Plain loops, which compilers make vectors of, as wide as the target's.
+
+void FindClearances(const float* HWY_RESTRICT height_m, const float* HWY_RESTRICT shadow_m,
+                    int count, float* HWY_RESTRICT clearance_m) {
+    for (int i = 0; i < count; ++i)
+        clearance_m[i] = height_m[i] - shadow_m[i];
+}
+
+void Straighten(const float* HWY_RESTRICT upper_m, const float* HWY_RESTRICT middle_m, int count,
+                float* HWY_RESTRICT lower_m) {
+    for (int i = 0; i < count; ++i) {
+        const float u = upper_m[i], l = lower_m[i];
+        const float straight = u - u / height_of_disc({u, middle_m[i], l});
+        lower_m[i] = (u > 0) & (l < 0) ? straight : l;
+    }
+}
+
+void AddLight(const Step& step, const float* HWY_RESTRICT height_m,
+              const float* HWY_RESTRICT shadow_m, int count, float* HWY_RESTRICT clearance_m,
+              float* HWY_RESTRICT lit_h) {
+    const float from_h = step.from_h, hours = step.hours;
+    for (int i = 0; i < count; ++i) {
+        const float before = clearance_m[i], now = height_m[i] - shadow_m[i];
+        const float when_h = from_h + hours * (before / (before - now));
+        const float comes = (before < 0) & (now >= 0) ? when_h : 0.0F,
+                    goes = (before >= 0) & (now < 0) ? when_h : 0.0F;
+        lit_h[i] += goes - comes;
+        clearance_m[i] = now;
+    }
+}
+
+void RaiseToDip(const float* HWY_RESTRICT tangent, const float* HWY_RESTRICT eye_m,
+                const float* HWY_RESTRICT edge_m, const float* HWY_RESTRICT edge_at_m, int count,
+                float curvature, float lowest_m, float* HWY_RESTRICT raised) {
+    for (int i = 0; i < count; ++i) {
+        const float over_edge_m = eye_m[i] - edge_m[i], over_m = eye_m[i] - lowest_m;
+        const float dip = std::sqrt(2 * curvature * (over_edge_m > 0 ? over_edge_m : 0.0F)),
+                    lowest = std::sqrt(2 * curvature * (over_m > 0 ? over_m : 0.0F)),
+                    level = curvature * edge_at_m[i];
+        const float beyond = dip > level ? dip : level;
+        const float least = -(beyond < lowest ? beyond : lowest);
+        raised[i] = tangent[i] > least ? tangent[i] : least;
+    }
+}
+
+void FindElevations(const float* HWY_RESTRICT tangent, const float* HWY_RESTRICT height_m,
+                    int count, float* HWY_RESTRICT elevation_rad) {
+    for (int i = 0; i < count; ++i) {
+        const float elevation = quick_atan(std::abs(tangent[i]));
+        elevation_rad[i] = std::copysign(elevation, tangent[i]) + 0 * height_m[i];
+    }
+}
+
+void AddSky(const float* HWY_RESTRICT tangent, const float* HWY_RESTRICT east,
+            const float* HWY_RESTRICT north, int count, float sin_azimuth, float cos_azimuth,
+            float* HWY_RESTRICT sum) {
+    for (int i = 0; i < count; ++i) {
+        // H of the source is the angle between zenith and horizon, t its cotangent.
+        const float t = tangent[i] > 0 ? tangent[i] : 0.0F;
+        const float sin2 = 1 / (1 + t * t);
+        const float rise = east[i] * sin_azimuth + north[i] * cos_azimuth;
+        const float width = kHalfPi - quick_atan(t) - t * sin2;
+        const float slope = 1 / std::sqrt(1 + east[i] * east[i] + north[i] * north[i]);
+        const float seen = slope * (sin2 - rise * width);
+        sum[i] += seen > 0 ? seen : 0.0F;
+    }
+}
+
+void FindEntries(const float* HWY_RESTRICT tangent, int count, float first_rad, float a_post_rad,
+                 float entry_rad, int entries, float* HWY_RESTRICT at) {
+    const float scale = 1 / entry_rad, last = static_cast<float>(entries) - 1.001F;
+    for (int i = 0; i < count; ++i) {
+        const float elevation = std::copysign(quick_atan(std::abs(tangent[i])), tangent[i]);
+        const float entry = (elevation - first_rad - a_post_rad * static_cast<float>(i)) * scale;
+        const float least = entry > 0 ? entry : 0.0F;
+        at[i] = least < last ? least : last;
+    }
+}
+
+}  // namespace relevo::light::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relevo::light {
+
+HWY_EXPORT(FindClearances);
+HWY_EXPORT(Straighten);
+HWY_EXPORT(AddLight);
+HWY_EXPORT(RaiseToDip);
+HWY_EXPORT(FindElevations);
+HWY_EXPORT(AddSky);
+HWY_EXPORT(FindEntries);
+
+void find_clearances(const float* height_m, const float* shadow_m, int count, float* clearance_m) {
+    HWY_DYNAMIC_DISPATCH(FindClearances)(height_m, shadow_m, count, clearance_m);
+}
+
+void straighten(const float* upper_m, const float* middle_m, int count, float* lower_m) {
+    HWY_DYNAMIC_DISPATCH(Straighten)(upper_m, middle_m, count, lower_m);
+}
+
+void add_light(const Step& step, const float* height_m, const float* shadow_m, int count,
+               float* clearance_m, float* lit_h) {
+    HWY_DYNAMIC_DISPATCH(AddLight)(step, height_m, shadow_m, count, clearance_m, lit_h);
+}
+
+void raise_to_dip(const float* tangent, const float* eye_m, const float* edge_m,
+                  const float* edge_at_m, int count, float curvature, float lowest_m,
+                  float* raised) {
+    HWY_DYNAMIC_DISPATCH(RaiseToDip)
+    (tangent, eye_m, edge_m, edge_at_m, count, curvature, lowest_m, raised);
+}
+
+void find_elevations(const float* tangent, const float* height_m, int count, float* elevation_rad) {
+    HWY_DYNAMIC_DISPATCH(FindElevations)(tangent, height_m, count, elevation_rad);
+}
+
+void add_sky(const float* tangent, const float* east, const float* north, int count,
+             float sin_azimuth, float cos_azimuth, float* sum) {
+    HWY_DYNAMIC_DISPATCH(AddSky)(tangent, east, north, count, sin_azimuth, cos_azimuth, sum);
+}
+
+void find_entries(const float* tangent, int count, float first_rad, float a_post_rad,
+                  float entry_rad, int entries, float* at) {
+    HWY_DYNAMIC_DISPATCH(FindEntries)
+    (tangent, count, first_rad, a_post_rad, entry_rad, entries, at);
+}
+
+}  // namespace relevo::light
+#endif

@@ -1,0 +1,55 @@
+#pragma once
+
+/// What rasters do to posts next to each other, by the widest vectors that the processor has, as
+/// light/sweep/kernels.h.
+namespace relevo::light {
+
+/// The time from one position of the sun to the next.
+struct Step {
+    float from_h, hours;
+};
+
+/// By how much the ground is higher than the shadow over it.
+void find_clearances(const float* height_m, const float* shadow_m, int count, float* clearance_m);
+
+/// Makes lower limbs' clearances such that the line between them and the upper limb's passes 0
+/// where the horizon cuts the disc, by height_of_disc().
+void straighten(const float* upper_m, const float* middle_m, int count, float* lower_m);
+
+/// Adds what light comes or goes between two suns, clearances being linear from the one to the
+/// other: where it comes the time of that is taken away from a post's hours, where it goes it is
+/// added.
+/// @param clearance_m  at the first sun; gets those at the second
+void add_light(const Step& step, const float* height_m, const float* shadow_m, int count,
+               float* clearance_m, float* lit_h);
+
+/// Horizons that are no lower than those of the ground beyond the DEM's edge, as tangent_beyond()
+/// has them, nor than the dip of a smooth Earth as high as the lowest post.
+/// @param tangent           of the DEM's ground
+/// @param eye_m             heights of the posts
+/// @param edge_m, edge_at_m  of the edge: how high, how far off
+/// @param curvature         of lines of sight [1/m]
+void raise_to_dip(const float* tangent, const float* eye_m, const float* edge_m,
+                  const float* edge_at_m, int count, float curvature, float lowest_m,
+                  float* raised);
+
+/// Elevations [rad] of tangents; NaN where the ground has no height.
+void find_elevations(const float* tangent, const float* height_m, int count, float* elevation_rad);
+
+/// Adds what a direction gives to the sky view of the ground of posts.
+/// @param east, north  how the ground rises
+/// @param sin_azimuth, cos_azimuth  of the direction
+/// Source: Dozier and Frew (1990), equation 7b.
+void add_sky(const float* tangent, const float* east, const float* north, int count,
+             float sin_azimuth, float cos_azimuth, float* sum);
+
+/// Where horizons are in a table of elevations: in entries from its first one on, and no farther
+/// than its last but one.
+/// @param first_rad, a_post_rad  the elevation of the first entry at the first post, and by how
+/// much
+///     it is more from post to post
+/// @param entry_rad              from entry to entry
+void find_entries(const float* tangent, int count, float first_rad, float a_post_rad,
+                  float entry_rad, int entries, float* at);
+
+}  // namespace relevo::light

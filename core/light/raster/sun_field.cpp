@@ -1,0 +1,244 @@
+#include "light/raster/sun_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x2.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+namespace relevo::light {
+namespace {
+
+constexpr double kTwilight_rad = radians(0.25);  // a sun so much too low is looked at all the same
+constexpr double kSteepest_rad = radians(89.99);
+
+bool is_finite(const glm::dvec2& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y);
+}
+
+/// The ray through where it is after three shares of a way, and through a post.
+std::optional<Ray> ray_through(const glm::dvec2& post, double far_m, const glm::dvec3& s,
+                               const std::array<glm::dvec2, 3>& there) {
+    glm::dmat3 powers;
+    glm::dmat3x2 ways;
+    for (int k = 0; k < 3; ++k) {
+        powers[k] = {s[k], s[k] * s[k], s[k] * s[k] * s[k]};
+        ways[k] = there[static_cast<std::size_t>(k)] - post;
+    }
+    const glm::dmat3x2 terms = ways * glm::inverse(powers);
+    if (!is_finite(terms[0] + terms[1] + terms[2])) return std::nullopt;
+    return Ray{post, terms[0] / far_m, 2.0 * terms[1] / (far_m * far_m),
+               6.0 * terms[2] / (far_m * far_m * far_m)};
+}
+
+}  // namespace
+
+double way_in(const Window& w, const glm::dvec2& post, const glm::dvec2& a_metre) {
+    const glm::dvec2 first(w.column, w.row), last(w.end_column() - 1, w.end_row() - 1);
+    double way_m = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 2; ++k)
+        if (a_metre[k] != 0)
+            way_m = std::min(way_m, ((a_metre[k] > 0 ? last : first)[k] - post[k]) / a_metre[k]);
+    return std::max(0.0, way_m);
+}
+
+SunField::SunField(const SunTerrain& terrain, const geo::Geodetic& place, const SunOverDem& sun)
+    : terrain_(&terrain), two_airs_(terrain.airs_differ(sun.elevation_rad)) {
+    const geo::Axes axes = terrain.frame().axes(place.lat_rad, place.lon_rad);
+    const double c = std::cos(sun.elevation_rad);
+    direction_ = c * std::sin(sun.azimuth_rad) * axes.east +
+                 c * std::cos(sun.azimuth_rad) * axes.north + std::sin(sun.elevation_rad) * axes.up;
+}
+
+SunField::SunField(const SunTerrain& terrain, double azimuth_rad)
+    : terrain_(&terrain), azimuth_rad_(azimuth_rad) {}
+
+bool SunField::is_night() const {
+    const double night_rad = terrain_->lowest_sun_rad() - kTwilight_rad;
+    return std::all_of(
+        terrain_->marks().begin(), terrain_->marks().end(),
+        [&](const geo::Geodetic& place) { return at(place).elevation_rad < night_rad; });
+}
+
+SunOverDem SunField::at(const geo::Geodetic& place) const {
+    if (azimuth_rad_)
+        return {*azimuth_rad_, place.lat_rad * 0, 0};  // no number where there is none
+    const geo::Axes axes = terrain_->frame().axes(place.lat_rad, place.lon_rad);
+    const double east = glm::dot(direction_, axes.east), north = glm::dot(direction_, axes.north);
+    return {std::atan2(east, north),
+            std::atan2(glm::dot(direction_, axes.up), std::hypot(east, north)), 0};
+}
+
+glm::dvec3 SunField::direction(const glm::dvec2& post) const {
+    const SunOverDem sun = at(post);
+    const double level = std::cos(sun.elevation_rad);
+    return {level * std::sin(sun.azimuth_rad), level * std::cos(sun.azimuth_rad),
+            std::sin(sun.elevation_rad)};
+}
+
+double SunField::reach_m(double apparent_rad) const {
+    const SunTerrain& terrain = *terrain_;
+    const double t = std::tan(std::min(apparent_rad, radians(89.9)));
+    const double risen_m =
+        (std::sqrt(t * t + 2 * terrain.curvature() * terrain.relief_m()) - t) / terrain.curvature();
+    return std::max(4 * terrain.widest_spacing_m(), risen_m);
+}
+
+glm::dvec2 SunField::step(const glm::dvec2& post) const {
+    const dem::Grid& grid = terrain_->grid();
+    const geo::Geodetic place = grid.place(post.x, post.y);
+    const double way_m = 4 * terrain_->widest_spacing_m();
+    return (grid.post(geo::destination(place, at(place).azimuth_rad, way_m)) - post) / way_m;
+}
+
+std::optional<Ray> SunField::ray(const glm::dvec2& post, const Window& window) const {
+    constexpr double kLonger = 1.1;  // rays are bent
+    const dem::Grid& grid = terrain_->grid();
+    const geo::Geodetic place = grid.place(post.x, post.y);
+    const glm::dvec2 a_metre = step(post);
+    if (!is_finite(a_metre)) return std::nullopt;
+    const SunOverDem sun = at(place);
+    const double more_m = 8 * terrain_->widest_spacing_m();
+    const double reach = reach_m(terrain_->apparent_rad(sun.elevation_rad, SunTerrain::kMean));
+    double before_m = more_m + kLonger * std::min(way_in(window, post, a_metre) + reach,
+                                                  way_in(terrain_->window(), post, a_metre));
+    const double behind_m = more_m + kLonger * way_in(window, post, -a_metre);
+    // As far towards the sun as the CRS expresses the ray.
+    for (int tries = 0; tries < 8; ++tries, before_m /= 2) {
+        glm::dvec3 shares(-behind_m / before_m, 0.5, 1);
+        double far_m = before_m;
+        if (behind_m < before_m / 3) {
+            shares = {1 / 3.0, 2 / 3.0, 1};
+        } else if (before_m < behind_m / 3) {
+            shares = {-1 / 3.0, -2 / 3.0, -1};
+            far_m = behind_m;
+        }
+        std::array<glm::dvec2, 3> there;
+        for (int k = 0; k < 3; ++k)
+            there[static_cast<std::size_t>(k)] =
+                grid.post(geo::destination(place, sun.azimuth_rad, shares[k] * far_m));
+        if (const std::optional<Ray> ray = ray_through(post, far_m, shares, there)) return ray;
+    }
+    return std::nullopt;
+}
+
+std::optional<SunTile> SunField::tile(const TilePosts& posts) const {
+    const Window& w = posts.window;
+    SunTile tile{posts, {}, {}};
+    const glm::dvec2 first_step = step({w.column + (w.columns - 1) / 2, w.row + (w.rows - 1) / 2});
+    if (!is_finite(first_step)) return std::nullopt;
+    const bool along_columns = Ray{{0, 0}, first_step}.goes_along_columns();
+    const auto ranges = ranges_of(posts, along_columns);
+    if (!ranges) return std::nullopt;
+    // The first, the middle and the last line that has posts, and on each its ends and its middle.
+    std::array<int, 3> lines{-1, 0, 0};
+    for (int i = 0; i < static_cast<int>(ranges->size()); ++i) {
+        const auto& [begin, end] = (*ranges)[static_cast<std::size_t>(i)];
+        if (begin >= end) continue;
+        if (lines[0] < 0) lines[0] = i;
+        lines[2] = i;
+    }
+    if (lines[0] < 0) return std::nullopt;
+    lines[1] = (lines[0] + lines[2]) / 2;
+    for (std::size_t k = 0; k < tile.marks.size(); ++k) {
+        const int line = lines[k / 3];
+        const auto& [begin, end] = (*ranges)[static_cast<std::size_t>(line)];
+        const double at = begin + (std::max(end, begin + 1) - 1 - begin) * double(k % 3) / 2;
+        glm::dvec2& post = tile.marks[k].post;
+        post = along_columns ? glm::dvec2(w.column + line, at) : glm::dvec2(at, w.row + line);
+        tile.marks[k].elevation_rad = this->at(post).elevation_rad;
+        if (!std::isfinite(tile.marks[k].elevation_rad)) return std::nullopt;
+    }
+    const glm::dvec2 middle(std::round(tile.marks[4].post.x), std::round(tile.marks[4].post.y));
+    const std::optional<Ray> ray = this->ray(middle, w);
+    if (!ray || ray->goes_along_columns() != along_columns) return std::nullopt;
+    tile.ray = *ray;
+    return tile;
+}
+
+SweepSun SunField::sun(const SunTile& tile, SunTerrain::Air air, double offset_rad) const {
+    // The plane through tangents at the marks, by least squares; a tile may be one post wide.
+    const glm::dvec2& at = tile.ray.reference;
+    const Window& w = tile.posts.window;
+    const glm::dvec2 size(std::max(2, w.columns), std::max(2, w.rows));
+    glm::dmat3 sums(1e-12);
+    glm::dvec3 found(0);
+    for (const SunTile::Mark& mark : tile.marks) {
+        const double apparent_rad = terrain_->apparent_rad(mark.elevation_rad + offset_rad, air);
+        const glm::dvec3 terms(1, (mark.post.x - at.x) / size.x, (mark.post.y - at.y) / size.y);
+        sums += glm::outerProduct(terms, terms);
+        found += terms * std::tan(std::min(apparent_rad, kSteepest_rad));
+    }
+    const glm::dvec3 fit = glm::inverse(sums) * found;
+    SweepSun sun{tile.ray, fit.x, {fit.y / size.x, fit.z / size.y}};
+    // A ray towards the sun rises over the ground as the Earth's curvature less that of the air's
+    // has it, which is not quite by how much higher the sun stands there.
+    const glm::dvec2& first = tile.ray.first;
+    const glm::dvec2 along = first * terrain_->spacing_m() * terrain_->spacing_m();
+    const double rises = terrain_->curvature() * (1 + sun.tangent * sun.tangent);
+    sun.tangent_per_post +=
+        along * (rises - glm::dot(sun.tangent_per_post, first)) / glm::dot(along, first);
+    return sun;
+}
+
+/// The largest angle between the rays that shade a post and the tile's, where that is of account.
+double SunField::path_error_rad(const SunTile& tile, const SunTile::Mark& mark) const {
+    const dem::Grid& grid = terrain_->grid();
+    const bool along_columns = tile.ray.goes_along_columns();
+    Ray ray = tile.ray;
+    glm::dvec2 post = mark.post, spacing_m = terrain_->spacing_m();
+    const auto turned = [&](const glm::dvec2& v) {
+        return along_columns ? glm::dvec2(v.y, v.x) : v;
+    };
+    for (glm::dvec2* const each :
+         {&ray.reference, &ray.first, &ray.second, &ray.third, &post, &spacing_m})
+        *each = turned(*each);
+    const geo::Geodetic place = grid.place(mark.post.x, mark.post.y);
+    const double azimuth_rad = at(place).azimuth_rad;
+    const double apparent = terrain_->apparent_rad(mark.elevation_rad, SunTerrain::kMean);
+    const double reach = reach_m(apparent), least_m = 2 * terrain_->widest_spacing_m();
+    // As a sweep goes: from row to row, all lines being moved along rows.
+    const double s0 = ray.distance_m(post.y);
+    const double moved_by = post.x - ray.way(s0).x;
+    double worst = 0;
+    for (const double share : {0.02, 0.2, 0.6, 1.0}) {
+        // Nearer than some posts an angle is of no account, and PROJ's millimetre would be one.
+        const double s = std::max(share * reach, least_m);
+        const glm::dvec2 there = grid.post(geo::destination(place, azimuth_rad, s));
+        if (!(there.x > -1 && there.y > -1 && there.x < grid.columns() && there.y < grid.rows()))
+            continue;
+        const glm::dvec2 to = turned(there);
+        const double s1 = ray.distance_m(to.y);
+        if (std::isnan(s1)) return kPi;
+        // A tenth of a post is less than lines are apart, whatever the angle.
+        const auto angle_rad = [&](double off_m) {
+            return std::abs(off_m) < spacing_m.x / 10 ? 0 : std::abs(off_m) / s;
+        };
+        const double aside_m = (ray.way(s1).x + moved_by - to.x) * spacing_m.x;
+        worst = std::max(worst, angle_rad(aside_m) * std::cos(apparent));
+        worst = std::max(worst, angle_rad(s1 - s0 - s) * std::sin(2 * apparent) / 2);
+    }
+    return worst;
+}
+
+double SunField::error_rad(const SunTile& tile) const {
+    double worst = 0;
+    const auto add = [&](double error_rad) { worst = error_rad <= worst ? worst : error_rad; };
+    for (int k = 0; k < (two_airs_ ? 2 : 1); ++k) {
+        const SunTerrain::Air air = k == 0 ? first_air() : SunTerrain::kOfHighest;
+        const SweepSun model = sun(tile, air, 0);
+        for (const SunTile::Mark& mark : tile.marks) {
+            const double seen =
+                std::min(terrain_->apparent_rad(mark.elevation_rad, air), kSteepest_rad);
+            add(std::abs(std::atan(model.tangent_at(mark.post.x, mark.post.y)) - seen));
+            if (k == 0) add(path_error_rad(tile, mark));
+            if (!(worst <= kPi)) return kPi;  // a place that is none has no error either
+        }
+    }
+    return worst;
+}
+
+}  // namespace relevo::light

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "light/raster/division.h"
+#include "light/raster/sun_field.h"
+#include "sun/time.h"
+
+namespace relevo::light {
+
+/// A sun over a DEM, and the tiles over each of which it is one.
+struct PlannedSun {
+    double at_s = 0;  ///< when, from the beginning
+    SunField field;
+    std::vector<SunTile> tiles{};  ///< none for a sun that no post sees
+};
+
+/// What is found of a DEM once a run, before any of its posts is looked at: the suns asked for, the
+/// air, and the tiles of every sun with their rays and the way that sweeps go over them. Each part
+/// of a raster is made with the same plan, so that its bits are the whole raster's.
+class SunPlan {
+  public:
+    /// @param posts   outlive this
+    /// @param window  posts that will be asked for; without columns: all
+    SunPlan(const dem::Posts& posts, const LightPath& path, const Window& window,
+            bool with_discs = false);
+
+    /// One sun, that stands so over a place.
+    /// @throws Error (BadInput) as divide()
+    void add_sun(const geo::Geodetic& place, const SunOverDem& sun,
+                 double tolerance_rad = kSunTolerance_rad);
+    /// Directions from true north, each level.
+    void add_directions(const std::vector<double>& azimuth_rad, double tolerance_rad);
+    /// The suns of a time, `step_s` apart, and closer to each other while the sun is near the
+    /// horizon: how far off what hides it lies changes there with every minute, and clearances are
+    /// not linear. Suns that no post sees are left out, but for the last one before each sunrise
+    /// and the first one after each sunset, which have the light end where it does.
+    void add_time(sun::Instant begin, double length_s, double step_s);
+
+    const SunTerrain& terrain() const { return *terrain_; }
+    const Window& window() const { return window_; }
+    const std::vector<PlannedSun>& suns() const { return suns_; }
+    const PlannedSun& sun() const { return suns_.front(); }
+    /// Into how many tiles a sun is divided at most.
+    int most_tiles() const;
+
+    static constexpr int kFiner = 3;          ///< as many steps near the horizon as one elsewhere
+    static constexpr double kLongest_s = 60;  ///< but no longer ones
+
+  private:
+    void divide_all(std::size_t first, double tolerance_rad);
+
+    std::unique_ptr<const SunTerrain> terrain_;  // SunField has its address
+    Window window_;
+    std::vector<PlannedSun> suns_;
+};
+
+}  // namespace relevo::light

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "light/sweep/ground_rows.h"
+#include "light/sweep/lines.h"
+
+namespace relevo::light {
+
+/// Finds the horizon of posts of lines next to each other, row by row away from where they look.
+///
+/// Each line carries a fan of rays over the ground that it has passed, some degrees apart; of each
+/// ray it knows the ground that holds it up. A post sees, over the steepest ray that passes over
+/// it, the ground that holds this one up. Heights are less what the ground has sunk by below the
+/// tangent plane of the ray's reference.
+class HorizonStrip {
+  public:
+    static constexpr Nearness kNearness{.near_rows = 8, .line_sets = 1, .distances = true};
+    static constexpr int kMostLines = 63;  ///< a fan is 58 numbers
+
+    /// @param lines      of a sun whose tangent is 1 everywhere: what they fall by is how far they
+    /// go
+    /// @param curvature  of the ground under a line of sight [1/m]
+    /// @param least      the tangent below which no ray is looked at; minus infinity: none
+    HorizonStrip(const SweepLines& lines, int line, int count, double curvature, double least);
+
+    void come_to(int row, const Sheet& sheet);       ///< as ShadowStrip
+    const float* look(int row, int first, int end);  ///< likewise, tangents
+
+  private:
+    static constexpr float kFarther_m = 1e9F;  // than any ground
+    static constexpr std::ptrdiff_t kPitch = in_vectors(kMostLines + 1) + kVectorFloats;
+
+    double distance_m(int row) const { return lines_.row(row).fall_m; }
+    Fans fans() const;
+    void raise(int row);
+    void look_at_near_ground(int row, int first, int end, const float* eyes_m);
+
+    const SweepLines& lines_;
+    double curvature_;
+    int line_, count_;
+    double least_;
+    GroundRows ground_;
+    std::array<float, kFanRays> tangents_;
+    mutable std::vector<float> height_m_, distance_m_;  // of the fans
+    std::vector<float> tangent_;
+};
+
+}  // namespace relevo::light

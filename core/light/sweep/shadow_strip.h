@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "light/sweep/ground_rows.h"
+#include "light/sweep/lines.h"
+
+namespace relevo::light {
+
+/// Finds heights of shadows over posts of lines next to each other, row by row away from the sun.
+///
+/// A line is as high as the highest ground that it has passed, lowered by what its ray has fallen
+/// by since. So that nothing has to be lowered at every row, what rays have fallen by is added to
+/// the ground instead (RowTilt), and taken away again from what is found: among such heights rays
+/// are level. As rays may fall by any amount, whole numbers of kBase_m are taken from that, which
+/// changes no bits.
+class ShadowStrip {
+  public:
+    static constexpr Nearness kNearness{.near_rows = 4, .line_sets = 2, .distances = false};
+    static constexpr int kMostLines = 2047;  ///< so that the rows kept fit into the cache
+
+    /// @param line, count  the first line, and how many
+    /// @param lowest_m     of all ground; heights count from near to it
+    /// @param floor_m      shadows are no lower; minus infinity: they may be
+    ShadowStrip(const SweepLines& lines, int line, int count, float lowest_m, float floor_m);
+
+    /// Goes on to a row: takes its ground from the sheet, and raises the lines to the ground of the
+    /// row that has become far.
+    void come_to(int row, const Sheet& sheet);
+    /// The shadows at the posts of this row that belong to lines [first, end) of the strip, from
+    /// the first one on.
+    const float* look(int row, int first, int end);
+
+  private:
+    static constexpr float kZero_m = 256;  // of which heights have some taken away
+    static constexpr double kBase_m = 2048;
+
+    float fallen_m(int row) const;
+    void rebase(int row);
+    void raise(int row);
+
+    const SweepLines& lines_;
+    int line_, count_;
+    float zero_m_, floor_m_;
+    double base_m_ = 0;
+    GroundRows ground_;
+    std::array<std::vector<float>, kNearness.line_sets> height_m_;  // of the lines of each set
+    std::vector<float> shadow_m_;
+};
+
+}  // namespace relevo::light

@@ -1,0 +1,285 @@
+#include "light/sweep/sweep.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/parallel_for.h"
+#include "light/sweep/horizon_strip.h"
+#include "light/sweep/lines.h"
+#include "light/sweep/runs.h"
+#include "light/sweep/shadow_strip.h"
+
+namespace relevo::light {
+namespace {
+
+constexpr double kSteepest = 1e4;  // tangent: 0.006 degrees from the zenith
+constexpr int kReadRows = 256;     // that are read together
+
+Window transposed(const Window& w) {
+    return {w.row, w.column, w.rows, w.columns};
+}
+glm::dvec2 transposed(const glm::dvec2& v) {
+    return {v.y, v.x};
+}
+
+/// A ray as it goes over a sheet.
+Ray on_sheet(Ray ray, const Orientation& sheet) {
+    glm::dvec2* const all[] = {&ray.reference, &ray.first, &ray.second, &ray.third};
+    if (sheet.transposed)
+        for (glm::dvec2* const each : all)
+            *each = transposed(*each);
+    if (!sheet.mirrored) return ray;
+    ray.reference.y = sheet.rows - 1 - ray.reference.y;
+    for (glm::dvec2* const each : {&ray.first, &ray.second, &ray.third})
+        each->y = -each->y;
+    return ray;
+}
+
+SweepSun on_sheet(SweepSun sun, const Orientation& sheet) {
+    // About a post, so that one line goes through posts.
+    const glm::dvec2 post =
+        glm::dvec2(std::round(sun.ray.reference.x), std::round(sun.ray.reference.y));
+    sun.tangent = sun.tangent_at(post.x, post.y);
+    sun.ray.reference = post;
+    sun.ray = on_sheet(sun.ray, sheet);
+    if (sheet.transposed) sun.tangent_per_post = transposed(sun.tangent_per_post);
+    if (sheet.mirrored) sun.tangent_per_post.y = -sun.tangent_per_post.y;
+    return sun;
+}
+
+/// The first column on a ray or after it, for each row of a window; none where it turns back.
+std::optional<std::vector<int>> first_columns(const Ray& ray, const Window& window) {
+    std::vector<int> first;
+    first.reserve(static_cast<std::size_t>(window.rows));
+    for (int row = window.row; row < window.end_row(); ++row) {
+        const double column = ray.reference.x + ray.way(ray.distance_m(row)).x;
+        if (std::isnan(column)) return std::nullopt;
+        first.push_back(static_cast<int>(
+            std::ceil(std::clamp(column, double(window.column), double(window.end_column())))));
+    }
+    return first;
+}
+
+/// Of each row of a window on a sheet; none where rays turn back or cross.
+std::optional<std::vector<ColumnRange>> column_ranges(const Window& window,
+                                                      const std::optional<Ray>& after,
+                                                      const std::optional<Ray>& before) {
+    std::vector<ColumnRange> ranges(static_cast<std::size_t>(window.rows),
+                                    {window.column, window.end_column()});
+    const auto set = [&](const std::optional<Ray>& ray, int ColumnRange::*end) {
+        if (!ray) return true;
+        const std::optional<std::vector<int>> first = first_columns(*ray, window);
+        for (std::size_t i = 0; first && i < ranges.size(); ++i)
+            ranges[i].*end = (*first)[i];
+        return first.has_value();
+    };
+    if (!set(after, &ColumnRange::begin) || !set(before, &ColumnRange::end)) return std::nullopt;
+    for (const ColumnRange& range : ranges)
+        if (range.begin > range.end) return std::nullopt;
+    return ranges;
+}
+
+/// Strips of lines, as many for every thread.
+int width_of_strips(int lines, int most) {
+    const int threads = std::min(thread_count(), std::max(1, lines / (4 * kVectorFloats)));
+    const int least = (lines + most - 1) / most;
+    const int strips = (least + threads - 1) / threads * threads;
+    // With the line beside they are whole vectors.
+    return std::min(most, in_vectors((lines + strips - 1) / strips + 1) - 1);
+}
+
+}  // namespace
+
+/// What a sweep is asked for, on the sheet that it goes over.
+struct Sweep::Job {
+    Orientation orientation;
+    Sheet sheet;  // without heights where these are read
+    SweepSun sun;
+    SheetPosts posts;
+};
+
+Sweep::Sweep(const float* height_m, int columns, int rows, std::ptrdiff_t stride)
+    : height_m_(height_m),
+      columns_(columns),
+      rows_(rows),
+      stride_(stride),
+      lowest_m_(std::numeric_limits<float>::infinity()),
+      highest_m_(-lowest_m_) {
+    assert(columns > 0 && rows > 0);
+    std::mutex mutex;
+    parallel_for(0, rows, 64, [&](int first, int last) {
+        float lowest_m = std::numeric_limits<float>::infinity(), highest_m = -lowest_m;
+        for (int row = first; row < last; ++row)
+            for (const float* h = height_m + row * stride; h < height_m + row * stride + columns;
+                 ++h) {
+                lowest_m = *h < lowest_m ? *h : lowest_m;
+                highest_m = *h > highest_m ? *h : highest_m;
+            }
+        const std::lock_guard lock(mutex);
+        lowest_m_ = std::min(lowest_m_, lowest_m);
+        highest_m_ = std::max(highest_m_, highest_m);
+    });
+}
+
+Sweep::Sweep(Read read, int columns, int rows, float lowest_m, float highest_m)
+    : read_(std::move(read)),
+      columns_(columns),
+      rows_(rows),
+      lowest_m_(lowest_m),
+      highest_m_(highest_m) {
+    assert(columns > 0 && rows > 0);
+}
+
+const float* Sweep::transposed() const {
+    std::call_once(once_, [&] {
+        transposed_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+        constexpr int kBand = 64;
+        parallel_for(0, (rows_ + kBand - 1) / kBand, 4, [&](int first, int last) {
+            const int row = first * kBand;
+            transpose(height_m_ + row * stride_, stride_, std::min(rows_, last * kBand) - row,
+                      columns_, transposed_.data() + row, rows_);
+        });
+    });
+    return transposed_.data();
+}
+
+Sweep::Job Sweep::job_for(const SweepSun& sun, const TilePosts& posts) const {
+    assert(common(posts.window, {0, 0, columns_, rows_}) == posts.window);
+    Job job;
+    job.orientation.transposed = sun.ray.goes_along_columns();
+    const bool turned = job.orientation.transposed;
+    job.sheet = turned ? Sheet{read_ ? nullptr : transposed(), rows_, rows_, columns_}
+                       : Sheet{height_m_, stride_, columns_, rows_};
+    job.orientation.rows = job.sheet.rows;
+    job.orientation.mirrored = (turned ? sun.ray.first.x : sun.ray.first.y) > 0;
+    job.sun = on_sheet(sun, job.orientation);
+    job.posts.window = turned ? light::transposed(posts.window) : posts.window;
+    if (job.orientation.mirrored) {
+        job.posts.window.row = job.sheet.rows - job.posts.window.end_row();
+        if (!read_) {
+            job.sheet.first_m += (job.sheet.rows - 1) * job.sheet.stride;
+            job.sheet.stride = -job.sheet.stride;
+        }
+    }
+    const auto ray = [&](const std::optional<Ray>& of) {
+        return of ? std::optional(on_sheet(*of, job.orientation)) : std::nullopt;
+    };
+    if (posts.after || posts.before)
+        job.posts.ranges =
+            column_ranges(job.posts.window, ray(posts.after), ray(posts.before)).value();
+    return job;
+}
+
+/// Reads rows and columns of a sheet, so that it has them where it looks for them.
+void Sweep::read(const Job& job, const Window& window, Sheet& sheet,
+                 std::vector<float>& buffer) const {
+    const auto [transposed, mirrored, sheet_rows] = job.orientation;
+    const int line = mirrored ? sheet_rows - window.end_row() : window.row;
+    const Window lines{window.column, line, window.columns, window.rows};
+    std::vector<float> packed;
+    read_(transposed ? light::transposed(lines) : lines, packed);
+    buffer.resize(packed.size());
+    if (transposed)
+        transpose(packed.data(), window.rows, window.columns, window.rows, buffer.data(),
+                  window.columns);
+    else
+        buffer.swap(packed);
+    sheet = job.sheet;
+    sheet.stride = mirrored ? -window.columns : window.columns;
+    sheet.first_m = buffer.data() + (mirrored ? (window.rows - 1) * window.columns : 0) -
+                    (window.row * sheet.stride + window.column);
+}
+
+/// Has strips of lines go from the first row that matters to the last that is wanted.
+/// @param make  a strip of some lines, from one on
+template <typename Strip, typename Make>
+void Sweep::sweep_strips(const Job& job, double drop_m, const Make& make, const Use& use) const {
+    SweepLines lines(job.sheet, job.sun, job.posts, Strip::kNearness, drop_m);
+    const int count = lines.lines().end - lines.lines().begin;
+    if (count <= 0) return;
+    const int width = width_of_strips(count, Strip::kMostLines);
+    const int ground_columns = GroundRows::pitch(lines, width + 1);
+    lines.find_crossings(ground_columns, Strip::kNearness.near_rows + 3);
+    parallel_for(0, (count + width - 1) / width, 1, [&](int begin, int end) {
+        std::vector<float> buffer;
+        Runs runs(job.orientation, use);
+        for (int k = begin; k < end; ++k) {
+            const int line = lines.lines().begin + k * width;
+            Strip strip = make(lines, line, width);
+            Sheet sheet = job.sheet;
+            for (int row = lines.begin(); row < lines.end(); ++row) {
+                if (read_ && (row - lines.begin()) % kReadRows == 0) {
+                    const int last = std::min(row + kReadRows, lines.end());
+                    const ColumnRange columns = lines.columns(row, last);
+                    const Window all{0, row, job.sheet.columns, last - row};
+                    const Window wanted =
+                        common(all, {columns.begin + line - 3, row,
+                                     columns.end - columns.begin + ground_columns + 6, last - row});
+                    if (!wanted.is_empty()) read(job, wanted, sheet, buffer);
+                }
+                strip.come_to(row, sheet);
+                if (row < job.posts.window.row) continue;
+                const ColumnRange posts = job.posts.at(row);
+                const int column = lines.row(row).column;
+                const int from = std::max(line, posts.begin - column),
+                          to = std::min(line + width, posts.end - column);
+                if (from < to) runs.add(row, column + from, to - from, strip.look(row, from, to));
+            }
+            runs.finish();
+        }
+    });
+}
+
+void Sweep::each_shadow(const SweepSun& sun, const TilePosts& posts, float floor_m,
+                        const Use& use) const {
+    SweepSun given = sun;
+    if (!(std::abs(given.tangent) < kSteepest)) {
+        given.tangent = std::copysign(kSteepest, given.tangent);
+        given.tangent_per_post = {0, 0};
+    }
+    const double drop_m =
+        std::max(0.0, double{highest_m_} - (floor_m > kNoFloor_m ? floor_m : lowest_m_));
+    sweep_strips<ShadowStrip>(
+        job_for(given, posts), drop_m,
+        [&](const SweepLines& lines, int line, int count) {
+            return ShadowStrip(lines, line, count, lowest_m_, floor_m);
+        },
+        use);
+}
+
+void Sweep::each_horizon(const Ray& ray, double curvature, double reach_m, const TilePosts& posts,
+                         const Use& use) const {
+    // Of ground that is farther off some windows see more than others, but never higher than so.
+    const double relief_m = std::max(0.0, double{highest_m_} - lowest_m_);
+    const double across_m = reach_m * std::hypot(ray.first.x, ray.first.y);
+    const double least = across_m > std::hypot(columns_, rows_)
+                             ? -std::numeric_limits<double>::infinity()
+                             : relief_m / reach_m - curvature * reach_m / 2;
+    // What a ray of tangent 1 falls by is how far it goes.
+    sweep_strips<HorizonStrip>(
+        job_for({ray, 1, {0, 0}}, posts), reach_m,
+        [&](const SweepLines& lines, int line, int count) {
+            return HorizonStrip(lines, line, count, curvature, least);
+        },
+        use);
+}
+
+std::optional<std::vector<std::pair<int, int>>> ranges_of(const TilePosts& posts,
+                                                          bool along_columns) {
+    const Orientation orientation{along_columns, false, 0};
+    const Window window = along_columns ? transposed(posts.window) : posts.window;
+    const auto ray = [&](const std::optional<Ray>& of) {
+        return of ? std::optional(on_sheet(*of, orientation)) : std::nullopt;
+    };
+    const auto ranges = column_ranges(window, ray(posts.after), ray(posts.before));
+    if (!ranges) return std::nullopt;
+    std::vector<std::pair<int, int>> found;
+    for (const ColumnRange& range : *ranges)
+        found.emplace_back(range.begin, range.end);
+    return found;
+}
+
+}  // namespace relevo::light
