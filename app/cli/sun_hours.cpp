@@ -202,9 +202,10 @@ void run(const Arguments& arguments) {
         },
         light::kHides);
     Summary sum;
+    options.part = ground.window;
+    const light::SunHoursPlan plan(posts, begin, end, options);
     raster.each_part([&](const dem::Window& part) {
-        options.part = part;
-        light::SunHours hours = light::sun_hours(posts, begin, end, options);
+        light::SunHours hours = plan.part(part);
         sum.add(hours);
         for (std::size_t k = 0; k < arguments.bands.size(); ++k)
             raster.put(k, part, values_of(arguments.bands[k], hours));

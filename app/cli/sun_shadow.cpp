@@ -179,15 +179,18 @@ void check(const Arguments& arguments) {
 }
 
 /// Puts the light of all suns where it belongs. @return what it is
-std::string light_all(const dem::Posts& posts, const std::vector<Asked>& suns,
-                      light::ShadowOptions options, RasterRun& raster,
-                      std::vector<Counts>& counts) {
+std::string light_all(const dem::Posts& posts, const dem::Window& window,
+                      const std::vector<Asked>& suns, light::ShadowOptions options,
+                      RasterRun& raster, std::vector<Counts>& counts) {
     std::string definition;
     options.done = raster.done();
+    light::SunPlan plan(posts, {options.refraction, options.air}, window, options.soft);
+    for (const Asked& asked : suns)
+        plan.add_sun(posts.grid().center(), asked.sun);
     raster.each_part([&](const dem::Window& part) {
         options.part = part;
         for (std::size_t k = 0; k < suns.size(); ++k) {
-            const light::Shadows shadows = light::shadows(posts, suns[k].sun, options);
+            const light::Shadows shadows = light::shadows(plan, plan.suns()[k], options);
             counts[k].lit += shadows.lit_posts;
             counts[k].shaded += shadows.shaded_posts;
             counts[k].holes += shadows.holes;
@@ -233,7 +236,7 @@ void run(const Arguments& arguments) {
         },
         light::kHides);
     std::vector<Counts> counts(suns.size());
-    const std::string definition = light_all(posts, suns, options, raster, counts);
+    const std::string definition = light_all(posts, ground.window, suns, options, raster, counts);
     output::RasterMetadata more{{"REFRACTION", air}};
     if (!timed)
         for (auto& item : about_sun(suns.front()))

@@ -47,9 +47,11 @@ void run_sky_view(const Arguments& arguments) {
     double sum = 0, posts = 0;
     std::int64_t holes = 0;
     std::string definition;
+    light::SunPlan plan(ground.posts, {options.refraction, {}}, ground.window);
+    light::add_sky_view_directions(plan, options.directions);
     raster.each_part([&](const dem::Window& part) {
         options.part = part;
-        const light::SkyView view = light::sky_view(ground.posts, options);
+        const light::SkyView view = light::sky_view(plan, options);
         const auto seen = static_cast<double>(view.share.size()) - static_cast<double>(view.holes);
         if (seen > 0) sum += view.mean * seen;
         posts += seen;
@@ -85,16 +87,17 @@ void run_horizons(const Arguments& arguments) {
         light::kStandsOver);
     const std::function<void(double)> done = raster.done();
     std::int64_t holes = 0;
-    std::string definition;
+    const std::string definition =
+        light::horizons_definition(arguments.raster.terrestrial_refraction);
+    light::SunPlan plan(ground.posts, {arguments.raster.terrestrial_refraction, {}}, ground.window);
+    light::add_horizon_directions(plan, azimuth_rad);
     raster.each_part([&](const dem::Window& part) {
         for (std::size_t k = 0; k < azimuth_rad.size(); ++k) {
-            light::Horizons horizons = light::horizons(
-                ground.posts, {azimuth_rad[k]}, arguments.raster.terrestrial_refraction, part);
-            if (k == 0) holes += horizons.holes;
-            definition = horizons.definition;
-            Array2d<float>& elevation = horizons.elevation_rad.front();
-            for (float& value : elevation)
+            Array2d<float> elevation = light::horizon_elevations(plan, plan.suns()[k], part);
+            for (float& value : elevation) {
+                if (k == 0) holes += std::isnan(value);
                 value = static_cast<float>(degrees(double{value}));
+            }
             raster.put(k, part, elevation);
             done(1);
         }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -39,32 +40,46 @@ Options options_for(const dem::Window& part, const std::function<void(double)>& 
     return options;
 }
 
-SunRaster hours_of(const dem::Posts& posts, const SunRasterWanted& wanted, const dem::Window& part,
-                   const std::function<void(double)>& done) {
-    auto options = options_for<light::SunHoursOptions>(part, done);
+SunRasterMaker hours_of(const dem::Posts& posts, const SunRasterWanted& wanted,
+                        const dem::Window& window, const std::function<void(double)>& done) {
+    auto options = options_for<light::SunHoursOptions>(window, done);
     options.air = air_of(wanted.refraction);
     options.step_s = kSunStep_s;
-    light::SunHours hours = light::sun_hours(posts, wanted.begin, wanted.end, options);
-    return {std::move(hours.hours), hours.holes, std::move(hours.definition)};
+    const auto plan =
+        std::make_shared<light::SunHoursPlan>(posts, wanted.begin, wanted.end, options);
+    return [plan](const dem::Window& part) {
+        light::SunHours hours = plan->part(part);
+        return SunRaster{std::move(hours.hours), hours.holes, std::move(hours.definition)};
+    };
 }
 
-SunRaster shadow_of(const dem::Posts& posts, const SunRasterWanted& wanted, const dem::Window& part,
-                    const std::function<void(double)>& done) {
-    auto options = options_for<light::ShadowOptions>(part, done);
+SunRasterMaker shadow_of(const dem::Posts& posts, const SunRasterWanted& wanted,
+                         const dem::Window& window, const std::function<void(double)>& done) {
+    auto options = options_for<light::ShadowOptions>(window, done);
     options.air = air_of(wanted.refraction);
-    const SunOverMiddle sun = sun_over_middle(posts, wanted.begin, wanted.refraction);
-    light::Shadows shadows = light::shadows(posts, sun.sun, options);
-    for (float& value : shadows.lit)
-        if (!std::isnan(value)) value = value > 0 ? 1.0F : 0.0F;
-    return {std::move(shadows.lit), shadows.holes, std::move(shadows.definition)};
+    const auto plan = std::make_shared<light::SunPlan>(
+        posts, light::LightPath{options.refraction, options.air}, window);
+    plan->add_sun(posts.grid().center(),
+                  sun_over_middle(posts, wanted.begin, wanted.refraction).sun);
+    return [plan, options](const dem::Window& part) mutable {
+        options.part = part;
+        light::Shadows shadows = light::shadows(*plan, plan->suns().front(), options);
+        return SunRaster{std::move(shadows.lit), shadows.holes, std::move(shadows.definition)};
+    };
 }
 
-SunRaster sky_of(const dem::Posts& posts, const dem::Window& part,
-                 const std::function<void(double)>& done) {
-    auto options = options_for<light::SkyViewOptions>(part, done);
+SunRasterMaker sky_of(const dem::Posts& posts, const dem::Window& window,
+                      const std::function<void(double)>& done) {
+    auto options = options_for<light::SkyViewOptions>(window, done);
     options.directions = kSkyDirections;
-    light::SkyView view = light::sky_view(posts, options);
-    return {std::move(view.share), view.holes, std::move(view.definition)};
+    const auto plan =
+        std::make_shared<light::SunPlan>(posts, light::LightPath{options.refraction, {}}, window);
+    light::add_sky_view_directions(*plan, options.directions);
+    return [plan, options](const dem::Window& part) mutable {
+        options.part = part;
+        light::SkyView view = light::sky_view(*plan, options);
+        return SunRaster{std::move(view.share), view.holes, std::move(view.definition)};
+    };
 }
 
 /// What only one kind of raster says of itself.
@@ -193,11 +208,17 @@ bool same_figures(const SunRasterWanted& a, const SunRasterWanted& b) {
            (a.figure == SunFigure::Shadow || (a.end == b.end && a.zone.name() == b.zone.name()));
 }
 
+SunRasterMaker sun_raster_maker(const dem::Posts& posts, const SunRasterWanted& wanted,
+                                const dem::Window& window,
+                                const std::function<void(double)>& done) {
+    if (wanted.figure == SunFigure::Hours) return hours_of(posts, wanted, window, done);
+    if (wanted.figure == SunFigure::Shadow) return shadow_of(posts, wanted, window, done);
+    return sky_of(posts, window, done);
+}
+
 SunRaster sun_raster(const dem::Posts& posts, const SunRasterWanted& wanted,
                      const dem::Window& part, const std::function<void(double)>& done) {
-    if (wanted.figure == SunFigure::Hours) return hours_of(posts, wanted, part, done);
-    if (wanted.figure == SunFigure::Shadow) return shadow_of(posts, wanted, part, done);
-    return sky_of(posts, part, done);
+    return sun_raster_maker(posts, wanted, part, done)(part);
 }
 
 void write_sun_raster(OutputFile& file, const dem::Posts& posts, const SunRasterWanted& wanted,
@@ -217,19 +238,22 @@ void write_sun_raster(OutputFile& file, const dem::Posts& posts, const SunRaster
     const dem::Window all{0, 0, grid.columns(), grid.rows()};
     std::string definition = whole ? whole->definition : "";
     std::int64_t holes = whole ? whole->holes : 0;
-    if (whole)
+    if (whole) {
         put(all, *whole);
-    else
+    } else {
+        double share = 1;
+        const SunRasterMaker make = sun_raster_maker(posts, wanted, all, [&](double of_part) {
+            if (done) done(share * of_part);
+        });
         for (const dem::Window& part :
              posts.in_memory() ? std::vector{all} : raster_parts(all, most)) {
-            const double share = double{1} * part.columns * part.rows / all.columns / all.rows;
-            const SunRaster raster = sun_raster(posts, wanted, part, [&](double of_part) {
-                if (done) done(share * of_part);
-            });
+            share = double{1} * part.columns * part.rows / all.columns / all.rows;
+            const SunRaster raster = make(part);
             put(part, raster);
             definition = raster.definition;
             holes += raster.holes;
         }
+    }
     output::RasterMetadata about =
         raster_metadata(posts, version, definition, kTerrestrialRefraction, holes);
     for (auto& item : metadata_of(posts, wanted))

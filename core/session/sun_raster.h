@@ -83,6 +83,15 @@ struct SunRaster {
 
 output::RasterBand band_of(SunFigure figure);
 
+/// Makes the figures of parts of a DEM, one after the other, by one plan.
+using SunRasterMaker = std::function<SunRaster(const dem::Window& part)>;
+/// @param window  posts that will be asked for; without columns: all
+/// @param done    as light::ShadowOptions::done
+/// @throws Error (BadInput) as light::sun_hours(), shadows() and sky_view()
+SunRasterMaker sun_raster_maker(const dem::Posts& posts, const SunRasterWanted& wanted,
+                                const dem::Window& window = {},
+                                const std::function<void(double)>& done = {});
+
 /// @param part  as in light::ShadowOptions; without columns: all
 /// @param done  likewise; what it throws ends the work
 /// @throws Error (BadInput) as light::sun_hours(), shadows() and sky_view()

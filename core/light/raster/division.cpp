@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -25,39 +26,22 @@ std::array<Window, 2> halves(const Window& window, bool of_columns) {
     return halves;
 }
 
-/// The posts of a tile within as small a window as has them; none: it has no posts.
-std::optional<TilePosts> trimmed(TilePosts posts, bool along_columns) {
-    const auto ranges = ranges_of(posts, along_columns);
-    if (!ranges) return std::nullopt;
-    int line = -1, last_line = -1, begin = 0, end = 0;
-    for (int i = 0; i < static_cast<int>(ranges->size()); ++i) {
-        const auto& [from, to] = (*ranges)[static_cast<std::size_t>(i)];
-        if (from >= to) continue;
-        if (line < 0) line = i, begin = from, end = to;
-        last_line = i, begin = std::min(begin, from), end = std::max(end, to);
-    }
-    Window& w = posts.window;
-    if (line < 0)
-        w.rows = 0;
-    else if (along_columns)
-        w = {w.column + line, begin, last_line - line + 1, end - begin};
-    else
-        w = {begin, w.row + line, end - begin, last_line - line + 1};
-    return posts;
-}
-
 class Division {
   public:
     Division(const SunField& sun, const Window& part, double tolerance_rad, std::size_t most)
         : sun_(sun), part_(part), tolerance_rad_(tolerance_rad), most_(most) {}
 
-    void divide(const Window& window) {
+    /// @param along_columns  how sweeps of the window around go
+    void divide(const Window& window, std::optional<bool> along_columns = {}) {
         if (common(window, part_).is_empty() || tiles_.size() > most_) return;
-        const std::optional<SunTile> whole = sun_.tile({window});
+        const glm::dvec2 middle(window.column + (window.columns - 1) / 2,
+                                window.row + (window.rows - 1) / 2);
+        const Way way = way_of(sun_.step(middle), along_columns);
+        const std::optional<SunTile> whole = sun_.tile({window}, way.along_columns);
         const double error_rad = whole ? sun_.error_rad(*whole) : kPi;
         if (error_rad <= tolerance_rad_) return add(*whole);
-        if (cut_between_rays(window, error_rad)) return;
-        halve(window);
+        if (cut_between_rays(window, way, error_rad)) return;
+        halve(window, way);
     }
     std::vector<SunTile> take() { return std::move(tiles_); }
 
@@ -66,20 +50,30 @@ class Division {
         if (!common(tile.posts.window, part_).is_empty()) tiles_.push_back(tile);
     }
 
-    void halve(const Window& window) {
+    /// How rays go in the middle of a window [posts a metre], and how sweeps do.
+    struct Way {
+        glm::dvec2 step;
+        bool along_columns;
+    };
+    /// Sweeps go as they do around, so that tiles are long, unless that leads too far aside.
+    static Way way_of(const glm::dvec2& step, std::optional<bool> around) {
+        constexpr double kAside = 1.6;
+        const double x = std::abs(step.x), y = std::abs(step.y);
+        if (around && (*around ? y < kAside * x : x < kAside * y)) return {step, *around};
+        return {step, y < x};
+    }
+
+    void halve(const Window& window, const Way& way) {
         const bool wide = window.columns > kLeastWindow, high = window.rows > kLeastWindow;
         if (!wide && !high) refuse();
-        const glm::dvec2 step =
-            sun_.step({window.column + window.columns / 2, window.row + window.rows / 2});
         const glm::dvec2 size_m =
             sun_.terrain().spacing_m() * glm::dvec2(window.columns, window.rows);
         // Along its rays while that leaves it no longer than wide by far; else across.
-        const bool along_columns = std::abs(step.y) < std::abs(step.x);
-        const double length_m = along_columns ? size_m.x : size_m.y,
-                     width_m = along_columns ? size_m.y : size_m.x;
-        const bool of_columns = length_m > width_m / 4 ? along_columns : !along_columns;
+        const double length_m = way.along_columns ? size_m.x : size_m.y,
+                     width_m = way.along_columns ? size_m.y : size_m.x;
+        const bool of_columns = length_m > width_m / 4 ? way.along_columns : !way.along_columns;
         for (const Window& half : halves(window, of_columns ? wide : !high))
-            divide(half);
+            divide(half, way.along_columns);
     }
 
     [[noreturn]] void refuse() const {
@@ -90,13 +84,12 @@ class Division {
     }
 
     /// One tile after the other, each as wide as the error of the last one lets it be.
-    bool cut_between_rays(const Window& window, double error_of_all_rad) {
-        const glm::dvec2 step =
-            sun_.step({window.column + window.columns / 2, window.row + window.rows / 2});
-        if (!std::isfinite(step.x + step.y)) return false;
-        const bool along_columns = std::abs(step.y) < std::abs(step.x);
-        const int posts = along_columns ? window.rows : window.columns;
-        const auto at = [&](double share) { return on_diagonal(window, step, share); };
+    bool cut_between_rays(const Window& window, const Way& way, double error_of_all_rad) {
+        if (!std::isfinite(way.step.x + way.step.y)) return false;
+        const int posts = way.along_columns ? window.rows : window.columns;
+        const auto ray_at = [&](double share) {
+            return sun_.ray(on_diagonal(window, way, share), window, way.along_columns);
+        };
         std::vector<SunTile> tiles;
         double from = 0, width = std::clamp(0.9 * tolerance_rad_ / error_of_all_rad, 0.02, 0.5);
         std::optional<Ray> begin, end;
@@ -106,25 +99,18 @@ class Division {
             const bool is_last = left <= 1;
             const double to = is_last ? 1 : from + (1 - from) / left;
             end.reset();
-            if (!is_last && !(end = sun_.ray(at(to), window))) return false;
-            const std::optional<TilePosts> some = trimmed({window, begin, end}, along_columns);
-            if (!some) return false;
-            double error_rad = 0;
-            std::optional<SunTile> tile;
-            if (!some->window.is_empty()) {
-                tile = sun_.tile(*some);
-                if (!tile || tile->ray.goes_along_columns() != along_columns)
-                    error_rad = kPi;
-                else
-                    error_rad = sun_.error_rad(*tile);
-            }
+            if (!is_last && !(end = ray_at(to))) return false;
+            const std::optional<SunTile> tile = sun_.tile({window, begin, end}, way.along_columns);
+            if (!tile) return false;
+            const bool has_posts = !tile->posts.window.is_empty();
+            const double error_rad = has_posts ? sun_.error_rad(*tile) : 0;
             const double share = 0.97 * tolerance_rad_ / std::max(error_rad, 1e-9);
             if (error_rad > tolerance_rad_) {
                 width = (to - from) * std::min(share, 0.9);
                 if (width * posts < kLeastWidth) return false;
                 continue;
             }
-            if (tile) tiles.push_back(*tile);
+            if (has_posts) tiles.push_back(*tile);
             if (is_last) {
                 for (const SunTile& each : tiles)
                     add(each);
@@ -139,10 +125,9 @@ class Division {
 
     /// A post on that diagonal of a window which all rays cross, from the side where lines of a
     /// sweep begin.
-    static glm::dvec2 on_diagonal(const Window& window, const glm::dvec2& step, double share) {
-        const bool along_columns = std::abs(step.y) < std::abs(step.x);
+    static glm::dvec2 on_diagonal(const Window& window, const Way& way, double share) {
         glm::dvec2 shares(share);
-        if (step.x * step.y > 0) (along_columns ? shares.x : shares.y) = 1 - share;
+        if (way.step.x * way.step.y > 0) (way.along_columns ? shares.x : shares.y) = 1 - share;
         return glm::dvec2(std::round(window.column + shares.x * (window.columns - 1)),
                           std::round(window.row + shares.y * (window.rows - 1)));
     }

@@ -18,15 +18,16 @@ glm::dvec2 turned(const glm::dvec2& v, bool along_columns) {
 }  // namespace
 
 GroundBeyond::GroundBeyond(const dem::Posts& posts, const SunTile& tile, double reach_m)
-    : ray_(tile.ray), along_columns_(tile.ray.goes_along_columns()) {
+    : ray_(tile.ray), along_columns_(tile.ray.along_columns) {
     for (glm::dvec2* const each : {&ray_.reference, &ray_.first, &ray_.second, &ray_.third})
         *each = turned(*each, along_columns_);
     const Window& w = tile.posts.window;
     first_row_ = along_columns_ ? w.column : w.row;
     const int rows = along_columns_ ? w.columns : w.rows;
-    for (int row = first_row_; row < first_row_ + rows; ++row) {
-        row_distance_m_.push_back(ray_.distance_m(row));
-        row_shift_.push_back(ray_.reference.x + ray_.way(row_distance_m_.back()).x);
+    std::vector<double> shifts;
+    for (const double s : ray_.distances_m(first_row_, first_row_ + rows)) {
+        row_distance_m_.push_back(static_cast<float>(s));
+        shifts.push_back(ray_.reference.x + ray_.way(s).x);
     }
     double begin_m = std::numeric_limits<double>::infinity(), end_m = -begin_m;
     double first = begin_m, last = -begin_m;
@@ -38,7 +39,11 @@ GroundBeyond::GroundBeyond(const dem::Posts& posts, const SunTile& tile, double 
         begin_m = std::min(begin_m, s), end_m = std::max(end_m, s);
         first = std::min(first, line), last = std::max(last, line);
     }
-    if (!(first <= last)) return;
+    line_column_.reserve(shifts.size());
+    if (!(first <= last)) {
+        line_column_.assign(shifts.size(), std::numeric_limits<int>::max());
+        return;
+    }
     // No farther than the grid goes, be rays bent.
     const Window all{0, 0, posts.grid().columns(), posts.grid().rows()};
     double out_m = -end_m;
@@ -51,6 +56,11 @@ GroundBeyond::GroundBeyond(const dem::Posts& posts, const SunTile& tile, double 
     const double step_m = step / std::max(std::abs(ray_.first.x), std::abs(ray_.first.y));
     const double until_m = std::min(end_m + reach_m, out_m + beside * step_m);
     first_line_ = static_cast<int>(std::floor(first)) - beside;
+    // A ray that has turned back meets no edge.
+    for (const double shift : shifts)
+        line_column_.push_back(std::isnan(shift)
+                                   ? std::numeric_limits<int>::max()
+                                   : static_cast<int>(std::ceil(shift - 0.5)) + first_line_);
     const int lines = static_cast<int>(std::ceil(last)) + beside + 1 - first_line_;
     for (int line = 0; line < lines; line += step) {
         const int middle = std::min(line + step / 2, lines - 1);
@@ -82,29 +92,15 @@ Edge GroundBeyond::edge_of(const dem::Posts& posts, double line, double begin_m,
 }
 
 void GroundBeyond::find(int row, int column, int count, float* height_m, float* distance_m) const {
-    const auto lines = static_cast<std::ptrdiff_t>(height_m_.size());
-    const auto put = [&](int i, std::ptrdiff_t line, float from_m) {
+    const int lines = static_cast<int>(height_m_.size());
+    const int step_row = along_columns_ ? 1 : 0;
+    auto k = static_cast<std::size_t>((along_columns_ ? column : row) - first_row_);
+    for (int i = 0; i < count; ++i, k += static_cast<std::size_t>(step_row)) {
+        const int line = (along_columns_ ? row : column + i) - line_column_[k];
         const bool has = line >= 0 && line < lines;
         const auto at = static_cast<std::size_t>(has ? line : 0);
         height_m[i] = has ? height_m_[at] : kNowhere_m;
-        distance_m[i] = has ? distance_m_[at] - from_m : kNowhere_m;
-    };
-    const auto line_of = [&](int at_column, std::size_t k) {
-        const double line = at_column - row_shift_[k] - first_line_;
-        // A ray that has turned back meets no edge.
-        return std::isnan(line) ? std::ptrdiff_t{-(1 << 30)}
-                                : static_cast<std::ptrdiff_t>(std::floor(line + 0.5));
-    };
-    if (along_columns_) {
-        for (int i = 0; i < count; ++i) {
-            const auto k = static_cast<std::size_t>(column + i - first_row_);
-            put(i, line_of(row, k), static_cast<float>(row_distance_m_[k]));
-        }
-    } else {
-        const auto k = static_cast<std::size_t>(row - first_row_);
-        const std::ptrdiff_t first = line_of(column, k);
-        for (int i = 0; i < count; ++i)
-            put(i, first + i, static_cast<float>(row_distance_m_[k]));
+        distance_m[i] = has ? distance_m_[at] - row_distance_m_[k] : kNowhere_m;
     }
 }
 

@@ -28,8 +28,9 @@ class GroundBeyond {
     Ray ray_;  // along rows of the sweep
     bool along_columns_;
     int first_row_ = 0;  // of the tile's, as the sweep goes
-    std::vector<double> row_distance_m_, row_shift_;
-    int first_line_ = 0;  // columns from the reference's ray on
+    std::vector<float> row_distance_m_;
+    std::vector<int> line_column_;  // of each row: where line 0 of those below has its post
+    int first_line_ = 0;            // columns from the reference's ray on
     std::vector<float> height_m_, distance_m_;
 };
 

@@ -46,27 +46,37 @@ void add_directions(const SunPlan& plan, const SkyViewOptions& options, const Wi
 
 }  // namespace
 
+void add_horizon_directions(SunPlan& plan, const std::vector<double>& azimuth_rad) {
+    plan.add_directions(azimuth_rad, kHorizonTolerance_rad);
+}
+
+Array2d<float> horizon_elevations(const SunPlan& plan, const PlannedSun& direction,
+                                  const Window& part) {
+    const WindowHeights heights(plan.terrain().posts(), part);
+    Array2d<float> elevation_rad(part.columns, part.rows);
+    each_horizon(direction.field, direction.tiles, part, [&](const SunTile&, const SweepRun& run) {
+        find_elevations(run.found, heights.view.at(run.column, run.row), run.count,
+                        &elevation_rad.at(run.column - part.column, run.row - part.row));
+    });
+    return elevation_rad;
+}
+
+std::string horizons_definition(double refraction) {
+    return "elevation of the horizon as seen from the ground; " + surroundings(refraction);
+}
+
 Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, double refraction,
                   const Window& of) {
     SunPlan plan(posts, {refraction, {}}, of);
-    plan.add_directions(azimuth_rad, kHorizonTolerance_rad);
-    const Window& part = plan.window();
-    const WindowHeights heights(posts, part);
+    add_horizon_directions(plan, azimuth_rad);
     Horizons result;
     result.azimuth_rad = std::move(azimuth_rad);
-    for (const PlannedSun& direction : plan.suns()) {
-        Array2d<float>& to = result.elevation_rad.emplace_back(part.columns, part.rows);
-        each_horizon(direction.field, direction.tiles, part,
-                     [&](const SunTile&, const SweepRun& run) {
-                         find_elevations(run.found, heights.view.at(run.column, run.row), run.count,
-                                         &to.at(run.column - part.column, run.row - part.row));
-                     });
-    }
+    for (const PlannedSun& direction : plan.suns())
+        result.elevation_rad.push_back(horizon_elevations(plan, direction, plan.window()));
     if (!result.elevation_rad.empty())
         for (const float elevation : result.elevation_rad.front())
             result.holes += std::isnan(elevation);
-    result.definition =
-        "elevation of the horizon as seen from the ground; " + surroundings(refraction);
+    result.definition = horizons_definition(refraction);
     return result;
 }
 

@@ -29,6 +29,13 @@ struct Horizons {
 Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad,
                   double refraction = 0.13, const Window& part = {});
 
+/// The same for parts of a DEM one after the other, and for one direction.
+/// @param plan  with add_horizon_directions()
+Array2d<float> horizon_elevations(const SunPlan& plan, const PlannedSun& direction,
+                                  const Window& part);
+void add_horizon_directions(SunPlan& plan, const std::vector<double>& azimuth_rad);
+std::string horizons_definition(double refraction);
+
 struct SkyViewOptions {
     int directions = 36;
     double refraction = 0.13;

@@ -57,12 +57,7 @@ HorizonHours::HorizonHours(const SunTerrain& terrain, const Window& window, sun:
       length_s_(length_s),
       table_(begin, begin + length_s) {
     for (const Window& each : windows())
-        if (!common(each, window).is_empty()) {
-            blocks_.push_back(block_of(each, window));
-            const Window wanted = common(each, window);
-            all_ += double(wanted.columns) * wanted.rows *
-                    static_cast<double>(blocks_.back().directions.size());
-        }
+        if (!common(each, window).is_empty()) blocks_.push_back(block_of(each, window));
 }
 
 int HorizonHours::most_tiles() const {
@@ -174,13 +169,19 @@ void HorizonHours::add(const Window& part, SunHours& result) const {
                 air.at(x, y) = static_cast<float>(
                     air_left(terrain_, heights.at(part.column + x, part.row + y)));
     }
-    for (const Block& block : blocks_) {
+    const auto work_of = [&](const Block& block) {
         const Window some = common(block.window, part);
+        return double(some.columns) * some.rows;
+    };
+    double all = 0;
+    for (const Block& block : blocks_)
+        all += work_of(block) * static_cast<double>(block.directions.size());
+    for (const Block& block : blocks_) {
+        const double work = work_of(block);
         for (const Direction& direction : block.directions) {
-            if (some.is_empty()) break;
+            if (work == 0) break;
             add_direction(direction, part, ground ? &*ground : nullptr, air, result);
-            const double done = double(some.columns) * some.rows / all_;
-            if (options_.done) options_.done(done);
+            if (options_.done) options_.done(work / all);
         }
     }
 }

@@ -56,7 +56,6 @@ class HorizonHours {
     double length_s_;
     sun::PositionTable table_;
     std::vector<Block> blocks_;
-    double all_ = 0;  // posts times directions
 };
 
 }  // namespace relevo::light

@@ -164,20 +164,25 @@ OpenSky::Energy OpenSky::at(double column, double row) const {
     return energy;
 }
 
-void add_sky_light(const SunTerrain& terrain, sun::Instant begin, double length_s,
-                   const SunHoursOptions& options, const Window& part, SunHours& result) {
-    const SkyView view =
-        sky_view(terrain.posts(), {.directions = options.irradiation->sky_directions,
-                                   .refraction = options.refraction,
-                                   .level = false,
-                                   .of_open_slope = false,
-                                   .part = part,
-                                   .done = {}});
-    const OpenSky open(terrain, begin, length_s, options.irradiation->linke);
+SkyLight::SkyLight(const SunTerrain& terrain, const Window& window, sun::Instant begin,
+                   double length_s, const SunHoursOptions& options)
+    : options_(options),
+      plan_(terrain.posts(), {options.refraction, {}}, window),
+      open_(terrain, begin, length_s, options.irradiation->linke) {
+    add_sky_view_directions(plan_, options.irradiation->sky_directions);
+}
+
+void SkyLight::add(const Window& part, SunHours& result) const {
+    SkyViewOptions of_sky;
+    of_sky.directions = options_.irradiation->sky_directions;
+    of_sky.refraction = options_.refraction;
+    of_sky.part = part;
+    const SkyView view = sky_view(plan_, of_sky);
+    const SunTerrain& terrain = plan_.terrain();
     const WindowHeights heights(terrain.posts(), part);
-    const double albedo = options.irradiation->albedo;
-    const auto add = [&](int x, int y) {
-        const OpenSky::Energy energy = open.at(part.column + x, part.row + y);
+    const double albedo = options_.irradiation->albedo;
+    const auto add_post = [&](int x, int y) {
+        const OpenSky::Energy energy = open_.at(part.column + x, part.row + y);
         const double height_m = heights.at(part.column + x, part.row + y);
         const double level_wh = energy.beam_low_wh + air_left(terrain, height_m) *
                                                          (energy.beam_high_wh - energy.beam_low_wh);
@@ -191,7 +196,7 @@ void add_sky_light(const SunTerrain& terrain, sun::Instant begin, double length_
     parallel_for(0, part.rows, 16, [&](int first, int last) {
         for (int y = first; y < last; ++y)
             for (int x = 0; x < part.columns; ++x)
-                add(x, y);
+                add_post(x, y);
     });
 }
 

@@ -94,8 +94,20 @@ class OpenSky {
     std::vector<Energy> energies_;
 };
 
-/// Adds the light of the sky and of the ground around to a result that has hours and beams.
-void add_sky_light(const SunTerrain& terrain, sun::Instant begin, double length_s,
-                   const SunHoursOptions& options, const Window& part, SunHours& result);
+/// The light of the sky and of the ground around: made ready once for a time.
+class SkyLight {
+  public:
+    /// @param window  posts that will be asked for
+    SkyLight(const SunTerrain& terrain, const Window& window, sun::Instant begin, double length_s,
+             const SunHoursOptions& options);
+
+    /// Adds it to a result that has hours and beams.
+    void add(const Window& part, SunHours& result) const;
+
+  private:
+    SunHoursOptions options_;
+    SunPlan plan_;
+    OpenSky open_;
+};
 
 }  // namespace relevo::light

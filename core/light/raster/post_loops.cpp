@@ -34,18 +34,33 @@ void Straighten(const float* HWY_RESTRICT upper_m, const float* HWY_RESTRICT mid
     }
 }
 
-void AddLight(const Step& step, const float* HWY_RESTRICT height_m,
-              const float* HWY_RESTRICT shadow_m, int count, float* HWY_RESTRICT clearance_m,
-              float* HWY_RESTRICT lit_h) {
-    const float from_h = step.from_h, hours = step.hours;
+/// Of some posts, which are looked at again only if light comes or goes at one of them.
+HWY_INLINE void add_light_to_some(const Step& step, const float* HWY_RESTRICT height_m,
+                                  const float* HWY_RESTRICT shadow_m, int count,
+                                  float* HWY_RESTRICT clearance_m, float* HWY_RESTRICT lit_h) {
+    int changes = 0;
     for (int i = 0; i < count; ++i) {
+        const float now = height_m[i] - shadow_m[i];
+        changes += (clearance_m[i] >= 0) != (now >= 0);
+    }
+    for (int i = 0; changes > 0 && i < count; ++i) {
         const float before = clearance_m[i], now = height_m[i] - shadow_m[i];
-        const float when_h = from_h + hours * (before / (before - now));
+        const float when_h = step.from_h + step.hours * (before / (before - now));
         const float comes = (before < 0) & (now >= 0) ? when_h : 0.0F,
                     goes = (before >= 0) & (now < 0) ? when_h : 0.0F;
         lit_h[i] += goes - comes;
-        clearance_m[i] = now;
     }
+    for (int i = 0; i < count; ++i)
+        clearance_m[i] = height_m[i] - shadow_m[i];
+}
+
+void AddLight(const Step& step, const float* height_m, const float* shadow_m, int count,
+              float* clearance_m, float* lit_h) {
+    constexpr int kSome = 64;
+    int i = 0;
+    for (; i + kSome <= count; i += kSome)
+        add_light_to_some(step, height_m + i, shadow_m + i, kSome, clearance_m + i, lit_h + i);
+    add_light_to_some(step, height_m + i, shadow_m + i, count - i, clearance_m + i, lit_h + i);
 }
 
 void RaiseToDip(const float* HWY_RESTRICT tangent, const float* HWY_RESTRICT eye_m,

@@ -26,25 +26,25 @@ float visible_fraction(const DiscClearance& clearance) {
 }
 
 /// The clearance of a part of the disc at every post.
-void find_all_clearances(const SunPlan& plan, const WindowHeights& heights, const Window& part,
+void find_all_clearances(const PlannedSun& sun, const WindowHeights& heights, const Window& part,
                          double offset_rad, Array2d<float>& clearance_m) {
-    each_shadow(plan.sun().field, plan.sun().tiles, part, offset_rad, [&](const SweepRun& run) {
+    each_shadow(sun.field, sun.tiles, part, offset_rad, [&](const SweepRun& run) {
         find_clearances(heights.view.at(run.column, run.row), run.found, run.count,
                         &clearance_m.at(run.column - part.column, run.row - part.row));
     });
 }
 
-void find_lit(const SunPlan& plan, const WindowHeights& heights, const Window& part,
-              double semidiameter_rad, Array2d<float>& lit) {
-    find_all_clearances(plan, heights, part, 0, lit);
-    if (semidiameter_rad == 0) {
+void find_lit(const PlannedSun& sun, const WindowHeights& heights, const Window& part, bool soft,
+              Array2d<float>& lit) {
+    find_all_clearances(sun, heights, part, 0, lit);
+    if (!soft) {
         for (float& clearance_m : lit)
             if (!std::isnan(clearance_m)) clearance_m = clearance_m >= 0 ? 1.0F : 0.0F;
         return;
     }
     Array2d<float> upper(part.columns, part.rows), lower(part.columns, part.rows);
-    find_all_clearances(plan, heights, part, semidiameter_rad, upper);
-    find_all_clearances(plan, heights, part, -semidiameter_rad, lower);
+    find_all_clearances(sun, heights, part, sun.semidiameter_rad, upper);
+    find_all_clearances(sun, heights, part, -sun.semidiameter_rad, lower);
     for (std::size_t i = 0; i < lit.size(); ++i)
         lit.data()[i] = visible_fraction({upper.data()[i], lit.data()[i], lower.data()[i]});
 }
@@ -68,15 +68,15 @@ double true_azimuth_rad(const dem::Grid& grid, double azimuth_rad) {
     return geo::geodesic(center, grid.crs().to_geodetic(to.x, to.y)).azimuth_rad;
 }
 
-Shadows shadows(const SunPlan& plan, double semidiameter_rad, const ShadowOptions& options) {
+Shadows shadows(const SunPlan& plan, const PlannedSun& sun, const ShadowOptions& options) {
     const dem::Posts& posts = plan.terrain().posts();
     const Window part = window_or_all(options.part, posts.grid());
     const WindowHeights heights(posts, part);
     Shadows result;
-    result.tiles = plan.most_tiles();
+    result.tiles = static_cast<int>(sun.tiles.size());
     result.lit = Array2d<float>(part.columns, part.rows);
     if (result.tiles > 0) {
-        find_lit(plan, heights, part, semidiameter_rad, result.lit);
+        find_lit(sun, heights, part, options.soft, result.lit);
     } else {
         for (int y = 0; y < part.rows; ++y)
             for (int x = 0; x < part.columns; ++x)
@@ -100,7 +100,7 @@ Shadows shadows(const SunPlan& plan, double semidiameter_rad, const ShadowOption
 Shadows shadows(const dem::Posts& posts, const SunOverDem& sun, const ShadowOptions& options) {
     SunPlan plan(posts, {options.refraction, options.air}, options.part, options.soft);
     plan.add_sun(posts.grid().center(), sun);
-    return shadows(plan, options.soft ? sun.semidiameter_rad : 0, options);
+    return shadows(plan, plan.suns().front(), options);
 }
 
 }  // namespace relevo::light

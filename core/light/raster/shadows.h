@@ -59,9 +59,9 @@ struct Shadows {
 ///     that no tile has one sun
 Shadows shadows(const dem::Posts& posts, const SunOverDem& sun, const ShadowOptions& options = {});
 
-/// The same for parts of a DEM one after the other, with a plan of one sun.
-/// @param semidiameter_rad  with ShadowOptions::soft, else 0
-Shadows shadows(const SunPlan& plan, double semidiameter_rad, const ShadowOptions& options);
+/// The same for parts of a DEM one after the other.
+/// @param sun  of the plan
+Shadows shadows(const SunPlan& plan, const PlannedSun& sun, const ShadowOptions& options);
 
 /// The visible fraction of a disc.
 /// @param height  of its diameter that is over a level line, 0 to 1

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <glm/geometric.hpp>
@@ -32,6 +33,52 @@ std::optional<Ray> ray_through(const glm::dvec2& post, double far_m, const glm::
     if (!is_finite(terms[0] + terms[1] + terms[2])) return std::nullopt;
     return Ray{post, terms[0] / far_m, 2.0 * terms[1] / (far_m * far_m),
                6.0 * terms[2] / (far_m * far_m * far_m)};
+}
+
+/// Some of the lines of a tile, from its window's first to its last.
+struct SampledLines {
+    struct Line {
+        int line, begin, end;
+    };
+    std::vector<Line> with_posts;
+    Window lines{};  // a window around the tile's posts: lines are its rows
+
+    Window window(bool along_columns) const {
+        if (!along_columns) return lines;
+        return {lines.row, lines.column, lines.rows, lines.columns};
+    }
+};
+
+/// None where rays turn back, or cross.
+std::optional<SampledLines> sampled_lines(const TilePosts& posts, bool along_columns) {
+    constexpr int kSamples = 33;
+    const Window& w = posts.window;
+    const Window all = along_columns ? Window{w.row, w.column, w.rows, w.columns} : w;
+    const int count = std::min(all.rows, kSamples);
+    SampledLines found;
+    int first = all.end_row(), last = all.row, begin = all.end_column(), end = all.column,
+        beside = 0;
+    for (int i = 0, before = all.row; i < count; ++i) {
+        const int line =
+            all.row + static_cast<int>(std::int64_t{all.rows - 1} * i / std::max(1, count - 1));
+        const auto range = range_of(posts, line, along_columns);
+        if (!range) return std::nullopt;
+        if (range->first < range->second) {
+            // Between this line and those beside it ...
+            first = std::min(first, before), last = all.end_row() - 1;
+            if (!found.with_posts.empty())
+                beside = std::max({beside, std::abs(range->first - found.with_posts.back().begin),
+                                   std::abs(range->second - found.with_posts.back().end)});
+            begin = std::min(begin, range->first), end = std::max(end, range->second);
+            found.with_posts.push_back({line, range->first, range->second});
+        } else if (!found.with_posts.empty() && last == all.end_row() - 1) {
+            last = line;  // ... the tile may have posts, too
+        }
+        before = line;
+    }
+    if (found.with_posts.empty()) return found;
+    found.lines = common(all, {begin - beside, first, end - begin + 2 * beside, last - first + 1});
+    return found;
 }
 
 }  // namespace
@@ -94,8 +141,10 @@ glm::dvec2 SunField::step(const glm::dvec2& post) const {
     return (grid.post(geo::destination(place, at(place).azimuth_rad, way_m)) - post) / way_m;
 }
 
-std::optional<Ray> SunField::ray(const glm::dvec2& post, const Window& window) const {
-    constexpr double kLonger = 1.1;  // rays are bent
+std::optional<Ray> SunField::ray(const glm::dvec2& post, const Window& window,
+                                 bool along_columns) const {
+    constexpr double kLonger = 1.1;   // rays are bent
+    constexpr double kMostAside = 3;  // its length in posts, for one along
     const dem::Grid& grid = terrain_->grid();
     const geo::Geodetic place = grid.place(post.x, post.y);
     const glm::dvec2 a_metre = step(post);
@@ -120,41 +169,35 @@ std::optional<Ray> SunField::ray(const glm::dvec2& post, const Window& window) c
         for (int k = 0; k < 3; ++k)
             there[static_cast<std::size_t>(k)] =
                 grid.post(geo::destination(place, sun.azimuth_rad, shares[k] * far_m));
-        if (const std::optional<Ray> ray = ray_through(post, far_m, shares, there)) return ray;
+        std::optional<Ray> ray = ray_through(post, far_m, shares, there);
+        if (!ray) continue;
+        ray->along_columns = along_columns;
+        const double along = along_columns ? ray->first.x : ray->first.y;
+        if (std::abs(along) * kMostAside < glm::length(ray->first)) return std::nullopt;
+        return ray;
     }
     return std::nullopt;
 }
 
-std::optional<SunTile> SunField::tile(const TilePosts& posts) const {
-    const Window& w = posts.window;
+std::optional<SunTile> SunField::tile(const TilePosts& posts, bool along_columns) const {
+    const std::optional<SampledLines> lines = sampled_lines(posts, along_columns);
+    if (!lines) return std::nullopt;
     SunTile tile{posts, {}, {}};
-    const glm::dvec2 first_step = step({w.column + (w.columns - 1) / 2, w.row + (w.rows - 1) / 2});
-    if (!is_finite(first_step)) return std::nullopt;
-    const bool along_columns = Ray{{0, 0}, first_step}.goes_along_columns();
-    const auto ranges = ranges_of(posts, along_columns);
-    if (!ranges) return std::nullopt;
-    // The first, the middle and the last line that has posts, and on each its ends and its middle.
-    std::array<int, 3> lines{-1, 0, 0};
-    for (int i = 0; i < static_cast<int>(ranges->size()); ++i) {
-        const auto& [begin, end] = (*ranges)[static_cast<std::size_t>(i)];
-        if (begin >= end) continue;
-        if (lines[0] < 0) lines[0] = i;
-        lines[2] = i;
-    }
-    if (lines[0] < 0) return std::nullopt;
-    lines[1] = (lines[0] + lines[2]) / 2;
+    tile.posts.window = lines->window(along_columns);
+    if (tile.posts.window.is_empty()) return tile;
+    // On the first, the middle and the last of the lines that have posts: their ends and middles.
     for (std::size_t k = 0; k < tile.marks.size(); ++k) {
-        const int line = lines[k / 3];
-        const auto& [begin, end] = (*ranges)[static_cast<std::size_t>(line)];
-        const double at = begin + (std::max(end, begin + 1) - 1 - begin) * double(k % 3) / 2;
+        const auto& [line, begin, end] =
+            lines->with_posts[(lines->with_posts.size() - 1) * (k / 3) / 2];
+        const double at = begin + (end - 1 - begin) * double(k % 3) / 2;
         glm::dvec2& post = tile.marks[k].post;
-        post = along_columns ? glm::dvec2(w.column + line, at) : glm::dvec2(at, w.row + line);
+        post = along_columns ? glm::dvec2(line, at) : glm::dvec2(at, line);
         tile.marks[k].elevation_rad = this->at(post).elevation_rad;
         if (!std::isfinite(tile.marks[k].elevation_rad)) return std::nullopt;
     }
     const glm::dvec2 middle(std::round(tile.marks[4].post.x), std::round(tile.marks[4].post.y));
-    const std::optional<Ray> ray = this->ray(middle, w);
-    if (!ray || ray->goes_along_columns() != along_columns) return std::nullopt;
+    const std::optional<Ray> ray = this->ray(middle, tile.posts.window, along_columns);
+    if (!ray) return std::nullopt;
     tile.ray = *ray;
     return tile;
 }
@@ -187,7 +230,7 @@ SweepSun SunField::sun(const SunTile& tile, SunTerrain::Air air, double offset_r
 /// The largest angle between the rays that shade a post and the tile's, where that is of account.
 double SunField::path_error_rad(const SunTile& tile, const SunTile::Mark& mark) const {
     const dem::Grid& grid = terrain_->grid();
-    const bool along_columns = tile.ray.goes_along_columns();
+    const bool along_columns = tile.ray.along_columns;
     Ray ray = tile.ray;
     glm::dvec2 post = mark.post, spacing_m = terrain_->spacing_m();
     const auto turned = [&](const glm::dvec2& v) {
@@ -204,7 +247,7 @@ double SunField::path_error_rad(const SunTile& tile, const SunTile::Mark& mark) 
     const double s0 = ray.distance_m(post.y);
     const double moved_by = post.x - ray.way(s0).x;
     double worst = 0;
-    for (const double share : {0.02, 0.2, 0.6, 1.0}) {
+    for (const double share : {0.2, 0.6, 1.0}) {
         // Nearer than some posts an angle is of no account, and PROJ's millimetre would be one.
         const double s = std::max(share * reach, least_m);
         const glm::dvec2 there = grid.post(geo::destination(place, azimuth_rad, s));
@@ -230,11 +273,12 @@ double SunField::error_rad(const SunTile& tile) const {
     for (int k = 0; k < (two_airs_ ? 2 : 1); ++k) {
         const SunTerrain::Air air = k == 0 ? first_air() : SunTerrain::kOfHighest;
         const SweepSun model = sun(tile, air, 0);
-        for (const SunTile::Mark& mark : tile.marks) {
+        for (std::size_t i = 0; i < tile.marks.size(); ++i) {
+            const SunTile::Mark& mark = tile.marks[i];
             const double seen =
                 std::min(terrain_->apparent_rad(mark.elevation_rad, air), kSteepest_rad);
             add(std::abs(std::atan(model.tangent_at(mark.post.x, mark.post.y)) - seen));
-            if (k == 0) add(path_error_rad(tile, mark));
+            if (k == 0 && i % 2 == 0) add(path_error_rad(tile, mark));  // corners and middle
             if (!(worst <= kPi)) return kPi;  // a place that is none has no error either
         }
     }

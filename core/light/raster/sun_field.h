@@ -74,10 +74,10 @@ class SunField {
 
     /// The posts of a window between two rays as one tile; none where rays turn back there, or
     /// where the grid's CRS does not express them.
-    std::optional<SunTile> tile(const TilePosts& posts) const;
+    std::optional<SunTile> tile(const TilePosts& posts, bool along_columns) const;
     /// The ray through a post: towards the sun for as far as ground shades posts of a window, and
     /// to the window's end away from the sun.
-    std::optional<Ray> ray(const glm::dvec2& post, const Window& window) const;
+    std::optional<Ray> ray(const glm::dvec2& post, const Window& window, bool along_columns) const;
     /// A tile's sun, or its disc's part that is so much higher than the centre.
     SweepSun sun(const SunTile& tile, SunTerrain::Air air, double offset_rad) const;
     /// How far off a tile's sun is anywhere on it [rad].

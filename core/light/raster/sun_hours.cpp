@@ -63,6 +63,7 @@ struct SunHoursPlan::Impl {
     bool few;
     SunPlan plan;
     std::optional<HorizonHours> horizons;
+    std::optional<SkyLight> sky;
     LevelHours level;
 
     Impl(const dem::Posts& posts, sun::Instant from, sun::Instant end, const SunHoursOptions& of)
@@ -75,6 +76,8 @@ struct SunHoursPlan::Impl {
             plan.add_time(begin, length_s, options.step_s);
         else
             horizons.emplace(plan.terrain(), plan.window(), begin, length_s, options);
+        if (options.irradiation)
+            sky.emplace(plan.terrain(), plan.window(), begin, length_s, options);
         level = level_hours(plan.terrain(), begin, length_s);
     }
 
@@ -115,8 +118,7 @@ SunHours SunHoursPlan::part(const Window& asked) const {
         impl.horizons->add(part, result);
     result.tiles = impl.few ? impl.plan.most_tiles() : impl.horizons->most_tiles();
     sum_up(WindowHeights(posts, part), part, result);
-    if (impl.options.irradiation)
-        add_sky_light(impl.plan.terrain(), impl.begin, impl.length_s, impl.options, part, result);
+    if (impl.sky) impl.sky->add(part, result);
     result.level_hours = impl.level.middle;
     result.most_level_hours = impl.level.most;
     result.definition = impl.definition();

@@ -47,7 +47,7 @@ void SunPlan::divide_all(std::size_t first, double tolerance_rad) {
 }
 
 void SunPlan::add_sun(const geo::Geodetic& place, const SunOverDem& sun, double tolerance_rad) {
-    suns_.push_back({0, SunField(*terrain_, place, sun)});
+    suns_.push_back({0, SunField(*terrain_, place, sun), sun.semidiameter_rad});
     if (!suns_.back().field.is_night()) divide_all(suns_.size() - 1, tolerance_rad);
 }
 

@@ -13,6 +13,7 @@ namespace relevo::light {
 struct PlannedSun {
     double at_s = 0;  ///< when, from the beginning
     SunField field;
+    double semidiameter_rad = 0;
     std::vector<SunTile> tiles{};  ///< none for a sun that no post sees
 };
 
@@ -41,7 +42,6 @@ class SunPlan {
     const SunTerrain& terrain() const { return *terrain_; }
     const Window& window() const { return window_; }
     const std::vector<PlannedSun>& suns() const { return suns_; }
-    const PlannedSun& sun() const { return suns_.front(); }
     /// Into how many tiles a sun is divided at most.
     int most_tiles() const;
 

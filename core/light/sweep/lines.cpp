@@ -40,9 +40,9 @@ SweepLines::SweepLines(const Sheet& sheet, const SweepSun& sun, const SheetPosts
 void SweepLines::add_rows(const SweepSun& sun, const SheetPosts& posts, double drop_m) {
     const Window& window = posts.window;
     const double far_m = sun.ray.distance_m(window.row) + reach_m(sun, window, drop_m);
-    const auto row_at = [&](int row) {
+    const auto row_at = [&](double s) {
         Row at;
-        const double s = at.distance_m = sun.ray.distance_m(row);
+        at.distance_m = s;
         at.shift = sun.ray.reference.x + sun.ray.way(s).x;
         const glm::dvec2 ways = sun.ray.way_integral(s);
         at.fall_m =
@@ -53,8 +53,19 @@ void SweepLines::add_rows(const SweepSun& sun, const SheetPosts& posts, double d
         at.between = static_cast<float>(between < kOnPost ? 0 : between);
         return at;
     };
-    for (int row = window.end_row() - 1; row >= 0; --row) {
-        const Row at = row_at(row);
+    // Towards the sun, some rows at once.
+    constexpr int kRows = 64;
+    int begin = window.row;
+    std::vector<double> distances_m = sun.ray.distances_m(begin, window.end_row());
+    const auto is_enough = [&] { return !(distances_m.front() <= far_m); };
+    while (begin > 0 && !is_enough()) {
+        const int next = std::max(0, begin - kRows);
+        const std::vector<double> before = sun.ray.distances_m(next, begin);
+        distances_m.insert(distances_m.begin(), before.begin(), before.end());
+        begin = next;
+    }
+    for (int row = window.end_row() - 1; row >= begin; --row) {
+        const Row at = row_at(distances_m[static_cast<std::size_t>(row - begin)]);
         if (std::isnan(at.shift))
             break;  // the ray has turned back: it comes over no further ground
         rows_.push_back(at);

@@ -1,5 +1,6 @@
 #include "light/sweep/ray.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace relevo::light {
@@ -19,11 +20,42 @@ double Ray::distance_m(double row) const {
     return std::numeric_limits<double>::quiet_NaN();
 }
 
+std::vector<double> Ray::distances_m(int begin, int end) const {
+    // Each row's from the one before it; from whole numbers of rows on, so that bits do not hang on
+    // which rows are asked for.
+    constexpr int kRows = 64;
+    std::vector<double> distances(static_cast<std::size_t>(std::max(0, end - begin)));
+    const auto slope = [&](double s) { return (third.y / 2 * s + second.y) * s + first.y; };
+    const auto off = [&](double s, double posts) {
+        return ((third.y / 6 * s + second.y / 2) * s + first.y) * s - posts;
+    };
+    for (int from = begin - ((begin % kRows) + kRows) % kRows; from < end; from += kRows) {
+        double s = distance_m(from);
+        const bool turns = std::isnan(s);
+        for (int row = from; row < std::min(from + kRows, end); ++row) {
+            const double posts = row - reference.y;
+            if (turns) {
+                s = distance_m(row);
+            } else if (row > from) {
+                s += 1 / slope(s);
+                s -= off(s, posts) / slope(s);
+                s -= off(s, posts) / slope(s);
+                // Near to where it turns back a step leads too far.
+                if (!(std::abs(off(s, posts)) < 1e-9 && slope(s) * first.y > 0))
+                    s = distance_m(row);
+            }
+            if (row >= begin) distances[static_cast<std::size_t>(row - begin)] = s;
+        }
+    }
+    return distances;
+}
+
 SweepSun sun_over_map(const glm::dvec2& spacing_m, const glm::dvec2& direction,
                       double elevation_rad, const glm::dvec2& reference, double curvature) {
     SweepSun sun;
     sun.ray.reference = reference;
     sun.ray.first = direction / spacing_m;
+    sun.ray.along_columns = std::abs(sun.ray.first.y) < std::abs(sun.ray.first.x);
     sun.tangent = std::tan(elevation_rad);
     sun.tangent_per_post = curvature * (1 + sun.tangent * sun.tangent) * direction * spacing_m;
     return sun;

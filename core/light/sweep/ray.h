@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include <glm/vec2.hpp>
 
@@ -15,6 +16,10 @@ struct Ray {
     glm::dvec2 first{0};             ///< derivatives of its place by s: [posts / m],
     glm::dvec2 second{0}, third{0};  ///< [posts / m^2], [posts / m^3]
 
+    /// Whether a sweep goes from column to column instead of from row to row: best as the ray's
+    /// larger step is.
+    bool along_columns = false;
+
     /// From the reference to where it is after s metres [posts].
     glm::dvec2 way(double s) const { return ((third * (s / 6) + second * 0.5) * s + first) * s; }
     /// The integral of way() from 0 to s [posts * m].
@@ -24,10 +29,8 @@ struct Ray {
     /// After how many metres it is at a row; below 0 away from the sun. NaN where it turns back
     /// before it comes there.
     double distance_m(double row) const;
-
-    /// Whether a sweep goes from column to column instead of from row to row: the ray's larger
-    /// step.
-    bool goes_along_columns() const { return std::abs(first.y) < std::abs(first.x); }
+    /// The same for rows [begin, end), faster.
+    std::vector<double> distances_m(int begin, int end) const;
 };
 
 /// The sun over a tile of a grid.

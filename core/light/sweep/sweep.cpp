@@ -54,8 +54,8 @@ SweepSun on_sheet(SweepSun sun, const Orientation& sheet) {
 std::optional<std::vector<int>> first_columns(const Ray& ray, const Window& window) {
     std::vector<int> first;
     first.reserve(static_cast<std::size_t>(window.rows));
-    for (int row = window.row; row < window.end_row(); ++row) {
-        const double column = ray.reference.x + ray.way(ray.distance_m(row)).x;
+    for (const double distance_m : ray.distances_m(window.row, window.end_row())) {
+        const double column = ray.reference.x + ray.way(distance_m).x;
         if (std::isnan(column)) return std::nullopt;
         first.push_back(static_cast<int>(
             std::ceil(std::clamp(column, double(window.column), double(window.end_column())))));
@@ -63,7 +63,7 @@ std::optional<std::vector<int>> first_columns(const Ray& ray, const Window& wind
     return first;
 }
 
-/// Of each row of a window on a sheet; none where rays turn back or cross.
+/// Of each row of a window on a sheet; none where rays turn back.
 std::optional<std::vector<ColumnRange>> column_ranges(const Window& window,
                                                       const std::optional<Ray>& after,
                                                       const std::optional<Ray>& before) {
@@ -77,8 +77,6 @@ std::optional<std::vector<ColumnRange>> column_ranges(const Window& window,
         return first.has_value();
     };
     if (!set(after, &ColumnRange::begin) || !set(before, &ColumnRange::end)) return std::nullopt;
-    for (const ColumnRange& range : ranges)
-        if (range.begin > range.end) return std::nullopt;
     return ranges;
 }
 
@@ -149,7 +147,7 @@ const float* Sweep::transposed() const {
 Sweep::Job Sweep::job_for(const SweepSun& sun, const TilePosts& posts) const {
     assert(common(posts.window, {0, 0, columns_, rows_}) == posts.window);
     Job job;
-    job.orientation.transposed = sun.ray.goes_along_columns();
+    job.orientation.transposed = sun.ray.along_columns;
     const bool turned = job.orientation.transposed;
     job.sheet = turned ? Sheet{read_ ? nullptr : transposed(), rows_, rows_, columns_}
                        : Sheet{height_m_, stride_, columns_, rows_};
@@ -267,19 +265,18 @@ void Sweep::each_horizon(const Ray& ray, double curvature, double reach_m, const
         use);
 }
 
-std::optional<std::vector<std::pair<int, int>>> ranges_of(const TilePosts& posts,
-                                                          bool along_columns) {
-    const Orientation orientation{along_columns, false, 0};
-    const Window window = along_columns ? transposed(posts.window) : posts.window;
-    const auto ray = [&](const std::optional<Ray>& of) {
-        return of ? std::optional(on_sheet(*of, orientation)) : std::nullopt;
+std::optional<std::pair<int, int>> range_of(const TilePosts& posts, int line, bool along_columns) {
+    const Window w = along_columns ? transposed(posts.window) : posts.window;
+    const auto first_on = [&](const std::optional<Ray>& of, int otherwise) {
+        if (!of) return double(otherwise);
+        const Ray ray = on_sheet(*of, {along_columns, false, 0});
+        return std::ceil(std::clamp(ray.reference.x + ray.way(ray.distance_m(line)).x,
+                                    double(w.column), double(w.end_column())));
     };
-    const auto ranges = column_ranges(window, ray(posts.after), ray(posts.before));
-    if (!ranges) return std::nullopt;
-    std::vector<std::pair<int, int>> found;
-    for (const ColumnRange& range : *ranges)
-        found.emplace_back(range.begin, range.end);
-    return found;
+    const double begin = first_on(posts.after, w.column),
+                 end = first_on(posts.before, w.end_column());
+    if (!(begin <= end)) return std::nullopt;  // nor numbers
+    return std::pair(static_cast<int>(begin), static_cast<int>(end));
 }
 
 }  // namespace relevo::light

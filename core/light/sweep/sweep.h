@@ -109,10 +109,9 @@ class Sweep {
     mutable std::vector<float> transposed_;  // made for the first sweep along columns
 };
 
-/// Where the posts of a tile begin and end on each line of its window, the lines being rows or, for
-/// rays that go along columns, columns. None where one of its rays turns back there, or where the
+/// Where the posts of a tile between rays begin and end on a line of its window: a row or, for rays
+/// that go along columns, a column. None where one of its rays turns back before it, or where the
 /// two cross.
-std::optional<std::vector<std::pair<int, int>>> ranges_of(const TilePosts& posts,
-                                                          bool along_columns);
+std::optional<std::pair<int, int>> range_of(const TilePosts& posts, int line, bool along_columns);
 
 }  // namespace relevo::light
