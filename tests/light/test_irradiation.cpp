@@ -101,12 +101,12 @@ TEST(GroundSlope, OfAPlaneIsTheSameOnTheEdgeAndBesideAVoid) {
         });
     const dem::Posts posts(field);
     const Window all{0, 0, kSide, kSide};
-    const GroundSlope slope(posts.grid(), WindowHeights(posts, all), all);
-    const Array2d<float>&east = slope.east, &north = slope.north;
+    const SunTerrain terrain(posts, {}, false);
+    const GroundSlope slope(terrain, WindowHeights(posts, all), all);
     for (const auto& [column, row] :
          {std::pair{10, 10}, {0, 20}, {40, 20}, {20, 0}, {20, 40}, {0, 0}, {40, 40}, {21, 20}}) {
-        EXPECT_NEAR(east.at(column, row), 0.3, 0.002) << column << " " << row;
-        EXPECT_NEAR(north.at(column, row), 0.4, 0.002) << column << " " << row;
+        EXPECT_NEAR(slope.x.at(column, row), 0.3, 0.002) << column << " " << row;
+        EXPECT_NEAR(slope.y.at(column, row), 0.4, 0.002) << column << " " << row;
     }
 }
 

@@ -34,6 +34,7 @@ class Division {
     /// @param along_columns  how sweeps of the window around go
     void divide(const Window& window, std::optional<bool> along_columns = {}) {
         if (common(window, part_).is_empty() || tiles_.size() > most_) return;
+        if (sun_.is_night(window)) return add({.posts = {window}, .is_night = true});
         const glm::dvec2 middle(window.column + (window.columns - 1) / 2,
                                 window.row + (window.rows - 1) / 2);
         const Way way = way_of(sun_.step(middle), along_columns);

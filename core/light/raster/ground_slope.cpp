@@ -66,22 +66,29 @@ glm::dmat2 from_posts(const dem::Grid& grid, double column, double row) {
 
 }  // namespace
 
-GroundSlope::GroundSlope(const dem::Grid& grid, const WindowHeights& heights, const Window& window)
-    : east(window.columns, window.rows), north(window.columns, window.rows) {
+GroundSlope::GroundSlope(const SunTerrain& terrain, const WindowHeights& heights,
+                         const Window& window)
+    : GroundSlope(window) {
+    const dem::Grid& grid = terrain.grid();
     // Posts next to each other have one north: those of a block of the grid, whatever the window.
     constexpr int kTogether = 32;
     const auto fill_row = [&](int row) {
         for (int block = window.column / kTogether * kTogether; block < window.end_column();
              block += kTogether) {
             const int width = std::min(kTogether, grid.columns() - block);
-            const glm::dmat2 to_metres = from_posts(
-                grid, block + width / 2, std::min(grid.rows() - 1, row | (kTogether / 2)));
+            const int middle = block + width / 2,
+                      middle_row = std::min(grid.rows() - 1, row | (kTogether / 2));
+            const glm::dmat2 to_metres = from_posts(grid, middle, middle_row);
+            const geo::Geodetic place = grid.place(middle, middle_row);
+            const geo::Axes axes = terrain.frame().axes(place.lat_rad, place.lon_rad);
             const int end = std::min(block + width, window.end_column());
             for (int column = std::max(block, window.column); column < end; ++column) {
-                const glm::dvec2 slope = to_metres * Around(grid, heights.view, column, row).rise();
-                const int x = column - window.column, y = row - window.row;
-                east.at(x, y) = static_cast<float>(slope.x);
-                north.at(x, y) = static_cast<float>(slope.y);
+                const glm::dvec2 rise = to_metres * Around(grid, heights.view, column, row).rise();
+                const glm::vec3 gradient(rise.x * axes.east + rise.y * axes.north);
+                const int to_x = column - window.column, to_y = row - window.row;
+                x.at(to_x, to_y) = gradient.x;
+                y.at(to_x, to_y) = gradient.y;
+                z.at(to_x, to_y) = gradient.z;
             }
         }
     };

@@ -1,19 +1,33 @@
 #pragma once
 
+#include <cmath>
+
+#include <glm/vec3.hpp>
+
 #include "base/array2d.h"
 #include "light/raster/sun_terrain.h"
 
 namespace relevo::light {
 
-/// How the ground rises towards the east and the north [m/m] at the posts of a window. Next to
-/// holes and the DEM's edge the ground goes on as it comes. Source: Horn, Proc. IEEE 69 (1981) 14.
+/// How the ground rises [m/m] at the posts of a window: its gradient, a vector of
+/// SunTerrain::frame(), so that it is smooth over poles, too. Next to holes and the DEM's edge the
+/// ground goes on as it comes. Source: Horn, Proc. IEEE 69 (1981) 14.
 struct GroundSlope {
-    Array2d<float> east, north;
+    Array2d<float> x, y, z;
 
     /// Level ground.
-    explicit GroundSlope(const Window& window)
-        : east(window.columns, window.rows, 0), north(window.columns, window.rows, 0) {}
-    GroundSlope(const dem::Grid& grid, const WindowHeights& heights, const Window& window);
+    explicit GroundSlope(const Window& window) : x(window.columns, window.rows, 0), y(x), z(x) {}
+    GroundSlope(const SunTerrain& terrain, const WindowHeights& heights, const Window& window);
+
+    glm::vec3 at(int column, int row) const {
+        return {x.at(column, row), y.at(column, row), z.at(column, row)};
+    }
 };
+
+/// The cosine of an inclined ground's angle.
+inline float cosine_of(const glm::vec3& gradient) {
+    return 1 / std::sqrt(1 + gradient.x * gradient.x + gradient.y * gradient.y +
+                         gradient.z * gradient.z);
+}
 
 }  // namespace relevo::light

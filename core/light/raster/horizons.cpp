@@ -29,18 +29,15 @@ std::string surroundings(double refraction) {
 /// Adds up what each direction gives to the sky view of the ground.
 void add_directions(const SunPlan& plan, const SkyViewOptions& options, const Window& part,
                     const GroundSlope& slope, Array2d<float>& sum) {
-    for (std::size_t k = 0; k < plan.suns().size(); ++k) {
-        const double azimuth_rad = 2 * kPi * static_cast<double>(k) / options.directions;
-        const auto sin_azimuth = static_cast<float>(std::sin(azimuth_rad)),
-                   cos_azimuth = static_cast<float>(std::cos(azimuth_rad));
-        const PlannedSun& direction = plan.suns()[k];
+    for (const PlannedSun& direction : plan.suns()) {
+        const glm::vec3 towards(direction.field.direction());
         each_horizon(direction.field, direction.tiles, part,
                      [&](const SunTile&, const SweepRun& run) {
                          const int x = run.column - part.column, y = run.row - part.row;
-                         add_sky(run.found, &slope.east.at(x, y), &slope.north.at(x, y), run.count,
-                                 sin_azimuth, cos_azimuth, &sum.at(x, y));
+                         add_sky(run.found, &slope.x.at(x, y), &slope.y.at(x, y), &slope.z.at(x, y),
+                                 run.count, towards, &sum.at(x, y));
                      });
-        if (options.done) options.done(1.0 / options.directions);
+        if (options.done) options.done(1.0 / static_cast<double>(plan.suns().size()));
     }
 }
 
@@ -87,7 +84,7 @@ void add_sky_view_directions(SunPlan& plan, int directions) {
     std::vector<double> azimuth_rad;
     for (int k = 0; k < directions; ++k)
         azimuth_rad.push_back(2 * kPi * k / directions);
-    plan.add_directions(azimuth_rad, kSkyTolerance_rad);
+    plan.add_level_directions(azimuth_rad, kSkyTolerance_rad);
 }
 
 SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
@@ -101,7 +98,7 @@ SkyView sky_view(const SunPlan& plan, const SkyViewOptions& options) {
     const Window part = window_or_all(options.part, posts.grid());
     const WindowHeights heights(posts, part);
     GroundSlope slope =
-        options.level ? GroundSlope(part) : GroundSlope(posts.grid(), heights, part);
+        options.level ? GroundSlope(part) : GroundSlope(plan.terrain(), heights, part);
     SkyView result;
     result.share = Array2d<float>(part.columns, part.rows, 0);
     add_directions(plan, options, part, slope, result.share);
@@ -115,8 +112,7 @@ SkyView sky_view(const SunPlan& plan, const SkyViewOptions& options) {
                         : std::min(1.0F, share / static_cast<float>(options.directions));
             if (options.of_open_slope) {
                 // An endless plane sees half of one and the cosine of its slope.
-                const float e = slope.east.at(x, y), n = slope.north.at(x, y);
-                share = std::min(1.0F, share * 2 / (1 + 1 / std::sqrt(1 + e * e + n * n)));
+                share = std::min(1.0F, share * 2 / (1 + cosine_of(slope.at(x, y))));
             }
             if (std::isnan(share)) continue;
             result.mean += double{share};

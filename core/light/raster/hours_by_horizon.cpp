@@ -56,7 +56,7 @@ HorizonHours::HorizonHours(const SunTerrain& terrain, const Window& window, sun:
       begin_(begin),
       length_s_(length_s),
       table_(begin, begin + length_s) {
-    for (const Window& each : windows())
+    for (const Window& each : SunPlan::blocks(terrain))
         if (!common(each, window).is_empty()) blocks_.push_back(block_of(each, window));
 }
 
@@ -66,19 +66,6 @@ int HorizonHours::most_tiles() const {
         for (const Direction& direction : block.directions)
             most = std::max(most, direction.tiles.size());
     return static_cast<int>(most);
-}
-
-std::vector<Window> HorizonHours::windows() const {
-    constexpr double kBlock_m = 200e3;
-    const Window all = terrain_.window();
-    const glm::dvec2& spacing_m = terrain_.spacing_m();
-    const int columns = std::max(1, static_cast<int>(kBlock_m / spacing_m.x)),
-              rows = std::max(1, static_cast<int>(kBlock_m / spacing_m.y));
-    std::vector<Window> windows;
-    for (int row = 0; row < all.rows; row += rows)
-        for (int column = 0; column < all.columns; column += columns)
-            windows.push_back(common(all, {column, row, columns, rows}));
-    return windows;
 }
 
 HorizonHours::Block HorizonHours::block_of(const Window& window, const Window& wanted) const {
@@ -192,9 +179,8 @@ void HorizonHours::add_direction(const Direction& direction, const Window& part,
     const DirectionTable &low = direction.low, &high = direction.high;
     const WindowHeights heights(terrain_.posts(), part);
     const auto bottom_m = static_cast<float>(terrain_.lowest_m()),
-               a_metre = static_cast<float>(1 / std::max(1.0, terrain_.relief_m())),
-               sin_azimuth = static_cast<float>(std::sin(low.azimuth_rad())),
-               cos_azimuth = static_cast<float>(std::cos(low.azimuth_rad()));
+               a_metre = static_cast<float>(1 / std::max(1.0, terrain_.relief_m()));
+    const glm::vec3 towards(direction.field.direction());
     const auto add_beam = [&](const Entry& entry, float lift, int x, int y) {
         const auto between = [&](const float* in_low, const float* in_high) {
             const float l = entry.of(in_low);
@@ -202,41 +188,41 @@ void HorizonHours::add_direction(const Direction& direction, const Window& part,
         };
         const float level = between(low.level_wh_over(), high.level_wh_over()),
                     up = between(low.up_wh_over(), high.up_wh_over());
-        const float e = ground->slope.east.at(x, y), n = ground->slope.north.at(x, y);
+        const glm::vec3 gradient = ground->slope.at(x, y);
         // The sun stands higher there by the lift.
-        const float onto =
-            (up + lift * level) - (e * sin_azimuth + n * cos_azimuth) * (level - lift * up);
-        const float gain = onto / std::sqrt(1 + e * e + n * n);
+        const float onto = (up + lift * level) - glm::dot(gradient, towards) * (level - lift * up);
+        const float gain = onto * cosine_of(gradient);
         result.beam_kwh.at(x, y) += gain > 0 ? gain : 0;
     };
     std::vector<Lift> lifts;
     for (const SunTile& tile : direction.tiles)
         lifts.emplace_back(direction.field, tile);
     const SunTile* const first_tile = direction.tiles.data();
-    each_horizon(direction.field, direction.tiles, part,
-                 [&](const SunTile& tile, const SweepRun& run) {
-                     const Lift& lift = lifts[static_cast<std::size_t>(&tile - first_tile)];
-                     const float* const height_m = heights.view.at(run.column, run.row);
-                     const auto first = static_cast<float>(lift.at(run.column, run.row)),
-                                a_post = static_cast<float>(lift.per_post.x);
-                     std::array<float, kLongestRun> at;
-                     find_entries(run.found, run.count,
-                                  first + static_cast<float>(DirectionTable::kLowest_rad), a_post,
-                                  static_cast<float>(DirectionTable::kEntry_rad),
-                                  DirectionTable::kEntries, at.data());
-                     const int x = run.column - part.column, y = run.row - part.row;
-                     for (int i = 0; i < run.count; ++i) {
-                         const float whole = std::floor(at[static_cast<std::size_t>(i)]);
-                         const Entry entry{static_cast<std::size_t>(whole),
-                                           at[static_cast<std::size_t>(i)] - whole};
-                         const float in_low = entry.of(low.hours_over()),
-                                     in_high = entry.of(high.hours_over());
-                         result.hours.at(x + i, y) +=
-                             in_low + (height_m[i] - bottom_m) * a_metre * (in_high - in_low);
-                         if (ground)
-                             add_beam(entry, first + a_post * static_cast<float>(i), x + i, y);
-                     }
-                 });
+    each_horizon(
+        direction.field, direction.tiles, part, [&](const SunTile& tile, const SweepRun& run) {
+            const Lift& lift = lifts[static_cast<std::size_t>(&tile - first_tile)];
+            const float* const height_m = heights.view.at(run.column, run.row);
+            // From the reference on, so that bits do not hang on where a run begins.
+            const int from = run.column - static_cast<int>(lift.reference.x);
+            const auto base = static_cast<float>(lift.at(lift.reference.x, run.row)),
+                       a_post = static_cast<float>(lift.per_post.x);
+            std::array<float, kLongestRun> at;
+            find_entries(run.found, run.count,
+                         base + static_cast<float>(DirectionTable::kLowest_rad), a_post, from,
+                         static_cast<float>(DirectionTable::kEntry_rad), DirectionTable::kEntries,
+                         at.data());
+            const int x = run.column - part.column, y = run.row - part.row;
+            for (int i = 0; i < run.count; ++i) {
+                const float whole = std::floor(at[static_cast<std::size_t>(i)]);
+                const Entry entry{static_cast<std::size_t>(whole),
+                                  at[static_cast<std::size_t>(i)] - whole};
+                const float in_low = entry.of(low.hours_over()),
+                            in_high = entry.of(high.hours_over());
+                result.hours.at(x + i, y) +=
+                    in_low + (height_m[i] - bottom_m) * a_metre * (in_high - in_low);
+                if (ground) add_beam(entry, base + a_post * static_cast<float>(from + i), x + i, y);
+            }
+        });
 }
 
 }  // namespace relevo::light

@@ -38,7 +38,6 @@ class HorizonHours {
         Window window;
         std::vector<Direction> directions;
     };
-    std::vector<Window> windows() const;
     Block block_of(const Window& window, const Window& wanted) const;
     using Tables = std::array<std::array<DirectionTable, 2>, kDirections>;
     Tables tables_over(const geo::Geodetic& middle) const;

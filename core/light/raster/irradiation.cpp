@@ -41,10 +41,9 @@ Nodes::Nodes(const dem::Grid& grid) {
 }
 
 Nodes::Around Nodes::around(double column, double row) const {
-    const double x = std::clamp(column / column_step_, 0.0, columns_ - 1.0),
-                 y = std::clamp(row / row_step_, 0.0, rows_ - 1.0);
-    const int c = std::min(columns_ - 2, static_cast<int>(x)),
-              r = std::min(rows_ - 2, static_cast<int>(y));
+    const double x = column / column_step_, y = row / row_step_;  // beyond the last it goes on
+    const int c = std::clamp(static_cast<int>(x), 0, columns_ - 2),
+              r = std::clamp(static_cast<int>(y), 0, rows_ - 2);
     const double u = x - c, v = y - r;
     const auto first = static_cast<std::size_t>(r * columns_ + c),
                below = first + static_cast<std::size_t>(columns_);
@@ -59,6 +58,10 @@ SunBeams::SunBeams(const SunTerrain& terrain, const sun::PositionTable& table, d
       step_m_((highest_m(terrain) - terrain.lowest_m()) / (kHeights - 1)),
       hours_((at_s - before_s) / kHour_s) {
     const sun::Instant middle = table.from() + (before_s + at_s) / 2;
+    const geo::Geodetic& center = terrain.marks()[4];
+    const glm::dvec3 over_center = table.direction(middle, sun::Observer(center));
+    const geo::Axes axes = terrain.frame().axes(center.lat_rad, center.lon_rad);
+    direction_ = over_center.x * axes.east + over_center.y * axes.north + over_center.z * axes.up;
     for (int node = 0; node < nodes_.count(); ++node) {
         const glm::dvec2 post = nodes_.post(node);
         Beam& beam = beams_.emplace_back();
@@ -66,9 +69,9 @@ SunBeams::SunBeams(const SunTerrain& terrain, const sun::PositionTable& table, d
         if (!std::isfinite(place.lat_rad)) continue;
         const glm::dvec3 sun_au = table.vector_au(middle, sun::Observer(place));
         const double distance_au = glm::length(sun_au);
-        beam.direction = sun_au / distance_au;
+        beam.sine = sun_au.z / distance_au;
         const ClearSky clear(linke, distance_au);
-        const double elevation_rad = std::asin(beam.direction.z);
+        const double elevation_rad = std::asin(beam.sine);
         for (std::size_t k = 0; k < kHeights; ++k)
             beam.given[k] = static_cast<float>(
                 clear.beam(elevation_rad, lowest_m_ + step_m_ * static_cast<double>(k)));
@@ -76,51 +79,61 @@ SunBeams::SunBeams(const SunTerrain& terrain, const sun::PositionTable& table, d
         const double height_m = lowest_m_ + terrain.relief_m() / 2;
         if (const double here = clear.beam(elevation_rad, height_m); here > 0)
             beam.more = (clear.beam(elevation_rad + kStep_rad, height_m) / here - 1) /
-                        (std::sin(elevation_rad + kStep_rad) - beam.direction.z);
+                        (std::sin(elevation_rad + kStep_rad) - beam.sine);
     }
 }
 
-glm::dvec3 SunBeams::direction(double column, double row) const {
+double SunBeams::sine(double column, double row) const {
     const Nodes::Around around = nodes_.around(column, row);
-    glm::dvec3 sum(0);
+    double sum = 0;
     for (std::size_t k = 0; k < 4; ++k)
-        sum += around.weight[k] * beams_[around.node[k]].direction;
+        sum += around.weight[k] * beams_[around.node[k]].sine;
     return sum;
 }
 
 void SunBeams::add(const SweepRun& run, const float* height_m, const float* clearance_m,
                    const InclinedGround& ground, float* beam_wh) const {
-    const int middle = run.column + run.count / 2, y = run.row - ground.window.row;
-    const Nodes::Around around = nodes_.around(middle, run.row);
-    const auto nearest = std::max_element(around.weight.begin(), around.weight.end());
-    const Beam& beam =
-        beams_[around.node[static_cast<std::size_t>(nearest - around.weight.begin())]];
-    const glm::vec3 first = direction(run.column, run.row);
-    const glm::vec3 a_post = (direction(run.column + run.count, run.row) - glm::dvec3(first)) /
-                             static_cast<double>(run.count);
-    const float *const east = &ground.slope.east.at(run.column - ground.window.column, y),
-                       *const north = &ground.slope.north.at(run.column - ground.window.column, y);
-    const auto lowest = static_cast<float>(lowest_m_), a_metre = static_cast<float>(1 / step_m_),
-               up = static_cast<float>(beam.direction.z), more = static_cast<float>(beam.more),
-               hours = static_cast<float>(hours_);
-    for (int i = 0; i < run.count; ++i) {
-        const float before = clearance_m[i], now = height_m[i] - run.found[i];
-        // The share of the time in which a line from one to the other is over 0.
-        const float both = std::abs(before) + std::abs(now);
-        const float over = std::max(before, 0.0F) + std::max(now, 0.0F);
-        const float share = both > 0 ? over / both : 1.0F;
-        const glm::vec3 sun = first + static_cast<float>(i) * a_post;
-        const float onto = (sun.z - east[i] * sun.x - north[i] * sun.y) /
-                           std::sqrt(1 + east[i] * east[i] + north[i] * north[i]);
-        const float at = (height_m[i] - lowest) * a_metre;
-        const float level = at > 0 ? std::min(at, kHeights - 1.001F) : 0;  // a hole is anywhere
-        const auto entry = static_cast<std::size_t>(level);
-        const float low = beam.given[entry], high = beam.given[entry + 1];
-        const float given = (low + (level - static_cast<float>(entry)) * (high - low)) *
-                            std::max(0.0F, 1 + more * (sun.z - up));
-        const float gain = std::max(0.0F, onto) * given * share * hours;
-        beam_wh[i] += gain > 0 ? gain : 0;  // a hole has none
+    // Piece by piece of the row, the same whatever the run.
+    constexpr int kPiece = 256;
+    for (int column = run.column; column < run.column + run.count;) {
+        const int piece = column / kPiece * kPiece,
+                  end = std::min(piece + kPiece, run.column + run.count),
+                  done = column - run.column;
+        const Nodes::Around around = nodes_.around(piece + kPiece / 2, run.row);
+        const auto nearest = std::max_element(around.weight.begin(), around.weight.end());
+        const Beam& beam =
+            beams_[around.node[static_cast<std::size_t>(nearest - around.weight.begin())]];
+        const double first = sine(piece, run.row),
+                     a_post = (sine(piece + kPiece, run.row) - first) / kPiece;
+        for (int i = done; column < end; ++column, ++i) {
+            const glm::vec3 gradient =
+                ground.slope.at(column - ground.window.column, run.row - ground.window.row);
+            const float gain =
+                gain_of(beam, static_cast<float>(first + (column - piece) * a_post), height_m[i],
+                        clearance_m[i], height_m[i] - run.found[i], gradient);
+            beam_wh[i] += gain > 0 ? gain : 0;  // a hole has none
+        }
     }
+}
+
+/// What a post gets of a beam.
+/// @param sine         of the sun's elevation there
+/// @param before, now  clearances
+float SunBeams::gain_of(const Beam& beam, float sine, float height_m, float before, float now,
+                        const glm::vec3& gradient) const {
+    // The share of the time in which a line from one to the other is over 0.
+    const float both = std::abs(before) + std::abs(now);
+    const float over = std::max(before, 0.0F) + std::max(now, 0.0F);
+    const float share = both > 0 ? over / both : 1.0F;
+    const float onto = (sine - glm::dot(gradient, direction_)) * cosine_of(gradient);
+    const float at = (height_m - static_cast<float>(lowest_m_)) * static_cast<float>(1 / step_m_);
+    const float level = at > 0 ? std::min(at, kHeights - 1.001F) : 0;  // a hole is anywhere
+    const auto entry = static_cast<std::size_t>(level);
+    const float low = beam.given[entry], high = beam.given[entry + 1];
+    const float more = 1 + static_cast<float>(beam.more) * (sine - static_cast<float>(beam.sine));
+    const float given =
+        (low + (level - static_cast<float>(entry)) * (high - low)) * std::max(0.0F, more);
+    return std::max(0.0F, onto) * given * share * static_cast<float>(hours_);
 }
 
 OpenSky::OpenSky(const SunTerrain& terrain, sun::Instant begin, double length_s, double linke)

@@ -25,7 +25,7 @@ struct InclinedGround {
     GroundSlope slope;
 
     InclinedGround(const SunTerrain& terrain, const Window& of)
-        : window(of), slope(terrain.grid(), WindowHeights(terrain.posts(), of), of) {}
+        : window(of), slope(terrain, WindowHeights(terrain.posts(), of), of) {}
 };
 
 /// Places all over a DEM, for what changes slowly over the Earth.
@@ -66,15 +66,18 @@ class SunBeams {
   private:
     static constexpr std::size_t kHeights = 17;
     struct Beam {
-        glm::dvec3 direction{0};  // local ENU
+        double sine = 0;  // of the sun's elevation
         /// Irradiance at heights from the lowest post to the highest one, `step_m_` apart.
         std::array<float, kHeights> given{};
         double more = 0;  // as share, for each unit that the sine of the elevation grows by
     };
-    glm::dvec3 direction(double column, double row) const;
+    double sine(double column, double row) const;
+    float gain_of(const Beam& beam, float sine, float height_m, float before, float now,
+                  const glm::vec3& gradient) const;
 
     Nodes nodes_;
     std::vector<Beam> beams_;
+    glm::vec3 direction_{0};  // towards the sun, of SunTerrain::frame()
     double lowest_m_, step_m_, hours_;
 };
 

@@ -85,27 +85,29 @@ void FindElevations(const float* HWY_RESTRICT tangent, const float* HWY_RESTRICT
     }
 }
 
-void AddSky(const float* HWY_RESTRICT tangent, const float* HWY_RESTRICT east,
-            const float* HWY_RESTRICT north, int count, float sin_azimuth, float cos_azimuth,
-            float* HWY_RESTRICT sum) {
+void AddSky(const float* HWY_RESTRICT tangent, const float* HWY_RESTRICT x,
+            const float* HWY_RESTRICT y, const float* HWY_RESTRICT z, int count,
+            const glm::vec3& direction, float* HWY_RESTRICT sum) {
+    const float dx = direction.x, dy = direction.y, dz = direction.z;
     for (int i = 0; i < count; ++i) {
         // H of the source is the angle between zenith and horizon, t its cotangent.
         const float t = tangent[i] > 0 ? tangent[i] : 0.0F;
         const float sin2 = 1 / (1 + t * t);
-        const float rise = east[i] * sin_azimuth + north[i] * cos_azimuth;
+        const float rise = x[i] * dx + y[i] * dy + z[i] * dz;
         const float width = kHalfPi - quick_atan(t) - t * sin2;
-        const float slope = 1 / std::sqrt(1 + east[i] * east[i] + north[i] * north[i]);
+        const float slope = 1 / std::sqrt(1 + x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
         const float seen = slope * (sin2 - rise * width);
         sum[i] += seen > 0 ? seen : 0.0F;
     }
 }
 
-void FindEntries(const float* HWY_RESTRICT tangent, int count, float first_rad, float a_post_rad,
-                 float entry_rad, int entries, float* HWY_RESTRICT at) {
+void FindEntries(const float* HWY_RESTRICT tangent, int count, float base_rad, float a_post_rad,
+                 int from, float entry_rad, int entries, float* HWY_RESTRICT at) {
     const float scale = 1 / entry_rad, last = static_cast<float>(entries) - 1.001F;
     for (int i = 0; i < count; ++i) {
         const float elevation = std::copysign(quick_atan(std::abs(tangent[i])), tangent[i]);
-        const float entry = (elevation - first_rad - a_post_rad * static_cast<float>(i)) * scale;
+        const float entry =
+            (elevation - base_rad - a_post_rad * static_cast<float>(from + i)) * scale;
         const float least = entry > 0 ? entry : 0.0F;
         at[i] = least < last ? least : last;
     }
@@ -149,15 +151,15 @@ void find_elevations(const float* tangent, const float* height_m, int count, flo
     HWY_DYNAMIC_DISPATCH(FindElevations)(tangent, height_m, count, elevation_rad);
 }
 
-void add_sky(const float* tangent, const float* east, const float* north, int count,
-             float sin_azimuth, float cos_azimuth, float* sum) {
-    HWY_DYNAMIC_DISPATCH(AddSky)(tangent, east, north, count, sin_azimuth, cos_azimuth, sum);
+void add_sky(const float* tangent, const float* x, const float* y, const float* z, int count,
+             const glm::vec3& direction, float* sum) {
+    HWY_DYNAMIC_DISPATCH(AddSky)(tangent, x, y, z, count, direction, sum);
 }
 
-void find_entries(const float* tangent, int count, float first_rad, float a_post_rad,
+void find_entries(const float* tangent, int count, float base_rad, float a_post_rad, int from,
                   float entry_rad, int entries, float* at) {
     HWY_DYNAMIC_DISPATCH(FindEntries)
-    (tangent, count, first_rad, a_post_rad, entry_rad, entries, at);
+    (tangent, count, base_rad, a_post_rad, from, entry_rad, entries, at);
 }
 
 }  // namespace relevo::light

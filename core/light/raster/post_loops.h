@@ -1,5 +1,7 @@
 #pragma once
 
+#include <glm/vec3.hpp>
+
 /// What rasters do to posts next to each other, by the widest vectors that the processor has, as
 /// light/sweep/kernels.h.
 namespace relevo::light {
@@ -37,19 +39,19 @@ void raise_to_dip(const float* tangent, const float* eye_m, const float* edge_m,
 void find_elevations(const float* tangent, const float* height_m, int count, float* elevation_rad);
 
 /// Adds what a direction gives to the sky view of the ground of posts.
-/// @param east, north  how the ground rises
-/// @param sin_azimuth, cos_azimuth  of the direction
+/// @param x, y, z    the ground's gradient
+/// @param direction  level, a unit vector likewise
 /// Source: Dozier and Frew (1990), equation 7b.
-void add_sky(const float* tangent, const float* east, const float* north, int count,
-             float sin_azimuth, float cos_azimuth, float* sum);
+void add_sky(const float* tangent, const float* x, const float* y, const float* z, int count,
+             const glm::vec3& direction, float* sum);
 
 /// Where horizons are in a table of elevations: in entries from its first one on, and no farther
 /// than its last but one.
-/// @param first_rad, a_post_rad  the elevation of the first entry at the first post, and by how
-/// much
-///     it is more from post to post
-/// @param entry_rad              from entry to entry
-void find_entries(const float* tangent, int count, float first_rad, float a_post_rad,
+/// @param base_rad, a_post_rad  the elevation of the first entry at a place of the row, and by how
+///     much it is more from post to post
+/// @param from                  the first post, from that place on
+/// @param entry_rad             from entry to entry
+void find_entries(const float* tangent, int count, float base_rad, float a_post_rad, int from,
                   float entry_rad, int entries, float* at);
 
 }  // namespace relevo::light

@@ -104,6 +104,15 @@ void mix(const SunTerrain& terrain, const float* height_m, const float* low_m, i
         shadow_m[i] = low_m[i] + (height_m[i] - bottom_m) * part * (shadow_m[i] - low_m[i]);
 }
 
+/// Posts that see no sun: a shadow that is over all of them.
+void each_night(const Window& window, const Sweep::Use& use) {
+    Figures shadow_m;
+    shadow_m.fill(1e9F);
+    for (int row = window.row; row < window.end_row(); ++row)
+        for (int column = window.column; column < window.end_column(); column += kRun)
+            use({row, column, std::min(kRun, window.end_column() - column), shadow_m.data()});
+}
+
 void each_shadow_of_two_airs(const SunField& field, const SunTile& tile, const TilePosts& posts,
                              double offset_rad, const Sweep::Use& use) {
     const SunTerrain& terrain = field.terrain();
@@ -144,6 +153,7 @@ void each_shadow(const SunField& field, std::span<const SunTile> tiles, const Wi
                  double offset_rad, const Sweep::Use& use) {
     const SunTerrain& terrain = field.terrain();
     each_tile(tiles, window, [&](const SunTile& tile, const TilePosts& posts) {
+        if (tile.is_night) return each_night(posts.window, use);
         if (field.has_two_airs())
             return each_shadow_of_two_airs(field, tile, posts, offset_rad, use);
         const SweepSun sun = field.sun(tile, SunTerrain::kMean, offset_rad);

@@ -110,6 +110,17 @@ bool SunField::is_night() const {
         [&](const geo::Geodetic& place) { return at(place).elevation_rad < night_rad; });
 }
 
+bool SunField::is_night(const Window& window) const {
+    if (azimuth_rad_) return false;
+    const double night_rad = terrain_->lowest_sun_rad() - kTwilight_rad;
+    for (int i = 0; i < 9; ++i) {
+        const glm::dvec2 post(window.column + (window.columns - 1) * (i % 3) / 2.0,
+                              window.row + (window.rows - 1) * (i / 3) / 2.0);
+        if (!(at(post).elevation_rad < night_rad)) return false;
+    }
+    return true;
+}
+
 SunOverDem SunField::at(const geo::Geodetic& place) const {
     if (azimuth_rad_)
         return {*azimuth_rad_, place.lat_rad * 0, 0};  // no number where there is none
@@ -117,13 +128,6 @@ SunOverDem SunField::at(const geo::Geodetic& place) const {
     const double east = glm::dot(direction_, axes.east), north = glm::dot(direction_, axes.north);
     return {std::atan2(east, north),
             std::atan2(glm::dot(direction_, axes.up), std::hypot(east, north)), 0};
-}
-
-glm::dvec3 SunField::direction(const glm::dvec2& post) const {
-    const SunOverDem sun = at(post);
-    const double level = std::cos(sun.elevation_rad);
-    return {level * std::sin(sun.azimuth_rad), level * std::cos(sun.azimuth_rad),
-            std::sin(sun.elevation_rad)};
 }
 
 double SunField::reach_m(double apparent_rad) const {

@@ -37,6 +37,7 @@ struct SunTile {
         double elevation_rad = 0;
     };
     std::array<Mark, 9> marks;
+    bool is_night = false;  ///< no post of it sees the sun; there is no ray
 };
 
 /// How far a straight way from a post stays in a window [m].
@@ -60,14 +61,15 @@ class SunField {
     }
     /// The sun is under the horizon of every post.
     bool is_night() const;
+    bool is_night(const Window& window) const;
 
     /// Without air, at a place.
     SunOverDem at(const geo::Geodetic& place) const;
     SunOverDem at(const glm::dvec2& post) const {
         return at(terrain_->grid().place(post.x, post.y));
     }
-    /// Towards it at a post, local ENU, a unit vector.
-    glm::dvec3 direction(const glm::dvec2& post) const;
+    /// Towards it, a unit vector of SunTerrain::frame(); not of a direction from true north.
+    const glm::dvec3& direction() const { return direction_; }
 
     /// As far as ground can shade: where a ray has risen over all relief of a round Earth.
     double reach_m(double apparent_rad) const;

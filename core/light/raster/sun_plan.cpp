@@ -36,26 +36,52 @@ SunPlan::SunPlan(const dem::Posts& posts, const LightPath& path, const Window& w
     : terrain_(std::make_unique<const SunTerrain>(posts, path, with_discs)),
       window_(window_or_all(window, posts.grid())) {}
 
-void SunPlan::divide_all(std::size_t first, double tolerance_rad) {
+void SunPlan::divide_all(std::size_t first, const Window& window, double tolerance_rad) {
     parallel_for(static_cast<int>(first), static_cast<int>(suns_.size()), 1,
                  [&](int begin, int end) {
                      for (int i = begin; i < end; ++i) {
                          PlannedSun& sun = suns_[static_cast<std::size_t>(i)];
-                         sun.tiles = divide(sun.field, terrain_->window(), window_, tolerance_rad);
+                         sun.tiles = divide(sun.field, window, window_, tolerance_rad);
                      }
                  });
 }
 
 void SunPlan::add_sun(const geo::Geodetic& place, const SunOverDem& sun, double tolerance_rad) {
     suns_.push_back({0, SunField(*terrain_, place, sun), sun.semidiameter_rad});
-    if (!suns_.back().field.is_night()) divide_all(suns_.size() - 1, tolerance_rad);
+    if (!suns_.back().field.is_night())
+        divide_all(suns_.size() - 1, terrain_->window(), tolerance_rad);
 }
 
 void SunPlan::add_directions(const std::vector<double>& azimuth_rad, double tolerance_rad) {
     const std::size_t first = suns_.size();
     for (const double azimuth : azimuth_rad)
         suns_.push_back({0, SunField(*terrain_, azimuth)});
-    divide_all(first, tolerance_rad);
+    divide_all(first, terrain_->window(), tolerance_rad);
+}
+
+std::vector<Window> SunPlan::blocks(const SunTerrain& terrain) {
+    constexpr double kBlock_m = 200e3;
+    const Window all = terrain.window();
+    const glm::dvec2& spacing_m = terrain.spacing_m();
+    const int columns = std::max(1, static_cast<int>(kBlock_m / spacing_m.x)),
+              rows = std::max(1, static_cast<int>(kBlock_m / spacing_m.y));
+    std::vector<Window> blocks;
+    for (int row = 0; row < all.rows; row += rows)
+        for (int column = 0; column < all.columns; column += columns)
+            blocks.push_back(common(all, {column, row, columns, rows}));
+    return blocks;
+}
+
+void SunPlan::add_level_directions(const std::vector<double>& azimuth_rad, double tolerance_rad) {
+    for (const Window& block : blocks(*terrain_)) {
+        if (common(block, window_).is_empty()) continue;
+        const std::size_t first = suns_.size();
+        const geo::Geodetic middle = terrain_->grid().place(
+            block.column + (block.columns - 1) / 2.0, block.row + (block.rows - 1) / 2.0);
+        for (const double azimuth : azimuth_rad)
+            suns_.push_back({0, SunField(*terrain_, middle, {azimuth, 0, 0})});
+        divide_all(first, block, tolerance_rad);
+    }
 }
 
 void SunPlan::add_time(sun::Instant begin, double length_s, double step_s) {
@@ -91,7 +117,7 @@ void SunPlan::add_time(sun::Instant begin, double length_s, double step_s) {
     for (std::size_t k = 0; k < suns.size(); ++k)
         if (!night[k] || (k > 0 && !night[k - 1]) || (k + 1 < suns.size() && !night[k + 1]))
             suns_.push_back(std::move(suns[k]));
-    divide_all(first, kSunTolerance_rad);
+    divide_all(first, terrain_->window(), kSunTolerance_rad);
 }
 
 int SunPlan::most_tiles() const {

@@ -31,8 +31,13 @@ class SunPlan {
     /// @throws Error (BadInput) as divide()
     void add_sun(const geo::Geodetic& place, const SunOverDem& sun,
                  double tolerance_rad = kSunTolerance_rad);
-    /// Directions from true north, each level.
+    /// Directions from true north at every post.
     void add_directions(const std::vector<double>& azimuth_rad, double tolerance_rad);
+    /// Directions from true north in the middle of each of the blocks(), one after the other, as of
+    /// suns that are level there: next to a pole they are not from true north at every post.
+    void add_level_directions(const std::vector<double>& azimuth_rad, double tolerance_rad);
+    /// Parts of a DEM that are small enough for one place to stand for all of them.
+    static std::vector<Window> blocks(const SunTerrain& terrain);
     /// The suns of a time, `step_s` apart, and closer to each other while the sun is near the
     /// horizon: how far off what hides it lies changes there with every minute, and clearances are
     /// not linear. Suns that no post sees are left out, but for the last one before each sunrise
@@ -46,10 +51,10 @@ class SunPlan {
     int most_tiles() const;
 
     static constexpr int kFiner = 3;          ///< as many steps near the horizon as one elsewhere
-    static constexpr double kLongest_s = 60;  ///< but no longer ones
+    static constexpr double kLongest_s = 30;  ///< but no longer ones
 
   private:
-    void divide_all(std::size_t first, double tolerance_rad);
+    void divide_all(std::size_t first, const Window& window, double tolerance_rad);
 
     std::unique_ptr<const SunTerrain> terrain_;  // SunField has its address
     Window window_;

@@ -99,6 +99,7 @@ void SweepLines::find_line_ranges(const Sheet& sheet, const SheetPosts& posts, d
         if (row < first || posts.at(row).is_empty()) continue;
         lines_ = {std::min(lines_.begin, over(row).begin), std::max(lines_.end, over(row).end)};
     }
+    if (lines_.begin > lines_.end) lines_ = {};  // no posts are wanted
     // A line matters from where it has ground to where shade of that ground reaches. All lines are
     // kept where they turn back aside, or where the window's border is bent.
     const bool is_simple = (falls || rises) && posts.ranges.empty();
