@@ -63,6 +63,33 @@ void AddLight(const Step& step, const float* height_m, const float* shadow_m, in
     add_light_to_some(step, height_m + i, shadow_m + i, count - i, clearance_m + i, lit_h + i);
 }
 
+void RaiseToEarth(const float* HWY_RESTRICT shadow_m, const float* HWY_RESTRICT edge_m,
+                  const float* HWY_RESTRICT edge_at_m, int count, const SunOverRow& sun,
+                  float* HWY_RESTRICT raised_m) {
+    const float base = sun.base, a_post = sun.a_post, c = sun.curvature, lowest_m = sun.lowest_m;
+    const int from = sun.from;
+    for (int i = 0; i < count; ++i) {
+        const float t = base + a_post * static_cast<float>(from + i);
+        const float level_m = edge_m[i] > lowest_m ? edge_m[i] : lowest_m;
+        // A ray has fallen by t * s + c * s * s / 2 since it was over ground s metres off; what it
+        // met last is the edge, or where it was level. Suns over the horizon meet nothing: their
+        // shadow lies as deep as those of suns as far under it are high.
+        const float flat_m = -t / c;
+        const float beyond_m = edge_at_m[i] > flat_m ? edge_at_m[i] : flat_m;
+        const float s = beyond_m > 0 ? beyond_m : 0.0F;
+        const float fallen_m = t * s + c * s * s / 2, deep_m = t * t / (2 * c);
+        const float deepest_m = (t > 0) & (deep_m > fallen_m) ? deep_m : fallen_m;
+        const float earth_m = level_m - deepest_m;
+        raised_m[i] = earth_m > shadow_m[i] ? earth_m : shadow_m[i];
+    }
+}
+
+void MixByHeight(const float* HWY_RESTRICT height_m, float lowest_m, float a_metre,
+                 const float* HWY_RESTRICT low_m, int count, float* HWY_RESTRICT shadow_m) {
+    for (int i = 0; i < count; ++i)
+        shadow_m[i] = low_m[i] + (height_m[i] - lowest_m) * a_metre * (shadow_m[i] - low_m[i]);
+}
+
 void RaiseToDip(const float* HWY_RESTRICT tangent, const float* HWY_RESTRICT eye_m,
                 const float* HWY_RESTRICT edge_m, const float* HWY_RESTRICT edge_at_m, int count,
                 float curvature, float lowest_m, float* HWY_RESTRICT raised) {
@@ -122,6 +149,8 @@ namespace relevo::light {
 HWY_EXPORT(FindClearances);
 HWY_EXPORT(Straighten);
 HWY_EXPORT(AddLight);
+HWY_EXPORT(RaiseToEarth);
+HWY_EXPORT(MixByHeight);
 HWY_EXPORT(RaiseToDip);
 HWY_EXPORT(FindElevations);
 HWY_EXPORT(AddSky);
@@ -138,6 +167,16 @@ void straighten(const float* upper_m, const float* middle_m, int count, float* l
 void add_light(const Step& step, const float* height_m, const float* shadow_m, int count,
                float* clearance_m, float* lit_h) {
     HWY_DYNAMIC_DISPATCH(AddLight)(step, height_m, shadow_m, count, clearance_m, lit_h);
+}
+
+void raise_to_earth(const float* shadow_m, const float* edge_m, const float* edge_at_m, int count,
+                    const SunOverRow& sun, float* raised_m) {
+    HWY_DYNAMIC_DISPATCH(RaiseToEarth)(shadow_m, edge_m, edge_at_m, count, sun, raised_m);
+}
+
+void mix_by_height(const float* height_m, float lowest_m, float a_metre, const float* low_m,
+                   int count, float* shadow_m) {
+    HWY_DYNAMIC_DISPATCH(MixByHeight)(height_m, lowest_m, a_metre, low_m, count, shadow_m);
 }
 
 void raise_to_dip(const float* tangent, const float* eye_m, const float* edge_m,

@@ -25,6 +25,26 @@ void straighten(const float* upper_m, const float* middle_m, int count, float* l
 void add_light(const Step& step, const float* height_m, const float* shadow_m, int count,
                float* clearance_m, float* lit_h);
 
+/// The sun over a row of posts, and the Earth around the DEM.
+struct SunOverRow {
+    float base, a_post;  ///< tangent of its elevation at a place, and by how much more a post on
+    int from;            ///< the first post, from that place on
+    float curvature;     ///< of lines of sight [1/m]
+    float lowest_m;      ///< of the DEM
+};
+/// Shadows, raised to that of ground beyond the DEM that is as high as its edge.
+/// @param edge_m, edge_at_m  of the edge: how high, how far off
+void raise_to_earth(const float* shadow_m, const float* edge_m, const float* edge_at_m, int count,
+                    const SunOverRow& sun, float* raised_m);
+
+/// Shadows between those in the air of the lowest post and in that of the highest one, by the
+/// posts' own heights.
+/// @param a_metre   1 / (highest - lowest)
+/// @param low_m     in the air of the lowest
+/// @param shadow_m  in the air of the highest; gets them
+void mix_by_height(const float* height_m, float lowest_m, float a_metre, const float* low_m,
+                   int count, float* shadow_m);
+
 /// Horizons that are no lower than those of the ground beyond the DEM's edge, as tangent_beyond()
 /// has them, nor than the dip of a smooth Earth as high as the lowest post.
 /// @param tangent           of the DEM's ground

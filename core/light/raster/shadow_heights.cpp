@@ -17,16 +17,12 @@ namespace {
 constexpr int kRun = kLongestRun;
 using Figures = std::array<float, kRun>;
 
-/// Calls `use` with parts of a run; figures for which `fill` puts into an array.
-template <typename Fill>
-void each_part(const SweepRun& run, const Fill& fill, const Sweep::Use& use) {
-    Figures figures;
-    for (int done = 0; done < run.count; done += kRun) {
-        const SweepRun part{run.row, run.column + done, std::min(run.count - done, kRun),
-                            run.found + done};
-        fill(part, figures.data());
-        use({part.row, part.column, part.count, figures.data()});
-    }
+/// Calls `body` with parts of a run that are no longer than kRun.
+template <typename Body>
+void each_part(const SweepRun& run, const Body& body) {
+    for (int done = 0; done < run.count; done += kRun)
+        body(SweepRun{run.row, run.column + done, std::min(run.count - done, kRun),
+                      run.found + done});
 }
 
 void each_tile(std::span<const SunTile> tiles, const Window& window,
@@ -64,45 +60,30 @@ class EarthShadow {
     }
     bool matters() const { return beyond_.has_value(); }
 
-    /// Raises shadows to it.
-    void add(const SweepRun& run, float* shadow_m) const {
-        if (!matters()) return;
+    /// The shadows of a run, raised to it.
+    void raise(const SweepRun& run, float* shadow_m) const {
+        if (!matters()) {
+            std::copy_n(run.found, run.count, shadow_m);
+            return;
+        }
         Figures edge_m, edge_at_m;
         beyond_->find(run.row, run.column, run.count, edge_m.data(), edge_at_m.data());
-        const auto c = static_cast<float>(terrain_.curvature()),
-                   lowest_m = static_cast<float>(terrain_.lowest_m());
-        for (int i = 0; i < run.count; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            const auto t = static_cast<float>(sun_.tangent_at(run.column + i, run.row));
-            const float level_m = std::max(edge_m[k], lowest_m);
-            // A ray has fallen by t * s + c * s * s / 2 since it was over ground s metres off; what
-            // it met last is the edge, or where it was level. Suns over the horizon meet nothing:
-            // their shadow lies as deep as those of suns as far under it are high.
-            const float s = std::max({edge_at_m[k], -t / c, 0.0F});
-            const float fallen_m =
-                std::max(t * s + c * s * s / 2, t > 0 ? t * t / (2 * c) : -kFar_m);
-            shadow_m[i] = std::max(shadow_m[i], level_m - fallen_m);
-        }
+        // From the reference on, so that bits do not hang on where a run begins.
+        const glm::dvec2& at = sun_.ray.reference;
+        raise_to_earth(run.found, edge_m.data(), edge_at_m.data(), run.count,
+                       {.base = static_cast<float>(sun_.tangent_at(at.x, run.row)),
+                        .a_post = static_cast<float>(sun_.tangent_per_post.x),
+                        .from = run.column - static_cast<int>(at.x),
+                        .curvature = static_cast<float>(terrain_.curvature()),
+                        .lowest_m = static_cast<float>(terrain_.lowest_m())},
+                       shadow_m);
     }
 
   private:
-    static constexpr float kFar_m = 1e9F;
-
     const SunTerrain& terrain_;
     SweepSun sun_;
     std::optional<GroundBeyond> beyond_;
 };
-
-/// Shadows between those in the air of the lowest post and in that of the highest one, by the
-/// posts' own heights.
-/// @param shadow_m  in the air of the highest
-void mix(const SunTerrain& terrain, const float* height_m, const float* low_m, int count,
-         float* shadow_m) {
-    const auto bottom_m = static_cast<float>(terrain.lowest_m()),
-               part = static_cast<float>(1 / terrain.relief_m());
-    for (int i = 0; i < count; ++i)
-        shadow_m[i] = low_m[i] + (height_m[i] - bottom_m) * part * (shadow_m[i] - low_m[i]);
-}
 
 /// Posts that see no sun: a shadow that is over all of them.
 void each_night(const Window& window, const Sweep::Use& use) {
@@ -122,28 +103,22 @@ void each_shadow_of_two_airs(const SunField& field, const SunTile& tile, const T
     const EarthShadow low_earth(terrain, tile, low), high_earth(terrain, tile, high);
     Array2d<float> low_m(w.columns, w.rows);
     terrain.sweep().each_shadow(low, posts, terrain.floor_m(), [&](const SweepRun& run) {
-        each_part(
-            run,
-            [&](const SweepRun& part, float* shadow_m) {
-                std::copy_n(part.found, part.count, shadow_m);
-                low_earth.add(part, shadow_m);
-            },
-            [&](const SweepRun& part) {
-                std::copy_n(part.found, part.count,
-                            &low_m.at(part.column - w.column, part.row - w.row));
-            });
+        each_part(run, [&](const SweepRun& part) {
+            low_earth.raise(part, &low_m.at(part.column - w.column, part.row - w.row));
+        });
     });
     const WindowHeights heights(terrain.posts(), w);
+    const auto bottom_m = static_cast<float>(terrain.lowest_m()),
+               a_metre = static_cast<float>(1 / terrain.relief_m());
     terrain.sweep().each_shadow(high, posts, terrain.floor_m(), [&](const SweepRun& run) {
-        each_part(
-            run,
-            [&](const SweepRun& part, float* shadow_m) {
-                std::copy_n(part.found, part.count, shadow_m);
-                high_earth.add(part, shadow_m);
-                mix(terrain, heights.view.at(part.column, part.row),
-                    &low_m.at(part.column - w.column, part.row - w.row), part.count, shadow_m);
-            },
-            use);
+        each_part(run, [&](const SweepRun& part) {
+            Figures shadow_m;
+            high_earth.raise(part, shadow_m.data());
+            mix_by_height(heights.view.at(part.column, part.row), bottom_m, a_metre,
+                          &low_m.at(part.column - w.column, part.row - w.row), part.count,
+                          shadow_m.data());
+            use({part.row, part.column, part.count, shadow_m.data()});
+        });
     });
 }
 
@@ -161,13 +136,11 @@ void each_shadow(const SunField& field, std::span<const SunTile> tiles, const Wi
         if (!earth.matters())
             return terrain.sweep().each_shadow(sun, posts, terrain.floor_m(), use);
         terrain.sweep().each_shadow(sun, posts, terrain.floor_m(), [&](const SweepRun& run) {
-            each_part(
-                run,
-                [&](const SweepRun& part, float* shadow_m) {
-                    std::copy_n(part.found, part.count, shadow_m);
-                    earth.add(part, shadow_m);
-                },
-                use);
+            each_part(run, [&](const SweepRun& part) {
+                Figures shadow_m;
+                earth.raise(part, shadow_m.data());
+                use({part.row, part.column, part.count, shadow_m.data()});
+            });
         });
     });
 }
@@ -188,11 +161,15 @@ void each_horizon(const SunField& direction, std::span<const SunTile> tiles, con
             raise_to_dip(run.found, heights.view.at(run.column, run.row), height_m.data(),
                          distance_m.data(), run.count, curvature, lowest_m, tangent);
         };
-        terrain.sweep().each_horizon(tile.ray, terrain.curvature(), terrain.horizon_reach_m(),
-                                     posts, [&](const SweepRun& run) {
-                                         each_part(run, fill,
-                                                   [&](const SweepRun& part) { use(tile, part); });
-                                     });
+        terrain.sweep().each_horizon(
+            tile.ray, terrain.curvature(), terrain.horizon_reach_m(), posts,
+            [&](const SweepRun& run) {
+                each_part(run, [&](const SweepRun& part) {
+                    Figures tangent;
+                    fill(part, tangent.data());
+                    use(tile, {part.row, part.column, part.count, tangent.data()});
+                });
+            });
     });
 }
 

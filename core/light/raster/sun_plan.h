@@ -51,7 +51,7 @@ class SunPlan {
     int most_tiles() const;
 
     static constexpr int kFiner = 3;          ///< as many steps near the horizon as one elsewhere
-    static constexpr double kLongest_s = 30;  ///< but no longer ones
+    static constexpr double kLongest_s = 60;  ///< but no longer ones
 
   private:
     void divide_all(std::size_t first, const Window& window, double tolerance_rad);
