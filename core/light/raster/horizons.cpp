@@ -107,14 +107,14 @@ SkyView sky_view(const SunPlan& plan, const SkyViewOptions& options) {
         for (int x = 0; x < part.columns; ++x) {
             float& share = result.share.at(x, y);
             const float height_m = heights.at(part.column + x, part.row + y);
-            share = std::isnan(height_m)
-                        ? height_m
-                        : std::min(1.0F, share / static_cast<float>(options.directions));
-            if (options.of_open_slope) {
-                // An endless plane sees half of one and the cosine of its slope.
-                share = std::min(1.0F, share * 2 / (1 + cosine_of(slope.at(x, y))));
+            if (std::isnan(height_m)) {
+                share = height_m;
+                continue;
             }
-            if (std::isnan(share)) continue;
+            share = std::min(1.0F, share / static_cast<float>(options.directions));
+            // An endless plane sees half of one and the cosine of its slope.
+            if (options.of_open_slope)
+                share = std::min(1.0F, share * 2 / (1 + cosine_of(slope.at(x, y))));
             result.mean += double{share};
             ++seen;
         }

@@ -75,7 +75,7 @@ HorizonHours::Block HorizonHours::block_of(const Window& window, const Window& w
     Block block{window, {}};
     for (auto& [low, high] : tables) {
         if (low.empty()) continue;
-        SunField field(terrain_, middle, {low.azimuth_rad(), 0, 0});
+        const SunField field = SunField::level(terrain_, middle, low.azimuth_rad());
         low.sum_up();
         high.sum_up();
         block.directions.push_back({field, {}, std::move(low), std::move(high)});

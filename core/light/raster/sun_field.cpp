@@ -49,15 +49,13 @@ struct SampledLines {
     }
 };
 
-/// None where rays turn back, or cross.
-std::optional<SampledLines> sampled_lines(const TilePosts& posts, bool along_columns) {
-    constexpr int kSamples = 33;
+/// As many lines as that. None where rays turn back, or cross.
+std::optional<SampledLines> sampled_lines(const TilePosts& posts, bool along_columns, int count) {
     const Window& w = posts.window;
     const Window all = along_columns ? Window{w.row, w.column, w.rows, w.columns} : w;
-    const int count = std::min(all.rows, kSamples);
     SampledLines found;
-    int first = all.end_row(), last = all.row, begin = all.end_column(), end = all.column,
-        beside = 0;
+    int first = all.end_row(), last = all.row, begin = all.end_column(), end = all.column;
+    int beside = 1;
     for (int i = 0, before = all.row; i < count; ++i) {
         const int line =
             all.row + static_cast<int>(std::int64_t{all.rows - 1} * i / std::max(1, count - 1));
@@ -81,6 +79,16 @@ std::optional<SampledLines> sampled_lines(const TilePosts& posts, bool along_col
     return found;
 }
 
+/// Some, or all where these would miss a small tile.
+std::optional<SampledLines> sampled_lines(const TilePosts& posts, bool along_columns) {
+    constexpr int kSamples = 33;
+    constexpr std::size_t kEnough = 3;
+    const int lines = along_columns ? posts.window.columns : posts.window.rows;
+    const auto some = sampled_lines(posts, along_columns, std::min(lines, kSamples));
+    if (!some || some->with_posts.size() >= kEnough || lines <= kSamples) return some;
+    return sampled_lines(posts, along_columns, lines);
+}
+
 }  // namespace
 
 double way_in(const Window& w, const glm::dvec2& post, const glm::dvec2& a_metre) {
@@ -101,7 +109,14 @@ SunField::SunField(const SunTerrain& terrain, const geo::Geodetic& place, const 
 }
 
 SunField::SunField(const SunTerrain& terrain, double azimuth_rad)
-    : terrain_(&terrain), azimuth_rad_(azimuth_rad) {}
+    : terrain_(&terrain), azimuth_rad_(azimuth_rad), is_level_(true) {}
+
+SunField SunField::level(const SunTerrain& terrain, const geo::Geodetic& place,
+                         double azimuth_rad) {
+    SunField field(terrain, place, {azimuth_rad, 0, 0});
+    field.is_level_ = true;
+    return field;
+}
 
 bool SunField::is_night() const {
     const double night_rad = terrain_->lowest_sun_rad() - kTwilight_rad;
@@ -111,7 +126,7 @@ bool SunField::is_night() const {
 }
 
 bool SunField::is_night(const Window& window) const {
-    if (azimuth_rad_) return false;
+    if (is_level_) return false;
     const double night_rad = terrain_->lowest_sun_rad() - kTwilight_rad;
     for (int i = 0; i < 9; ++i) {
         const glm::dvec2 post(window.column + (window.columns - 1) * (i % 3) / 2.0,
@@ -249,6 +264,7 @@ double SunField::path_error_rad(const SunTile& tile, const SunTile::Mark& mark) 
     const double reach = reach_m(apparent), least_m = 2 * terrain_->widest_spacing_m();
     // As a sweep goes: from row to row, all lines being moved along rows.
     const double s0 = ray.distance_m(post.y);
+    if (std::isnan(s0)) return kPi;
     const double moved_by = post.x - ray.way(s0).x;
     double worst = 0;
     for (const double share : {0.2, 0.6, 1.0}) {

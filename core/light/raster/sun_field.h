@@ -52,6 +52,9 @@ class SunField {
     SunField(const SunTerrain& terrain, const geo::Geodetic& place, const SunOverDem& sun);
     /// A direction that is the same at every place, from true north there, and level.
     SunField(const SunTerrain& terrain, double azimuth_rad);
+    /// A direction as of a sun that is level over a place.
+    static SunField level(const SunTerrain& terrain, const geo::Geodetic& place,
+                          double azimuth_rad);
 
     const SunTerrain& terrain() const { return *terrain_; }
     /// Whether it needs sweeps for the air of the lowest post and for that of the highest one.
@@ -94,6 +97,7 @@ class SunField {
     glm::dvec3 direction_{0};
     std::optional<double> azimuth_rad_;  // instead
     bool two_airs_ = false;
+    bool is_level_ = false;  // a direction, no sun: it is never night
 };
 
 }  // namespace relevo::light

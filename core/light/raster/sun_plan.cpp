@@ -79,7 +79,7 @@ void SunPlan::add_level_directions(const std::vector<double>& azimuth_rad, doubl
         const geo::Geodetic middle = terrain_->grid().place(
             block.column + (block.columns - 1) / 2.0, block.row + (block.rows - 1) / 2.0);
         for (const double azimuth : azimuth_rad)
-            suns_.push_back({0, SunField(*terrain_, middle, {azimuth, 0, 0})});
+            suns_.push_back({0, SunField::level(*terrain_, middle, azimuth)});
         divide_all(first, block, tolerance_rad);
     }
 }

@@ -24,7 +24,7 @@ HorizonStrip::HorizonStrip(const SweepLines& lines, int line, int count, double 
         tangents_[k] = static_cast<float>(std::tan(radians(kFanDegrees[k])));
 }
 
-Fans HorizonStrip::fans() const {
+Fans HorizonStrip::fans() {
     return {height_m_.data(), distance_m_.data(), kPitch, tangents_.data()};
 }
 

@@ -33,7 +33,7 @@ class HorizonStrip {
     static constexpr std::ptrdiff_t kPitch = in_vectors(kMostLines + 1) + kVectorFloats;
 
     double distance_m(int row) const { return lines_.row(row).fall_m; }
-    Fans fans() const;
+    Fans fans();
     void raise(int row);
     void look_at_near_ground(int row, int first, int end, const float* eyes_m);
 
@@ -43,7 +43,7 @@ class HorizonStrip {
     double least_;
     GroundRows ground_;
     std::array<float, kFanRays> tangents_;
-    mutable std::vector<float> height_m_, distance_m_;  // of the fans
+    std::vector<float> height_m_, distance_m_;  // of the fans
     std::vector<float> tangent_;
 };
 

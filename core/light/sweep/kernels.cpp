@@ -88,7 +88,7 @@ void LookForShadows(const ShadowLook& look) {
     const V nothing = hn::Set(kFloats, kNothing_m), fall = hn::Set(kFloats, look.fall_m),
             ramp = hn::Set(kFloats, look.ramp_m), on = hn::Set(kFloats, look.between),
             base = hn::Set(kFloats, look.base_m), floor = hn::Set(kFloats, look.floor_m),
-            part = hn::Set(kFloats, look.part), low = hn::Set(kFloats, kNothing_m / 16);
+            part = hn::Set(kFloats, look.part), low = hn::Set(kFloats, -1e20F);  // no ground
     by_vectors(look.count, [&](auto vectors, int i) {
         constexpr int kVectors = decltype(vectors)::value;
         V fallen[kVectors], height[kVectors];

@@ -65,9 +65,9 @@ void SweepLines::add_rows(const SweepSun& sun, const SheetPosts& posts, double d
         begin = next;
     }
     for (int row = window.end_row() - 1; row >= begin; --row) {
-        const Row at = row_at(distances_m[static_cast<std::size_t>(row - begin)]);
-        if (std::isnan(at.shift))
-            break;  // the ray has turned back: it comes over no further ground
+        const double distance_m = distances_m[static_cast<std::size_t>(row - begin)];
+        if (std::isnan(distance_m)) break;  // turned back: it comes over no further ground
+        const Row at = row_at(distance_m);
         rows_.push_back(at);
         if (row <= window.row && at.distance_m > far_m) break;
     }

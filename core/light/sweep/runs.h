@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "light/sweep/kernels.h"
+#include "light/sweep/lines.h"
 #include "light/sweep/sweep.h"
 
 namespace relevo::light {

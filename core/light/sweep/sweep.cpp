@@ -199,8 +199,8 @@ void Sweep::sweep_strips(const Job& job, double drop_m, const Make& make, const 
     const int count = lines.lines().end - lines.lines().begin;
     if (count <= 0) return;
     const int width = width_of_strips(count, Strip::kMostLines);
-    const int ground_columns = GroundRows::pitch(lines, width + 1);
-    lines.find_crossings(ground_columns, Strip::kNearness.near_rows + 3);
+    const int pitch = GroundRows::pitch(lines, width + 1);
+    lines.find_crossings(pitch, GroundRows::kept(lines));
     parallel_for(0, (count + width - 1) / width, 1, [&](int begin, int end) {
         std::vector<float> buffer;
         Runs runs(job.orientation, use);
@@ -211,11 +211,15 @@ void Sweep::sweep_strips(const Job& job, double drop_m, const Make& make, const 
             for (int row = lines.begin(); row < lines.end(); ++row) {
                 if (read_ && (row - lines.begin()) % kReadRows == 0) {
                     const int last = std::min(row + kReadRows, lines.end());
-                    const ColumnRange columns = lines.columns(row, last);
-                    const Window all{0, row, job.sheet.columns, last - row};
+                    ColumnRange columns{job.sheet.columns, 0};
+                    for (int at = row; at < last; ++at) {
+                        const int column = lines.row(at).ground_column + line;
+                        columns = {std::min(columns.begin, column),
+                                   std::max(columns.end, column + pitch)};
+                    }
                     const Window wanted =
-                        common(all, {columns.begin + line - 3, row,
-                                     columns.end - columns.begin + ground_columns + 6, last - row});
+                        common({0, row, job.sheet.columns, last - row},
+                               {columns.begin, row, columns.end - columns.begin, last - row});
                     if (!wanted.is_empty()) read(job, wanted, sheet, buffer);
                 }
                 strip.come_to(row, sheet);

@@ -37,15 +37,15 @@ struct SweepRun {
 /// from the sun, row by row (or column by column, as the sun stands), and lets every line fall with
 /// the sun and rise to the ground under it: to all its crossings with the rows and columns of the
 /// grid, heights being linear from post to post there. A post lies between two lines, and has the
-/// mean of their heights by its distance from them; but for the ground of the nearest rows, which
-/// is where an error would be shade, its own ray is followed. A post costs the same however far
+/// mean of their heights by its distance from them; but for the ground of the nearest rows, where
+/// an error would show as false shade, its own ray is followed. A post costs the same however far
 /// shadows reach.
 ///
-/// Accuracy: towards the eight directions of the compass rose on square posts exact, but for float:
-/// else what lies farther off than the nearest rows is met within a quarter of a post of the ray
-/// (tests/light/test_sweep.cpp has shares and figures). Every post gets the same bits whatever the
-/// window asked for, the number of threads and the width of the processor's vectors. Speed:
-/// bench_light.
+/// Accuracy: towards the eight directions of the compass rose on square posts exact up to the
+/// rounding of floats: else what lies farther off than the nearest rows is met within a quarter of
+/// a post of the ray (tests/light/test_sweep.cpp has shares and figures). Every post gets the same
+/// bits whatever the window asked for, the number of threads and the width of the processor's
+/// vectors. Speed: bench_light.
 ///
 /// Safe on several threads at once.
 class Sweep {
