@@ -102,6 +102,10 @@ constexpr double kEnough_s = 2;  // of computing, to say how long all of it take
 /// A dry run knows enough.
 struct Enough {};
 
+double seconds_since(Progress::Clock::time_point began) {
+    return std::chrono::duration<double>(Progress::Clock::now() - began).count();
+}
+
 double posts_of(const dem::Window& window) {
     return double(window.columns) * window.rows;
 }
@@ -127,14 +131,14 @@ RasterRun::RasterRun(const RasterArguments& arguments, OutputFile& file, const R
 std::function<void(double)> RasterRun::done() {
     return [this](double of_call) {
         share_ += of_call * part_share_ / static_cast<double>(calls_);
-        passed_s_ = std::chrono::duration<double>(Progress::Clock::now() - began_).count();
-        if (share_ == 0) ready_s_ = passed_s_;
+        passed_s_ = seconds_since(began_);
         if (bar_) bar_->show(share_);
         if (!writer_ && passed_s_ - ready_s_ > kEnough_s && share_ < 1) throw Enough();
     };
 }
 
 bool RasterRun::each_part(const std::function<void(const dem::Window&)>& body) {
+    ready_s_ = passed_s_ = seconds_since(began_);
     try {
         for (const dem::Window& part : ground_.parts) {
             part_share_ = posts_of(part) / posts_of(ground_.window);
@@ -210,8 +214,7 @@ void RasterRun::tell() const {
                (heights + std::max(most * bytes_a_post_, writing)) / kMiB + kProgram_mib,
                heights / kMiB);
     fmt::print("computing           some {}, as {:.3g} % of it took {:.2g} s on {} threads\n",
-               duration_text(double(ground_.parts.size()) * ready_s_ +
-                             (passed_s_ - ready_s_) / std::max(share_, 1e-9)),
+               duration_text(ready_s_ + (passed_s_ - ready_s_) / std::max(share_, 1e-9)),
                100 * share_, passed_s_, thread_count());
     fmt::print(
         "result              {} band{} of {:.0f} MiB before compression, temporary space in the "

@@ -185,8 +185,10 @@ std::string light_all(const dem::Posts& posts, const dem::Window& window,
     std::string definition;
     options.done = raster.done();
     light::SunPlan plan(posts, {options.refraction, options.air}, window, options.soft);
+    std::vector<light::SunOverDem> all;
     for (const Asked& asked : suns)
-        plan.add_sun(posts.grid().center(), asked.sun);
+        all.push_back(asked.sun);
+    plan.add_suns(posts.grid().center(), all);
     raster.each_part([&](const dem::Window& part) {
         options.part = part;
         for (std::size_t k = 0; k < suns.size(); ++k) {

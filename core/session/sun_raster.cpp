@@ -59,8 +59,8 @@ SunRasterMaker shadow_of(const dem::Posts& posts, const SunRasterWanted& wanted,
     options.air = air_of(wanted.refraction);
     const auto plan = std::make_shared<light::SunPlan>(
         posts, light::LightPath{options.refraction, options.air}, window);
-    plan->add_sun(posts.grid().center(),
-                  sun_over_middle(posts, wanted.begin, wanted.refraction).sun);
+    plan->add_suns(posts.grid().center(),
+                   {sun_over_middle(posts, wanted.begin, wanted.refraction).sun});
     return [plan, options](const dem::Window& part) mutable {
         options.part = part;
         light::Shadows shadows = light::shadows(*plan, plan->suns().front(), options);

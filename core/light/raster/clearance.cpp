@@ -12,7 +12,7 @@
 namespace relevo::light {
 namespace {
 
-/// A DEM in more tiles than this is looked at with a sun that is off by more.
+/// Where a DEM would have more tiles than this, the sun may be off by more.
 constexpr std::size_t kMostTiles = 4096;
 constexpr double kLooser = 4;
 constexpr double kLoosest_rad = radians(12);

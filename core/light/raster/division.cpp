@@ -14,7 +14,8 @@ namespace relevo::light {
 namespace {
 
 constexpr int kLeastWindow = 2;  // posts a side
-constexpr int kLeastWidth = 6;   // posts across a tile between rays
+/// Posts across a tile between rays: each of its lines has some.
+constexpr int kLeastWidth = 6;
 
 std::array<Window, 2> halves(const Window& window, bool of_columns) {
     std::array<Window, 2> halves{window, window};
@@ -105,10 +106,9 @@ class Division {
             if (!tile) return false;
             const bool has_posts = !tile->posts.window.is_empty();
             const double error_rad = has_posts ? sun_.error_rad(*tile) : 0;
-            const double share = 0.97 * tolerance_rad_ / std::max(error_rad, 1e-9);
+            if ((to - from) * posts < kLeastWidth) return false;
             if (error_rad > tolerance_rad_) {
-                width = (to - from) * std::min(share, 0.9);
-                if (width * posts < kLeastWidth) return false;
+                width = (to - from) * std::min(0.9, 0.97 * tolerance_rad_ / error_rad);
                 continue;
             }
             if (has_posts) tiles.push_back(*tile);
@@ -117,7 +117,10 @@ class Division {
                     add(each);
                 return true;
             }
-            width = (to - from) * std::min(1.5, share);
+            // No narrower than the last one: where it is length that makes the error, width does
+            // not.
+            const double share = 0.97 * tolerance_rad_ / std::max(error_rad, 1e-9);
+            width = (to - from) * std::clamp(share, 1.0, 1.5);
             from = to;
             begin = end;
         }

@@ -69,17 +69,13 @@ int HorizonHours::most_tiles() const {
 }
 
 HorizonHours::Block HorizonHours::block_of(const Window& window, const Window& wanted) const {
-    const geo::Geodetic middle = terrain_.grid().place(window.column + (window.columns - 1) / 2.0,
-                                                       window.row + (window.rows - 1) / 2.0);
-    Tables tables = tables_over(middle);
-    Block block{window, {}};
-    for (auto& [low, high] : tables) {
-        if (low.empty()) continue;
-        const SunField field = SunField::level(terrain_, middle, low.azimuth_rad());
-        low.sum_up();
-        high.sum_up();
-        block.directions.push_back({field, {}, std::move(low), std::move(high)});
-    }
+    Block block{window, terrain_.grid().place(window.column + (window.columns - 1) / 2.0,
+                                              window.row + (window.rows - 1) / 2.0)};
+    const std::shared_ptr<const Tables> tables = tables_of(block);
+    for (std::size_t k = 0; k < tables->size(); ++k)
+        if (const DirectionTable& low = (*tables)[k].front(); !low.empty())
+            block.directions.push_back(
+                {k, SunField::level(terrain_, block.middle, low.azimuth_rad()), {}});
     parallel_for(0, static_cast<int>(block.directions.size()), 1, [&](int first, int last) {
         for (int i = first; i < last; ++i) {
             Direction& direction = block.directions[static_cast<std::size_t>(i)];
@@ -87,6 +83,17 @@ HorizonHours::Block HorizonHours::block_of(const Window& window, const Window& w
         }
     });
     return block;
+}
+
+std::shared_ptr<const HorizonHours::Tables> HorizonHours::tables_of(const Block& block) const {
+    const std::lock_guard lock(mutex_);
+    if (!kept_ || kept_for_.lat_rad != block.middle.lat_rad ||
+        kept_for_.lon_rad != block.middle.lon_rad) {
+        kept_ = nullptr;
+        kept_ = std::make_shared<const Tables>(tables_over(block.middle));
+        kept_for_ = block.middle;
+    }
+    return kept_;
 }
 
 HorizonHours::Sample HorizonHours::sample(double from_s, double until_s,
@@ -112,7 +119,7 @@ HorizonHours::Sample HorizonHours::sample(double from_s, double until_s,
 }
 
 HorizonHours::Tables HorizonHours::tables_over(const geo::Geodetic& middle) const {
-    Tables tables;
+    Tables tables(kDirections);
     const sun::Observer observer(middle);
     const double step_s = length_s_ > 40 * kDay_s ? 120 : 60;
     const auto steps = static_cast<std::int64_t>(std::ceil(length_s_ / step_s - 1e-9));
@@ -141,20 +148,21 @@ HorizonHours::Tables HorizonHours::tables_over(const geo::Geodetic& middle) cons
         for (const Sample& sun : samples)
             add(sun);
     }
+    for (AirTables& of_airs : tables)
+        for (DirectionTable& table : of_airs)
+            table.sum_up();
     return tables;
 }
 
 void HorizonHours::add(const Window& part, SunHours& result) const {
-    std::optional<InclinedGround> ground;
-    Array2d<float> air;
+    Ground ground{WindowHeights(terrain_.posts(), part), std::nullopt};
     if (options_.irradiation) {
-        ground.emplace(terrain_, part);
-        const WindowHeights heights(terrain_.posts(), part);
-        air = Array2d<float>(part.columns, part.rows);
+        ground.inclined.emplace(terrain_, part);
+        ground.air = Array2d<float>(part.columns, part.rows);
         for (int y = 0; y < part.rows; ++y)
             for (int x = 0; x < part.columns; ++x)
-                air.at(x, y) = static_cast<float>(
-                    air_left(terrain_, heights.at(part.column + x, part.row + y)));
+                ground.air.at(x, y) = static_cast<float>(
+                    air_left(terrain_, ground.heights.at(part.column + x, part.row + y)));
     }
     const auto work_of = [&](const Block& block) {
         const Window some = common(block.window, part);
@@ -165,30 +173,29 @@ void HorizonHours::add(const Window& part, SunHours& result) const {
         all += work_of(block) * static_cast<double>(block.directions.size());
     for (const Block& block : blocks_) {
         const double work = work_of(block);
+        if (work == 0) continue;
+        const std::shared_ptr<const Tables> tables = tables_of(block);
         for (const Direction& direction : block.directions) {
-            if (work == 0) break;
-            add_direction(direction, part, ground ? &*ground : nullptr, air, result);
+            add_direction(direction, (*tables)[direction.number], part, ground, result);
             if (options_.done) options_.done(work / all);
         }
     }
 }
 
-void HorizonHours::add_direction(const Direction& direction, const Window& part,
-                                 const InclinedGround* ground, const Array2d<float>& air,
-                                 SunHours& result) const {
-    const DirectionTable &low = direction.low, &high = direction.high;
-    const WindowHeights heights(terrain_.posts(), part);
+void HorizonHours::add_direction(const Direction& direction, const AirTables& tables,
+                                 const Window& part, const Ground& ground, SunHours& result) const {
+    const auto& [low, high] = tables;
     const auto bottom_m = static_cast<float>(terrain_.lowest_m()),
                a_metre = static_cast<float>(1 / std::max(1.0, terrain_.relief_m()));
     const glm::vec3 towards(direction.field.direction());
     const auto add_beam = [&](const Entry& entry, float lift, int x, int y) {
         const auto between = [&](const float* in_low, const float* in_high) {
             const float l = entry.of(in_low);
-            return l + air.at(x, y) * (entry.of(in_high) - l);
+            return l + ground.air.at(x, y) * (entry.of(in_high) - l);
         };
         const float level = between(low.level_wh_over(), high.level_wh_over()),
                     up = between(low.up_wh_over(), high.up_wh_over());
-        const glm::vec3 gradient = ground->slope.at(x, y);
+        const glm::vec3 gradient = ground.inclined->slope.at(x, y);
         // The sun stands higher there by the lift.
         const float onto = (up + lift * level) - glm::dot(gradient, towards) * (level - lift * up);
         const float gain = onto * cosine_of(gradient);
@@ -201,8 +208,8 @@ void HorizonHours::add_direction(const Direction& direction, const Window& part,
     each_horizon(
         direction.field, direction.tiles, part, [&](const SunTile& tile, const SweepRun& run) {
             const Lift& lift = lifts[static_cast<std::size_t>(&tile - first_tile)];
-            const float* const height_m = heights.view.at(run.column, run.row);
-            // From the reference on, so that bits do not hang on where a run begins.
+            const float* const height_m = ground.heights.view.at(run.column, run.row);
+            // Counted from the reference, so that a post has the same bits in every run.
             const int from = run.column - static_cast<int>(lift.reference.x);
             const auto base = static_cast<float>(lift.at(lift.reference.x, run.row)),
                        a_post = static_cast<float>(lift.per_post.x);
@@ -220,7 +227,8 @@ void HorizonHours::add_direction(const Direction& direction, const Window& part,
                             in_high = entry.of(high.hours_over());
                 result.hours.at(x + i, y) +=
                     in_low + (height_m[i] - bottom_m) * a_metre * (in_high - in_low);
-                if (ground) add_beam(entry, base + a_post * static_cast<float>(from + i), x + i, y);
+                if (ground.inclined)
+                    add_beam(entry, base + a_post * static_cast<float>(from + i), x + i, y);
             }
         });
 }

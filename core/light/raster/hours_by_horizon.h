@@ -1,6 +1,9 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "light/raster/direction_table.h"
@@ -27,27 +30,38 @@ class HorizonHours {
   private:
     static constexpr std::size_t kDirections = 180;
 
+    /// For the air of the lowest post, and of the highest one.
+    using AirTables = std::array<DirectionTable, 2>;
+    using Tables = std::vector<AirTables>;  // of each direction
     /// A direction in which the sun has been, as seen from a block.
     struct Direction {
+        std::size_t number;
         SunField field;  // as if the sun were level there in the middle of the block
         std::vector<SunTile> tiles;
-        DirectionTable low, high;  // for the air of the lowest post, and of the highest one
     };
     /// Posts over which the sun is at its azimuth in the middle within what directions are apart.
     struct Block {
         Window window;
-        std::vector<Direction> directions;
+        geo::Geodetic middle;
+        std::vector<Direction> directions{};
     };
     Block block_of(const Window& window, const Window& wanted) const;
-    using Tables = std::array<std::array<DirectionTable, 2>, kDirections>;
+    /// Those of the block that was asked for last are kept: one part after the other lies in it.
+    std::shared_ptr<const Tables> tables_of(const Block& block) const;
     Tables tables_over(const geo::Geodetic& middle) const;
     struct Sample {
         double azimuth_rad, elevation_rad, hours;
         std::array<double, 2> apparent_rad, beam_wh;
     };
     Sample sample(double from_s, double until_s, const sun::Observer& observer) const;
-    void add_direction(const Direction& direction, const Window& part, const InclinedGround* ground,
-                       const Array2d<float>& air, SunHours& result) const;
+    /// What a part's posts are besides their heights, for beams.
+    struct Ground {
+        WindowHeights heights;
+        std::optional<InclinedGround> inclined;
+        Array2d<float> air{};
+    };
+    void add_direction(const Direction& direction, const AirTables& tables, const Window& part,
+                       const Ground& ground, SunHours& result) const;
 
     const SunTerrain& terrain_;
     SunHoursOptions options_;
@@ -55,6 +69,9 @@ class HorizonHours {
     double length_s_;
     sun::PositionTable table_;
     std::vector<Block> blocks_;
+    mutable std::mutex mutex_;
+    mutable geo::Geodetic kept_for_;
+    mutable std::shared_ptr<const Tables> kept_;
 };
 
 }  // namespace relevo::light

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kHour_s = 3600;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kDark_m = -1;  // a clearance where no post sees the sun
+constexpr float kDark_m = -1;  // the clearance of all posts before the first sun
 
 /// What is known of the posts of a part up to a sun.
 class LightSoFar {
@@ -44,10 +44,7 @@ class LightSoFar {
             if (beams) beams->add(run, height_m, clearance_m, *ground_, &result_.beam_kwh.at(x, y));
             add_light(step, height_m, run.found, run.count, clearance_m, &result_.hours.at(x, y));
         };
-        if (!sun.tiles.empty())
-            each_shadow(sun.field, sun.tiles, part_, 0, use);
-        else if (!is_first)
-            add_night(use);
+        each_shadow(sun.field, sun.tiles, part_, 0, use);
     }
 
     /// Posts that are lit at the first sun, or at the last one.
@@ -66,17 +63,6 @@ class LightSoFar {
     }
 
   private:
-    /// Shadows of a sun that no post sees.
-    void add_night(const Sweep::Use& use) {
-        std::vector<float> shadow_m(static_cast<std::size_t>(part_.columns));
-        for (int row = part_.row; row < part_.end_row(); ++row) {
-            for (int i = 0; i < part_.columns; ++i)
-                shadow_m[static_cast<std::size_t>(i)] =
-                    heights_.at(part_.column + i, row) - kDark_m;
-            use({row, part_.column, part_.columns, shadow_m.data()});
-        }
-    }
-
     /// Where light comes or goes. To be called before add_light().
     void add_periods(const Step& step, const SweepRun& run, const float* height_m,
                      const float* clearance_m, int x, int y) {

@@ -34,7 +34,7 @@ void Straighten(const float* HWY_RESTRICT upper_m, const float* HWY_RESTRICT mid
     }
 }
 
-/// Of some posts, which are looked at again only if light comes or goes at one of them.
+/// For some posts: their hours are touched only if light comes or goes at one of them.
 HWY_INLINE void add_light_to_some(const Step& step, const float* HWY_RESTRICT height_m,
                                   const float* HWY_RESTRICT shadow_m, int count,
                                   float* HWY_RESTRICT clearance_m, float* HWY_RESTRICT lit_h) {

@@ -60,7 +60,7 @@ void find_elevations(const float* tangent, const float* height_m, int count, flo
 
 /// Adds what a direction gives to the sky view of the ground of posts.
 /// @param x, y, z    the ground's gradient
-/// @param direction  level, a unit vector likewise
+/// @param direction  of the sky: a level unit vector in the same frame
 /// Source: Dozier and Frew (1990), equation 7b.
 void add_sky(const float* tangent, const float* x, const float* y, const float* z, int count,
              const glm::vec3& direction, float* sum);

@@ -68,7 +68,7 @@ class EarthShadow {
         }
         Figures edge_m, edge_at_m;
         beyond_->find(run.row, run.column, run.count, edge_m.data(), edge_at_m.data());
-        // From the reference on, so that bits do not hang on where a run begins.
+        // Counted from the reference, so that a post has the same bits in every run.
         const glm::dvec2& at = sun_.ray.reference;
         raise_to_earth(run.found, edge_m.data(), edge_at_m.data(), run.count,
                        {.base = static_cast<float>(sun_.tangent_at(at.x, run.row)),
@@ -94,20 +94,20 @@ void each_night(const Window& window, const Sweep::Use& use) {
             use({row, column, std::min(kRun, window.end_column() - column), shadow_m.data()});
 }
 
+/// @param low_m  room for figures of `w`, in which each tile has posts of its own
 void each_shadow_of_two_airs(const SunField& field, const SunTile& tile, const TilePosts& posts,
-                             double offset_rad, const Sweep::Use& use) {
+                             double offset_rad, const Window& w, Array2d<float>& low_m,
+                             const Sweep::Use& use) {
     const SunTerrain& terrain = field.terrain();
-    const Window& w = posts.window;
     const SweepSun low = field.sun(tile, SunTerrain::kOfLowest, offset_rad),
                    high = field.sun(tile, SunTerrain::kOfHighest, offset_rad);
     const EarthShadow low_earth(terrain, tile, low), high_earth(terrain, tile, high);
-    Array2d<float> low_m(w.columns, w.rows);
     terrain.sweep().each_shadow(low, posts, terrain.floor_m(), [&](const SweepRun& run) {
         each_part(run, [&](const SweepRun& part) {
             low_earth.raise(part, &low_m.at(part.column - w.column, part.row - w.row));
         });
     });
-    const WindowHeights heights(terrain.posts(), w);
+    const WindowHeights heights(terrain.posts(), posts.window);
     const auto bottom_m = static_cast<float>(terrain.lowest_m()),
                a_metre = static_cast<float>(1 / terrain.relief_m());
     terrain.sweep().each_shadow(high, posts, terrain.floor_m(), [&](const SweepRun& run) {
@@ -127,10 +127,12 @@ void each_shadow_of_two_airs(const SunField& field, const SunTile& tile, const T
 void each_shadow(const SunField& field, std::span<const SunTile> tiles, const Window& window,
                  double offset_rad, const Sweep::Use& use) {
     const SunTerrain& terrain = field.terrain();
+    Array2d<float> low_m;
+    if (field.has_two_airs()) low_m = Array2d<float>(window.columns, window.rows);
     each_tile(tiles, window, [&](const SunTile& tile, const TilePosts& posts) {
         if (tile.is_night) return each_night(posts.window, use);
         if (field.has_two_airs())
-            return each_shadow_of_two_airs(field, tile, posts, offset_rad, use);
+            return each_shadow_of_two_airs(field, tile, posts, offset_rad, window, low_m, use);
         const SweepSun sun = field.sun(tile, SunTerrain::kMean, offset_rad);
         const EarthShadow earth(terrain, tile, sun);
         if (!earth.matters())

@@ -12,9 +12,9 @@ constexpr int kLongestRun = 512;
 /// Calls `use` with the posts of a window and the height of the shadow over each: that which the
 /// DEM's ground casts through the air as each post's height has it, and that of the Earth around.
 ///
-/// The smooth Earth beyond the DEM, as high as its edge, hides suns that are lower than level. So
-/// that a clearance passes 0 when the sun comes over its horizon, its shadow is told of suns that
-/// are a little higher, too, where it is as deep below the ground as it is above it before.
+/// The smooth Earth beyond the DEM, as high as its edge, hides suns that are lower than level. For
+/// suns that are a little higher its shadow is given as far below the ground as it was above it
+/// before, so that a clearance passes 0 just as the sun rises.
 /// @param tiles       of the sun
 /// @param offset_rad  of the part of the disc over its centre
 /// @param use         as Sweep::Use

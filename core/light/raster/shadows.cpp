@@ -75,13 +75,7 @@ Shadows shadows(const SunPlan& plan, const PlannedSun& sun, const ShadowOptions&
     Shadows result;
     result.tiles = static_cast<int>(sun.tiles.size());
     result.lit = Array2d<float>(part.columns, part.rows);
-    if (result.tiles > 0) {
-        find_lit(sun, heights, part, options.soft, result.lit);
-    } else {
-        for (int y = 0; y < part.rows; ++y)
-            for (int x = 0; x < part.columns; ++x)
-                result.lit.at(x, y) = heights.at(part.column + x, part.row + y) * 0;
-    }
+    find_lit(sun, heights, part, options.soft, result.lit);
     if (options.done) options.done(1);
     for (const float share : result.lit) {
         result.holes += std::isnan(share);
@@ -99,7 +93,7 @@ Shadows shadows(const SunPlan& plan, const PlannedSun& sun, const ShadowOptions&
 
 Shadows shadows(const dem::Posts& posts, const SunOverDem& sun, const ShadowOptions& options) {
     SunPlan plan(posts, {options.refraction, options.air}, options.part, options.soft);
-    plan.add_sun(posts.grid().center(), sun);
+    plan.add_suns(posts.grid().center(), {sun});
     return shadows(plan, plan.suns().front(), options);
 }
 

@@ -13,7 +13,7 @@
 namespace relevo::light {
 namespace {
 
-constexpr double kTwilight_rad = radians(0.25);  // a sun so much too low is looked at all the same
+constexpr double kTwilight_rad = radians(0.25);  // below its lowest a sun still counts as one
 constexpr double kSteepest_rad = radians(89.99);
 
 bool is_finite(const glm::dvec2& v) {
@@ -62,7 +62,7 @@ std::optional<SampledLines> sampled_lines(const TilePosts& posts, bool along_col
         const auto range = range_of(posts, line, along_columns);
         if (!range) return std::nullopt;
         if (range->first < range->second) {
-            // Between this line and those beside it ...
+            // The tile may have posts between this line and the one before it, too,
             first = std::min(first, before), last = all.end_row() - 1;
             if (!found.with_posts.empty())
                 beside = std::max({beside, std::abs(range->first - found.with_posts.back().begin),
@@ -70,7 +70,7 @@ std::optional<SampledLines> sampled_lines(const TilePosts& posts, bool along_col
             begin = std::min(begin, range->first), end = std::max(end, range->second);
             found.with_posts.push_back({line, range->first, range->second});
         } else if (!found.with_posts.empty() && last == all.end_row() - 1) {
-            last = line;  // ... the tile may have posts, too
+            last = line;  // and between its last line and the next one
         }
         before = line;
     }
@@ -118,20 +118,19 @@ SunField SunField::level(const SunTerrain& terrain, const geo::Geodetic& place,
     return field;
 }
 
-bool SunField::is_night() const {
-    const double night_rad = terrain_->lowest_sun_rad() - kTwilight_rad;
-    return std::all_of(
-        terrain_->marks().begin(), terrain_->marks().end(),
-        [&](const geo::Geodetic& place) { return at(place).elevation_rad < night_rad; });
-}
-
 bool SunField::is_night(const Window& window) const {
+    constexpr double kWide_rad = radians(50);  // the sun may shine between posts so far apart
     if (is_level_) return false;
+    const dem::Grid& grid = terrain_->grid();
     const double night_rad = terrain_->lowest_sun_rad() - kTwilight_rad;
+    glm::dvec3 first_up(0);
     for (int i = 0; i < 9; ++i) {
-        const glm::dvec2 post(window.column + (window.columns - 1) * (i % 3) / 2.0,
-                              window.row + (window.rows - 1) * (i / 3) / 2.0);
-        if (!(at(post).elevation_rad < night_rad)) return false;
+        const geo::Geodetic place = grid.place(window.column + (window.columns - 1) * (i % 3) / 2.0,
+                                               window.row + (window.rows - 1) * (i / 3) / 2.0);
+        const glm::dvec3 up = terrain_->frame().up(place.lat_rad, place.lon_rad);
+        if (i == 0) first_up = up;
+        if (!(at(place).elevation_rad < night_rad)) return false;
+        if (!(glm::dot(first_up, up) > std::cos(kWide_rad))) return false;
     }
     return true;
 }

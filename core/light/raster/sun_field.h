@@ -62,8 +62,8 @@ class SunField {
     SunTerrain::Air first_air() const {
         return two_airs_ ? SunTerrain::kOfLowest : SunTerrain::kMean;
     }
-    /// The sun is under the horizon of every post.
-    bool is_night() const;
+    /// The sun is under the horizon of every post, or of every post of a window.
+    bool is_night() const { return is_night(terrain_->window()); }
     bool is_night(const Window& window) const;
 
     /// Without air, at a place.
@@ -77,8 +77,10 @@ class SunField {
     /// As far as ground can shade: where a ray has risen over all relief of a round Earth.
     double reach_m(double apparent_rad) const;
 
-    /// The posts of a window between two rays as one tile; none where rays turn back there, or
-    /// where the grid's CRS does not express them.
+    /// The posts of a window between two rays as one tile, whose window is no larger than they
+    /// need: empty where there are none. No tile where rays turn back or cross, or where the grid's
+    /// CRS does not express them.
+    /// @param along_columns  how sweeps are to go
     std::optional<SunTile> tile(const TilePosts& posts, bool along_columns) const;
     /// The ray through a post: towards the sun for as far as ground shades posts of a window, and
     /// to the window's end away from the sun.

@@ -82,7 +82,7 @@ struct SunHoursPlan::Impl {
     }
 
     std::string definition() const {
-        const double finer_s = std::min(options.step_s / SunPlan::kFiner, SunPlan::kLongest_s);
+        const double finer_s = options.step_s / SunPlan::finer(options.step_s);
         return fmt::format(
             "hours that the centre of the sun stands over the terrain, at the height of the "
             "ground, {}; ground of the DEM alone shades, on the WGS 84 ellipsoid with terrestrial "

@@ -46,10 +46,11 @@ void SunPlan::divide_all(std::size_t first, const Window& window, double toleran
                  });
 }
 
-void SunPlan::add_sun(const geo::Geodetic& place, const SunOverDem& sun, double tolerance_rad) {
-    suns_.push_back({0, SunField(*terrain_, place, sun), sun.semidiameter_rad});
-    if (!suns_.back().field.is_night())
-        divide_all(suns_.size() - 1, terrain_->window(), tolerance_rad);
+void SunPlan::add_suns(const geo::Geodetic& place, const std::vector<SunOverDem>& suns) {
+    const std::size_t first = suns_.size();
+    for (const SunOverDem& sun : suns)
+        suns_.push_back({0, SunField(*terrain_, place, sun), sun.semidiameter_rad});
+    divide_all(first, terrain_->window(), kSunTolerance_rad);
 }
 
 void SunPlan::add_directions(const std::vector<double>& azimuth_rad, double tolerance_rad) {
@@ -95,7 +96,7 @@ void SunPlan::add_time(sun::Instant begin, double length_s, double step_s) {
     // Every step, and between two of them the parts at either end of which the sun is low.
     std::vector<std::pair<double, SunOverDem>> moments{{0, sun_at(table, begin, observer)}};
     const auto steps = static_cast<int>(std::ceil(length_s / step_s - 1e-9));
-    const int parts = std::max(kFiner, static_cast<int>(std::ceil(step_s / kLongest_s)));
+    const int parts = finer(step_s);
     for (int k = 1; k <= steps; ++k) {
         const double from_s = (k - 1) * step_s, to_s = std::min(k * step_s, length_s);
         for (int part = 1; part <= parts; ++part) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -27,14 +29,13 @@ class SunPlan {
     SunPlan(const dem::Posts& posts, const LightPath& path, const Window& window,
             bool with_discs = false);
 
-    /// One sun, that stands so over a place.
+    /// Suns that stand so over a place.
     /// @throws Error (BadInput) as divide()
-    void add_sun(const geo::Geodetic& place, const SunOverDem& sun,
-                 double tolerance_rad = kSunTolerance_rad);
+    void add_suns(const geo::Geodetic& place, const std::vector<SunOverDem>& suns);
     /// Directions from true north at every post.
     void add_directions(const std::vector<double>& azimuth_rad, double tolerance_rad);
-    /// Directions from true north in the middle of each of the blocks(), one after the other, as of
-    /// suns that are level there: next to a pole they are not from true north at every post.
+    /// Directions of suns that are level in the middle of each of the blocks(), from true north
+    /// there: unlike true north itself they are smooth over a pole.
     void add_level_directions(const std::vector<double>& azimuth_rad, double tolerance_rad);
     /// Parts of a DEM that are small enough for one place to stand for all of them.
     static std::vector<Window> blocks(const SunTerrain& terrain);
@@ -50,8 +51,11 @@ class SunPlan {
     /// Into how many tiles a sun is divided at most.
     int most_tiles() const;
 
-    static constexpr int kFiner = 3;          ///< as many steps near the horizon as one elsewhere
-    static constexpr double kLongest_s = 60;  ///< but no longer ones
+    /// How many steps near the horizon one elsewhere is divided into: three, or as many as makes
+    /// them a minute at most.
+    static int finer(double step_s) {
+        return std::max(3, static_cast<int>(std::ceil(step_s / 60)));
+    }
 
   private:
     void divide_all(std::size_t first, const Window& window, double tolerance_rad);

@@ -1,6 +1,7 @@
 // Compiled once for each kind of vector that the processor may have.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "light/sweep/kernels.cpp"
+// Vectors without a fixed size cannot be kept in arrays, as those below are.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #include "light/sweep/kernels.h"
 
