@@ -1,11 +1,13 @@
 #include "window/display.h"
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -54,6 +56,12 @@ void end(pid_t process) {
     waitpid(process, nullptr, 0);
 }
 
+/// A folder of this display's or window's own: a test may have several, and each empties its own.
+std::filesystem::path own_folder(std::string_view kind) {
+    static std::atomic<int> count = 0;
+    return scratch_dir(fmt::format("{}_{}_{}", kind, getpid(), ++count));
+}
+
 std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < 4; ++i)
@@ -63,8 +71,7 @@ std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
 
 }  // namespace
 
-Display::Display(int width_px, int height_px)
-    : folder_(scratch_dir(fmt::format("display_{}", getpid()))) {
+Display::Display(int width_px, int height_px) : folder_(own_folder("display")) {
     std::array<int, 2> tube{};
     if (pipe(tube.data()) != 0) failed("test: no pipe");
     // It takes a number that is free, and says which when it is ready.
@@ -127,7 +134,7 @@ WindowedProgram::WindowedProgram(const Display& display, const std::filesystem::
                                  const std::vector<std::string>& arguments,
                                  const std::vector<std::string>& environment,
                                  const std::filesystem::path& folder)
-    : display_(display), output_(scratch_dir(fmt::format("window_{}", getpid())) / "output.txt") {
+    : display_(display), output_(own_folder("window") / "output.txt") {
     std::vector<std::string> line{program.string()};
     line.insert(line.end(), arguments.begin(), arguments.end());
     // Whoever runs the tests has settings and recent files of their own.
