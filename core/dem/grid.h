@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include <glm/glm.hpp>
@@ -62,6 +63,12 @@ class Grid {
     /// 1 mm on the ground. May lie outside of the grid. NaN where the CRS cannot express the place.
     /// On a grid that counts longitudes past 180 degrees, the turn nearest to its centre.
     glm::dvec2 post(const geo::Geodetic& place) const;
+    /// The same, on the turn of longitude that is nearest to a post.
+    glm::dvec2 post(const geo::Geodetic& place, const glm::dvec2& near) const;
+
+    /// How many columns a turn of longitude has, where the grid goes round the Earth, so that its
+    /// first column follows on its last one.
+    std::optional<int> columns_round() const;
 
     /// The middle of the grid, on the ellipsoid.
     geo::Geodetic center() const;
@@ -92,6 +99,8 @@ class Grid {
     Grid part(const Window& window, int columns, int rows) const;
 
   private:
+    double columns_a_turn() const;
+
     int columns_;
     int rows_;
     Affine affine_;

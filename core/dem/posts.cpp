@@ -47,6 +47,27 @@ float highest_of(const Posts::View& view, const Window& posts) {
 }  // namespace
 
 struct Posts::Impl {
+    /// Posts of a grid round the Earth, column 0 being `first` of theirs.
+    struct Unrolled {
+        const Posts& posts;
+        int first, round;
+        Grid grid;
+
+        int column(int of) const { return ((of + first) % round + round) % round; }
+        /// Calls `body(from, count, at)` for columns that lie next to each other in both: `from` on
+        /// of the others, `at` on of these.
+        template <typename Body>
+        void each_piece(int begin, int end, const Body& body) const {
+            for (int at = begin; at < end;) {
+                const int from = column(at), count = std::min(end - at, round - from);
+                body(from, count, at);
+                at += count;
+            }
+        }
+        View view(const Window& window, std::vector<float>& buffer) const;
+    };
+    std::optional<Unrolled> unrolled;  // if so, nothing else is given
+
     std::optional<Source> own_source;
     std::optional<Heightfield> own_field;
     const Heightfield* field = nullptr;  // of posts in memory
@@ -60,7 +81,9 @@ struct Posts::Impl {
     std::once_flag outside_once;
     Array2d<std::uint8_t> outside;  // of thinned posts, made where it is asked for; empty: none is
 
-    const Grid& grid() const { return field ? field->grid : source->grid(); }
+    const Grid& grid() const {
+        return unrolled ? unrolled->grid : field ? field->grid : source->grid();
+    }
     int thinning() const {
         return (std::max(grid().columns(), grid().rows()) + kThinned - 1) / kThinned;
     }
@@ -223,7 +246,26 @@ void Posts::Impl::go_through(std::int64_t slab_posts) {
     report_heights(*source, about, collar_steps ? collar_steps->collar() : std::nullopt);
 }
 
+Posts::View Posts::Impl::Unrolled::view(const Window& window, std::vector<float>& buffer) const {
+    const int from = column(window.column);
+    if (from + window.columns <= round) {
+        View view = posts.view({from, window.row, window.columns, window.rows}, buffer);
+        view.column += window.column - from;
+        return view;
+    }
+    buffer.resize(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows));
+    std::vector<float> part;
+    each_piece(window.column, window.end_column(), [&](int first_column, int count, int at) {
+        const View view = posts.view({first_column, window.row, count, window.rows}, part);
+        for (int row = 0; row < window.rows; ++row)
+            std::copy_n(view.at(first_column, window.row + row), count,
+                        buffer.data() + std::ptrdiff_t{row} * window.columns + at - window.column);
+    });
+    return {buffer.data(), window.columns, window.column, window.row};
+}
+
 Posts::View Posts::Impl::view(const Window& window, std::vector<float>& buffer) const {
+    if (unrolled) return unrolled->view(window, buffer);
     if (field) return {field->height_m.data(), field->height_m.width(), 0, 0};
     buffer.resize(static_cast<std::size_t>(window.columns) * static_cast<std::size_t>(window.rows));
     tiles->copy(window, buffer.data());
@@ -259,6 +301,17 @@ Posts Posts::load(std::span<const std::string> paths, const LoadOptions& options
     return Posts(std::move(impl));
 }
 
+Posts Posts::unrolled(const Posts& posts, int first, int columns) {
+    const Grid& grid = posts.grid();
+    Affine affine = grid.affine();
+    affine.x0 += first * affine.x_column;
+    auto impl = std::make_unique<Impl>();
+    impl->unrolled.emplace(Impl::Unrolled{posts, first, grid.columns_round().value(),
+                                          Grid(columns, grid.rows(), affine, grid.crs())});
+    impl->about = posts.about();
+    return Posts(std::move(impl));
+}
+
 const Grid& Posts::grid() const {
     return impl_->grid();
 }
@@ -272,6 +325,15 @@ bool Posts::in_memory() const {
 }
 
 float Posts::bound_m(int first_column, int last_column, int first_row, int last_row) const {
+    if (impl_->unrolled) {
+        // The cell between the last column and the first has its posts in those beside it.
+        float bound_m = -kInfinity;
+        impl_->unrolled->each_piece(first_column, last_column + 2, [&](int from, int count, int) {
+            bound_m = std::max(bound_m, impl_->unrolled->posts.bound_m(from, from + count - 1,
+                                                                       first_row, last_row));
+        });
+        return bound_m;
+    }
     const Array2d<float>& highest_m = impl_->block_highest_m;
     const auto block = [size = impl_->block](int cell, int blocks) {
         return std::clamp(cell / size, 0, blocks - 1);
@@ -292,10 +354,13 @@ Posts::View Posts::view(const Window& window, std::vector<float>& buffer) const 
 }
 
 int Posts::thinning() const {
+    if (impl_->unrolled) return impl_->unrolled->posts.thinning();
     return impl_->thinning();
 }
 
 float Posts::thinned_m(int column, int row) const {
+    if (const auto& unrolled = impl_->unrolled)
+        return unrolled->posts.thinned_m(unrolled->column(column), row);
     const int step = thinning();
     const auto nearest = [&](int post, int posts) {
         return std::min((post + step / 2) / step, (posts - 1) / step);
@@ -316,7 +381,7 @@ void Posts::Impl::find_outside() {
     };
     for (int column = 0; column < columns; ++column)
         take(column, 0), take(column, rows - 1);
-    for (int row = 0; row < rows; ++row)
+    for (int row = 0; row < rows && !grid().columns_round(); ++row)
         take(0, row), take(columns - 1, row);
     while (!open.empty()) {
         const auto [column, row] = open.back();
@@ -329,11 +394,14 @@ void Posts::Impl::find_outside() {
 
 bool Posts::is_outside(int column, int row) const {
     Impl& impl = *impl_;
+    if (const auto& unrolled = impl.unrolled)
+        return unrolled->posts.is_outside(unrolled->column(column), row);
     std::call_once(impl.outside_once, [&] { impl.find_outside(); });
     const int step = impl.thinning();
     // Slivers along the edge may lie between thinned posts, as the rims of voids do.
-    if (step > 1 &&
-        std::min({column, row, grid().columns() - 1 - column, grid().rows() - 1 - row}) < step)
+    const int to_side = std::min(column, grid().columns() - 1 - column),
+              to_end = std::min(row, grid().rows() - 1 - row);
+    if (step > 1 && (grid().columns_round() ? to_end : std::min(to_side, to_end)) < step)
         return true;
     if (impl.outside.empty()) return false;
     const int beside = step > 1 ? 1 : 0;

@@ -38,13 +38,18 @@ class Posts {
     /// @throws Error (BadInput) as dem::load, and for heights that no ground of the Earth has
     static Posts load(std::span<const std::string> paths, const LoadOptions& options = {});
 
+    /// The posts of a grid that goes round the Earth, begun at another column and gone on with for
+    /// as many columns as wanted, also for more than a turn: column 0 is `first` of the others.
+    /// @param posts  Grid::columns_round() is a number; outlives this
+    static Posts unrolled(const Posts& posts, int first, int columns);
+
     Posts(Posts&&) noexcept;
     Posts& operator=(Posts&&) noexcept;
     ~Posts();
 
     const Grid& grid() const;
     const Description& about() const;  ///< its statistics are those of all posts
-    bool in_memory() const;
+    bool in_memory() const;            ///< all in one piece
     float lowest_m() const { return about().statistics.min_m; }
     float highest_m() const { return about().statistics.max_m; }
 

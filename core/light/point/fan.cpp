@@ -56,8 +56,6 @@ Fan::Fan(const dem::Grid& grid, const geo::Geodetic& place, const glm::dvec2& st
       start_(start),
       spacing_m_(grid.post_spacing_m()),
       longest_m_(longest_m) {
-    if (grid.crs().is_geographic() && grid.affine().x_column != 0)
-        turn_columns_ = 2 * kPi / grid.crs().unit_si() / std::abs(grid.affine().x_column);
     if (few) return;
     Ring first{0, true, std::vector<glm::dvec2>(kDirections, start_)};
     Ring last = ring(longest_m);
@@ -66,12 +64,8 @@ Fan::Fan(const dem::Grid& grid, const geo::Geodetic& place, const glm::dvec2& st
 }
 
 glm::dvec2 Fan::post(double azimuth_rad, double distance_m) const {
-    glm::dvec2 post = grid_.post(geo::destination(place_, azimuth_rad, distance_m));
-    // Longitudes on this side of the place, not at the far end of the grid. Grids whose rows do not
-    // run along parallels are never a turn wide.
-    if (turn_columns_ > 0 && grid_.affine().x_row == 0)
-        post.x -= turn_columns_ * std::round((post.x - start_.x) / turn_columns_);
-    return post;
+    // Longitudes on this side of the place, not at the far end of the grid.
+    return grid_.post(geo::destination(place_, azimuth_rad, distance_m), start_);
 }
 
 Fan::Ring Fan::ring(double distance_m) const {

@@ -57,7 +57,6 @@ class Fan {
     const dem::Grid& grid_;
     geo::Geodetic place_;
     glm::dvec2 start_;
-    double turn_columns_ = 0;  // in a turn of longitude; 0: a map without one
     glm::dvec2 spacing_m_;
     double longest_m_;
     std::vector<Ring> rings_;  // none: lines are followed one by one

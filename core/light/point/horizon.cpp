@@ -425,14 +425,19 @@ TerrainHorizon::TerrainHorizon(std::unique_ptr<const dem::Posts> owned, const ge
 
 TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& place,
                                const HorizonOptions& options)
-    : posts_(&posts), options_(options) {
+    : given_(posts), posts_(&posts), options_(options) {
     if (!(options.refraction >= -1 && options.refraction <= 0.9))
         bad_input(
             fmt::format("horizon: refraction {:.10g}: impossible, expected -1 to 0.9 of the "
                         "Earth's curvature; 0.13 is the mean",
                         options.refraction));
-    std::tie(post_, ground_m_) = ground_at(posts, place);
-    const dem::Grid& grid = posts.grid();
+    if (const std::optional<int> round = posts.grid().columns_round()) {
+        first_column_ = static_cast<int>(std::lround(posts.grid().post(place).x)) - *round / 2;
+        unrolled_.emplace(dem::Posts::unrolled(posts, first_column_, *round + 1));
+        posts_ = &*unrolled_;
+    }
+    std::tie(post_, ground_m_) = ground_at(*posts_, place);
+    const dem::Grid& grid = posts_->grid();
     place_ = grid.place(post_.x, post_.y);
     place_.height_m = ground_m_;
     if (!(ground_m_ >= kDeepest_m && ground_m_ <= kHighestGround_m))
@@ -457,8 +462,9 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
     const glm::dvec2 northward = map_point(geo::destination(place_, 0, 1)) - here;
     true_north_on_map_rad_ = std::atan2(northward.x, northward.y);
     if (options.earth == EarthModel::Ellipsoid) {
-        fan_ = std::make_unique<const Fan>(
-            grid, place_, post_, longest_m(posts, place_, eye_m_, options), options.few_directions);
+        fan_ = std::make_unique<const Fan>(grid, place_, post_,
+                                           longest_m(*posts_, place_, eye_m_, options),
+                                           options.few_directions);
     } else {
         if (grid.crs().is_geographic())
             bad_input(
@@ -510,6 +516,15 @@ void TerrainHorizon::look(double azimuth_rad, Scan& scan, std::vector<TracePoint
     });
 }
 
+/// A column and row of the posts as they are given.
+glm::dvec2 TerrainHorizon::given(glm::dvec2 post) const {
+    if (!unrolled_) return post;
+    const double round = *given_.grid().columns_round();
+    post.x += first_column_;
+    post.x -= round * std::floor(post.x / round);
+    return post;
+}
+
 HorizonPoint TerrainHorizon::at(double azimuth_rad) const {
     thread_local std::vector<TracePoint> line;
     Scan scan;
@@ -517,7 +532,7 @@ HorizonPoint TerrainHorizon::at(double azimuth_rad) const {
     HorizonPoint point;
     point.azimuth_rad = turned(azimuth_rad);
     point.distance_m = scan.distance_m;
-    point.post = scan.post;
+    point.post = given(scan.post);
     point.height_m = scan.height_m;
     point.reach_m = scan.reach_m;
     if (posts_->about().statistics.holes > 0)
@@ -613,7 +628,7 @@ std::vector<HorizonPoint> TerrainHorizon::profile(int count) const {
 
 geo::Geodetic TerrainHorizon::place_of(const HorizonPoint& point) const {
     if (std::isnan(point.distance_m)) return {kNaN, kNaN, kNaN};
-    geo::Geodetic place = posts_->grid().place(point.post.x, point.post.y);
+    geo::Geodetic place = given_.grid().place(point.post.x, point.post.y);
     place.height_m = point.height_m;
     return place;
 }

@@ -129,9 +129,9 @@ class TerrainHorizon {
     /// The place of the ground at the viewpoint, where the sun is to be computed for.
     const geo::Geodetic& place() const { return place_; }
     double eye_m() const { return eye_m_; }           ///< height of the eye, above the DEM's zero
-    const glm::dvec2& post() const { return post_; }  ///< column and row of the viewpoint
+    glm::dvec2 post() const { return given(post_); }  ///< column and row of the viewpoint
     const HorizonOptions& options() const { return options_; }
-    const dem::Posts& posts() const { return *posts_; }
+    const dem::Posts& posts() const { return given_; }
 
     HorizonPoint at(double azimuth_rad) const;
 
@@ -191,7 +191,14 @@ class TerrainHorizon {
     TerrainHorizon(std::unique_ptr<const dem::Posts> owned, const geo::Geodetic& place,
                    const HorizonOptions& options);
 
+    glm::dvec2 given(glm::dvec2 post) const;
+
     std::unique_ptr<const dem::Posts> owned_;  // those of a heightfield
+    const dem::Posts& given_;
+    /// A DEM that goes round the Earth, with the place in its middle: lines of sight end before
+    /// they are half way round. Columns are of this one, but for those that callers get.
+    std::optional<dem::Posts> unrolled_;
+    int first_column_ = 0;  // of the given ones, that its first one is
     const dem::Posts* posts_;
     std::unique_ptr<const Fan> fan_;  // none on maps
     HorizonOptions options_;

@@ -40,19 +40,18 @@ struct View {
 
 class Looking {
   public:
-    Looking(const dem::Posts& posts, const Window& part, double curvature,
-            const std::optional<double>& highest_m)
-        : posts_(posts), curvature_(curvature) {
+    Looking(const SunTerrain& terrain, const Window& part, const std::optional<double>& highest_m)
+        : posts_(terrain.posts()), curvature_(terrain.curvature()) {
         found_.highest_m =
-            highest_m.value_or(std::min<double>(posts.highest_m(), kHighestTerrain_m));
-        const Window w = window_or_all(part, posts.grid());
+            highest_m.value_or(std::min<double>(posts_.highest_m(), kHighestTerrain_m));
+        const Window w = terrain.window_of(part);
         std::vector<float> one;
         for (int i = 0; i < kSide * kSide; ++i) {
             const int column = w.column + place(i % kSide, w.columns),
                       row = w.row + place(i / kSide, w.rows);
-            const double height_m = *posts.view({column, row, 1, 1}, one).at(column, row);
+            const double height_m = *posts_.view({column, row, 1, 1}, one).at(column, row);
             if (!std::isnan(height_m))
-                eyes_.push_back({column, row, height_m, posts.grid().place(column, row)});
+                eyes_.push_back({column, row, height_m, posts_.grid().place(column, row)});
         }
         least_m_.resize(eyes_.size(), kInfinity);
         reach_m_.resize(eyes_.size(), -kInfinity);
@@ -164,12 +163,12 @@ std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const Window& part
                                      const ShadowOptions& options,
                                      const std::optional<double>& highest_m) {
     const SunTerrain terrain(posts, {options.refraction, options.air}, false);
-    Looking looking(posts, part, terrain.curvature(), highest_m);
+    Looking looking(terrain, part, highest_m);
     std::vector<std::pair<SunField, glm::dvec2>> skies;
     for (const SunOverDem& sun : suns) {
         const SunField sky(terrain, posts.grid().center(), sun);
         if (sky.is_night()) continue;
-        if (const std::optional<glm::dvec2> way = way_of(sky, posts.grid()))
+        if (const std::optional<glm::dvec2> way = way_of(sky, terrain.grid()))
             skies.emplace_back(sky, *way);
     }
     looking.each_eye([&](std::size_t i, const Eye& eye) {
@@ -190,10 +189,11 @@ std::optional<Beyond> terrain_beyond(const dem::Posts& posts, const Window& part
                                      const std::vector<double>& azimuth_rad, double refraction,
                                      const std::optional<double>& highest_m) {
     const SunTerrain terrain(posts, {refraction, {}}, false);
-    Looking looking(posts, part, terrain.curvature(), highest_m);
+    Looking looking(terrain, part, highest_m);
     std::vector<glm::dvec2> ways;
     for (const double azimuth : azimuth_rad)
-        if (const std::optional<glm::dvec2> way = way_of(SunField(terrain, azimuth), posts.grid()))
+        if (const std::optional<glm::dvec2> way =
+                way_of(SunField(terrain, azimuth), terrain.grid()))
             ways.push_back(*way);
     looking.each_eye([&](std::size_t i, const Eye& eye) {
         std::vector<float> buffer;

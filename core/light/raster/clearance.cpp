@@ -55,7 +55,7 @@ Clearances::Found Clearances::each(const geo::Geodetic& place, const SunOverDem&
     const auto find = [&](double offset_rad, Array2d<float>& to) {
         each_shadow(field, division.tiles, all, offset_rad, [&](const SweepRun& run) {
             find_clearances(heights.view.at(run.column, run.row), run.found, run.count,
-                            &to.at(run.column, run.row));
+                            &to.at(run.column - all.column, run.row));
         });
     };
     find(-radius_rad, lower);
@@ -70,10 +70,11 @@ Clearances::Found Clearances::each(const geo::Geodetic& place, const SunOverDem&
             const int column = run.column + done, count = std::min(run.count - done, kPart);
             find_clearances(heights.view.at(column, run.row), run.found + done, count,
                             upper_m.data());
-            float* const lower_m = &lower.at(column, run.row);
+            float* const lower_m = &lower.at(column - all.column, run.row);
             if (radius_rad > 0)
-                straighten(upper_m.data(), &middle.at(column, run.row), count, lower_m);
-            use({run.row, column, count, upper_m.data(), lower_m});
+                straighten(upper_m.data(), &middle.at(column - all.column, run.row), count,
+                           lower_m);
+            use({run.row, column - all.column, count, upper_m.data(), lower_m});
         }
     });
     return {false, division.error_rad};

@@ -48,7 +48,8 @@ void add_horizon_directions(SunPlan& plan, const std::vector<double>& azimuth_ra
 }
 
 Array2d<float> horizon_elevations(const SunPlan& plan, const PlannedSun& direction,
-                                  const Window& part) {
+                                  const Window& of) {
+    const Window part = plan.terrain().window_of(of);
     const WindowHeights heights(plan.terrain().posts(), part);
     Array2d<float> elevation_rad(part.columns, part.rows);
     each_horizon(direction.field, direction.tiles, part, [&](const SunTile&, const SweepRun& run) {
@@ -69,7 +70,7 @@ Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad, doub
     Horizons result;
     result.azimuth_rad = std::move(azimuth_rad);
     for (const PlannedSun& direction : plan.suns())
-        result.elevation_rad.push_back(horizon_elevations(plan, direction, plan.window()));
+        result.elevation_rad.push_back(horizon_elevations(plan, direction, of));
     if (!result.elevation_rad.empty())
         for (const float elevation : result.elevation_rad.front())
             result.holes += std::isnan(elevation);
@@ -94,9 +95,8 @@ SkyView sky_view(const dem::Posts& posts, const SkyViewOptions& options) {
 }
 
 SkyView sky_view(const SunPlan& plan, const SkyViewOptions& options) {
-    const dem::Posts& posts = plan.terrain().posts();
-    const Window part = window_or_all(options.part, posts.grid());
-    const WindowHeights heights(posts, part);
+    const Window part = plan.terrain().window_of(options.part);
+    const WindowHeights heights(plan.terrain().posts(), part);
     GroundSlope slope =
         options.level ? GroundSlope(part) : GroundSlope(plan.terrain(), heights, part);
     SkyView result;

@@ -31,6 +31,7 @@ Horizons horizons(const dem::Posts& posts, std::vector<double> azimuth_rad,
 
 /// The same for parts of a DEM one after the other, and for one direction.
 /// @param plan  with add_horizon_directions()
+/// @param part  as in ShadowOptions
 Array2d<float> horizon_elevations(const SunPlan& plan, const PlannedSun& direction,
                                   const Window& part);
 void add_horizon_directions(SunPlan& plan, const std::vector<double>& azimuth_rad);

@@ -177,21 +177,22 @@ OpenSky::Energy OpenSky::at(double column, double row) const {
     return energy;
 }
 
-SkyLight::SkyLight(const SunTerrain& terrain, const Window& window, sun::Instant begin,
-                   double length_s, const SunHoursOptions& options)
+SkyLight::SkyLight(const SunTerrain& terrain, sun::Instant begin, double length_s,
+                   const SunHoursOptions& options)
     : options_(options),
-      plan_(terrain.posts(), {options.refraction, {}}, window),
+      plan_(terrain.given(), {options.refraction, {}}, options.part),
       open_(terrain, begin, length_s, options.irradiation->linke) {
     add_sky_view_directions(plan_, options.irradiation->sky_directions);
 }
 
-void SkyLight::add(const Window& part, SunHours& result) const {
+void SkyLight::add(const Window& of, SunHours& result) const {
     SkyViewOptions of_sky;
     of_sky.directions = options_.irradiation->sky_directions;
     of_sky.refraction = options_.refraction;
-    of_sky.part = part;
+    of_sky.part = of;
     const SkyView view = sky_view(plan_, of_sky);
     const SunTerrain& terrain = plan_.terrain();
+    const Window part = terrain.window_of(of);
     const WindowHeights heights(terrain.posts(), part);
     const double albedo = options_.irradiation->albedo;
     const auto add_post = [&](int x, int y) {

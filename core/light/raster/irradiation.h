@@ -100,11 +100,11 @@ class OpenSky {
 /// The light of the sky and of the ground around: made ready once for a time.
 class SkyLight {
   public:
-    /// @param window  posts that will be asked for
-    SkyLight(const SunTerrain& terrain, const Window& window, sun::Instant begin, double length_s,
+    SkyLight(const SunTerrain& terrain, sun::Instant begin, double length_s,
              const SunHoursOptions& options);
 
     /// Adds it to a result that has hours and beams.
+    /// @param part  as SunHoursPlan::part()
     void add(const Window& part, SunHours& result) const;
 
   private:

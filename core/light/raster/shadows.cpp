@@ -69,9 +69,8 @@ double true_azimuth_rad(const dem::Grid& grid, double azimuth_rad) {
 }
 
 Shadows shadows(const SunPlan& plan, const PlannedSun& sun, const ShadowOptions& options) {
-    const dem::Posts& posts = plan.terrain().posts();
-    const Window part = window_or_all(options.part, posts.grid());
-    const WindowHeights heights(posts, part);
+    const Window part = plan.terrain().window_of(options.part);
+    const WindowHeights heights(plan.terrain().posts(), part);
     Shadows result;
     result.tiles = static_cast<int>(sun.tiles.size());
     result.lit = Array2d<float>(part.columns, part.rows);

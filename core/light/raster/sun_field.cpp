@@ -156,7 +156,7 @@ glm::dvec2 SunField::step(const glm::dvec2& post) const {
     const dem::Grid& grid = terrain_->grid();
     const geo::Geodetic place = grid.place(post.x, post.y);
     const double way_m = 4 * terrain_->widest_spacing_m();
-    return (grid.post(geo::destination(place, at(place).azimuth_rad, way_m)) - post) / way_m;
+    return (grid.post(geo::destination(place, at(place).azimuth_rad, way_m), post) - post) / way_m;
 }
 
 std::optional<Ray> SunField::ray(const glm::dvec2& post, const Window& window,
@@ -171,7 +171,7 @@ std::optional<Ray> SunField::ray(const glm::dvec2& post, const Window& window,
     const double more_m = 8 * terrain_->widest_spacing_m();
     const double reach = reach_m(terrain_->apparent_rad(sun.elevation_rad, SunTerrain::kMean));
     double before_m = more_m + kLonger * std::min(way_in(window, post, a_metre) + reach,
-                                                  way_in(terrain_->window(), post, a_metre));
+                                                  way_in(terrain_->whole_grid(), post, a_metre));
     const double behind_m = more_m + kLonger * way_in(window, post, -a_metre);
     // As far towards the sun as the CRS expresses the ray.
     for (int tries = 0; tries < 8; ++tries, before_m /= 2) {
@@ -186,7 +186,7 @@ std::optional<Ray> SunField::ray(const glm::dvec2& post, const Window& window,
         std::array<glm::dvec2, 3> there;
         for (int k = 0; k < 3; ++k)
             there[static_cast<std::size_t>(k)] =
-                grid.post(geo::destination(place, sun.azimuth_rad, shares[k] * far_m));
+                grid.post(geo::destination(place, sun.azimuth_rad, shares[k] * far_m), post);
         std::optional<Ray> ray = ray_through(post, far_m, shares, there);
         if (!ray) continue;
         ray->along_columns = along_columns;
@@ -269,15 +269,15 @@ double SunField::path_error_rad(const SunTile& tile, const SunTile::Mark& mark) 
     for (const double share : {0.2, 0.6, 1.0}) {
         // Nearer than some posts an angle is of no account, and PROJ's millimetre would be one.
         const double s = std::max(share * reach, least_m);
-        const glm::dvec2 there = grid.post(geo::destination(place, azimuth_rad, s));
+        const glm::dvec2 there = grid.post(geo::destination(place, azimuth_rad, s), mark.post);
         if (!(there.x > -1 && there.y > -1 && there.x < grid.columns() && there.y < grid.rows()))
             continue;
         const glm::dvec2 to = turned(there);
         const double s1 = ray.distance_m(to.y);
         if (std::isnan(s1)) return kPi;
-        // A tenth of a post is less than lines are apart, whatever the angle.
+        // Far ground is met within a quarter of a post of the ray anyway, whatever the angle.
         const auto angle_rad = [&](double off_m) {
-            return std::abs(off_m) < spacing_m.x / 10 ? 0 : std::abs(off_m) / s;
+            return std::abs(off_m) < spacing_m.x / 4 ? 0 : std::abs(off_m) / s;
         };
         const double aside_m = (ray.way(s1).x + moved_by - to.x) * spacing_m.x;
         worst = std::max(worst, angle_rad(aside_m) * std::cos(apparent));

@@ -76,8 +76,7 @@ struct SunHoursPlan::Impl {
             plan.add_time(begin, length_s, options.step_s);
         else
             horizons.emplace(plan.terrain(), plan.window(), begin, length_s, options);
-        if (options.irradiation)
-            sky.emplace(plan.terrain(), plan.window(), begin, length_s, options);
+        if (options.irradiation) sky.emplace(plan.terrain(), begin, length_s, options);
         level = level_hours(plan.terrain(), begin, length_s);
     }
 
@@ -104,8 +103,9 @@ SunHoursPlan::~SunHoursPlan() = default;
 
 SunHours SunHoursPlan::part(const Window& asked) const {
     const Impl& impl = *impl_;
-    const dem::Posts& posts = impl.plan.terrain().posts();
-    const Window part = asked.is_empty() ? impl.plan.window() : asked;
+    const SunTerrain& terrain = impl.plan.terrain();
+    const Window given = asked.is_empty() ? impl.options.part : asked;
+    const Window part = terrain.window_of(given);
     SunHours result;
     result.hours = Array2d<float>(part.columns, part.rows, 0);
     if (impl.options.irradiation)
@@ -117,8 +117,8 @@ SunHours SunHoursPlan::part(const Window& asked) const {
     else
         impl.horizons->add(part, result);
     result.tiles = impl.few ? impl.plan.most_tiles() : impl.horizons->most_tiles();
-    sum_up(WindowHeights(posts, part), part, result);
-    if (impl.sky) impl.sky->add(part, result);
+    sum_up(WindowHeights(terrain.posts(), part), part, result);
+    if (impl.sky) impl.sky->add(given, result);
     result.level_hours = impl.level.middle;
     result.most_level_hours = impl.level.most;
     result.definition = impl.definition();

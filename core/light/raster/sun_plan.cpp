@@ -34,7 +34,7 @@ double turn_rad(const SunTerrain& terrain) {
 SunPlan::SunPlan(const dem::Posts& posts, const LightPath& path, const Window& window,
                  bool with_discs)
     : terrain_(std::make_unique<const SunTerrain>(posts, path, with_discs)),
-      window_(window_or_all(window, posts.grid())) {}
+      window_(terrain_->window_of(window)) {}
 
 void SunPlan::divide_all(std::size_t first, const Window& window, double tolerance_rad) {
     parallel_for(static_cast<int>(first), static_cast<int>(suns_.size()), 1,
@@ -67,8 +67,8 @@ std::vector<Window> SunPlan::blocks(const SunTerrain& terrain) {
     const int columns = std::max(1, static_cast<int>(kBlock_m / spacing_m.x)),
               rows = std::max(1, static_cast<int>(kBlock_m / spacing_m.y));
     std::vector<Window> blocks;
-    for (int row = 0; row < all.rows; row += rows)
-        for (int column = 0; column < all.columns; column += columns)
+    for (int row = all.row; row < all.end_row(); row += rows)
+        for (int column = all.column; column < all.end_column(); column += columns)
             blocks.push_back(common(all, {column, row, columns, rows}));
     return blocks;
 }

@@ -46,7 +46,7 @@ class SunPlan {
     void add_time(sun::Instant begin, double length_s, double step_s);
 
     const SunTerrain& terrain() const { return *terrain_; }
-    const Window& window() const { return window_; }
+    const Window& window() const { return window_; }  ///< on the terrain's grid
     const std::vector<PlannedSun>& suns() const { return suns_; }
     /// Into how many tiles a sun is divided at most.
     int most_tiles() const;

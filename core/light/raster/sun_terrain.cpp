@@ -14,12 +14,21 @@ namespace {
 
 constexpr double kAirTolerance_rad = radians(0.02);  // five seconds of the sun's way
 
+/// A DEM that goes round the Earth, with some columns more on either side.
+std::optional<dem::Posts> unrolled(const dem::Posts& posts, int columns) {
+    if (columns == 0) return std::nullopt;
+    return dem::Posts::unrolled(posts, -columns, posts.grid().columns() + 2 * columns);
+}
+
 Sweep sweep_over(const dem::Posts& posts) {
     const int columns = posts.grid().columns(), rows = posts.grid().rows();
     if (!posts.in_memory())
-        return Sweep([&posts](const Window& window,
-                              std::vector<float>& height_m) { posts.view(window, height_m); },
-                     columns, rows, posts.lowest_m(), posts.highest_m());
+        return Sweep(
+            [&posts](const Window& window, std::vector<float>& buffer) -> Sweep::Heights {
+                const dem::Posts::View view = posts.view(window, buffer);
+                return {view.at(window.column, window.row), view.stride};
+            },
+            columns, rows, posts.lowest_m(), posts.highest_m());
     std::vector<float> unused;
     const dem::Posts::View all = posts.view({0, 0, columns, rows}, unused);
     return Sweep(all.first_m, columns, rows, all.stride);
@@ -53,8 +62,11 @@ double checked(double refraction) {
 }  // namespace
 
 SunTerrain::SunTerrain(const dem::Posts& posts, const LightPath& path, bool with_discs)
-    : posts_(posts),
-      sweep_(sweep_over(posts)),
+    : given_(posts),
+      before_(posts.grid().columns_round().value_or(0) / 2),
+      unrolled_(unrolled(posts, before_)),
+      posts_(unrolled_ ? *unrolled_ : posts),
+      sweep_(sweep_over(posts_)),
       spacing_m_(posts.grid().post_spacing_m()),
       marks_(marks_of(posts.grid())),
       frame_(posts.grid().center()),

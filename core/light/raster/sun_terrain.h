@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -26,6 +27,10 @@ struct LightPath {
 };
 
 /// What of a DEM is the same for all suns over it.
+///
+/// A DEM that goes round the Earth is gone on with for half a turn on either side, so that ground
+/// shades across the meridian at which its columns begin: posts and windows here are those of this
+/// larger grid.
 class SunTerrain {
   public:
     /// @param posts       outlive this
@@ -33,9 +38,17 @@ class SunTerrain {
     /// @throws Error (BadInput) for a refraction that no air has
     SunTerrain(const dem::Posts& posts, const LightPath& path, bool with_discs);
 
+    const dem::Posts& given() const { return given_; }  ///< the DEM as it is
     const dem::Posts& posts() const { return posts_; }
     const dem::Grid& grid() const { return posts_.grid(); }
-    Window window() const { return {0, 0, grid().columns(), grid().rows()}; }
+    /// Where the DEM as it is lies on the grid.
+    Window window() const { return {before_, 0, given_.grid().columns(), given_.grid().rows()}; }
+    Window whole_grid() const { return {0, 0, grid().columns(), grid().rows()}; }
+    /// A window of the DEM as it is; where it has no posts, all of it.
+    Window window_of(const Window& given) const {
+        if (given.is_empty()) return window();
+        return {given.column + before_, given.row, given.columns, given.rows};
+    }
     const Sweep& sweep() const { return sweep_; }
     const geo::LocalFrame& frame() const { return frame_; }
     const glm::dvec2& spacing_m() const { return spacing_m_; }  ///< the grid's post_spacing_m()
@@ -66,6 +79,9 @@ class SunTerrain {
     bool airs_differ(double elevation_rad) const;
 
   private:
+    const dem::Posts& given_;
+    int before_ = 0;                      // columns of the grid before it
+    std::optional<dem::Posts> unrolled_;  // of a DEM round the Earth
     const dem::Posts& posts_;
     Sweep sweep_;
     glm::dvec2 spacing_m_;
@@ -84,10 +100,5 @@ struct WindowHeights {
     WindowHeights(const dem::Posts& posts, const Window& window);
     float at(int column, int row) const { return *view.at(column, row); }
 };
-
-/// The window of options, where one without posts stands for all.
-inline Window window_or_all(const Window& asked, const dem::Grid& grid) {
-    return asked.is_empty() ? Window{0, 0, grid.columns(), grid.rows()} : asked;
-}
 
 }  // namespace relevo::light

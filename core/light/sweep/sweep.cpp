@@ -177,17 +177,21 @@ void Sweep::read(const Job& job, const Window& window, Sheet& sheet,
     const auto [transposed, mirrored, sheet_rows] = job.orientation;
     const int line = mirrored ? sheet_rows - window.end_row() : window.row;
     const Window lines{window.column, line, window.columns, window.rows};
-    std::vector<float> packed;
-    read_(transposed ? light::transposed(lines) : lines, packed);
-    buffer.resize(packed.size());
-    if (transposed)
-        transpose(packed.data(), window.rows, window.columns, window.rows, buffer.data(),
+    Heights found{};
+    if (transposed) {
+        std::vector<float> columns;
+        const Heights turned = read_(light::transposed(lines), columns);
+        buffer.resize(static_cast<std::size_t>(window.columns) *
+                      static_cast<std::size_t>(window.rows));
+        transpose(turned.first_m, turned.stride, window.columns, window.rows, buffer.data(),
                   window.columns);
-    else
-        buffer.swap(packed);
+        found = {buffer.data(), window.columns};
+    } else {
+        found = read_(lines, buffer);
+    }
     sheet = job.sheet;
-    sheet.stride = mirrored ? -window.columns : window.columns;
-    sheet.first_m = buffer.data() + (mirrored ? (window.rows - 1) * window.columns : 0) -
+    sheet.stride = mirrored ? -found.stride : found.stride;
+    sheet.first_m = found.first_m + (mirrored ? (window.rows - 1) * found.stride : 0) -
                     (window.row * sheet.stride + window.column);
 }
 

@@ -54,8 +54,13 @@ class Sweep {
     /// @param stride    from row to row
     Sweep(const float* height_m, int columns, int rows, std::ptrdiff_t stride);
 
-    /// Puts the heights of a window into an array, row by row; called on several threads at once.
-    using Read = std::function<void(const Window&, std::vector<float>&)>;
+    /// Where the heights of a window are: the first post's, and how far it is from row to row.
+    struct Heights {
+        const float* first_m;
+        std::ptrdiff_t stride;
+    };
+    /// Says so; heights that are nowhere yet are put into the array. Called on several threads.
+    using Read = std::function<Heights(const Window&, std::vector<float>&)>;
     /// Heights that are read where they are needed, strip by strip, so that a sweep of any length
     /// takes little memory. What is found is the same, to the bit.
     /// @param lowest_m, highest_m  of all posts
