@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "light/point/horizon.h"
-#include "sun/earth_rotation.h"
 #include "sun/refraction.h"
 #include "sun/zone.h"
 
@@ -46,7 +45,6 @@ struct Alignments {
 /// Accuracy: 1 s in still standard air (tests/light/test_alignment.cpp); the horizon's remarks on
 /// refraction apply.
 Alignments alignments(const TerrainHorizon& from, const geo::Geodetic& target, sun::Date first,
-                      sun::Date last, const sun::Zone& zone, const AlignmentOptions& options = {},
-                      const sun::EarthRotation& rotation = sun::EarthRotation::built_in());
+                      sun::Date last, const sun::Zone& zone, const AlignmentOptions& options = {});
 
 }  // namespace relevo::light

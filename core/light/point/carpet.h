@@ -45,7 +45,6 @@ struct Carpet {
 /// where clocks are put forward, the hour that they skip shows the light as it would have been
 /// without; where they are put back, the hour that comes twice shows its first time.
 /// @throws Error (BadInput) for a year outside 1900-2100, a step that does not divide a day
-Carpet carpet(const DirectLight& light, int year, const sun::Zone& zone, int step_s = 60,
-              const sun::EarthRotation& rotation = sun::EarthRotation::built_in());
+Carpet carpet(const DirectLight& light, int year, const sun::Zone& zone, int step_s = 60);
 
 }  // namespace relevo::light

@@ -78,9 +78,7 @@ class DirectLight {
         const sun::EarthRotation& rotation = sun::EarthRotation::built_in()) const;
 
     /// The light within any span of time, such as from midnight to midnight by the sun.
-    std::vector<LitInterval> lit_within(
-        const sun::TimeSpan& span,
-        const sun::EarthRotation& rotation = sun::EarthRotation::built_in()) const;
+    std::vector<LitInterval> lit_within(const sun::TimeSpan& span) const;
 
     const TerrainHorizon& horizon() const { return horizon_; }
     const Skyline& skyline() const { return skyline_; }

@@ -6,6 +6,7 @@
 
 #include "light/point/alignment.h"
 #include "light/point/direct_light.h"
+#include "light/point/sectors.h"
 
 namespace relevo::light {
 
@@ -29,10 +30,13 @@ struct Doubt {
     Matters matters = Matters::Horizon;
 };
 
+/// How high terrain beyond a DEM is taken to be: as given, or as the DEM's highest post, at most
+/// the Earth's.
+double highest_beyond_m(const dem::Posts& posts, const std::optional<double>& given_m);
+
 /// What matters for a horizon as such.
 /// @param profile    of that horizon
-/// @param highest_m  of the terrain beyond; none: the DEM's highest post. The Earth's at most, in
-///     any case
+/// @param highest_m  of the terrain beyond, as highest_beyond_m() has it
 Doubt doubt_of(const TerrainHorizon& horizon, const std::vector<HorizonPoint>& profile,
                const std::optional<double>& highest_m);
 
