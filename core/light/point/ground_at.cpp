@@ -88,18 +88,19 @@ std::string place_text(const geo::Geodetic& place) {
     return fmt::format("{:.7g},{:.7g}", degrees(place.lat_rad), degrees(place.lon_rad));
 }
 
+bool is_within(const dem::Grid& grid, const glm::dvec2& post) {
+    return post.x >= -kSnap_cells && post.x <= grid.columns() - 1 + kSnap_cells &&
+           post.y >= -kSnap_cells && post.y <= grid.rows() - 1 + kSnap_cells;
+}
+
 Ground ground_at(const dem::Posts& posts, const geo::Geodetic& place) {
     const dem::Grid& grid = posts.grid();
-    const auto is_inside = [&](const glm::dvec2& post) {
-        return post.x >= 0 && post.y >= 0 && post.x <= grid.columns() - 1 &&
-               post.y <= grid.rows() - 1;
-    };
     glm::dvec2 post = grid.post(place);
     post = {snapped(post.x), snapped(post.y)};
-    if (!is_inside(post)) {
+    if (!is_within(grid, post)) {
         const geo::Geodetic swapped{place.lon_rad, place.lat_rad, 0};
         const bool is_swapped =
-            std::abs(swapped.lat_rad) <= kPi / 2 && is_inside(grid.post(swapped));
+            std::abs(swapped.lat_rad) <= kPi / 2 && is_within(grid, grid.post(swapped));
         bad_input(fmt::format("horizon: {}: outside of the DEM, expected a point within {}{}",
                               place_text(place), extent_text(grid),
                               is_swapped ? "; latitude comes first" : ""));

@@ -12,6 +12,9 @@ namespace relevo::light {
 /// "47.1,11.2", as messages name a place.
 std::string place_text(const geo::Geodetic& place);
 
+/// Whether a place on the grid lies on or between its posts, to kSnap_cells; NaN does not.
+bool is_within(const dem::Grid& grid, const glm::dvec2& post);
+
 /// Ground of a DEM.
 struct Ground {
     glm::dvec2 post{0};  ///< column and row; whole ones within kSnap_cells of a post

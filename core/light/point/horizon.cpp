@@ -203,10 +203,7 @@ double TerrainHorizon::edge_m(const HorizonPoint& point) const {
     if (!fan_) return point.reach_m;
     const auto outside = [&](double distance_m) {
         const glm::dvec2 post = fan_->post(point.azimuth_rad, distance_m);
-        const dem::Grid& grid = posts_->grid();
-        if (!(post.x >= -kSnap_cells && post.x <= grid.columns() - 1 + kSnap_cells &&
-              post.y >= -kSnap_cells && post.y <= grid.rows() - 1 + kSnap_cells))
-            return true;
+        if (!is_within(posts_->grid(), post)) return true;
         const auto column = static_cast<int>(std::lround(post.x)),
                    row = static_cast<int>(std::lround(post.y));
         return std::isnan(posts_->thinned_m(column, row)) && posts_->is_outside(column, row);

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/units.h"
+#include "light/point/ground_at.h"
 #include "sun/observer.h"
 #include "sun/position.h"
 #include "sun/position_table.h"
@@ -99,42 +100,38 @@ class Samples {
 /// How far a place lies beyond the edge of a grid; 0 on it.
 double beyond_m(const dem::Grid& grid, const geo::Geodetic& place) {
     const glm::dvec2 post = grid.post(place);
-    const glm::dvec2 last(grid.columns() - 1, grid.rows() - 1);
-    if (post.x >= -kSnap_cells && post.y >= -kSnap_cells && post.x <= last.x + kSnap_cells &&
-        post.y <= last.y + kSnap_cells)
-        return 0;
+    if (is_within(grid, post)) return 0;
     if (!std::isfinite(post.x) || !std::isfinite(post.y)) return kInfinity;
-    const glm::dvec2 edge = glm::clamp(post, glm::dvec2(0), last);
+    const glm::dvec2 edge =
+        glm::clamp(post, glm::dvec2(0), glm::dvec2(grid.columns() - 1, grid.rows() - 1));
     // On the edge of a wide cell the nearest post is not nearest on the ground by a hair.
     return std::max(1e-3, geo::geodesic(place, grid.place(edge.x, edge.y)).distance_m);
 }
 
 /// @throws Error (BadInput) where any moment, in the order of the way, is outside
 void check_inside(const dem::Grid& grid, const std::vector<WalkMoment>& moments) {
-    std::vector<double> beyond(moments.size());
-    parallel_for(0, static_cast<int>(moments.size()), 256, [&](int first, int last) {
-        for (int i = first; i < last; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            beyond[k] = beyond_m(grid, moments[k].place);
-        }
-    });
     constexpr std::size_t kTold = 3;
-    std::vector<std::string> parts;
-    std::size_t count = 0;
-    double farthest_m = 0, outside_from_m = 0;
-    for (std::size_t i = 0; i < moments.size(); ++i) {
-        farthest_m = std::max(farthest_m, beyond[i]);
-        if (beyond[i] > 0 && (i == 0 || beyond[i - 1] == 0)) outside_from_m = moments[i].distance_m;
-        if (beyond[i] > 0 && (i + 1 == moments.size() || beyond[i + 1] == 0) && ++count <= kTold)
-            parts.push_back(fmt::format("km {:.3f} to {:.3f}", outside_from_m / 1000,
-                                        moments[i].distance_m / 1000));
+    std::vector<std::pair<double, double>> parts_km;  // outside
+    double farthest_m = 0;
+    bool was_outside = false;
+    for (const WalkMoment& moment : moments) {
+        const double distance_m = beyond_m(grid, moment.place), km = moment.distance_m / 1000;
+        const bool is_outside = distance_m > 0;
+        farthest_m = std::max(farthest_m, distance_m);
+        if (is_outside && !was_outside) parts_km.emplace_back(km, km);
+        if (is_outside) parts_km.back().second = km;
+        was_outside = is_outside;
     }
-    if (count == 0) return;
+    if (parts_km.empty()) return;
+    std::vector<std::string> parts;
+    for (const auto& [from_km, to_km] : parts_km)
+        if (parts.size() < kTold)
+            parts.push_back(fmt::format("km {:.3f} to {:.3f}", from_km, to_km));
     bad_input(fmt::format(
         "walk: {}{} of {:.3f} km: outside of the DEM, {}; take a DEM that has all of the "
         "way, or cut the track",
         fmt::join(parts, ", "),
-        count > kTold ? fmt::format(" and {} more parts", count - kTold) : "",
+        parts_km.size() > kTold ? fmt::format(" and {} more parts", parts_km.size() - kTold) : "",
         moments.back().distance_m / 1000,
         std::isinf(farthest_m)
             ? "where its map ends"
@@ -172,28 +169,6 @@ class Airs {
     std::map<int, sun::Refraction> levels_;
 };
 
-/// Ridges beyond the DEM that could hide sun which is taken to shine, by direction.
-class OpenDirections {
-  public:
-    void add(OpenSector sector) {
-        const int k = static_cast<int>(
-            std::lround(sector.from_azimuth_rad / (2 * kPi) * kDirections) % kDirections);
-        sector.from_azimuth_rad = sector.to_azimuth_rad = 2 * kPi * k / kDirections;
-        const std::lock_guard lock(mutex_);
-        sectors_.try_emplace(k, sector).first->second.include(sector);
-    }
-    std::vector<OpenSector> sectors() const {
-        std::vector<OpenSector> all;
-        for (const auto& [k, sector] : sectors_)
-            all.push_back(sector);
-        return all;
-    }
-
-  private:
-    std::mutex mutex_;
-    std::map<int, OpenSector> sectors_;
-};
-
 /// Finds the light at a moment of a walk.
 class LightFinder {
   public:
@@ -222,8 +197,7 @@ class LightFinder {
         const HorizonPoint point = horizon.at(sun::azimuth_of(sun));
         if (apparent_rad <= point.elevation_rad) return without;
         if (point.hole && apparent_rad <= point.hole_rad) return WalkLight::NotKnown;
-        if (const auto sector = open_beyond(horizon, point, highest_m_, apparent_rad))
-            open_.add(*sector);
+        if (const auto open = open_beyond(horizon, point, highest_m_, apparent_rad)) add(*open);
         return WalkLight::Sun;
     }
 
@@ -232,17 +206,28 @@ class LightFinder {
         Doubt doubt;
         doubt.matters = Matters::Sun;
         doubt.highest_m = highest_m_;
-        doubt.open = open_.sectors();
+        for (const auto& [k, sector] : open_)
+            doubt.open.push_back(sector);
         return doubt;
     }
 
   private:
+    /// Keeps terrain beyond the DEM that could hide sun which is taken to shine.
+    void add(OpenSector sector) {
+        const int k = static_cast<int>(
+            std::lround(sector.from_azimuth_rad / (2 * kPi) * kDirections) % kDirections);
+        sector.from_azimuth_rad = sector.to_azimuth_rad = 2 * kPi * k / kDirections;
+        const std::lock_guard lock(mutex_);
+        open_.try_emplace(k, sector).first->second.include(sector);
+    }
+
     const dem::Posts& posts_;
     HorizonOptions horizon_;
     Airs airs_;
     sun::PositionTable table_;
     double highest_m_;
-    OpenDirections open_;
+    std::mutex mutex_;
+    std::map<int, OpenSector> open_;  // by direction
 };
 
 struct Change {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/sign_change.h"
 #include "base/units.h"
 
 namespace relevo::light {
@@ -56,22 +55,20 @@ std::optional<OpenSector> open_beyond(const TerrainHorizon& horizon, const Horiz
     const auto highest_at_m = [&](double reach_m) {
         return std::min(elevation.farthest_rise_m(highest_m, std::max(reach_m, 1.0)), until_m);
     };
-    const auto over = [&](double distance_m) {
-        return elevation.tangent(highest_m, distance_m) - level;
-    };
     const auto stands_over = [&](double reach_m) {
-        return reach_m < until_m && over(highest_at_m(reach_m)) > 1e-9;
+        return reach_m < until_m &&
+               elevation.tangent(highest_m, highest_at_m(reach_m)) > level + 1e-9;
     };
     if (!stands_over(point.reach_m)) return std::nullopt;
     const double reach_m = horizon.edge_m(point);
     if (!stands_over(reach_m)) return std::nullopt;
     const double from_m = std::max(reach_m, 1.0);
-    const double first_m = highest_at_m(reach_m);
-    const double last_m = std::min(TerrainHorizon::kFarthestSeen_m, until_m);
-    const double needed_m =
-        first_m < last_m && over(last_m) < 0
-            ? sign_change(over, first_m, over(first_m), last_m, over(last_m), 1.0)
-            : last_m;
+    double low_m = highest_at_m(reach_m);
+    double needed_m = std::min(TerrainHorizon::kFarthestSeen_m, until_m);
+    while (needed_m - low_m > 1) {
+        const double middle_m = (low_m + needed_m) / 2;
+        (elevation.tangent(highest_m, middle_m) > level ? low_m : needed_m) = middle_m;
+    }
     // A line of sight that goes down is lowest farther away.
     const double lowest_at_m = std::max(0.0, -level) / elevation.curvature();
     const double least_m =
