@@ -27,7 +27,7 @@ struct Alignment {
     double azimuth_rad = 0;     ///< of the sun's centre
     double elevation_rad = 0;   ///< of it, apparent
     bool sun_visible = false;   ///< the centre stands over the terrain horizon
-    bool hole = false;          ///< visible, but through a hole of the DEM (HorizonPoint::hole)
+    bool hole = false;          ///< visible, but through a void of the DEM (HorizonPoint::hole)
 };
 
 /// Dates and times at which the sun stands at a point of the landscape, as seen from a viewpoint.

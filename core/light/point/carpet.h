@@ -29,7 +29,7 @@ struct Carpet {
     std::vector<LightDay> days;       ///< those that the zone has, in order
     Array2d<Light> light;             ///< column: time of day; row: as `days`
     double lit_s = 0;                 ///< of the year, from the exact edges
-    double not_known_s = 0;           ///< of lit_s, for holes of the DEM
+    double not_known_s = 0;           ///< of lit_s, for voids of the DEM
     double level_s = 0;               ///< as lit_s, over a level horizon
     std::vector<double> month_lit_s;  ///< of each of the twelve months
     std::vector<double> day_level_s;  ///< over a level horizon, of each of `days`

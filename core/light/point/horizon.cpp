@@ -189,7 +189,7 @@ double TerrainHorizon::ground_beyond_rad(double azimuth_rad, const HighestCrossi
     return std::atan(tangent_beyond(edge, eye_m_, towards(azimuth_rad).curvature()));
 }
 
-/// How high terrain as high as the highest post would stand in the voids that a look has met.
+/// How high terrain as high as the highest post would stand in the voids on a line of sight.
 double TerrainHorizon::hole_rad(double azimuth_rad, const HighestCrossing& highest) const {
     if (!(highest.first_void_m < kInfinity)) return -kPi / 2;
     const ApparentElevation elevation = towards(azimuth_rad);

@@ -42,15 +42,15 @@ struct HorizonPoint {
     /// To the blocking point, over the ellipsoid; NaN where the DEM blocks nothing and the horizon
     /// is that of the smooth Earth beyond it.
     double distance_m = 0;
-    glm::dvec2 post{0};   ///< column and row of the blocking point; NaN likewise
-    double height_m = 0;  ///< of the blocking point; NaN likewise
-    /// How far the DEM was looked at this way: to its edge, to a void that reaches it, or to where
+    glm::dvec2 post{0};   ///< column and row of the blocking point; NaN without
+    double height_m = 0;  ///< of the blocking point; NaN without
+    /// How far the DEM was followed this way: to its edge, to a void that reaches it, or to where
     /// nothing in it could be seen. Ground beyond such a void is in the horizon all the same.
     double reach_m = 0;
-    /// A hole within the DEM lies where terrain as high as its highest post would stand over this
+    /// A void within the DEM lies where terrain as high as its highest post would stand over this
     /// horizon.
     bool hole = false;
-    /// How high such terrain would stand in the nearest hole; -pi/2 without one.
+    /// How high such terrain would stand in the nearest void; -pi/2 without one.
     double hole_rad = -1.5707963267948966;
 };
 
@@ -61,7 +61,7 @@ struct Sight {
     double distance_m = 0;
     bool visible = false;      ///< no ground of the DEM stands before it
     double hidden_by_rad = 0;  ///< elevation of that ground over the point; 0 where visible
-    /// It is seen through a hole of the DEM, where terrain as high as its highest post would hide
+    /// It is seen through a void of the DEM, where terrain as high as its highest post would hide
     /// it.
     bool hole = false;
 };
@@ -72,8 +72,8 @@ class Fan;
 ///
 /// The horizon in a direction is the highest of all crossings of the line of sight with the rows
 /// and columns of the grid, where heights are linear from post to post: every post in the way
-/// counts, and none is looked at twice. Blocks of posts that cannot stand over what was found so
-/// far are skipped; of a DEM that memory does not hold, the others are read as they come. Holes are
+/// counts, and none is read twice. Blocks of posts that cannot stand over what was found so
+/// far are skipped; of a DEM that memory does not hold, the others are read as they come. Voids are
 /// passed over and reported. A value that refers to the posts it was made from; safe on several
 /// threads at once.
 ///
@@ -84,7 +84,7 @@ class TerrainHorizon {
   public:
     /// @param posts  outlives this
     /// @param place  its height plays no part
-    /// @throws Error (BadInput) where the point is outside of the DEM or in a hole of it, where
+    /// @throws Error (BadInput) where the point is outside of the DEM or in a void of it, where
     ///     the ground is at a height that has no air, where the eye is under the ground or more
     ///     than 10 km above it, for a refraction that no air has, for a map without metres; here
     ///     and later where the file is damaged that posts are read from

@@ -78,7 +78,7 @@ class Samples {
         return {walk_.distances_m()[i], walk_.times()[i], place};
     }
 
-    /// The whole samples and the track's points, which may stand out, in the order of the way.
+    /// The whole samples and the track's points, which may lie outside, in the order of the way.
     std::vector<WalkMoment> with_corners() const {
         std::vector<WalkMoment> all;
         for (int i = 0; i <= count_; ++i)
@@ -104,7 +104,7 @@ double beyond_m(const dem::Grid& grid, const geo::Geodetic& place) {
     if (!std::isfinite(post.x) || !std::isfinite(post.y)) return kInfinity;
     const glm::dvec2 edge =
         glm::clamp(post, glm::dvec2(0), glm::dvec2(grid.columns() - 1, grid.rows() - 1));
-    // On the edge of a wide cell the nearest post is not nearest on the ground by a hair.
+    // On the edge of a wide cell the nearest post is not quite nearest on the ground.
     return std::max(1e-3, geo::geodesic(place, grid.place(edge.x, edge.y)).distance_m);
 }
 
@@ -235,7 +235,7 @@ struct Change {
     WalkLight to;
 };
 
-/// All changes of light between two looks of different light.
+/// All changes of light between two samples of different light.
 std::vector<Change> changes_between(const Samples& walk, LightFinder& finder, double from,
                                     WalkLight before, double to, WalkLight after) {
     std::vector<Change> changes;

@@ -21,7 +21,7 @@ enum class WalkLight {
     Sun,       ///< the sun's centre stands over the terrain
     Terrain,   ///< it stands over the level horizon, behind terrain
     Night,     ///< it is under the level horizon
-    NotKnown,  ///< the ground there is a hole of the DEM, or the sun is seen through one
+    NotKnown,  ///< the ground there is a void of the DEM, or the sun is seen through one
 };
 inline constexpr std::size_t kWalkLights = 4;
 
@@ -55,20 +55,20 @@ struct LightAlong {
     std::vector<WalkStretch> stretches;     ///< in order, each begins where the last ends
     std::array<WalkSum, kWalkLights> sums;  ///< by WalkLight
     double length_m = 0, duration_s = 0;
-    double spacing_m = 0, step_s = 0;  ///< that the light was looked at by, at most
+    double spacing_m = 0, step_s = 0;  ///< from sample to sample, at most
     Doubt doubt;                       ///< of terrain beyond the DEM
     std::string definition;
 };
 
-/// The light on every part of a walk, by the exact horizon of each point that is looked at, in the
+/// The light on every part of a walk, by the exact horizon of each point that is sampled, in the
 /// one direction in which the sun stands: as far apart as the DEM's posts and ten seconds at most,
 /// and between two of different light to 0.1 s and 0.1 m. Light that is shorter than both steps may
 /// be missed. The sun is refracted by the air over the ground there, between levels 100 m apart.
 ///
 /// Accuracy: for one who stands, the edges of DirectLight to 0.2 s (tests/light/test_walk.cpp).
-/// Speed: 34 us a look, one thread (tests/light/bench_light.cpp, horizon_of_one_direction).
+/// Speed: 34 us a sample, one thread (tests/light/bench_light.cpp, horizon_of_one_direction).
 /// @throws Error (BadInput) where a part of the walk is outside of the DEM, with which and how far,
-///     for a walk of more than a million points to look at, a year that is not computed, and as
+///     for a walk of more than a million samples, a year that is not computed, and as
 ///     TerrainHorizon
 LightAlong light_along(const dem::Posts& posts, const Walk& walk, const WalkOptions& options);
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kChunk_cells = 32;
 
-/// One line of sight over the grid.
+/// One line of sight over the grid, followed outwards.
 class LineOfSight {
   public:
     LineOfSight(const dem::Posts& posts, const ApparentElevation& elevation, double until_m)
@@ -134,7 +134,7 @@ class LineOfSight {
             const float* h0 = view.first_m + (i - view_line) * line + (k - view_post) * step;
             double h = h0[0] + f * (h0[step] - h0[0]);
             if (h != h) {
-                // A hole at the far end of the edge does not spoil the post itself.
+                // A void at the far end of the edge does not spoil the post itself.
                 h = f <= kSnap_cells ? h0[0] : f >= 1 - kSnap_cells ? h0[step] : kNaN;
                 if (h != h) {
                     const int none = h0[0] != h0[0] ? k : k + 1;
