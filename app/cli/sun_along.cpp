@@ -9,7 +9,7 @@
 #include "cli/sun_options.h"
 #include "dem/places.h"
 #include "geo/format.h"
-#include "light/point/walk.h"
+#include "light/point/light_along.h"
 
 namespace relevo::cli {
 namespace {

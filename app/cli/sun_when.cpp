@@ -13,6 +13,7 @@
 #include "geo/format.h"
 #include "light/point/alignment.h"
 #include "light/point/doubt.h"
+#include "light/point/ground_at.h"
 
 namespace relevo::cli {
 namespace {

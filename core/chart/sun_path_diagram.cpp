@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "chart/diagram_parts.h"
+#include "light/point/sectors.h"
 
 namespace relevo::chart {
 namespace {

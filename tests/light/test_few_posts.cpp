@@ -5,6 +5,7 @@
 #include "dem/fixture.h"
 #include "light/fields.h"
 #include "light/point/direct_light.h"
+#include "light/point/ground_at.h"
 
 namespace relevo::light {
 namespace {

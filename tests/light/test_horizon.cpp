@@ -9,7 +9,9 @@
 #include "base/units.h"
 #include "geo/local_frame.h"
 #include "light/fields.h"
+#include "light/point/ground_at.h"
 #include "light/point/horizon.h"
+#include "light/point/sectors.h"
 
 namespace relevo::light {
 namespace {
@@ -20,7 +22,7 @@ using test::field_of;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSphere_m = 6'371'000;
+constexpr double kSphere_m = 6'371'000, kPlane_m = 1e18;  // HorizonOptions::map_radius_m
 
 double number(const test::Csv& csv, std::size_t row, std::string_view column) {
     return *parse_number(csv.rows[row][csv.column(column)]);
@@ -56,21 +58,26 @@ TEST(TerrainHorizon, AgreesWithCrossingsComputedIndependently) {
     constexpr double kLimit_deg = 0.001;
     for (const bool flat : {true, false}) {
         HorizonOptions options;
-        options.earth = flat ? EarthModel::MapOnPlane : EarthModel::MapOnSphere;
-        options.outside_height_m = -kInfinity;
+        options.map_radius_m = flat ? kPlane_m : kSphere_m;
         std::vector<double> errors_deg, distances_m;
         for (std::size_t i = 0; i < csv.rows.size(); ++i) {
             const glm::ivec2 post(number(csv, i, "col"), number(csv, i, "row"));
             const TerrainHorizon horizon(field, field.grid.place(post.x, post.y), options);
             ASSERT_EQ(horizon.post(), glm::dvec2(post));
-            const HorizonPoint found = horizon.at(radians(number(csv, i, "grid_azimuth_deg")) -
-                                                  horizon.true_north_on_map_rad());
+            const double azimuth_rad =
+                radians(number(csv, i, "grid_azimuth_deg")) - horizon.true_north_on_map_rad();
+            const HorizonPoint found = horizon.at(azimuth_rad);
+            // The file has the DEM's ground alone, and verticals that do not spread with height.
+            const double wanted_m = number(csv, i, "distance_to_horizon_m");
+            const double tangent = std::tan(horizon.elevation_within_rad(azimuth_rad, kInfinity));
+            const double spread =
+                horizon.towards(azimuth_rad).height_m(tangent, wanted_m) / *options.map_radius_m;
+            const double elevation_rad = std::atan(tangent * (1 + spread));
             const double wanted_deg = number(
                 csv, i, flat ? "horizon_crossings_flat_deg" : "horizon_crossings_curved_k013_deg");
-            errors_deg.push_back(std::abs(degrees(found.elevation_rad) - wanted_deg));
+            errors_deg.push_back(std::abs(degrees(elevation_rad) - wanted_deg));
             EXPECT_LE(errors_deg.back(), kLimit_deg) << "row " << i + 2;
-            distances_m.push_back(
-                std::abs(found.distance_m - number(csv, i, "distance_to_horizon_m")));
+            distances_m.push_back(std::abs(found.distance_m - wanted_m));
         }
         test::print_accuracy(flat ? "terrain horizon, flat" : "terrain horizon, curved", errors_deg,
                              "deg", kLimit_deg);
@@ -92,7 +99,6 @@ void expect_true_horizon(const dem::Heightfield& field, const geo::Geodetic& pla
     options.few_directions = few;
     options.refraction = 0;
     options.eye_height_m = 1.5;
-    options.outside_height_m = -kInfinity;
     const TerrainHorizon horizon(field, place, options);
     geo::Geodetic eye = horizon.place();
     eye.height_m = horizon.eye_m();
@@ -252,26 +258,16 @@ TEST(TerrainHorizon, OfAPlainDipsByTheRootOfTheEyeHeight) {
                 std::sqrt(2 * 6.36e6 * 0.5), 60);
 }
 
-TEST(TerrainHorizon, BeyondTheDemIsASmoothEarthAsHighAsItsEdgeOrAsGiven) {
+TEST(TerrainHorizon, BeyondTheDemIsASmoothEarthAsHighAsItsEdge) {
     const dem::Heightfield field =
         plain([](int column, int row) { return column == 0 && row == 0 ? 5.0 : 100.0; });
     HorizonOptions options;
     options.refraction = 0;
     options.eye_height_m = 10;
-    const auto arcmin = [&] {
-        return degrees(TerrainHorizon(field, middle(field), options).elevation_rad(1)) * 60;
-    };
-    EXPECT_NEAR(arcmin(), -1.926 * std::sqrt(10), 0.05);
-    options.outside_height_m = 95;
-    EXPECT_NEAR(arcmin(), -1.926 * std::sqrt(15), 0.05);
-    options.outside_height_m = -kInfinity;  // only the DEM: its edge, 3.5 km away
-    EXPECT_LT(arcmin(), -9);
-    options.least_elevation_rad = 0;
-    EXPECT_EQ(arcmin(), 0);
-    // Ground outside that is higher than the eye begins where the DEM ends.
-    options.outside_height_m = 210;
     const TerrainHorizon horizon(field, middle(field), options);
-    EXPECT_NEAR(std::tan(horizon.elevation_rad(1)), 100 / horizon.at(1).reach_m, 3e-4);
+    EXPECT_NEAR(degrees(horizon.elevation_rad(1)) * 60, -1.926 * std::sqrt(10), 0.05);
+    // The DEM alone: its edge, 3.5 km away.
+    EXPECT_LT(degrees(horizon.elevation_within_rad(1, kInfinity)) * 60, -9);
 }
 
 TEST(TerrainHorizon, TakesGroundBetweenPostsAsLinearAlongTheGrid) {
@@ -279,7 +275,7 @@ TEST(TerrainHorizon, TakesGroundBetweenPostsAsLinearAlongTheGrid) {
     const dem::Heightfield field =
         plain([](int column, int row) { return column == 110 && row == 100 ? 140.0 : 100.0; });
     HorizonOptions options;
-    options.earth = EarthModel::MapOnPlane;
+    options.map_radius_m = kPlane_m;
     const TerrainHorizon horizon(field, middle(field), options);
     for (const double beside : {0.0, 0.25, 0.5, 0.75, -0.3}) {
         const double bearing = std::atan2(10, beside);  // beside: rows to the north
@@ -293,7 +289,7 @@ TEST(TerrainHorizon, SeesOverGroundFromAHigherEye) {
     const dem::Heightfield field =
         plain([](int column, int) { return column == 140 ? 160.0 : 100.0; });
     HorizonOptions options;
-    options.earth = EarthModel::MapOnPlane;
+    options.map_radius_m = kPlane_m;
     options.eye_height_m = 20;
     EXPECT_NEAR(std::tan(TerrainHorizon(field, middle(field), options).elevation_rad(radians(90))),
                 40.0 / 1200, 1e-5);
@@ -318,7 +314,7 @@ TEST(TerrainHorizon, PassesOverHolesAndSaysWhereTheyMatter) {
     };
     const dem::Heightfield field = plain(heights);
     HorizonOptions options;
-    options.earth = EarthModel::MapOnPlane;
+    options.map_radius_m = kPlane_m;
     const TerrainHorizon horizon(field, middle(field), options);
     const HorizonPoint east = horizon.at(radians(90));
     EXPECT_TRUE(east.hole);
@@ -347,7 +343,7 @@ TEST(TerrainHorizon, SaysHowFarTheDemWouldHaveToReach) {
     const TerrainHorizon horizon(field, middle(field), options);
     const auto profile = horizon.profile(360);
     // Terrain as high as the slopes' upper ends, 1192 m, hides nothing more behind them.
-    const auto sectors = horizon.open_sectors(profile, 1191);
+    const auto sectors = open_sectors(horizon, profile, 1191);
     ASSERT_EQ(sectors.size(), 2U);
     // The second one goes through the north.
     EXPECT_NEAR(degrees(sectors[0].from_azimuth_rad + sectors[0].to_azimuth_rad) / 2, 180, 1);
@@ -357,11 +353,11 @@ TEST(TerrainHorizon, SaysHowFarTheDemWouldHaveToReach) {
     // To the south the horizon is level: 1091 m stand over it to sqrt(2 R h / (1 - k)), 126 km.
     EXPECT_NEAR(sectors[0].needed_m, std::sqrt(2 * 6.365e6 * 1091 / 0.87), 500);
     // Higher terrain could stand over the slopes, too.
-    const auto all = horizon.open_sectors(profile, 4000);
+    const auto all = open_sectors(horizon, profile, 4000);
     ASSERT_EQ(all.size(), 1U);
     EXPECT_EQ(degrees(all[0].from_azimuth_rad), 0);
     EXPECT_NEAR(degrees(all[0].to_azimuth_rad), 359, 1e-9);
-    const auto none = horizon.open_sectors(profile, -1000);
+    const auto none = open_sectors(horizon, profile, -1000);
     EXPECT_EQ(none.size(), 0U);
 }
 
@@ -382,7 +378,6 @@ TEST(TerrainHorizon, LooksAsFarAsASummitCanBeSeen) {
             const dem::Heightfield field = strip(column + 60, column, 3000);
             HorizonOptions options;
             options.eye_height_m = eye_m;
-            options.outside_height_m = 0;
             const TerrainHorizon horizon(field, field.grid.place(2, 10), options);
             const geo::Geodetic summit = field.grid.place(column, 10);
             const geo::Geodesic way = geo::geodesic(field.grid.place(2, 10), summit);
@@ -419,13 +414,13 @@ TEST(TerrainHorizon, ReachesToTheEdgeOfTheDem) {
         }
         // Terrain of 2500 m beyond either would be seen; the DEM ends where it ends, although the
         // flat half holds nothing that is looked for.
-        for (const OpenSector& sector : horizon.open_sectors(profile, 2500)) {
+        for (const OpenSector& sector : open_sectors(horizon, profile, 2500)) {
             if (sector.from_azimuth_rad > sector.to_azimuth_rad) continue;
             EXPECT_GE(sector.reach_m, 500);
         }
         std::vector<double> only_east(profile.size(), kInfinity);
         only_east[360] = radians(-90);
-        const auto open = horizon.open_sectors(profile, 2500, only_east);
+        const auto open = open_sectors(horizon, profile, 2500, only_east);
         ASSERT_EQ(open.size(), 1U);
         EXPECT_EQ(degrees(open[0].from_azimuth_rad), 90);
         EXPECT_NEAR(open[0].reach_m, way.distance_m, 100);
@@ -440,16 +435,16 @@ TEST(TerrainHorizon, TerrainBeyondMattersOnlyBeforeTheSun) {
     const dem::Heightfield field = plain();
     const TerrainHorizon horizon(field, middle(field));
     const auto profile = horizon.profile(360);
-    ASSERT_EQ(horizon.open_sectors(profile, 400).size(), 1U);
+    ASSERT_EQ(open_sectors(horizon, profile, 400).size(), 1U);
     std::vector<double> sun_rad(360, kInfinity);
-    EXPECT_TRUE(horizon.open_sectors(profile, 400, sun_rad).empty());
+    EXPECT_TRUE(open_sectors(horizon, profile, 400, sun_rad).empty());
     // The edge is 3 km away in the south: 300 m stand 5.7 degrees high there.
     for (int i = 170; i < 190; ++i)
         sun_rad[static_cast<std::size_t>(i)] = radians(6);
-    EXPECT_TRUE(horizon.open_sectors(profile, 400, sun_rad).empty());
+    EXPECT_TRUE(open_sectors(horizon, profile, 400, sun_rad).empty());
     for (int i = 175; i < 185; ++i)
         sun_rad[static_cast<std::size_t>(i)] = radians(2);
-    const auto open = horizon.open_sectors(profile, 400, sun_rad);
+    const auto open = open_sectors(horizon, profile, 400, sun_rad);
     ASSERT_EQ(open.size(), 1U);
     EXPECT_NEAR(degrees(open[0].from_azimuth_rad), 175, 1e-9);
     EXPECT_NEAR(degrees(open[0].to_azimuth_rad), 184, 1e-9);
@@ -460,7 +455,7 @@ TEST(TerrainHorizon, TerrainBeyondMattersOnlyBeforeTheSun) {
     HorizonOptions high;
     high.eye_height_m = 3000;
     const TerrainHorizon above(field, middle(field), high);
-    const auto below = above.open_sectors(above.profile(360), 2000);
+    const auto below = open_sectors(above, above.profile(360), 2000);
     ASSERT_EQ(below.size(), 1U);
     EXPECT_NEAR(below[0].least_m, 100, 5);
     EXPECT_GT(below[0].needed_m, 100e3);
@@ -550,7 +545,7 @@ TEST(TerrainHorizon, ErrorsSayWhatIsWrong) {
               "exit 3: horizon: refraction 1.5: impossible, expected -1 to 0.9 of the Earth's "
               "curvature; 0.13 is the mean");
     options = {};
-    options.earth = EarthModel::MapOnPlane;
+    options.map_radius_m = kPlane_m;
     EXPECT_EQ(error_of([&] {
                   const dem::Heightfield degrees_field = bundled("jacksboro.tif");
                   TerrainHorizon(degrees_field, middle(degrees_field), options);
@@ -566,12 +561,13 @@ TEST(TerrainHorizon, SaysHowItWasMade) {
               "terrain horizon: highest crossing with the rows and columns of the DEM, on the WGS "
               "84 ellipsoid with terrestrial refraction k = 0.13; eye at ground level, on ground "
               "at 100.0 m; outside the DEM smooth ground as high as its edge there");
-    options.earth = EarthModel::MapOnPlane;
+    options.map_radius_m = kSphere_m;
     options.eye_height_m = 1.6;
-    options.least_elevation_rad = 0;
-    EXPECT_EQ(TerrainHorizon(field, middle(field), options).description(),
-              "terrain horizon: highest crossing with the rows and columns of the DEM, on the map, "
-              "without curvature; eye 1.6 m up, on ground at 100.0 m; nowhere below 0 degrees");
+    EXPECT_EQ(
+        TerrainHorizon(field, middle(field), options).description(),
+        "terrain horizon: highest crossing with the rows and columns of the DEM, on the map, "
+        "on a sphere with terrestrial refraction k = 0.13; eye 1.6 m up, on ground at 100.0 m; "
+        "outside the DEM smooth ground as high as its edge there");
 }
 
 }  // namespace

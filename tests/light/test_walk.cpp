@@ -5,7 +5,7 @@
 #include "base/units.h"
 #include "light/fields.h"
 #include "light/point/direct_light.h"
-#include "light/point/walk.h"
+#include "light/point/light_along.h"
 #include "sun/position.h"
 
 namespace relevo::light {

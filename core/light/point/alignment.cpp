@@ -35,12 +35,12 @@ double angle_rad(const glm::dvec3& a, const glm::dvec3& b) {
 class Approach {
   public:
     Approach(const TerrainHorizon& from, const Sight& sight, const sun::Refraction& refraction,
-             sun::Instant begin, sun::Instant end, const sun::EarthRotation& rotation)
+             sun::Instant begin, sun::Instant end)
         : from_(from),
           sight_(sight),
           refraction_(refraction),
           begin_(begin),
-          table_(begin, end, rotation),
+          table_(begin, end),
           observer_(from.place()),
           wanted_(direction(sight.azimuth_rad, sight.elevation_rad)) {}
 
@@ -96,8 +96,7 @@ class Approach {
 }  // namespace
 
 Alignments alignments(const TerrainHorizon& from, const geo::Geodetic& target, sun::Date first,
-                      sun::Date last, const sun::Zone& zone, const AlignmentOptions& options,
-                      const sun::EarthRotation& rotation) {
+                      sun::Date last, const sun::Zone& zone, const AlignmentOptions& options) {
     if (last < first)
         bad_input(fmt::format("sun when: from {} to {}: ends before it begins",
                               sun::to_string(first), sun::to_string(last)));
@@ -116,7 +115,7 @@ Alignments alignments(const TerrainHorizon& from, const geo::Geodetic& target, s
         degrees(options.tolerance_rad), refraction.description(), from.options().refraction);
 
     const sun::Instant begin = zone.day(first).begin, end = zone.day(last).end;
-    const Approach approach(from, result.sight, refraction, begin, end, rotation);
+    const Approach approach(from, result.sight, refraction, begin, end);
     // Far from the target, the sun cannot come within the tolerance any sooner than this.
     const double length_s = end - begin;
     double before_s = 0, t_s = 0;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "light/point/horizon.h"
-#include "sun/earth_rotation.h"
 #include "sun/refraction.h"
 #include "sun/zone.h"
 
@@ -28,7 +27,7 @@ struct Alignment {
     double azimuth_rad = 0;     ///< of the sun's centre
     double elevation_rad = 0;   ///< of it, apparent
     bool sun_visible = false;   ///< the centre stands over the terrain horizon
-    bool hole = false;          ///< visible, but through a hole of the DEM (HorizonPoint::hole)
+    bool hole = false;          ///< visible, but through a void of the DEM (HorizonPoint::hole)
 };
 
 /// Dates and times at which the sun stands at a point of the landscape, as seen from a viewpoint.
@@ -46,7 +45,6 @@ struct Alignments {
 /// Accuracy: 1 s in still standard air (tests/light/test_alignment.cpp); the horizon's remarks on
 /// refraction apply.
 Alignments alignments(const TerrainHorizon& from, const geo::Geodetic& target, sun::Date first,
-                      sun::Date last, const sun::Zone& zone, const AlignmentOptions& options = {},
-                      const sun::EarthRotation& rotation = sun::EarthRotation::built_in());
+                      sun::Date last, const sun::Zone& zone, const AlignmentOptions& options = {});
 
 }  // namespace relevo::light

@@ -48,8 +48,7 @@ std::string_view name_of(Light light) {
     return {};
 }
 
-Carpet carpet(const DirectLight& light, int year, const sun::Zone& zone, int step_s,
-              const sun::EarthRotation& rotation) {
+Carpet carpet(const DirectLight& light, int year, const sun::Zone& zone, int step_s) {
     constexpr int kDay_s = 86400;
     if (step_s < 1 || kDay_s % step_s != 0)
         bad_input(fmt::format(
@@ -62,11 +61,11 @@ Carpet carpet(const DirectLight& light, int year, const sun::Zone& zone, int ste
     carpet.year = year;
     carpet.zone = zone;
     carpet.step_s = step_s;
-    carpet.days = light.days({year, 1, 1}, {year, 12, 31}, zone, rotation);
+    carpet.days = light.days({year, 1, 1}, {year, 12, 31}, zone);
     sun::DayOptions level;
     level.rule = sun::RiseRule::seen(light.limb(), light.refraction());
-    const std::vector<sun::Day> level_days = sun::day_events(
-        {year, 1, 1}, {year, 12, 31}, zone, light.horizon().place(), level, rotation);
+    const std::vector<sun::Day> level_days =
+        sun::day_events({year, 1, 1}, {year, 12, 31}, zone, light.horizon().place(), level);
     carpet.month_lit_s.assign(12, 0);
     carpet.definition = light.definition();
     const int columns = kDay_s / step_s;

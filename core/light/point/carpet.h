@@ -29,7 +29,7 @@ struct Carpet {
     std::vector<LightDay> days;       ///< those that the zone has, in order
     Array2d<Light> light;             ///< column: time of day; row: as `days`
     double lit_s = 0;                 ///< of the year, from the exact edges
-    double not_known_s = 0;           ///< of lit_s, for holes of the DEM
+    double not_known_s = 0;           ///< of lit_s, for voids of the DEM
     double level_s = 0;               ///< as lit_s, over a level horizon
     std::vector<double> month_lit_s;  ///< of each of the twelve months
     std::vector<double> day_level_s;  ///< over a level horizon, of each of `days`
@@ -45,7 +45,6 @@ struct Carpet {
 /// where clocks are put forward, the hour that they skip shows the light as it would have been
 /// without; where they are put back, the hour that comes twice shows its first time.
 /// @throws Error (BadInput) for a year outside 1900-2100, a step that does not divide a day
-Carpet carpet(const DirectLight& light, int year, const sun::Zone& zone, int step_s = 60,
-              const sun::EarthRotation& rotation = sun::EarthRotation::built_in());
+Carpet carpet(const DirectLight& light, int year, const sun::Zone& zone, int step_s = 60);
 
 }  // namespace relevo::light

@@ -34,7 +34,11 @@ constexpr double kZenith_rad = radians(88);
 class LightSearch {
   public:
     LightSearch(const DirectLight& light, const sun::PositionTable& table)
-        : light_(light), table_(table) {}
+        : light_(light),
+          table_(table),
+          limb_(light.limb() == sun::Limb::Upper   ? 1
+                : light.limb() == sun::Limb::Lower ? -1
+                                                   : 0) {}
 
     /// When the sun stands in holes within an interval.
     std::vector<sun::TimeSpan> not_known(const LitInterval& lit) {
@@ -84,30 +88,17 @@ class LightSearch {
                 sun::semidiameter_rad(glm::length(sun))};
     }
 
-    double limb() const {
-        switch (light_.options_.limb) {
-            case sun::Limb::Upper:
-                return 1;
-            case sun::Limb::Lower:
-                return -1;
-            case sun::Limb::Center:
-                break;
-        }
-        return 0;
-    }
-
     bool in_hole(const Moment& m) const {
         const auto n = light_.hole_rad_.size();
         const double turns = m.azimuth_rad / (2 * kPi);
         const auto before = static_cast<std::size_t>((turns - std::floor(turns)) * double(n)) % n;
-        return m.apparent_rad + limb() * m.semidiameter_rad <=
+        return m.apparent_rad + limb_ * m.semidiameter_rad <=
                std::max(light_.hole_rad_[before], light_.hole_rad_[(before + 1) % n]);
     }
 
     /// How far what must stand over the terrain does so [rad].
     double clearance(const Moment& m) const {
-        const double sign = limb();
-        if (sign == 0 || m.true_rad > kZenith_rad)
+        if (limb_ == 0 || m.true_rad > kZenith_rad)
             return m.apparent_rad - light_.horizon_.elevation_rad(m.azimuth_rad);
         // Along the limb: its upper half must be over the terrain anywhere, its lower half
         // everywhere.
@@ -118,28 +109,26 @@ class LightSearch {
         for (int i = -steps; i <= steps; ++i) {
             const double x = i / double(steps);
             const double up_rad = m.semidiameter_rad * std::sqrt(1 - x * x);
-            const double edge_rad = light_.refraction_.apparent_rad(m.true_rad + sign * up_rad);
+            const double edge_rad = light_.refraction_.apparent_rad(m.true_rad + limb_ * up_rad);
             const double over =
                 edge_rad - light_.skyline_.elevation_rad(m.azimuth_rad + x * aside_rad);
-            best = std::max(best, sign * over);
+            best = std::max(best, limb_ * over);
         }
-        return sign * best;
+        return limb_ * best;
     }
 
     /// What the table of the horizon says of all the time between two moments.
     enum class Verdict { Lit, Shaded, Unclear };
     Verdict verdict(const Moment& a, const Moment& b) const {
         const double way_rad = kFastest_rad_s * (b.t_s - a.t_s) / 2;
-        const double disc_rad = limb() == 0 ? 0 : std::max(a.semidiameter_rad, b.semidiameter_rad);
+        const double disc_rad = limb_ == 0 ? 0 : std::max(a.semidiameter_rad, b.semidiameter_rad);
         const double middle_rad = (a.apparent_rad + b.apparent_rad) / 2;
         const double high_rad = middle_rad + way_rad + disc_rad;
         const double low_rad = middle_rad - way_rad - disc_rad;
-        Skyline::Range range = light_.skyline_.range();
-        if (high_rad < kZenith_rad) {
-            const double turn_rad = std::remainder(b.azimuth_rad - a.azimuth_rad, 2 * kPi);
-            range = light_.skyline_.range(a.azimuth_rad + turn_rad / 2,
-                                          (way_rad + disc_rad) / std::cos(high_rad));
-        }
+        const double turn_rad = std::remainder(b.azimuth_rad - a.azimuth_rad, 2 * kPi);
+        const double wide_rad =
+            high_rad < kZenith_rad ? (way_rad + disc_rad) / std::cos(high_rad) : kPi;
+        const Skyline::Range range = light_.skyline_.range(a.azimuth_rad + turn_rad / 2, wide_rad);
         // Between two entries of the table the horizon may stand out of their range.
         const double slack_rad = 0.5 * (range.highest_rad - range.lowest_rad) + kArcsecond_rad;
         if (low_rad > range.highest_rad + slack_rad) return Verdict::Lit;
@@ -192,6 +181,7 @@ class LightSearch {
 
     const DirectLight& light_;
     const sun::PositionTable& table_;
+    const double limb_;  // 1 upper, -1 lower, 0 centre
     sun::Instant begin_;
     bool is_lit_ = false;
     std::vector<LitInterval> found_;
@@ -244,9 +234,8 @@ LightDay DirectLight::day(sun::Date date, const sun::Zone& zone,
     return days(date, date, zone, rotation).front();
 }
 
-std::vector<LitInterval> DirectLight::lit_within(const sun::TimeSpan& span,
-                                                 const sun::EarthRotation& rotation) const {
-    return lit_within(span, sun::PositionTable(span.begin, span.end, rotation));
+std::vector<LitInterval> DirectLight::lit_within(const sun::TimeSpan& span) const {
+    return lit_within(span, sun::PositionTable(span.begin, span.end));
 }
 
 std::vector<LitInterval> DirectLight::lit_within(const sun::TimeSpan& span,

@@ -35,12 +35,12 @@ struct LightEdge {
 
 struct LitInterval {
     LightEdge begin, end;
-    /// Stretches of it, to 5 s, when the sun stands in a hole of the DEM, lower than ground as high
+    /// Stretches of it, to 5 s, when the sun stands in a void of the DEM, lower than ground as high
     /// as the DEM's highest post would: whether it shines then is not known.
     std::vector<sun::TimeSpan> not_known = {};
     double length_s() const { return end.utc - begin.utc; }
     double not_known_s() const;
-    /// There is light only because of holes.
+    /// There is light only because of voids.
     bool all_unknown() const { return !not_known.empty() && not_known_s() >= length_s() - 1e-3; }
 };
 
@@ -50,14 +50,14 @@ struct LightDay {
     sun::TimeSpan span;            ///< the local day
     std::vector<LitInterval> lit;  ///< in order; empty: the sun does not reach the point
     double lit_s = 0;              ///< together
-    double not_known_s = 0;        ///< of it, for holes of the DEM
+    double not_known_s = 0;        ///< of it, for voids of the DEM
     sun::Day flat;                 ///< the same day over a flat horizon
 };
 
 /// When the sun shines on a point, over its own horizon.
 ///
 /// Every stretch is found that is wider than 0.02 degrees of azimuth (5 s), and shadows likewise:
-/// the horizon is tabulated that finely to look for them, and looked up exactly for their edges
+/// the horizon is tabulated that finely to find them, and computed exactly for their edges
 /// (upper and lower limb: in the table).
 ///
 /// Accuracy against an independent computation over 30 m SRTM: 1 s an edge, 2 s a day, 0.001 % of a
@@ -78,13 +78,11 @@ class DirectLight {
         const sun::EarthRotation& rotation = sun::EarthRotation::built_in()) const;
 
     /// The light within any span of time, such as from midnight to midnight by the sun.
-    std::vector<LitInterval> lit_within(
-        const sun::TimeSpan& span,
-        const sun::EarthRotation& rotation = sun::EarthRotation::built_in()) const;
+    std::vector<LitInterval> lit_within(const sun::TimeSpan& span) const;
 
     const TerrainHorizon& horizon() const { return horizon_; }
     const Skyline& skyline() const { return skyline_; }
-    /// Directions of the skyline, where a hole of the DEM may hide higher ground; empty: none.
+    /// Directions of the skyline, where a void of the DEM may hide higher ground; empty: none.
     const std::vector<bool>& holes() const { return holes_; }
     const sun::Observer& observer() const { return observer_; }
     const sun::Refraction& refraction() const { return refraction_; }

@@ -17,17 +17,17 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The sun turns by 0.0042 degrees a second, faster only where it stands high.
 constexpr double kStep_s = 30;
 
-double assumed_m(const TerrainHorizon& horizon, const std::optional<double>& highest_m) {
-    return highest_m.value_or(std::min<double>(horizon.posts().highest_m(), kHighestTerrain_m));
-}
-
 }  // namespace
+
+double highest_beyond_m(const dem::Posts& posts, const std::optional<double>& given_m) {
+    return given_m.value_or(std::min<double>(posts.highest_m(), kHighestTerrain_m));
+}
 
 Doubt doubt_of(const TerrainHorizon& horizon, const std::vector<HorizonPoint>& profile,
                const std::optional<double>& highest_m) {
     Doubt doubt;
-    doubt.highest_m = assumed_m(horizon, highest_m);
-    doubt.open = horizon.open_sectors(profile, doubt.highest_m);
+    doubt.highest_m = highest_beyond_m(horizon.posts(), highest_m);
+    doubt.open = open_sectors(horizon, profile, doubt.highest_m);
     std::vector<bool> holes;
     for (const HorizonPoint& point : profile)
         holes.push_back(point.hole);
@@ -39,7 +39,7 @@ Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
                const std::vector<HorizonPoint>& profile, const std::optional<double>& highest_m) {
     Doubt doubt;
     doubt.matters = Matters::Sun;
-    doubt.highest_m = assumed_m(light.horizon(), highest_m);
+    doubt.highest_m = highest_beyond_m(light.horizon().posts(), highest_m);
     const auto n = profile.size();
     std::vector<double> lowest_rad(n, kInfinity);
     std::vector<bool> holes(n, false);
@@ -80,7 +80,7 @@ Doubt doubt_of(const DirectLight& light, const std::vector<LightDay>& days,
                 walk(span.begin, span.end, [&](std::size_t k, double) { holes[k] = true; });
         }
     }
-    doubt.open = light.horizon().open_sectors(profile, doubt.highest_m, lowest_rad);
+    doubt.open = open_sectors(light.horizon(), profile, doubt.highest_m, lowest_rad);
     doubt.holes = sectors_of(holes);
     return doubt;
 }
@@ -89,10 +89,10 @@ Doubt doubt_of(const TerrainHorizon& horizon, const Alignments& found,
                const std::optional<double>& highest_m) {
     Doubt doubt;
     doubt.matters = Matters::Alignment;
-    doubt.highest_m = assumed_m(horizon, highest_m);
+    doubt.highest_m = highest_beyond_m(horizon.posts(), highest_m);
     const auto look = [&](double azimuth_rad, double elevation_rad, double until_m) {
-        if (const auto open = horizon.open_beyond(horizon.at(azimuth_rad), doubt.highest_m,
-                                                  elevation_rad, until_m))
+        if (const auto open = open_beyond(horizon, horizon.at(azimuth_rad), doubt.highest_m,
+                                          elevation_rad, until_m))
             doubt.open.push_back(*open);
     };
     if (found.sight.visible)

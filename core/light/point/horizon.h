@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,20 +10,10 @@
 #include "dem/heightfield.h"
 #include "dem/posts.h"
 #include "geo/geodetic.h"
+#include "light/point/apparent_elevation.h"
+#include "light/point/line_of_sight.h"
 
 namespace relevo::light {
-
-/// What distances and directions on the ground mean.
-enum class EarthModel {
-    /// The WGS 84 ellipsoid: lines of sight follow geodesics over the raster, azimuths are from
-    /// true north, and the ground falls away with the curvature that the ellipsoid has that way.
-    Ellipsoid,
-    /// The map as it is, for comparison with programs that take it so: straight lines, metres of a
-    /// projected CRS as metres of the ground, curvature of a sphere of 6371 km. True north is where
-    /// it is at the viewpoint.
-    MapOnSphere,
-    MapOnPlane,  ///< likewise, without curvature or refraction
-};
 
 struct HorizonOptions {
     /// 0 to 10 000 m above the ground, which the sun's light is computed for.
@@ -33,18 +22,18 @@ struct HorizonOptions {
     /// Terrestrial refraction: the curvature of a line of sight in units of the Earth's. 0.13 is
     /// C. F. Gauss's mean, 0.25 and more is common over cold or wet ground.
     double refraction = 0.13;
-    EarthModel earth = EarthModel::Ellipsoid;
-    /// Beyond the DEM lies a smooth Earth at this height [m]; not given: in each direction as high
-    /// as the DEM's edge there (edge_ground.h); minus infinity: nothing at all.
-    std::optional<double> outside_height_m;
-    /// The horizon is nowhere lower than this; 0 for the level one that solar tools know.
-    double least_elevation_rad = -1.5707963267948966;
+    /// For comparison with programs that compute on the map: straight lines in a projected CRS,
+    /// its metres as metres of the ground, over a sphere of this radius. True north is where it is
+    /// at the viewpoint. None: geodesics over the WGS 84 ellipsoid and its curvature.
+    std::optional<double> map_radius_m;
     /// Few directions will be asked for: each line of sight is followed by itself, as exactly as
     /// those that are prepared for all directions together. A viewpoint with one direction takes a
-    /// thirtieth of the time, 34 us (tests/light/bench_light.cpp, horizon_of_one_direction). On the
-    /// ellipsoid alone.
+    /// thirtieth of the time, 34 us (tests/light/bench_light.cpp, horizon_of_one_direction).
     bool few_directions = false;
 };
+
+/// Of the Earth: Mount Everest [m].
+inline constexpr double kHighestTerrain_m = 8850;
 
 /// The horizon in one direction.
 struct HorizonPoint {
@@ -53,33 +42,17 @@ struct HorizonPoint {
     /// To the blocking point, over the ellipsoid; NaN where the DEM blocks nothing and the horizon
     /// is that of the smooth Earth beyond it.
     double distance_m = 0;
-    glm::dvec2 post{0};   ///< column and row of the blocking point; NaN likewise
-    double height_m = 0;  ///< of the blocking point; NaN likewise
-    /// How far the DEM was looked at this way: to its edge, to a void that reaches it, or to where
+    glm::dvec2 post{0};   ///< column and row of the blocking point; NaN without
+    double height_m = 0;  ///< of the blocking point; NaN without
+    /// How far the DEM was followed this way: to its edge, to a void that reaches it, or to where
     /// nothing in it could be seen. Ground beyond such a void is in the horizon all the same.
     double reach_m = 0;
-    /// A hole within the DEM lies where terrain as high as its highest post would stand over this
+    /// A void within the DEM lies where terrain as high as its highest post would stand over this
     /// horizon.
     bool hole = false;
-    /// How high such terrain would stand in the nearest hole; -pi/2 without one.
+    /// How high such terrain would stand in the nearest void; -pi/2 without one.
     double hole_rad = -1.5707963267948966;
 };
-
-/// Directions that follow each other.
-struct Sector {
-    double from_azimuth_rad = 0;  ///< clockwise to
-    double to_azimuth_rad = 0;    ///< the last one; of directions on a profile
-};
-
-/// Directions in which the DEM is too small for its horizon to be sure.
-struct OpenSector : Sector {
-    double reach_m = 0;   ///< the least that the DEM goes there
-    double needed_m = 0;  ///< as far as it would have to go
-    double least_m = 0;   ///< terrain beyond it that is no higher changes nothing
-};
-
-/// Of the Earth: Mount Everest [m].
-inline constexpr double kHighestTerrain_m = 8850;
 
 /// Another point as seen from a viewpoint.
 struct Sight {
@@ -88,20 +61,19 @@ struct Sight {
     double distance_m = 0;
     bool visible = false;      ///< no ground of the DEM stands before it
     double hidden_by_rad = 0;  ///< elevation of that ground over the point; 0 where visible
-    /// It is seen through a hole of the DEM, where terrain as high as its highest post would hide
+    /// It is seen through a void of the DEM, where terrain as high as its highest post would hide
     /// it.
     bool hole = false;
 };
 
 class Fan;
-struct TracePoint;
 
 /// What of the sky the terrain hides from one point.
 ///
 /// The horizon in a direction is the highest of all crossings of the line of sight with the rows
 /// and columns of the grid, where heights are linear from post to post: every post in the way
-/// counts, and none is looked at twice. Blocks of posts that cannot stand over what was found so
-/// far are skipped; of a DEM that memory does not hold, the others are read as they come. Holes are
+/// counts, and none is read twice. Blocks of posts that cannot stand over what was found so
+/// far are skipped; of a DEM that memory does not hold, the others are read as they come. Voids are
 /// passed over and reported. A value that refers to the posts it was made from; safe on several
 /// threads at once.
 ///
@@ -112,7 +84,7 @@ class TerrainHorizon {
   public:
     /// @param posts  outlives this
     /// @param place  its height plays no part
-    /// @throws Error (BadInput) where the point is outside of the DEM or in a hole of it, where
+    /// @throws Error (BadInput) where the point is outside of the DEM or in a void of it, where
     ///     the ground is at a height that has no air, where the eye is under the ground or more
     ///     than 10 km above it, for a refraction that no air has, for a map without metres; here
     ///     and later where the file is damaged that posts are read from
@@ -148,27 +120,18 @@ class TerrainHorizon {
     /// Where the blocking point is, with its height; latitude NaN where there is none.
     geo::Geodetic place_of(const HorizonPoint& point) const;
 
-    /// Directions in which terrain as high as `highest_m` could stand over the horizon beyond the
-    /// DEM, and how far it could: a DEM that reaches that far would settle it.
-    /// @param profile    of this horizon
-    /// @param highest_m  above the DEM's zero
-    /// @param matters_rad  for each direction of the profile, what must be hidden to matter, where
-    ///     that stands over the horizon: the lowest sun; infinity: nothing. Empty: the horizon
-    std::vector<OpenSector> open_sectors(const std::vector<HorizonPoint>& profile, double highest_m,
-                                         const std::vector<double>& matters_rad = {}) const;
+    /// How far the DEM goes towards a point of the horizon, also where the line of sight was not
+    /// followed to the edge; kFarthestSeen_m at most.
+    double edge_m(const HorizonPoint& point) const;
+    static constexpr double kFarthestSeen_m = 1e6;  ///< nothing on Earth is seen from farther
 
-    /// The same in one direction, that of `point`.
-    /// @param over_rad  what must be hidden to matter
-    /// @param until_m   terrain from there on does not matter
-    /// @return none where the DEM reaches far enough
-    std::optional<OpenSector> open_beyond(
-        const HorizonPoint& point, double highest_m, double over_rad,
-        double until_m = std::numeric_limits<double>::infinity()) const;
+    /// Apparent elevations in a direction.
+    ApparentElevation towards(double azimuth_rad) const;
 
     /// Another point, by its height above the DEM's zero. The DEM within one and a half posts of
     /// it does not hide it.
     /// @throws Error (BadInput) for a height that is not within -12 to 20 km, a point farther away
-    ///     than 1000 km
+    ///     than kFarthestSeen_m
     Sight sight(const geo::Geodetic& target) const;
 
     /// Azimuth from the map's north of the direction that is true north here, to turn map azimuths
@@ -179,14 +142,11 @@ class TerrainHorizon {
     std::string description() const;
 
   private:
-    struct Scan;
-    void look(double azimuth_rad, Scan& scan, std::vector<TracePoint>& line) const;
-    double ground_beyond_rad(double azimuth_rad, const Scan& scan,
+    HighestCrossing look(double azimuth_rad, double until_m, std::vector<TracePoint>& line) const;
+    double ground_beyond_rad(double azimuth_rad, const HighestCrossing& highest,
                              const std::vector<TracePoint>& line) const;
-    template <typename Body>
-    void with_ground(double azimuth_rad, const Body& body) const;
-    double hole_rad(double azimuth_rad, const Scan& scan) const;
-    double edge_m(const HorizonPoint& point) const;
+    double hole_rad(double azimuth_rad, const HighestCrossing& highest) const;
+    void check_eye() const;
 
     TerrainHorizon(std::unique_ptr<const dem::Posts> owned, const geo::Geodetic& place,
                    const HorizonOptions& options);
@@ -200,21 +160,12 @@ class TerrainHorizon {
     std::optional<dem::Posts> unrolled_;
     int first_column_ = 0;  // of the given ones, that its first one is
     const dem::Posts* posts_;
-    std::unique_ptr<const Fan> fan_;  // none on maps
+    std::unique_ptr<const Fan> fan_;  // none on a map
     HorizonOptions options_;
     geo::Geodetic place_;
     glm::dvec2 post_{0};
-    double ground_m_ = 0, eye_m_ = 0;
+    double eye_m_ = 0;
     double true_north_on_map_rad_ = 0;
-    double map_unit_m_ = 1;
 };
-
-/// Directions of a profile for which something holds, in order; the last may go through north.
-std::vector<Sector> sectors_of(const std::vector<bool>& holds);
-
-/// The highest post within a radius of a place, with its height: the summit that was meant. The
-/// place itself, with its interpolated height, where no post is near enough or the radius is 0.
-/// @throws Error (BadInput) where the place is outside of the DEM or in a hole of it
-geo::Geodetic summit_near(const dem::Posts& posts, const geo::Geodetic& place, double radius_m);
 
 }  // namespace relevo::light

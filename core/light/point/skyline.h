@@ -10,7 +10,7 @@ class Skyline {
     /// @param elevation_rad  from north on, clockwise, equally spaced; at least one
     explicit Skyline(std::vector<double> elevation_rad);
 
-    int count() const { return static_cast<int>(levels_.front().size()); }
+    int count() const { return static_cast<int>(elevation_rad_.size()); }
     double step_rad() const;
 
     /// Linear between the tabulated directions.
@@ -22,11 +22,9 @@ class Skyline {
     /// Of all directions within a stretch, and the next one outside of it at each end.
     /// @param half_width_rad  to both sides of the azimuth; half a turn or more: all round
     Range range(double azimuth_rad, double half_width_rad) const;
-    Range range() const { return levels_.back().front(); }
 
   private:
-    Range range_of(int first, int last) const;  // indices, inclusive
-    std::vector<std::vector<Range>> levels_;    // each half as many as the one before
+    std::vector<double> elevation_rad_;
 };
 
 }  // namespace relevo::light
