@@ -115,10 +115,9 @@ def main():
     print("// historic_deltat.data (before 1962).")
     print()
     print(f"// UT1-TAI [0.1 ms] and the pole's x, y [0.1 mas], every {STEP_D} days from {date_of(first)} to"
-          f" {date_of(nodes[-1])}.")
+          f" {date_of(nodes[-1])}; predicted after {date_of(last_measured)}.")
     print(f"constexpr int kFirstNode_mjd = {first};")
     print(f"constexpr int kNodeStep_d = {STEP_D};")
-    print(f"constexpr int kLastMeasured_mjd = {last_measured};  // {date_of(last_measured)}; predicted after that")
     print("constexpr int kEarthRotation[][3] = {")
     print_rows([f"{{{days[mjd][0] * 1e4:.0f}, {days[mjd][1] * 1e4:.0f}, {days[mjd][2] * 1e4:.0f}}}" for mjd in nodes], 5)
     print("};")

@@ -112,7 +112,7 @@ class Timings {
         }
         const double processor_ms =
             1e3 * static_cast<double>(std::clock() - processor_began) / CLOCKS_PER_SEC;
-        std::sort(frames_ms.begin(), frames_ms.end());
+        std::ranges::sort(frames_ms);
         return {{"count", frames_ms.size()},
                 {"min_ms", frames_ms.front()},
                 {"median_ms", frames_ms[frames_ms.size() / 2]},

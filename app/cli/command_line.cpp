@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,6 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -66,12 +66,11 @@ std::string check_verb(const CLI::App& app, std::span<const std::string> words) 
 /// `relevo DEM...` and `relevo` alone open the window: where no verb is named but what may be a
 /// file is, or nothing at all, the verb is put in.
 std::vector<std::string> with_verb(const CLI::App& app, std::vector<std::string> words) {
-    const auto first = std::find_if_not(words.begin(), words.end(), is_global_flag);
+    const auto first = std::ranges::find_if_not(words, is_global_flag);
     const auto names_a_file = [&](const std::string& word) {
         const std::vector<const CLI::App*> verbs = app.get_subcommands({});
-        const bool is_verb = std::any_of(verbs.begin(), verbs.end(), [&](const CLI::App* verb) {
-            return verb->get_name() == word;
-        });
+        const bool is_verb = std::ranges::any_of(
+            verbs, [&](const CLI::App* verb) { return verb->get_name() == word; });
         std::error_code ignored;
         return !word.starts_with('-') && !is_verb &&
                (word.find_first_of("./:") != std::string::npos ||
@@ -119,7 +118,7 @@ std::string value_error(const CLI::App* verb, const CLI::Option* option, const s
         return fmt::format("write -{} {}, without the =", option->get_snames().front(),
                            value.substr(1));
     const std::vector<std::string> names = option_names(verb);
-    if (value.starts_with('-') && std::find(names.begin(), names.end(), value) != names.end())
+    if (value.starts_with('-') && contains(names, value))
         return fmt::format("expected a value but got the option {}", value);
     return {};
 }
@@ -146,16 +145,15 @@ std::optional<std::string> with_hyphens(std::string_view word) {
     constexpr std::array<std::string_view, 2> kDashes = {"\u2013", "\u2014"};
     bool has_dash = false;
     while (true) {
-        const auto dash = std::find_if(kDashes.begin(), kDashes.end(),
-                                       [&](std::string_view one) { return word.starts_with(one); });
+        const auto dash = std::ranges::find_if(
+            kDashes, [&](std::string_view one) { return word.starts_with(one); });
         if (dash == kDashes.end() && !word.starts_with('-')) break;
         has_dash = has_dash || dash != kDashes.end();
         word.remove_prefix(dash != kDashes.end() ? dash->size() : 1);
     }
     const std::string_view name = word.substr(0, word.find('='));
-    const bool is_name =
-        !name.empty() && is_letter(name.front()) &&
-        std::all_of(name.begin(), name.end(), [](char c) { return is_letter(c) || c == '-'; });
+    const bool is_name = !name.empty() && is_letter(name.front()) &&
+                         std::ranges::all_of(name, [](char c) { return is_letter(c) || c == '-'; });
     if (!has_dash || !is_name) return std::nullopt;
     return fmt::format("{}{}", name.size() == 1 ? "-" : "--", word);
 }
@@ -203,7 +201,7 @@ std::string unknown_words(const CLI::App& app, const Named& named,
     std::vector<std::string> owners;
     add_owners(&app, app.get_name(), option, owners);
     constexpr std::size_t kMostNamed = 3;
-    if (std::find(owners.begin(), owners.end(), named.command) != owners.end())
+    if (contains(owners, named.command))
         return fmt::format("{}: write it after {}", option, named.command);
     if (!owners.empty())
         return fmt::format("{}: not an option of {}, but of {}{}", option, named.command,
@@ -246,8 +244,7 @@ std::string text_of(const CLI::App& app, const Named& named, const CLI::ParseErr
         return unknown_words(app, named, extras);
     if (no_verb) return "no command given";
     // A required option may be misspelt.
-    if (const auto misspelt = std::find_if(extras.begin(), extras.end(), is_option);
-        misspelt != extras.end())
+    if (const auto misspelt = std::ranges::find_if(extras, is_option); misspelt != extras.end())
         return unknown_words(app, named, {*misspelt});
     if (const std::size_t end = what.rfind(" is required"); end != what.npos)
         return fmt::format("{} is missing; write {}", what.substr(0, end), usage_of(named));
@@ -287,9 +284,9 @@ void add_verbs(CLI::App& app) {
 
 void parse(CLI::App& app, std::vector<std::string> words) {
     words = with_verb(app, std::move(words));
-    const auto first = std::find_if_not(words.begin(), words.end(), is_global_flag);
+    const auto first = std::ranges::find_if_not(words, is_global_flag);
     check_words(words, app.get_name() + check_verb(app, {first, words.end()}));
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    std::ranges::reverse(words);  // as CLI11 takes them
     try {
         app.parse(std::move(words));
     } catch (const CLI::ParseError& error) {

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <functional>
-#include <string>
-
 #include <CLI/CLI.hpp>
 
 /// The verbs of the command line, a file each. A verb adds its options to `app` and returns

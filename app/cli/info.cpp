@@ -10,6 +10,7 @@
 #include "base/units.h"
 #include "cli/commands.h"
 #include "cli/shared.h"
+#include "dem/load.h"
 #include "dem/pyramid.h"
 #include "dem/summary.h"
 #include "dem/water.h"

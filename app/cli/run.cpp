@@ -196,7 +196,7 @@ class Run {
         for (const scene::Shot& shot : shots_) {
             std::vector<fs::path> names{shot.output};
             if (has_sidecar(shot)) names.push_back(session::sidecar_of(shot.output));
-            const auto taken = std::find_if(names.begin(), names.end(), [](const fs::path& name) {
+            const auto taken = std::ranges::find_if(names, [](const fs::path& name) {
                 std::error_code missing;
                 return fs::exists(fs::symlink_status(name, missing));
             });
@@ -284,7 +284,7 @@ class Run {
     void tell_of_sidecars() const {
         if (wants_sidecar()) return;
         const auto beside = [&](const scene::Shot& shot) { return has_sidecar(shot); };
-        const auto first = std::find_if(shots_.begin(), shots_.end(), beside);
+        const auto first = std::ranges::find_if(shots_, beside);
         if (first == shots_.end()) return;
         const auto more = std::count_if(std::next(first), shots_.end(), beside);
         log::warning(session::says_where_scene_is(first->output) +

@@ -12,7 +12,6 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "geo/geodetic.h"
-#include "sun/event_time.h"
 
 namespace relevo::cli {
 

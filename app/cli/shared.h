@@ -1,8 +1,6 @@
 #pragma once
 
-#include <functional>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -11,8 +9,6 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json_fwd.hpp>
 
-#include "base/files_in_use.h"
-#include "dem/load.h"
 #include "scene/scene.h"
 #include "session/words.h"
 #include "sun/position.h"

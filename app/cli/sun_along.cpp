@@ -8,7 +8,6 @@
 #include "cli/sun.h"
 #include "cli/sun_options.h"
 #include "dem/places.h"
-#include "geo/format.h"
 #include "light/point/light_along.h"
 
 namespace relevo::cli {
@@ -149,7 +148,7 @@ bool has_time(const dem::NamedPlace& place) {
 
 /// What a track without times of its own needs, before any work is done. @throws Error (Usage)
 void check_times(const Arguments& arguments, const dem::NamedLine& line, const std::string& path) {
-    if (std::any_of(line.places.begin(), line.places.end(), has_time)) return;
+    if (std::ranges::any_of(line.places, has_time)) return;
     if (arguments.start.empty())
         bad_usage(
             fmt::format("--start: missing, as {} has no times; pass --start "

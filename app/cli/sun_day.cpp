@@ -224,7 +224,7 @@ std::string spans_text(const std::vector<sun::TimeSpan>& spans, const sun::Zone&
 
 std::string word_of(EventKind kind) {
     std::string word(sun::name_of(kind));
-    std::replace(word.begin(), word.end(), '_', ' ');
+    std::ranges::replace(word, '_', ' ');
     return word;
 }
 

@@ -117,9 +117,8 @@ void print_text(const light::TerrainHorizon& horizon,
     };
     for (int k = 0; k < 16; ++k)
         line(22.5 * k);
-    const auto highest = std::max_element(
-        profile.begin(), profile.end(),
-        [](const auto& a, const auto& b) { return a.elevation_rad < b.elevation_rad; });
+    const auto highest = std::ranges::max_element(
+        profile, [](const auto& a, const auto& b) { return a.elevation_rad < b.elevation_rad; });
     fmt::print("\nhighest\n");
     line(degrees(highest->azimuth_rad));
     fmt::print("\n{}\n", horizon.description());

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -76,7 +77,7 @@ Array2d<float> values_of(const std::string& band, light::SunHours& hours) {
 }
 
 bool has_spells(const std::vector<std::string>& bands) {
-    return std::any_of(bands.begin(), bands.end(), [](const std::string& band) {
+    return std::ranges::any_of(bands, [](const std::string& band) {
         return band == "first" || band == "last" || band == "spells";
     });
 }
@@ -88,7 +89,7 @@ sun::TimeSpan time_of(const DaysArguments::Days& days) {
 constexpr const char* kCommas = "separate bands with commas and no blanks: hours,first";
 
 bool is_band(const std::string& word) {
-    return std::find(kBands.begin(), kBands.end(), word) != kBands.end();
+    return contains(kBands, word);
 }
 
 /// What is wrong with a band; empty: nothing.
@@ -109,8 +110,7 @@ void check(const Arguments& arguments) {
         if (std::find(bands.begin(), bands.begin() + static_cast<std::ptrdiff_t>(i), bands[i]) !=
             bands.begin() + static_cast<std::ptrdiff_t>(i))
             bad_usage(fmt::format("--bands: {} is named twice", bands[i]));
-    if ((arguments.linke || arguments.albedo) &&
-        std::none_of(bands.begin(), bands.end(), is_energy))
+    if ((arguments.linke || arguments.albedo) && std::ranges::none_of(bands, is_energy))
         bad_usage(fmt::format("{}: needs --bands global, beam, diffuse or reflected",
                               arguments.linke ? "--linke" : "--albedo"));
     const auto [begin, end] = time_of(arguments.days.parse({}, false));
@@ -181,7 +181,7 @@ void run(const Arguments& arguments) {
     options.air = [&](const geo::Geodetic& place) { return arguments.refraction.at(place); };
     options.step_s = step_s_of(arguments.step.value_or("3min"), 1, 3600);
     options.spells = has_spells(arguments.bands);
-    if (std::any_of(arguments.bands.begin(), arguments.bands.end(), is_energy))
+    if (std::ranges::any_of(arguments.bands, is_energy))
         options.irradiation = {.linke = arguments.linke.value_or(3),
                                .albedo = arguments.albedo.value_or(0.2),
                                .sky_directions = 36};

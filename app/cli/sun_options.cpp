@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_file.h"
@@ -300,7 +301,7 @@ std::string OutputArguments::ending() const {
 
 OutputFile* OutputArguments::open(FilesInUse& files, const DemArguments& dem) const {
     if (path.empty()) return nullptr;
-    if (std::find(endings.begin(), endings.end(), ending()) == endings.end())
+    if (!contains(endings, ending()))
         bad_usage(
             fmt::format("-o: {}: no format that this command writes, expected a name that "
                         "ends in {}",

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/files_in_use.h"
 #include "base/held_notices.h"
 #include "chart/drawing.h"
 #include "cli/shared.h"

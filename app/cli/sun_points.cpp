@@ -99,7 +99,7 @@ Record record_of(const PointsJob& job, const dem::NamedPlace& point, const std::
     } catch (const Error& error) {
         if (error.code() != ErrorCode::BadInput) throw;
         record.error = error.what();
-        const auto columns = std::count(job.columns.begin(), job.columns.end(), ',') + 1;
+        const auto columns = std::ranges::count(job.columns, ',') + 1;
         record.csv = head + "," + std::string(static_cast<std::size_t>(columns), ',') +
                      csv_field(record.error) + "\n";
         json["error"] = record.error;
@@ -192,12 +192,6 @@ void deliver_points(const PointsArguments& arguments, const std::vector<dem::Nam
     if (failed > 0)
         bad_input(fmt::format("--points: {}: {} of {} points have no figures; the first, {}",
                               arguments.path, failed, points.size(), first_error));
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-    std::vector<std::string> lines = split(text, '\n');
-    if (!lines.empty() && lines.back().empty()) lines.pop_back();
-    return lines;
 }
 
 }  // namespace relevo::cli

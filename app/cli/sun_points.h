@@ -56,7 +56,4 @@ void deliver_points(const PointsArguments& arguments, const std::vector<dem::Nam
                     const PointsJob& job, const OutputArguments& output, OutputFile* file,
                     bool zone_by_place);
 
-/// Lines without their ends.
-std::vector<std::string> lines_of(const std::string& text);
-
 }  // namespace relevo::cli

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "base/units.h"
 #include "cli/sun.h"
 #include "cli/sun_rasters.h"

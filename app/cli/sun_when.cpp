@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "base/error.h"
 #include "base/log.h"
 #include "base/units.h"
 #include "cli/sun.h"
@@ -143,8 +142,8 @@ light::Alignments find(const Arguments& arguments, const light::TerrainHorizon& 
 }
 
 bool through_hole(const light::Alignments& found) {
-    return found.sight.hole || std::any_of(found.passages.begin(), found.passages.end(),
-                                           [](const light::Alignment& p) { return p.hole; });
+    return found.sight.hole ||
+           std::ranges::any_of(found.passages, [](const light::Alignment& p) { return p.hole; });
 }
 
 void run_points(const Arguments& arguments, FilesInUse& files, OutputFile* file) {

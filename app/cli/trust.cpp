@@ -1,11 +1,11 @@
 #include "cli/trust.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/paths.h"
@@ -16,10 +16,6 @@
 
 namespace relevo::cli {
 namespace {
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 /// One name for a folder, whichever way it is named.
 std::string absolute(const std::string& folder) {

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "base/units.h"
 #include "sun/position.h"
 #include "viewer/image_texture.h"
 

@@ -19,7 +19,7 @@ bool is_of(const std::string& address, const std::string& of) {
 
 /// As one word of a POSIX shell.
 std::string quoted(const std::string& word) {
-    const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+    const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
         return std::isalnum(c) ||
                std::string_view("-_./,:=+@%").find(static_cast<char>(c)) != std::string_view::npos;
     });

@@ -5,6 +5,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "base/contains.h"
 #include "base/text.h"
 #include "shader/params.h"
 #include "viewer/state.h"
@@ -17,7 +18,7 @@ using shader::ParamRole;
 using shader::ParamType;
 using shader::ParamValue;
 
-bool contains(const std::string& text, const std::string& word) {
+bool mentions(const std::string& text, const std::string& word) {
     return lower(text).find(lower(word)) != std::string::npos;
 }
 
@@ -118,15 +119,13 @@ std::string lack_of(const State& state, const effect::Effect& effect) {
     for (const std::string& notice : state.effects->selection.notices)
         if (notice.starts_with(off)) return fmt::format("({})", notice.substr(off.size()));
     const effect::Switches& asked = state.document.scene.effects.switches;
-    const bool is_off =
-        std::find(asked.disable.begin(), asked.disable.end(), effect.id()) != asked.disable.end();
+    const bool is_off = contains(asked.disable, effect.id());
     if (!effect.manifest.enabled_by_default || !state.ground_words || asked.only || is_off)
         return {};
     for (const std::string& word : effect.manifest.default_where)
-        if (std::find(state.ground_words->begin(), state.ground_words->end(), word) ==
-            state.ground_words->end()) {
+        if (!contains(*state.ground_words, word)) {
             std::string words = word;
-            std::replace(words.begin(), words.end(), '_', ' ');
+            std::ranges::replace(words, '_', ' ');
             return fmt::format("(the DEM has no {})", words);
         }
     return {};
@@ -158,12 +157,12 @@ void effect_row(State& state, const effect::Effect& effect) {
 
 bool is_found(const effect::Effect& effect, const std::string& word) {
     if (word.empty() ||
-        contains(effect.id() + " " + effect.manifest.name + " " + effect.manifest.description,
+        mentions(effect.id() + " " + effect.manifest.name + " " + effect.manifest.description,
                  word))
         return true;
     const std::vector<Param> params = effect.params();
-    return std::any_of(params.begin(), params.end(), [&](const Param& param) {
-        return contains(param.address + " " + param.label, word);
+    return std::ranges::any_of(params, [&](const Param& param) {
+        return mentions(param.address + " " + param.label, word);
     });
 }
 

@@ -19,25 +19,11 @@ class LatestWork {
     using Serves = bool (*)(const Wanted& of, const Wanted& now);
 
     /// @param on_change  called on that thread whenever there is a new answer
-    /// @param work_out   likewise with each wish, and with null where nothing is wanted any more.
-    ///                   What it uses outlives this.
-    LatestWork(std::function<void()> on_change, Serves serves,
-               std::function<void(const Wanted*)> work_out)
-        : on_change_(std::move(on_change)),
-          serves_(serves),
-          work_out_(std::move(work_out)),
-          thread_([this] { run(); }) {}
+    LatestWork(std::function<void()> on_change, Serves serves)
+        : on_change_(std::move(on_change)), serves_(serves), thread_([this] { run(); }) {}
     LatestWork(const LatestWork&) = delete;
     LatestWork& operator=(const LatestWork&) = delete;
-    /// Waits for the step in work.
-    ~LatestWork() {
-        {
-            const std::lock_guard lock(mutex_);
-            ends_ = true;
-        }
-        changed_.notify_one();
-        thread_.join();
-    }
+    virtual ~LatestWork() { end(); }
 
     void want(Wanted wanted) {
         {
@@ -49,6 +35,7 @@ class LatestWork {
         }
         changed_.notify_one();
     }
+    /// Nothing any more.
     void forget() {
         {
             const std::lock_guard lock(mutex_);
@@ -58,6 +45,7 @@ class LatestWork {
         }
         changed_.notify_one();
     }
+    /// What there is of what was wanted last; null: nothing yet.
     std::shared_ptr<const Answer> answer() const {
         const std::lock_guard lock(mutex_);
         return answer_;
@@ -68,7 +56,19 @@ class LatestWork {
         return is_done_;
     }
 
-    // ---- for work_out
+  protected:
+    /// Called on that thread with each wish, and with null where nothing is wanted any more.
+    virtual void work_out(const Wanted* wanted) = 0;
+    /// Waits for the step in work. A destructor calls it before what work_out() uses is gone.
+    void end() {
+        {
+            const std::lock_guard lock(mutex_);
+            ends_ = true;
+        }
+        changed_.notify_one();
+        if (thread_.joinable()) thread_.join();
+    }
+    void tell_of_change() const { on_change_(); }
 
     /// Whether something else is wanted by now.
     bool is_given_up() const {
@@ -104,14 +104,13 @@ class LatestWork {
             is_new_ = false;
             const std::optional<Wanted> now = wanted_;
             lock.unlock();
-            work_out_(now ? &*now : nullptr);
+            work_out(now ? &*now : nullptr);
             lock.lock();
         }
     }
 
     std::function<void()> on_change_;
     Serves serves_;
-    std::function<void(const Wanted*)> work_out_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::optional<Wanted> wanted_;

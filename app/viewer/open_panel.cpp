@@ -23,7 +23,7 @@ std::vector<std::string> folders_in(const fs::path& folder) {
         const std::string name = it->path().filename().string();
         if (!name.starts_with('.') && it->is_directory(ignored)) names.push_back(name);
     }
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     return names;
 }
 

@@ -11,7 +11,6 @@
 #include "light/point/doubt.h"
 #include "light/point/horizon.h"
 #include "session/words.h"
-#include "viewer/latest_work.h"
 
 namespace relevo::viewer {
 namespace {
@@ -57,8 +56,10 @@ void add_dark_days(const light::Carpet& carpet, YearPicture& to) {
     }
 }
 
+}  // namespace
+
 /// A point's light, and what it was made from: kept for the next day, size or year.
-class Worker {
+class PointWork::Worker {
   public:
     explicit Worker(const PointWanted& wanted, const Worker* before) : wanted_(wanted) {
         if (before && before->wanted_.dem == wanted.dem) posts_ = before->posts_;
@@ -154,11 +155,9 @@ class Worker {
     std::optional<light::Carpet> carpet_;
 };
 
-}  // namespace
-
 bool PointLight::is_lit(sun::Instant utc) const {
-    return std::any_of(lit.begin(), lit.end(),
-                       [&](const LitSpan& span) { return span.begin <= utc && utc < span.end; });
+    return std::ranges::any_of(
+        lit, [&](const LitSpan& span) { return span.begin <= utc && utc < span.end; });
 }
 
 std::optional<sun::Instant> PointLight::next_change(sun::Instant utc) const {
@@ -169,66 +168,39 @@ std::optional<sun::Instant> PointLight::next_change(sun::Instant utc) const {
     return std::nullopt;
 }
 
-struct PointWork::Impl {
-    std::unique_ptr<Worker> worker;  // the thread's own
-    LatestWork<PointWanted, PointLight> work;
-
-    explicit Impl(std::function<void()> on_change)
-        : work(std::move(on_change), &same_point, [this](const PointWanted* now) {
-              if (now)
-                  work_out(*now);
-              else
-                  worker.reset();  // and with it the posts of a DEM that may be gone
-          }) {}
-
-    void publish(const PointLight& light, bool done) {
-        work.publish(std::make_shared<const PointLight>(light), done);
-    }
-
-    void work_out(const PointWanted& now) {
-        PointLight light;
-        light.of = now;
-        try {
-            if (worker && worker->serves(now))
-                worker->want(now);
-            else
-                worker = std::make_unique<Worker>(now, worker.get());
-            if (work.is_given_up()) return;
-            const bool drawn = now.chart_px.x > 0 && now.chart_px.y > 0;
-            worker->add_day(light);
-            publish(light, !drawn);
-            if (!drawn || work.is_given_up()) return;
-            light.horizon = worker->horizon_picture();
-            publish(light, false);
-            if (work.is_given_up()) return;
-            light.year = worker->year_picture();
-            publish(light, true);
-        } catch (const std::exception& error) {
-            light.error = error.what();
-            publish(light, true);
-        }
-    }
-};
-
 PointWork::PointWork(std::function<void()> on_change)
-    : impl_(std::make_unique<Impl>(std::move(on_change))) {}
+    : LatestWork(std::move(on_change), &same_point) {}
 
-PointWork::~PointWork() = default;
-
-void PointWork::want(PointWanted wanted) {
-    impl_->work.want(std::move(wanted));
+PointWork::~PointWork() {
+    end();
 }
 
-void PointWork::forget() {
-    impl_->work.forget();
-}
-
-std::shared_ptr<const PointLight> PointWork::answer() const {
-    return impl_->work.answer();
-}
-
-bool PointWork::is_done() const {
-    return impl_->work.is_done();
+void PointWork::work_out(const PointWanted* wanted) {
+    if (!wanted) return worker_.reset();  // and with it the posts of a DEM that may be gone
+    PointLight light;
+    light.of = *wanted;
+    const auto publish_it = [&](bool done) {
+        publish(std::make_shared<const PointLight>(light), done);
+    };
+    try {
+        if (worker_ && worker_->serves(*wanted))
+            worker_->want(*wanted);
+        else
+            worker_ = std::make_unique<Worker>(*wanted, worker_.get());
+        if (is_given_up()) return;
+        const bool drawn = wanted->chart_px.x > 0 && wanted->chart_px.y > 0;
+        worker_->add_day(light);
+        publish_it(!drawn);
+        if (!drawn || is_given_up()) return;
+        light.horizon = worker_->horizon_picture();
+        publish_it(false);
+        if (is_given_up()) return;
+        light.year = worker_->year_picture();
+        publish_it(true);
+    } catch (const std::exception& error) {
+        light.error = error.what();
+        publish_it(true);
+    }
 }
 
 }  // namespace relevo::viewer

@@ -14,6 +14,7 @@
 #include "scene/scene.h"
 #include "session/session.h"
 #include "sun/zone.h"
+#include "viewer/latest_work.h"
 
 namespace relevo::viewer {
 
@@ -73,26 +74,18 @@ struct PointLight {
 
 /// Works it out on a thread of its own, from every post of the DEM: first the day, then the
 /// drawings. What was begun for another point is given up; what the next answer can use is kept.
-class PointWork {
+class PointWork : public LatestWork<PointWanted, PointLight> {
   public:
     /// @param on_change  called on that thread whenever there is more to be had
     explicit PointWork(std::function<void()> on_change);
-    PointWork(const PointWork&) = delete;
-    PointWork& operator=(const PointWork&) = delete;
     /// Waits for the step in work.
-    ~PointWork();
-
-    void want(PointWanted wanted);
-    /// Nothing any more.
-    void forget();
-    /// What there is of what was wanted last; null: nothing yet.
-    std::shared_ptr<const PointLight> answer() const;
-    /// Whether all that was wanted is there.
-    bool is_done() const;
+    ~PointWork() override;
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    class Worker;
+    void work_out(const PointWanted* wanted) override;
+
+    std::unique_ptr<Worker> worker_;  // the thread's own
 };
 
 }  // namespace relevo::viewer

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "base/units.h"
 #include "viewer/state.h"
 
 namespace relevo::viewer {

@@ -14,7 +14,6 @@
 #include <thread>
 #include <utility>
 
-#include "base/error.h"
 #include "gl/texture.h"
 #include "session/active_effects.h"
 #include "viewer/navigation.h"
@@ -89,6 +88,17 @@ struct SceneThread::Impl {
     std::future<void> reading;                      // ends before what it writes to
 
     std::thread thread;
+
+    /// Changes what is wanted, and wakes the thread.
+    template <typename Change>
+    void change(const Change& change) {
+        {
+            const std::lock_guard lock(mutex);
+            change(*this);
+            ++wants;
+        }
+        changed.notify_one();
+    }
 
     void run() {
         try {
@@ -329,50 +339,29 @@ void SceneThread::check() const {
 }
 
 void SceneThread::want(const Wanted& wanted) {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->wanted = wanted;
-        impl_->has_new_wants = true;
-        ++impl_->wants;
-    }
-    impl_->changed.notify_one();
+    impl_->change([&](Impl& my) {
+        my.wanted = wanted;
+        my.has_new_wants = true;
+    });
 }
 
 void SceneThread::want_effects(const scene::Effects& effects) {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->effects = effects;
-        impl_->values.clear();
-        ++impl_->wants;
-    }
-    impl_->changed.notify_one();
+    impl_->change([&](Impl& my) {
+        my.effects = effects;
+        my.values.clear();
+    });
 }
 
 void SceneThread::want_value(const std::string& address, const std::string& value) {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->values[address] = value;
-        ++impl_->wants;
-    }
-    impl_->changed.notify_one();
+    impl_->change([&](Impl& my) { my.values[address] = value; });
 }
 
 void SceneThread::want_dem(std::shared_ptr<const session::LoadedDem> dem) {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->all_posts = std::move(dem);
-        ++impl_->wants;
-    }
-    impl_->changed.notify_one();
+    impl_->change([&](Impl& my) { my.all_posts = std::move(dem); });
 }
 
 void SceneThread::want_drape(std::shared_ptr<const render::Drape> drape) {
-    {
-        const std::lock_guard lock(impl_->mutex);
-        impl_->drape = std::move(drape);
-        ++impl_->wants;
-    }
-    impl_->changed.notify_one();
+    impl_->change([&](Impl& my) { my.drape = std::move(drape); });
 }
 
 bool SceneThread::rests() const {

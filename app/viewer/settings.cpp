@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/output_file.h"
@@ -268,11 +269,10 @@ std::vector<std::string> dems_in(const fs::path& folder) {
     for (fs::directory_iterator it(folder, ignored), end; it != end; it.increment(ignored)) {
         if (ignored) break;
         const std::string ending = lower(it->path().extension().string());
-        const bool is_dem = std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end() &&
-                            it->is_regular_file(ignored);
+        const bool is_dem = contains(kEndings, ending) && it->is_regular_file(ignored);
         if (is_dem) names.push_back(it->path().filename().string());
     }
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     return names;
 }
 
@@ -283,7 +283,7 @@ std::string neighbour_in_folder(const std::string& dem, int by) {
     if (place == names.end() || *place != here.filename().string())
         names.insert(place, here.filename().string());
     if (names.size() < 2) return {};
-    const auto at = std::find(names.begin(), names.end(), here.filename().string());
+    const auto at = std::ranges::find(names, here.filename().string());
     const auto count = static_cast<std::ptrdiff_t>(names.size());
     const std::ptrdiff_t next = (at - names.begin() + by + count) % count;
     return (here.parent_path() / names[static_cast<std::size_t>(next)]).string();

@@ -8,14 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "viewer/latest_work.h"
 #include "viewer/sun_model.h"
 #include "viewer/take_away.h"
 
 namespace relevo::viewer {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Posts that have their figures first, and that have them at most where memory has means alone.
 constexpr double kCoarsePosts = 160e3, kMostPosts = 4e6;
@@ -52,8 +49,10 @@ dem::Heightfield thinned(const dem::Heightfield& field, double most) {
     return few;
 }
 
+}  // namespace
+
 /// A DEM at the posts that have their figures in turn.
-class Levels {
+class OverlayWork::Levels {
   public:
     explicit Levels(std::shared_ptr<const session::LoadedDem> dem) : dem_(std::move(dem)) {
         const dem::Heightfield& field = dem_->field;
@@ -85,8 +84,6 @@ class Levels {
     std::shared_ptr<const session::LoadedDem> dem_;
     std::vector<Level> levels_;
 };
-
-}  // namespace
 
 session::SunRasterWanted raster_of(OverlayKind kind, sun::Instant utc, const sun::Zone& zone,
                                    const std::string& refraction) {
@@ -159,127 +156,98 @@ double OverlayShown::value_at(const geo::Geodetic& place) const {
     return raster->values.at(static_cast<int>(column), static_cast<int>(row));
 }
 
-struct OverlayWork::Impl {
-    std::function<void()> on_change;
-    std::atomic<double> progress = 0;
+// What comes first is soon there, and worth showing while one wish of a DEM follows the other.
+OverlayWork::OverlayWork(std::function<void()> on_change)
+    : LatestWork(std::move(on_change), [](const OverlayWanted& of, const OverlayWanted& now) {
+          return of.dem == now.dem;
+      }) {}
 
-    // The thread's own.
-    std::unique_ptr<Levels> levels;
-    std::shared_ptr<const OverlayShown> last;
-    Clock::time_point told_at;
-    LatestWork<OverlayWanted, OverlayShown> work;
+OverlayWork::~OverlayWork() {
+    end();
+}
 
-    /// What comes first is soon there, and worth showing while one wish of a DEM follows the other.
-    explicit Impl(std::function<void()> on_change_of)
-        : on_change(std::move(on_change_of)),
-          work(
-              on_change,
-              [](const OverlayWanted& of, const OverlayWanted& now) { return of.dem == now.dem; },
-              [this](const OverlayWanted* now) {
-                  progress = 0;
-                  if (now) return work_out(*now);
-                  levels.reset();  // and with it what is known of a DEM that may be gone
-                  last.reset();
-              }) {}
+void OverlayWork::publish(OverlayShown shown, bool done) {
+    last_ = std::make_shared<const OverlayShown>(std::move(shown));
+    LatestWork::publish(last_, done);
+}
 
-    void publish(OverlayShown shown, bool done) {
-        last = std::make_shared<const OverlayShown>(std::move(shown));
-        work.publish(last, done);
+namespace {
+
+void colour(OverlayShown& shown) {
+    const output::RasterBand band = session::band_of(shown.of.raster.figure);
+    const Array2d<float>& values = shown.raster->values;
+    shown.overlay = session::overlay_of(
+        values, {shown.of.title, band.unit, session::usual_ramp(values, band.name, band.unit)},
+        shown.of.opacity);
+}
+
+}  // namespace
+
+void OverlayWork::work_out(const OverlayWanted* wanted) {
+    progress_ = 0;
+    if (!wanted) {
+        levels_.reset();  // and with it what is known of a DEM that may be gone
+        last_.reset();
+        return;
     }
+    const OverlayWanted& now = *wanted;
+    OverlayShown shown;
+    shown.of = now;
+    try {
+        if (now.file) {
+            shown.overlay = session::read_overlay(*now.file, now.dem->to_draw().grid);
+            publish(std::move(shown), true);
+        } else if (last_ && last_->error.empty() && same_figures(last_->of, now) && is_final()) {
+            shown.raster = last_->raster;
+            shown.grid = last_->grid;
+            shown.every = last_->every;
+            colour(shown);
+            publish(std::move(shown), true);
+        } else {
+            measure(now);
+        }
+    } catch (const GivenUp&) {
+        return;
+    } catch (const std::exception& error) {
+        shown.error = error.what();
+        publish(std::move(shown), true);
+    }
+}
 
-    void work_out(const OverlayWanted& now) {
+bool OverlayWork::is_final() const {
+    return levels_ && levels_->dem() == last_->of.dem.get() &&
+           last_->every == levels_->all().back().every;
+}
+
+void OverlayWork::measure(const OverlayWanted& now) {
+    if (!levels_ || levels_->dem() != now.dem.get()) levels_ = std::make_unique<Levels>(now.dem);
+    for (const Levels::Level& level : levels_->all()) {
+        const bool is_last = &level == &levels_->all().back();
+        const auto gives_up = [&] { return is_last ? is_given_up() : is_of_no_use(now); };
+        double share = 0;
         OverlayShown shown;
         shown.of = now;
-        try {
-            if (now.file) {
-                shown.overlay = session::read_overlay(*now.file, now.dem->to_draw().grid);
-                publish(std::move(shown), true);
-            } else if (last && last->error.empty() && same_figures(last->of, now) && is_final()) {
-                shown.raster = last->raster;
-                shown.grid = last->grid;
-                shown.every = last->every;
-                colour(shown);
-                publish(std::move(shown), true);
-            } else {
-                measure(now);
-            }
-        } catch (const GivenUp&) {
-            return;
-        } catch (const std::exception& error) {
-            shown.error = error.what();
-            publish(std::move(shown), true);
-        }
+        shown.raster = std::make_shared<const session::SunRaster>(
+            session::sun_raster(level.posts, now.raster, {}, [&](double more) {
+                share += more;
+                if (gives_up()) throw GivenUp();
+                if (is_last) tell(share);
+            }));
+        if (gives_up()) return;
+        shown.grid = level.posts.grid();
+        shown.every = level.every;
+        colour(shown);
+        publish(std::move(shown), is_last);
+        if (is_given_up()) return;
     }
-
-    bool is_final() const {
-        return levels && levels->dem() == last->of.dem.get() &&
-               last->every == levels->all().back().every;
-    }
-
-    void measure(const OverlayWanted& now) {
-        if (!levels || levels->dem() != now.dem.get()) levels = std::make_unique<Levels>(now.dem);
-        for (const Levels::Level& level : levels->all()) {
-            const bool is_last = &level == &levels->all().back();
-            const auto is_given_up = [&] {
-                return is_last ? work.is_given_up() : work.is_of_no_use(now);
-            };
-            double share = 0;
-            OverlayShown shown;
-            shown.of = now;
-            shown.raster = std::make_shared<const session::SunRaster>(
-                session::sun_raster(level.posts, now.raster, {}, [&](double more) {
-                    share += more;
-                    if (is_given_up()) throw GivenUp();
-                    if (is_last) tell(share);
-                }));
-            if (is_given_up()) return;
-            shown.grid = level.posts.grid();
-            shown.every = level.every;
-            colour(shown);
-            publish(std::move(shown), is_last);
-            if (work.is_given_up()) return;
-        }
-    }
-
-    static void colour(OverlayShown& shown) {
-        const output::RasterBand band = session::band_of(shown.of.raster.figure);
-        const Array2d<float>& values = shown.raster->values;
-        shown.overlay = session::overlay_of(
-            values, {shown.of.title, band.unit, session::usual_ramp(values, band.name, band.unit)},
-            shown.of.opacity);
-    }
-
-    void tell(double share) {
-        progress = share;
-        if (Clock::now() - told_at < kTell) return;
-        told_at = Clock::now();
-        on_change();
-    }
-};
-
-OverlayWork::OverlayWork(std::function<void()> on_change)
-    : impl_(std::make_unique<Impl>(std::move(on_change))) {}
-
-OverlayWork::~OverlayWork() = default;
-
-void OverlayWork::want(OverlayWanted wanted) {
-    impl_->work.want(std::move(wanted));
 }
 
-void OverlayWork::forget() {
-    impl_->work.forget();
-}
-
-std::shared_ptr<const OverlayShown> OverlayWork::answer() const {
-    return impl_->work.answer();
-}
-
-bool OverlayWork::is_done() const {
-    return impl_->work.is_done();
-}
-
-double OverlayWork::progress() const {
-    return impl_->progress;
+void OverlayWork::tell(double share) {
+    progress_ = share;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - told_at_ < kTell) return;
+    told_at_ = now;
+    tell_of_change();
 }
 
 OverlaySave::OverlaySave(OverlayWanted wanted, std::shared_ptr<const session::SunRaster> whole,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "session/session.h"
 #include "session/sun_raster.h"
 #include "viewer/document.h"
+#include "viewer/latest_work.h"
 
 /// Figures of the sun that lie on the ground, worked out while one looks.
 namespace relevo::viewer {
@@ -54,28 +56,30 @@ struct OverlayShown {
 
 /// Works it out on a thread of its own: first for some posts, then for all, or for as many as the
 /// window has in memory. What was begun for other figures is given up.
-class OverlayWork {
+/// An answer stays until there are other figures of the same DEM.
+class OverlayWork : public LatestWork<OverlayWanted, OverlayShown> {
   public:
     /// @param on_change  called on that thread whenever there is more to be had
     explicit OverlayWork(std::function<void()> on_change);
-    OverlayWork(const OverlayWork&) = delete;
-    OverlayWork& operator=(const OverlayWork&) = delete;
     /// Waits until the work in hand is given up, which takes some milliseconds.
-    ~OverlayWork();
+    ~OverlayWork() override;
 
-    void want(OverlayWanted wanted);
-    /// Nothing any more.
-    void forget();
-    /// What there is; the figures before until there are others of the same DEM; null: nothing yet.
-    std::shared_ptr<const OverlayShown> answer() const;
-    /// Whether all that was wanted is there.
-    bool is_done() const;
     /// How much of it has been done, 0 to 1.
-    double progress() const;
+    double progress() const { return progress_; }
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    class Levels;
+    void work_out(const OverlayWanted* wanted) override;
+    void publish(OverlayShown shown, bool done);
+    bool is_final() const;
+    void measure(const OverlayWanted& now);
+    void tell(double share);
+
+    std::atomic<double> progress_ = 0;
+    // The thread's own.
+    std::unique_ptr<Levels> levels_;
+    std::shared_ptr<const OverlayShown> last_;
+    std::chrono::steady_clock::time_point told_at_;
 };
 
 /// Writes what `relevo sun` writes, of every post, into the working folder under a free name.

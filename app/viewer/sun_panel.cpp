@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "base/error.h"
 #include "base/units.h"
 #include "viewer/state.h"
 

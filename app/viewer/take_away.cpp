@@ -70,7 +70,7 @@ namespace {
 /// What a command that reads a file of this scene needs besides: Relevo uses plugin folders and
 /// names on the net only where the command line allows them.
 std::string trust_option(const scene::Scene& scene) {
-    const bool asks_net = std::any_of(scene.dems.begin(), scene.dems.end(), dem::is_remote) ||
+    const bool asks_net = std::ranges::any_of(scene.dems, dem::is_remote) ||
                           (scene.overlay && dem::is_remote(scene.overlay->file));
     return asks_net || !scene.effects.plugin_path.empty() ? " --trust" : "";
 }

@@ -99,8 +99,8 @@ void FilesInUse::finish_outputs() {
 }
 
 bool FilesInUse::replaces_any() const {
-    return std::any_of(outputs_.begin(), outputs_.end(),
-                       [](const OutputFile& output) { return output.replaces_any(); });
+    return std::ranges::any_of(outputs_,
+                               [](const OutputFile& output) { return output.replaces_any(); });
 }
 
 }  // namespace relevo

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
-#include "base/units.h"
 #include "geo/format.h"
 #include "sun/position.h"
 

@@ -144,7 +144,7 @@ class Canvas {
 image::Image8 to_image(const Drawing& drawing, double scale) {
     image::Image8 image(static_cast<int>(std::lround(drawing.width() * scale)),
                         static_cast<int>(std::lround(drawing.height() * scale)), 3);
-    std::fill(image.values.begin(), image.values.end(), std::uint8_t{255});
+    std::ranges::fill(image.values, std::uint8_t{255});
     paint(drawing, 0, 0, scale, image);
     return image;
 }

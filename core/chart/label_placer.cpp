@@ -15,7 +15,7 @@ bool LabelPlacer::is_free(const Rect& box) const {
     if (box.x < within_.x || box.y < within_.y || box.x + box.width > within_.x + within_.width ||
         box.y + box.height > within_.y + within_.height)
         return false;
-    return std::none_of(taken_.begin(), taken_.end(), [&](const Rect& other) {
+    return std::ranges::none_of(taken_, [&](const Rect& other) {
         return box.x < other.x + other.width && other.x < box.x + box.width &&
                box.y < other.y + other.height && other.y < box.y + box.height;
     });

@@ -350,8 +350,8 @@ class Panorama {
             for (int hour = 0; hour < 24; ++hour) {
                 // Over the top of the hour's figure of eight.
                 const std::vector<PathPoint> line = paths_->hour_line(hour);
-                const PathPoint& top = *std::max_element(
-                    line.begin(), line.end(), [](const PathPoint& a, const PathPoint& b) {
+                const PathPoint& top =
+                    *std::ranges::max_element(line, [](const PathPoint& a, const PathPoint& b) {
                         return a.elevation_rad < b.elevation_rad;
                     });
                 if (top.elevation_rad <= of_.horizon->elevation_rad(top.azimuth_rad)) continue;
@@ -385,8 +385,8 @@ class Panorama {
             const double rises_rad = p[i].elevation_rad - std::max(left, right);
             if (top && rises_rad > radians(0.4)) summits.push_back({i, rises_rad});
         }
-        std::sort(summits.begin(), summits.end(),
-                  [](const Summit& a, const Summit& b) { return a.rises_rad > b.rises_rad; });
+        std::ranges::sort(
+            summits, [](const Summit& a, const Summit& b) { return a.rises_rad > b.rises_rad; });
         // In the sky, not on ground that stands higher beside.
         const Rect all = plot_;
         const double column = all.width / static_cast<double>(n);

@@ -215,8 +215,8 @@ Ramp read_ramp(const std::string& path, double from, double to) {
     if (ramp.stops.empty())
         bad_input(fmt::format("{}: {}: expected lines of a value and a colour but got none", kWho,
                               printable(path)));
-    std::stable_sort(ramp.stops.begin(), ramp.stops.end(),
-                     [](const Ramp::Stop& a, const Ramp::Stop& b) { return a.value < b.value; });
+    std::ranges::stable_sort(
+        ramp.stops, [](const Ramp::Stop& a, const Ramp::Stop& b) { return a.value < b.value; });
     return ramp;
 }
 

@@ -104,7 +104,7 @@ class Layout {
         if (at.x < margin_px || at.y < margin_px || at.x + at.width > picture_.width - margin_px ||
             at.y + at.height > picture_.height - margin_px)
             return false;
-        return std::none_of(taken_.begin(), taken_.end(), [&](const Rect& other) {
+        return std::ranges::none_of(taken_, [&](const Rect& other) {
             return at.x < other.x + other.width && other.x < at.x + at.width &&
                    at.y < other.y + other.height && other.y < at.y + at.height;
         });

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "base/contains.h"
 #include "base/units.h"
 #include "chart/diagram_parts.h"
 #include "light/point/sectors.h"
@@ -154,10 +155,7 @@ class Sheet {
 
   private:
     bool south_of_sun() const { return of_.place.lat_rad < 0; }
-    bool marks_holes() const {
-        return of_.terrain &&
-               std::find(of_.holes.begin(), of_.holes.end(), true) != of_.holes.end();
-    }
+    bool marks_holes() const { return of_.terrain && contains(of_.holes, true); }
     glm::dvec2 skyline(double azimuth_rad) const {
         return disc_.point(azimuth_rad, std::max(0.0, of_.terrain->elevation_rad(azimuth_rad)));
     }

@@ -189,7 +189,7 @@ double CoverColumn::dryness(double height_m) const {
 double CoverColumn::growth(double height_m) const {
     const Year temperature = steps_of(temperature_c(height_m));
     std::array<float, kSteps> sorted = temperature;
-    std::sort(sorted.begin(), sorted.end(), std::greater<>());
+    std::ranges::sort(sorted, std::greater<>());
     // Steps count by their share above the limit, as if warmth fell evenly from one to the next.
     double days = 0, warm_days = 0, sum = 0;
     for (std::size_t i = 0; i < kSteps; ++i) {
@@ -250,8 +250,8 @@ Year CoverColumn::snow_mm(double height_m) const {
                                sublimation_mm(t, height_m));
     }
     // A year to begin with, from the warmest day, and then the year.
-    const auto warmest = static_cast<std::size_t>(
-        std::max_element(temperature.begin(), temperature.end()) - temperature.begin());
+    const auto warmest =
+        static_cast<std::size_t>(std::ranges::max_element(temperature) - temperature.begin());
     Year snow;
     float there = 0;
     for (std::size_t n = 0; n < 2 * kSteps; ++n) {

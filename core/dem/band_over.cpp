@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <gdal.h>
 
-#include "base/error.h"
 #include "base/parallel_for.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -301,7 +300,7 @@ BandOver read_band_over(const Grid& grid, const std::string& path, int number) {
     if (!covers)
         refuse(path, fmt::format("the overlay does not cover this DEM; it is at {}, the DEM at {}",
                                  extent_text(raster), extent_text(grid)));
-    if (std::all_of(over.values.begin(), over.values.end(), [](float v) { return std::isnan(v); }))
+    if (std::ranges::all_of(over.values, [](float v) { return std::isnan(v); }))
         refuse(path, "the overlay has no value anywhere on this DEM");
     return over;
 }

@@ -8,7 +8,7 @@
 namespace relevo::dem {
 
 void CollarEdge::add(std::span<const float> posts_m) {
-    others_ += std::ssize(posts_m) - std::count(posts_m.begin(), posts_m.end(), height_m_);
+    others_ += std::ssize(posts_m) - std::ranges::count(posts_m, height_m_);
 }
 
 void CollarEdge::add(float height_m, std::int64_t posts) {

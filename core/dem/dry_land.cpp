@@ -72,7 +72,7 @@ bool may_have_depression(const Grid& grid, const glm::ivec2& first, const glm::i
     }
     // Sides bend, and cells at the rim count by their middles.
     const double margin_deg = 0.05 + 0.5 * std::max(north - south, east - west);
-    return std::any_of(kDepressions.begin(), kDepressions.end(), [&](const Depression& box) {
+    return std::ranges::any_of(kDepressions, [&](const Depression& box) {
         return box.south_deg <= north + margin_deg && box.north_deg >= south - margin_deg &&
                box.west_deg <= east + margin_deg && box.east_deg >= west - margin_deg;
     });

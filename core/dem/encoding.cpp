@@ -1,7 +1,6 @@
 #include "dem/encoding.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <vector>

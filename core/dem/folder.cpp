@@ -4,7 +4,6 @@
 #include <array>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <set>
 #include <string_view>
 
@@ -13,6 +12,7 @@
 #include <fmt/ranges.h>
 #include <gdal.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
@@ -32,7 +32,7 @@ std::string ending_of(const fs::path& file) {
 
 template <std::size_t N>
 bool ends_like(const fs::path& file, const std::array<std::string_view, N>& endings) {
-    return std::find(endings.begin(), endings.end(), ending_of(file)) != endings.end();
+    return contains(endings, ending_of(file));
 }
 
 constexpr std::array<std::string_view, 4> kArchives = {".zip", ".tar", ".tgz", ".gz"};
@@ -97,9 +97,7 @@ std::set<std::string> parts_of(const std::string& path) {
 /// cells.
 void keep_cells(std::vector<RasterFile>& rasters) {
     constexpr std::array<std::string_view, 4> kByHeader = {"EHdr", "ENVI", "GenBin", "ISCE"};
-    const auto by_header = [&](const RasterFile& one) {
-        return std::find(kByHeader.begin(), kByHeader.end(), one.driver) != kByHeader.end();
-    };
+    const auto by_header = [&](const RasterFile& one) { return contains(kByHeader, one.driver); };
     std::map<std::string, std::uintmax_t> most;
     for (const RasterFile& one : rasters) {
         std::uintmax_t& bytes = most[without_ending(one)];
@@ -116,8 +114,8 @@ std::vector<fs::path> sorted_entries(const std::string& folder) {
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
         if (!at->path().filename().string().starts_with('.')) entries.push_back(at->path());
     if (error) refuse(folder, fmt::format("a folder that cannot be read, {}", error.message()));
-    std::sort(entries.begin(), entries.end(),
-              [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
+    std::ranges::sort(entries,
+                      [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
     return entries;
 }
 

@@ -75,7 +75,7 @@ std::string GdalMessages::failure(const std::string& path) const {
         text.erase(at, path.size());
     // What is left of "a.tif, band 1: reason" and "a.tif: reason".
     if (text.starts_with(", band ") || text.starts_with(":")) text.erase(0, text.find(':') + 1);
-    std::replace(text.begin(), text.end(), '\n', ' ');
+    std::ranges::replace(text, '\n', ' ');
     std::string_view line = trimmed(text);
     while (line.ends_with('.'))
         line.remove_suffix(1);

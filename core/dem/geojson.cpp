@@ -207,8 +207,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
 
     void add_position(const Level& level) {
         const auto whole = [](double number) { return number == std::floor(number); };
-        const bool commas =
-            level.count == 4 && std::all_of(level.at.begin(), level.at.end(), whole);
+        const bool commas = level.count == 4 && std::ranges::all_of(level.at, whole);
         if (level.count < 2 || level.count > 4 || commas)
             errors_.refuse(level.line,
                            fmt::format("a position of {} number{}, expected longitude, latitude "

@@ -8,6 +8,7 @@
 #include <gdal.h>
 #include <ogr_srs_api.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "dem/gdal_support.h"
 #include "dem/interpret.h"
@@ -29,8 +30,8 @@ bool has_cf_lat_lon(GDALDatasetH dataset) {
         const std::size_t at = text.find("#units=");
         if (at == std::string_view::npos) continue;
         const std::string_view unit = text.substr(at + 7);
-        north = north || std::find(kNorth.begin(), kNorth.end(), unit) != kNorth.end();
-        east = east || std::find(kEast.begin(), kEast.end(), unit) != kEast.end();
+        north = north || contains(kNorth, unit);
+        east = east || contains(kEast, unit);
     }
     return north && east;
 }

@@ -106,9 +106,8 @@ double Grid::share_on_earth() const {
             posts[static_cast<std::size_t>(i)] = {std::round((columns_ - 1.0) * i / kSamples),
                                                   std::round((rows_ - 1.0) * j / kSamples)};
         place(posts, places);
-        found += static_cast<int>(
-            std::count_if(places.begin(), places.end(),
-                          [](const geo::Geodetic& at) { return std::isfinite(at.lat_rad); }));
+        found += static_cast<int>(std::ranges::count_if(
+            places, [](const geo::Geodetic& at) { return std::isfinite(at.lat_rad); }));
     }
     return found / double{(kSamples + 1) * (kSamples + 1)};
 }

@@ -1,6 +1,5 @@
 #include "dem/guard.h"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -17,6 +16,7 @@
 #include <gdal_priv.h>
 #include <unistd.h>
 
+#include "base/contains.h"
 #include "dem/interpret.h"
 #include "dem/no_raster.h"
 #include "dem/remote.h"
@@ -227,10 +227,10 @@ class VrtWalk {
         VSIStatBufL status{};
         if (VSIStatL(path.c_str(), &status) == 0)
             bytes_ += static_cast<std::uint64_t>(status.st_size);
-        if (std::find(inside_.begin(), inside_.end(), path) != inside_.end())
+        if (contains(inside_, path))
             refuse(given_,
                    fmt::format("a virtual raster that is made of itself, by way of '{}'", path));
-        if (!is_vrt(path) || std::find(seen_.begin(), seen_.end(), path) != seen_.end()) return;
+        if (!is_vrt(path) || contains(seen_, path)) return;
         if (inside_.size() >= kDeepest)
             refuse(given_, fmt::format("virtual rasters in each other, expected at most {} deep",
                                        kDeepest));

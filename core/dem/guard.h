@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 // What a file from others must not make GDAL do. Inside of the layer only.
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/units.h"
 #include "dem/piece.h"
 
@@ -108,13 +109,12 @@ void gather(const std::vector<Piece>& pieces, std::vector<std::string> Descripti
         for (const std::string& sentence : piece.about.*list) {
             const auto says = [&](const Piece& other) {
                 const std::vector<std::string>& lines = other.about.*list;
-                return std::find(lines.begin(), lines.end(), sentence) != lines.end();
+                return contains(lines, sentence);
             };
-            const bool all = std::all_of(pieces.begin(), pieces.end(), says);
+            const bool all = std::ranges::all_of(pieces, says);
             const std::string line =
                 all ? sentence : fmt::format("{}: {}", piece.about.path, sentence);
-            if (std::find(result.begin(), result.end(), line) == result.end())
-                result.push_back(line);
+            if (!contains(result, line)) result.push_back(line);
         }
 }
 
@@ -172,7 +172,7 @@ std::vector<std::optional<Window>> places_on(const std::vector<Piece>& pieces, c
 }
 
 bool is_whole(const std::vector<std::optional<Window>>& places) {
-    return std::all_of(places.begin(), places.end(), [](const auto& place) { return !!place; });
+    return std::ranges::all_of(places, [](const auto& place) { return !!place; });
 }
 
 /// Has a piece read as it is resampled to another one's grid.

@@ -3,7 +3,6 @@
 #include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 #include <gdal.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "dem/folder.h"
 #include "dem/gdal_support.h"
@@ -76,8 +76,9 @@ bool begins_like_archive(const std::string& path) {
                                         "7z\xbc\xaf"sv,
                                         "Rar!"sv,
                                         "\x28\xb5\x2f\xfd"sv};
-    return std::any_of(kBeginnings.begin(), kBeginnings.end(),
-                       [&](std::string_view beginning) { return head.starts_with(beginning); }) ||
+    return std::ranges::any_of(
+               kBeginnings,
+               [&](std::string_view beginning) { return head.starts_with(beginning); }) ||
            (head.size() > 262 && head.compare(257, 5, "ustar") == 0);
 }
 
@@ -88,7 +89,7 @@ bool is_archive_taken_for_cells(const std::string& path, GDALDatasetH dataset) {
                                                              "PAux", "ROI_PAC", "RRASTER"};
     const std::string_view driver = GDALGetDriverShortName(GDALGetDatasetDriver(dataset));
     // ENVI's headers may say that the cells are compressed.
-    return std::find(kAnyContent.begin(), kAnyContent.end(), driver) != kAnyContent.end() &&
+    return contains(kAnyContent, driver) &&
            !GDALGetMetadataItem(dataset, "COMPRESSION", "IMAGE_STRUCTURE") &&
            begins_like_archive(path);
 }

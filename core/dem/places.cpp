@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
-#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -118,8 +117,7 @@ class Header {
   public:
     Header(std::string_view line, const FileErrors& errors) : errors_(errors) {
         for (const char candidate : {',', ';', '\t'})
-            if (std::count(line.begin(), line.end(), candidate) >
-                std::count(line.begin(), line.end(), separator_))
+            if (std::ranges::count(line, candidate) > std::ranges::count(line, separator_))
                 separator_ = candidate;
         names_ = fields_of(line, separator_);
     }

@@ -19,8 +19,8 @@ constexpr std::array<std::string_view, 10> kLocalFileSystems = {
 }  // namespace
 
 bool is_local_file_system(std::string_view name) {
-    return std::any_of(kLocalFileSystems.begin(), kLocalFileSystems.end(),
-                       [&](std::string_view system) { return name.starts_with(system); });
+    return std::ranges::any_of(kLocalFileSystems,
+                               [&](std::string_view system) { return name.starts_with(system); });
 }
 
 bool is_remote(std::string_view name) {

@@ -14,6 +14,7 @@
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/progress.h"
+#include "dem/cell_parts.h"
 #include "dem/folder.h"
 #include "dem/piece.h"
 
@@ -25,73 +26,6 @@ constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMaxIdle = 128;
 /// Of more than these, some seconds of reading, progress is told.
 constexpr double kManyPosts = 1 << 28;
-
-/// One part of a line of cells and how much of each cell lies in it: all of those inside.
-struct Part {
-    std::size_t first = 0;
-    std::size_t count = 0;
-    double first_weight = 1;
-    double last_weight = 1;  // of more than one
-
-    std::size_t end() const { return first + count; }
-    double weight(std::size_t k) const {
-        return k == 0 ? first_weight : k + 1 == count ? last_weight : 1.0;
-    }
-    double whole() const {
-        return count == 1 ? first_weight
-                          : first_weight + static_cast<double>(count - 2) + last_weight;
-    }
-};
-
-/// The parts of a line that have cells of a piece, as the cells of one of its levels.
-struct Parts {
-    int first = 0;  // of them all
-    std::vector<Part> parts;
-};
-
-/// Cuts a line of posts into parts of `each`, and keeps what of [first_part, end_part) lies on a
-/// piece.
-/// @param begin  of the line, in posts of the piece
-/// @param per    cells in a post
-/// @param cells  of the piece, at that level
-Parts parts_within(double begin, double each, int first_part, int end_part, double per, int cells) {
-    Parts result;
-    for (int i = first_part; i < end_part; ++i) {
-        const double from = std::max(0.0, (begin + each * i) * per);
-        const double to = std::min<double>(cells, (begin + each * (i + 1)) * per);
-        // What is below a millionth of a cell is rounding.
-        if (to - from < 1e-6) continue;
-        if (result.parts.empty()) result.first = i;
-        const int first = std::clamp(static_cast<int>(std::floor(from + 1e-6)), 0, cells - 1);
-        const int last = std::clamp(static_cast<int>(std::ceil(to - 1e-6)), first + 1, cells);
-        const auto weight = [&](int cell) {
-            return std::min(to, cell + 1.0) - std::max(from, double(cell));
-        };
-        result.parts.push_back({static_cast<std::size_t>(first),
-                                static_cast<std::size_t>(last - first), weight(first),
-                                weight(last - 1)});
-    }
-    return result;
-}
-
-/// Parts that are added up at once.
-struct Strip {
-    std::size_t begin = 0, end = 0;    // of the parts
-    std::size_t first = 0, width = 0;  // of their cells
-};
-
-/// As many parts as have so many cells, one at least.
-std::vector<Strip> strips_of(const Parts& across, std::size_t most_cells) {
-    std::vector<Strip> strips;
-    for (std::size_t i = 0; i < across.parts.size(); ++i) {
-        const Part& part = across.parts[i];
-        if (strips.empty() || part.end() - strips.back().first > most_cells)
-            strips.push_back({i, i, part.first, 0});
-        strips.back().end = i + 1;
-        strips.back().width = part.end() - strips.back().first;
-    }
-    return strips;
-}
 
 /// The part of a window that a piece covers; no columns or rows where it covers none.
 Window overlap(const Window& a, const Window& b) {

@@ -115,7 +115,7 @@ double SparseMap::stored_share() const {
 }
 
 std::optional<glm::ivec2> SparseMap::empty_post() const {
-    const auto found = std::find(stored_.begin(), stored_.end(), std::uint8_t{0});
+    const auto found = std::ranges::find(stored_, std::uint8_t{0});
     if (found == stored_.end()) return std::nullopt;
     const auto index = static_cast<int>(found - stored_.begin());
     return glm::ivec2(first_post(index % stored_.width(), stored_.width(), columns_),

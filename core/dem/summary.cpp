@@ -1,12 +1,12 @@
 #include "dem/summary.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "base/contains.h"
 #include "base/log.h"
 #include "base/units.h"
 #include "dem/interpret.h"
@@ -98,8 +98,7 @@ std::string holes_text(const Summary& s) {
         else if (by == "found" && !s.nodata)
             ways.emplace_back("too large for heights, not declared");
     if (s.nodata) {
-        const bool found =
-            std::find(s.holes_by.begin(), s.holes_by.end(), "found") != s.holes_by.end();
+        const bool found = contains(s.holes_by, "found");
         ways.push_back(fmt::format("nodata {}{}", s.nodata_text, found ? ", not declared" : ""));
     }
     if (ways.empty() && s.nodata_share > 0 && s.files.size() == 1) ways.emplace_back("NaN");

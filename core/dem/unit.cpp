@@ -1,12 +1,12 @@
 #include "dem/unit.h"
 
-#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -50,16 +50,14 @@ bool means_no_unit(std::string_view word) {
     constexpr std::array kNone = {"", "unknown", "unspecified", "undefined", "none", "na"};
     // Digits alone are no letters either, but they are a word for something.
     return trimmed(word).empty() ||
-           (!letters_of(word).empty() &&
-            std::find(kNone.begin(), kNone.end(), letters_of(word)) != kNone.end());
+           (!letters_of(word).empty() && contains(kNone, letters_of(word)));
 }
 
 std::optional<Unit> known_unit(std::string_view word) {
     const std::string letters = letters_of(word);
 
     for (const Known& known : kUnits)
-        if (!letters.empty() &&
-            std::find(known.words.begin(), known.words.end(), letters) != known.words.end())
+        if (!letters.empty() && contains(known.words, letters))
             return Unit{std::string(known.name), known.metres};
     return std::nullopt;
 }

@@ -237,16 +237,16 @@ class WaterFinder {
             return false;
         // Of a flat that the DEM cuts through, enough has to be seen.
         if (rim.all() < std::sqrt(size) || rim.all() < static_cast<double>(rim.edge)) return false;
-        const float step = *std::min_element(rim.rises.begin(), rim.rises.end());
+        const float step = *std::ranges::min_element(rim.rises);
         const bool terraced = step >= kStep_m;
         const bool closed = rim.higher() >= kClosed * rim.all();
         if (closed && !terraced) return true;
-        const auto steep = std::count_if(rim.rises.begin(), rim.rises.end(),
-                                         [&](float rise) { return rise > 1.5f * step; });
+        const auto steep =
+            std::ranges::count_if(rim.rises, [&](float rise) { return rise > 1.5f * step; });
         if (closed && static_cast<double>(steep) >= kSteep * rim.higher()) return true;
         // Shores that were averaged rise by a step and waver by one, and then rise on.
-        const auto rises_on = std::count_if(rim.far_rises.begin(), rim.far_rises.end(),
-                                            [&](float rise) { return rise > 1.5f * step; });
+        const auto rises_on =
+            std::ranges::count_if(rim.far_rises, [&](float rise) { return rise > 1.5f * step; });
         return terraced && static_cast<double>(rises_on) >= kRisesOn * rim.higher() &&
                posts >= kLargePosts && rim.deepest_m < 1.5f * step &&
                rim.higher() >= kLargeClosed * rim.all() && rim.all() * rim.all() <= kCompact * size;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "shader/growth.h"
@@ -17,10 +18,6 @@ constexpr std::size_t kMaxGlslBytes = std::size_t{1} << 20;
 
 [[noreturn]] void fail(const std::string& file, int line, const std::string& message) {
     bad_input(fmt::format("{}: {}:{}: {}", kWho, file, line, message));
-}
-
-bool contains(const std::vector<std::string>& words, std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 std::string glsl_text(const std::filesystem::path& file) {
@@ -80,13 +77,12 @@ void check_textures(const Effect& effect) {
             check_sampler(effect, sampler);
     if (!effect.manifest.module.empty()) return;
     for (const TextureSpec& texture : effect.manifest.textures) {
-        const bool read = std::any_of(
-            effect.snippets.begin(), effect.snippets.end(), [&](const shader::Snippet& snippet) {
-                const auto& samplers = snippet.source.samplers;
-                return std::any_of(samplers.begin(), samplers.end(), [&](const auto& sampler) {
-                    return sampler.resource == texture.resource;
-                });
+        const bool read = std::ranges::any_of(effect.snippets, [&](const shader::Snippet& snippet) {
+            const auto& samplers = snippet.source.samplers;
+            return std::ranges::any_of(samplers, [&](const auto& sampler) {
+                return sampler.resource == texture.resource;
             });
+        });
         if (!read)
             fail(effect.manifest.file.string(), texture.line,
                  fmt::format("textures.{}: nothing reads it; expected uniform {} {}_{}; in the "
@@ -110,8 +106,8 @@ void check_texts(const Effect& effect) {
 void check_ramps(const Effect& effect) {
     const std::vector<shader::Param> params = effect.params();
     const auto find = [&](const std::string& address) {
-        const auto found = std::find_if(params.begin(), params.end(),
-                                        [&](const auto& p) { return p.address == address; });
+        const auto found =
+            std::ranges::find_if(params, [&](const auto& p) { return p.address == address; });
         return found == params.end() ? nullptr : &*found;
     };
     for (const shader::ColourRamp& ramp : effect.ramps()) {
@@ -137,8 +133,8 @@ void check_ramps(const Effect& effect) {
 /// @param key, line  of plugin.json, which name the parameter
 void check_named(const Effect& effect, const std::string& address, std::string_view key, int line) {
     const std::vector<shader::Param> params = effect.params();
-    const auto param = std::find_if(params.begin(), params.end(),
-                                    [&](const shader::Param& p) { return p.address == address; });
+    const auto param =
+        std::ranges::find_if(params, [&](const shader::Param& p) { return p.address == address; });
     // Host parameters are written when it is settled already what is drawn.
     if (param == params.end() || param->type != shader::ParamType::Float || param->is_host)
         fail(effect.manifest.file.string(), line,
@@ -189,8 +185,8 @@ void check_hooks(const Effect& effect) {
             }
         }
     }
-    const bool any = std::any_of(effect.snippets.begin(), effect.snippets.end(),
-                                 [](const shader::Snippet& s) { return !s.hooks.empty(); });
+    const bool any = std::ranges::any_of(effect.snippets,
+                                         [](const shader::Snippet& s) { return !s.hooks.empty(); });
     if (!any && effect.manifest.module.empty())
         bad_input(
             fmt::format("{}: {}: no hook and no module, so it does nothing; define a "
@@ -205,8 +201,8 @@ bool Effect::provides(std::string_view capability) const {
 }
 
 bool Effect::answers(std::string_view hook) const {
-    return std::any_of(snippets.begin(), snippets.end(),
-                       [&](const shader::Snippet& snippet) { return snippet.find(hook); });
+    return std::ranges::any_of(snippets,
+                               [&](const shader::Snippet& snippet) { return snippet.find(hook); });
 }
 
 std::vector<shader::Param> Effect::params() const {

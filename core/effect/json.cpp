@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/line_counting_iterator.h"
 #include "base/text.h"
@@ -180,15 +181,15 @@ int ObjectReader::line_of(std::string_view key) const {
 }
 
 const Json* ObjectReader::take(const std::string& key) {
-    if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
+    if (!contains(known_, key)) known_.push_back(key);
     for (const auto& [name, value] : object_.members)
         if (name == key) return &value;
     return nullptr;
 }
 
 bool ObjectReader::has(std::string_view key) const {
-    return std::any_of(object_.members.begin(), object_.members.end(),
-                       [&](const auto& member) { return member.first == key; });
+    return std::ranges::any_of(object_.members,
+                               [&](const auto& member) { return member.first == key; });
 }
 
 const Json& ObjectReader::need(const std::string& key) {
@@ -246,7 +247,7 @@ std::vector<std::string> ObjectReader::strings(const std::string& key) {
             fail(item.line, key,
                  fmt::format("expected a list of texts without control characters but got {} in it",
                              describe(item)));
-        if (std::find(result.begin(), result.end(), item.text) != result.end())
+        if (contains(result, item.text))
             fail(item.line, key, fmt::format("\"{}\" is listed twice", item.text));
         result.push_back(item.text);
     }
@@ -257,7 +258,7 @@ std::size_t ObjectReader::choice(const std::string& key, const std::vector<std::
                                  std::optional<std::size_t> otherwise) {
     const Json* const value = otherwise ? take(key) : &need(key);
     if (!value) return *otherwise;
-    const auto found = std::find(words.begin(), words.end(), value->text);
+    const auto found = std::ranges::find(words, value->text);
     if (value->kind != Json::Kind::String || found == words.end()) {
         const std::optional<std::string> near = nearest(value->text, words);
         fail(value->line, key,
@@ -269,7 +270,7 @@ std::size_t ObjectReader::choice(const std::string& key, const std::vector<std::
 
 void ObjectReader::finish() const {
     for (const auto& [name, value] : object_.members) {
-        if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+        if (contains(known_, name)) continue;
         const std::optional<std::string> near = nearest(name, known_);
         fail(value.line, name,
              near ? fmt::format("no such key; did you mean \"{}\"?", *near)

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "effect/json.h"
@@ -41,15 +42,14 @@ bool is_digit(char c) {
 
 bool is_id(std::string_view text) {
     return !text.empty() && is_lower(text[0]) &&
-           std::all_of(text.begin(), text.end(), [](char c) { return is_lower(c) || is_digit(c); });
+           std::ranges::all_of(text, [](char c) { return is_lower(c) || is_digit(c); });
 }
 
 /// A word, which becomes a part of a GLSL name.
 bool is_word(std::string_view text) {
     return !text.empty() && is_lower(text[0]) && text.back() != '_' &&
            text.find("__") == std::string_view::npos &&
-           std::all_of(text.begin(), text.end(),
-                       [](char c) { return is_lower(c) || is_digit(c) || c == '_'; });
+           std::ranges::all_of(text, [](char c) { return is_lower(c) || is_digit(c) || c == '_'; });
 }
 
 bool is_resource(std::string_view text) {
@@ -72,8 +72,8 @@ std::filesystem::path own_file(const ObjectReader& object, int line, const std::
                                const std::filesystem::path& folder, const std::string& name,
                                bool shared = false) {
     const std::filesystem::path path(name);
-    const bool inside = path.is_relative() && std::none_of(path.begin(), path.end(),
-                                                           [](const auto& p) { return p == ".."; });
+    const bool inside =
+        path.is_relative() && std::ranges::none_of(path, [](const auto& p) { return p == ".."; });
     if (!inside || (!shared && !file_inside(folder, path)))
         object.fail(line, key,
                     fmt::format("expected a file of the plugin's own folder but got {}", name));
@@ -106,14 +106,12 @@ class ManifestReader {
         identity(object);
         manifest_.provides = words(object, "provides");
         for (const std::string_view word : kCoreWords)
-            if (std::find(manifest_.provides.begin(), manifest_.provides.end(), word) !=
-                manifest_.provides.end())
+            if (contains(manifest_.provides, word))
                 object.fail(object.line_of("provides"), "provides",
                             fmt::format("\"{}\" is core's own word; expected another", word));
         manifest_.exclusive = words(object, "exclusive");
         for (const std::string& word : manifest_.exclusive)
-            if (std::find(manifest_.provides.begin(), manifest_.provides.end(), word) ==
-                manifest_.provides.end())
+            if (!contains(manifest_.provides, word))
                 object.fail(object.line_of("exclusive"), "exclusive",
                             fmt::format("expected words of \"provides\" but got \"{}\"", word));
         manifest_.needs = words(object, "requires");
@@ -141,7 +139,7 @@ class ManifestReader {
                 object.line_of("id"), "id",
                 fmt::format("expected a letter a-z and then letters and digits but got \"{}\"",
                             manifest_.id));
-        if (std::find(kReserved.begin(), kReserved.end(), manifest_.id) != kReserved.end())
+        if (contains(kReserved, manifest_.id))
             object.fail(object.line_of("id"), "id",
                         fmt::format("{} is a word of core's; choose another", manifest_.id));
         manifest_.name = object.string("name");
@@ -150,7 +148,7 @@ class ManifestReader {
         manifest_.enabled_by_default = object.boolean("enabled_by_default", true);
         manifest_.default_where = object.strings("default_where");
         for (const std::string& word : manifest_.default_where)
-            if (std::find(kGroundWords.begin(), kGroundWords.end(), word) == kGroundWords.end())
+            if (!contains(kGroundWords, word))
                 object.fail(object.line_of("default_where"), "default_where",
                             fmt::format("expected words of {} but got \"{}\"",
                                         fmt::join(kGroundWords, ", "), word));

@@ -1,6 +1,5 @@
 #include "effect/module_call.h"
 
-#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <mutex>

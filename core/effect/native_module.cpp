@@ -1,7 +1,6 @@
 #include "effect/native_module.h"
 
 #include <cstring>
-#include <utility>
 
 #include <dlfcn.h>
 #include <fmt/format.h>

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
@@ -22,7 +23,7 @@ std::filesystem::path presets_dir() {
 std::filesystem::path find_preset(const std::string& name) {
     if (is_preset_file(name)) return name;
     const std::vector<std::string> names = preset_names();
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
+    if (!contains(names, name)) {
         const std::optional<std::string> near = nearest(name, names);
         bad_input(fmt::format(
             "{}: {}: no such preset; {}", kWho, name,
@@ -113,7 +114,7 @@ std::vector<std::string> preset_names() {
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(presets_dir(), ignored))
         if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     return names;
 }
 

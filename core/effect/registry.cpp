@@ -39,7 +39,7 @@ std::vector<std::filesystem::path> plugin_folders(const std::filesystem::path& p
     if (error)
         bad_input(fmt::format("plugin: {}: cannot be read, {}", path.string(), error.message()));
     // A folder's own order is the file system's.
-    std::sort(folders.begin(), folders.end());
+    std::ranges::sort(folders);
     return folders;
 }
 
@@ -70,8 +70,8 @@ Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
             }
         }
     }
-    std::sort(registry.effects_.begin(), registry.effects_.end(),
-              [](const Effect& a, const Effect& b) { return a.id() < b.id(); });
+    std::ranges::sort(registry.effects_,
+                      [](const Effect& a, const Effect& b) { return a.id() < b.id(); });
     return registry;
 }
 
@@ -85,14 +85,14 @@ Registry Registry::load_installed(const std::vector<std::filesystem::path>& extr
 }
 
 const Effect* Registry::find(std::string_view id) const {
-    const auto found = std::find_if(effects_.begin(), effects_.end(),
-                                    [&](const Effect& effect) { return effect.id() == id; });
+    const auto found =
+        std::ranges::find_if(effects_, [&](const Effect& effect) { return effect.id() == id; });
     return found == effects_.end() ? nullptr : &*found;
 }
 
 bool Registry::is_broken(std::string_view id) const {
-    return !find(id) && std::any_of(broken_.begin(), broken_.end(),
-                                    [&](const BrokenEffect& broken) { return broken.id == id; });
+    return !find(id) && std::ranges::any_of(
+                            broken_, [&](const BrokenEffect& broken) { return broken.id == id; });
 }
 
 const Effect& Registry::effect(std::string_view id, std::string_view who) const {

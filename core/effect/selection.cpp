@@ -7,17 +7,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/error.h"
-#include "base/text.h"
 
 namespace relevo::effect {
 namespace {
 
 constexpr std::string_view kWho = "effects";
-
-bool contains(const std::vector<std::string>& words, std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
 
 class Selector {
   public:
@@ -70,7 +66,7 @@ class Selector {
         if (!ground) return std::nullopt;
         for (std::string word : effect.manifest.default_where) {
             if (contains(*ground, word)) continue;
-            std::replace(word.begin(), word.end(), '_', ' ');
+            std::ranges::replace(word, '_', ' ');
             return word;
         }
         return std::nullopt;
@@ -136,8 +132,8 @@ class Selector {
     // ---- requirements
 
     bool is_provided(const std::string& word) const {
-        return std::any_of(on_.begin(), on_.end(),
-                           [&](const std::string& id) { return effect(id).provides(word); });
+        return std::ranges::any_of(
+            on_, [&](const std::string& id) { return effect(id).provides(word); });
     }
 
     /// Providers that are off, those that would be on by default first.
@@ -145,9 +141,8 @@ class Selector {
         std::vector<const Effect*> result;
         for (const Effect& effect : registry_.effects())
             if (effect.provides(word)) result.push_back(&effect);
-        std::stable_partition(result.begin(), result.end(), [](const Effect* effect) {
-            return effect->manifest.enabled_by_default;
-        });
+        std::ranges::stable_partition(
+            result, [](const Effect* effect) { return effect->manifest.enabled_by_default; });
         return result;
     }
 
@@ -291,10 +286,10 @@ class Selector {
         std::vector<const Effect*> order;
         std::set<std::string> left = on_;
         while (!left.empty()) {
-            const auto next = std::find_if(left.begin(), left.end(), [&](const std::string& id) {
+            const auto next = std::ranges::find_if(left, [&](const std::string& id) {
                 const auto others = before(id);
-                return std::none_of(others.begin(), others.end(),
-                                    [&](const auto& other) { return left.count(other.first) > 0; });
+                return std::ranges::none_of(
+                    others, [&](const auto& other) { return left.count(other.first) > 0; });
             });
             if (next == left.end()) fail_circle(left);
             order.push_back(&effect(*next));
@@ -308,10 +303,9 @@ class Selector {
         std::vector<std::string> path = {*left.begin()};
         while (true) {
             const auto others = before(path.back());
-            const auto next = std::find_if(others.begin(), others.end(), [&](const auto& other) {
-                return left.count(other.first) > 0;
-            });
-            const auto seen = std::find(path.begin(), path.end(), next->first);
+            const auto next = std::ranges::find_if(
+                others, [&](const auto& other) { return left.count(other.first) > 0; });
+            const auto seen = std::ranges::find(path, next->first);
             if (seen == path.end()) {
                 path.push_back(next->first);
                 continue;
@@ -357,8 +351,7 @@ std::string plugin_of(const std::string& address) {
 }  // namespace
 
 bool Selection::has(std::string_view id) const {
-    return std::any_of(effects.begin(), effects.end(),
-                       [&](const Effect* effect) { return effect->id() == id; });
+    return std::ranges::any_of(effects, [&](const Effect* effect) { return effect->id() == id; });
 }
 
 std::vector<const shader::Snippet*> Selection::snippets() const {

@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace relevo::effect {
@@ -29,14 +30,6 @@ constexpr std::uint32_t kLeastSize<relevo_heights> = 16;
 template <>
 constexpr std::uint32_t kLeastSize<relevo_nodes> = 24;
 
-static_assert(sizeof(relevo_frame) >= kLeastSize<relevo_frame>);
-static_assert(sizeof(relevo_texture_info) >= kLeastSize<relevo_texture_info>);
-static_assert(sizeof(relevo_texels) >= kLeastSize<relevo_texels>);
-static_assert(sizeof(relevo_draw) >= kLeastSize<relevo_draw>);
-static_assert(sizeof(relevo_box) >= kLeastSize<relevo_box>);
-static_assert(sizeof(relevo_heights) >= kLeastSize<relevo_heights>);
-static_assert(sizeof(relevo_nodes) >= kLeastSize<relevo_nodes>);
-
 [[noreturn]] void refuse(const std::string& what) {
     throw std::invalid_argument(what);
 }
@@ -50,6 +43,7 @@ T* there(T* argument, const char* name) {
 
 template <typename Struct>
 void check_size(const Struct* argument, const char* name) {
+    static_assert(sizeof(Struct) >= kLeastSize<Struct>);
     there(argument, name);
     if (argument->size < kLeastSize<Struct>)
         refuse(std::string(name) + "->size is " + std::to_string(argument->size) +
@@ -81,7 +75,7 @@ std::array<double, N> values_in(const double* from, const char* name) {
 
 template <std::size_t N>
 bool finite(const std::array<double, N>& values) {
-    return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
 }
 
 std::span<float> room(float* values, std::uint64_t count, const char* name) {
@@ -118,14 +112,18 @@ const void* ServiceTables::service(const relevo_host* host, const char* name,
     return nullptr;
 }
 
-/// Runs a service's body.
+/// Runs a service's body, which returns a status where it may be other than RELEVO_OK.
 /// @param function  "relevo.texture: create"; before the reason of a failure
 template <typename Body>
 relevo_status ServiceTables::serve(void* self, const char* function, const Body& body) noexcept {
     if (!self) return RELEVO_FAILED;
     ServiceTables& tables = of(self);
     try {
-        return body(tables.services_);
+        if constexpr (std::is_void_v<std::invoke_result_t<Body, ModuleServices&>>)
+            body(tables.services_);
+        else
+            return body(tables.services_);
+        return RELEVO_OK;
     } catch (const std::invalid_argument& error) {
         tables.reason_ = std::string(function) + ": " + error.what();
     } catch (const std::bad_alloc&) {
@@ -151,10 +149,8 @@ relevo_status ServiceTables::serve_device(void* self, const char* function,
 void ServiceTables::fill_tables() {
     using Services = ModuleServices;
     log_ = {sizeof log_, 0, this, [](void* self, std::int32_t level, const char* text) {
-                serve(self, "relevo.log: write", [&](Services& services) {
-                    services.log(level, there(text, "text"));
-                    return RELEVO_OK;
-                });
+                serve(self, "relevo.log: write",
+                      [&](Services& services) { services.log(level, there(text, "text")); });
             }};
     params_ = {
         sizeof params_,
@@ -165,13 +161,11 @@ void ServiceTables::fill_tables() {
                 there(value, "value");
                 const auto known = services.parameter(there(address, "address"));
                 std::copy(known.begin(), known.end(), value);
-                return RELEVO_OK;
             });
         },
         [](void* self, const char* address, const double value[4]) {
             return serve(self, "relevo.params: set", [&](Services& services) {
                 services.set_parameter(there(address, "address"), values_in<4>(value, "value"));
-                return RELEVO_OK;
             });
         },
         [](void* self, const char* address, char* text, std::uint64_t capacity,
@@ -185,14 +179,12 @@ void ServiceTables::fill_tables() {
                     std::memcpy(text, known.data(), fits);
                     text[fits] = '\0';
                 }
-                return RELEVO_OK;
             });
         }};
     frame_ = {sizeof frame_, 0, this, [](void* self, relevo_frame* frame) {
                   return serve(self, "relevo.frame: get", [&](Services& services) {
                       check_size(frame, "frame");
                       copy_out(services.frame(), frame);
-                      return RELEVO_OK;
                   });
               }};
     draw_ = {sizeof draw_,
@@ -202,13 +194,11 @@ void ServiceTables::fill_tables() {
                  return serve_device(self, "relevo.draw: program", [&](Services& services) {
                      there(program, "program");
                      *program = services.create_program(there(file, "file"));
-                     return RELEVO_OK;
                  });
              },
              [](void* self, relevo_program program) {
                  return serve_device(self, "relevo.draw: destroy_program", [&](Services& services) {
                      services.destroy_program(program);
-                     return RELEVO_OK;
                  });
              },
              [](void* self, const relevo_draw* given) {
@@ -223,7 +213,6 @@ void ServiceTables::fill_tables() {
                      if (draw.input_count > 0) there(draw.inputs, "draw->inputs");
                      if (draw.value_count > 0) there(draw.values, "draw->values");
                      services.draw(draw);
-                     return RELEVO_OK;
                  });
              }};
     terrain_ = {
@@ -235,7 +224,6 @@ void ServiceTables::fill_tables() {
                 relevo_box full = copy_in(box, "box");
                 services.fill_bounds(full);
                 copy_out(full, box);
-                return RELEVO_OK;
             });
         },
         [](void* self, double nearer_than_m, relevo_box* box) {
@@ -251,7 +239,6 @@ void ServiceTables::fill_tables() {
             return serve_device(self, "relevo.terrain: draw_depth", [&](Services& services) {
                 const int drawn = services.draw_depth(copy_in(box, "box"), tolerance_m, target);
                 if (level) *level = drawn;
-                return RELEVO_OK;
             });
         }};
     heights_ = {sizeof heights_, 0, this,
@@ -259,7 +246,6 @@ void ServiceTables::fill_tables() {
                     return serve(self, "relevo.heights: describe", [&](Services& services) {
                         check_size(heights, "heights");
                         copy_out(services.heights(), heights);
-                        return RELEVO_OK;
                     });
                 },
                 [](void* self, const relevo_nodes* given, float* heights_m, std::uint64_t count) {
@@ -275,7 +261,6 @@ void ServiceTables::fill_tables() {
                         services.read_heights(
                             nodes,
                             room(heights_m, static_cast<std::uint64_t>(wanted), "heights_m"));
-                        return RELEVO_OK;
                     });
                 }};
     geo_ = {sizeof geo_,
@@ -285,14 +270,12 @@ void ServiceTables::fill_tables() {
                 return serve(self, "relevo.geo: to_local", [&](Services& services) {
                     const auto point = services.to_local(values_in<3>(from, "lat_lon_height"));
                     std::copy(point.begin(), point.end(), there(to, "local_m"));
-                    return RELEVO_OK;
                 });
             },
             [](void* self, const double from[3], double to[3]) {
                 return serve(self, "relevo.geo: from_local", [&](Services& services) {
                     const auto point = services.from_local(values_in<3>(from, "local_m"));
                     std::copy(point.begin(), point.end(), there(to, "lat_lon_height"));
-                    return RELEVO_OK;
                 });
             },
             [](void* self, const double from[2], double to[2]) {
@@ -315,44 +298,37 @@ void ServiceTables::fill_tables() {
 
 void ServiceTables::fill_texture_table() {
     using Services = ModuleServices;
-    texture_ = {sizeof texture_,
-                0,
-                this,
-                [](void* self, const relevo_texture_info* info, relevo_texture* texture) {
-                    return serve_device(self, "relevo.texture: create", [&](Services& services) {
-                        there(texture, "texture");
-                        *texture = services.create_texture(copy_in(info, "info"));
-                        return RELEVO_OK;
-                    });
-                },
-                [](void* self, relevo_texture texture) {
-                    return serve_device(self, "relevo.texture: destroy", [&](Services& services) {
-                        services.destroy_texture(texture);
-                        return RELEVO_OK;
-                    });
-                },
-                [](void* self, const relevo_texels* given) {
-                    return serve_device(self, "relevo.texture: write", [&](Services& services) {
-                        const relevo_texels texels = copy_in(given, "texels");
-                        there(texels.texels, "texels->texels");
-                        services.write_texture(texels);
-                        return RELEVO_OK;
-                    });
-                },
-                [](void* self, relevo_texture texture) {
-                    return serve_device(self, "relevo.texture: make_mipmaps",
-                                        [&](Services& services) {
-                                            services.make_mipmaps(texture);
-                                            return RELEVO_OK;
-                                        });
-                },
-                [](void* self, relevo_texture texture, std::int32_t layer, float* values,
-                   std::uint64_t count) {
-                    return serve_device(self, "relevo.texture: read", [&](Services& services) {
-                        services.read_texture(texture, layer, room(values, count, "values"));
-                        return RELEVO_OK;
-                    });
-                }};
+    texture_ = {
+        sizeof texture_,
+        0,
+        this,
+        [](void* self, const relevo_texture_info* info, relevo_texture* texture) {
+            return serve_device(self, "relevo.texture: create", [&](Services& services) {
+                there(texture, "texture");
+                *texture = services.create_texture(copy_in(info, "info"));
+            });
+        },
+        [](void* self, relevo_texture texture) {
+            return serve_device(self, "relevo.texture: destroy",
+                                [&](Services& services) { services.destroy_texture(texture); });
+        },
+        [](void* self, const relevo_texels* given) {
+            return serve_device(self, "relevo.texture: write", [&](Services& services) {
+                const relevo_texels texels = copy_in(given, "texels");
+                there(texels.texels, "texels->texels");
+                services.write_texture(texels);
+            });
+        },
+        [](void* self, relevo_texture texture) {
+            return serve_device(self, "relevo.texture: make_mipmaps",
+                                [&](Services& services) { services.make_mipmaps(texture); });
+        },
+        [](void* self, relevo_texture texture, std::int32_t layer, float* values,
+           std::uint64_t count) {
+            return serve_device(self, "relevo.texture: read", [&](Services& services) {
+                services.read_texture(texture, layer, room(values, count, "values"));
+            });
+        }};
 }
 
 }  // namespace relevo::effect

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -220,7 +219,7 @@ relevo_heights StandInHost::heights() {
 void StandInHost::read_heights(const relevo_nodes& nodes, std::span<float> heights_m) {
     need_frame();
     if (nodes.level < 0 || nodes.level >= kLevels) refuse("expected a level that there is");
-    std::fill(heights_m.begin(), heights_m.end(), static_cast<float>(kPlain_m));
+    std::ranges::fill(heights_m, static_cast<float>(kPlain_m));
 }
 
 StandInHost::Point StandInHost::to_local(const Point& lat_lon_height) {

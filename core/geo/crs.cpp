@@ -191,7 +191,7 @@ bool wants_type_crs(std::string_view text) {
 
 [[noreturn]] void unknown(std::string_view who, std::string_view text, std::string_view reason) {
     const bool digits =
-        std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+        std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
     const std::string remedy = digits && !text.empty() ? fmt::format("perhaps EPSG:{}", text)
                                                        : "write EPSG:n, WKT or a PROJ string";
     bad_input(fmt::format("{}: {}: not a coordinate reference system that PROJ knows{}{}; {}", who,
@@ -466,7 +466,7 @@ std::optional<DatumShift> Crs::datum_shift(double x, double y) const {
             const std::size_t plus = std::min(name.find(" + ", from), name.size());
             const std::string step = name.substr(from, plus - from);
             std::string words = lower(step);
-            std::replace(words.begin(), words.end(), '_', ' ');  // Esri's "ETRS_1989_To_WGS_1984"
+            std::ranges::replace(words, '_', ' ');  // Esri's "ETRS_1989_To_WGS_1984"
             if (words.find(" to ") != std::string::npos) shifts.push_back(step);
             from = plus + 3;
         }

@@ -3,7 +3,6 @@
 #include <cassert>
 #include <cmath>
 
-#include <GeographicLib/DMS.hpp>
 #include <GeographicLib/MGRS.hpp>
 #include <GeographicLib/UTMUPS.hpp>
 #include <fmt/format.h>
@@ -27,11 +26,6 @@ Projected project(const Geodetic& place) {
     return p;
 }
 
-std::string with_degree_sign(std::string text) {
-    const std::size_t at = text.find('d');
-    return at == std::string::npos ? text : text.replace(at, 1, "°");
-}
-
 }  // namespace
 
 std::string utm_text(const Geodetic& place) {
@@ -51,16 +45,6 @@ std::string mgrs_text(const Geodetic& place, int digits) {
     GeographicLib::MGRS::Forward(p.zone, p.north, p.easting_m, p.northing_m, degrees(place.lat_rad),
                                  digits, text);
     return text;
-}
-
-std::string dms_text(const Geodetic& place) {
-    using GeographicLib::DMS;
-    constexpr unsigned kDigits = 1;
-    return fmt::format(
-        "{} {}",
-        with_degree_sign(DMS::Encode(degrees(place.lat_rad), DMS::SECOND, kDigits, DMS::LATITUDE)),
-        with_degree_sign(
-            DMS::Encode(degrees(place.lon_rad), DMS::SECOND, kDigits, DMS::LONGITUDE)));
 }
 
 std::string degrees_text(const Geodetic& place) {

@@ -20,10 +20,6 @@ std::string utm_text(const Geodetic& place);
 /// Source: GeographicLib::MGRS; tests/geo/test_format.cpp.
 std::string mgrs_text(const Geodetic& place, int digits = 5);
 
-/// Degrees, minutes, seconds: `47°25'01.2"N 011°26'13.5"E`, rounded to a tenth of a second (3 m).
-/// UTF-8.
-std::string dms_text(const Geodetic& place);
-
 /// Decimal degrees as people write them: `47.41700 N 11.43708 E`, rounded to 1e-5 (1 m).
 std::string degrees_text(const Geodetic& place);
 

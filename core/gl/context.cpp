@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include <dlfcn.h>
 #include <epoxy/egl.h>
@@ -43,7 +43,7 @@ std::string missing_library() {
     const std::vector<std::vector<const char*>> needed = {{"libEGL.so.1"},
                                                           {"libOpenGL.so.0", "libGL.so.1"}};
     for (const auto& names : needed) {
-        const bool found = std::any_of(names.begin(), names.end(), [](const char* name) {
+        const bool found = std::ranges::any_of(names, [](const char* name) {
             // Never closed: libepoxy opens it next.
             return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr;
         });
@@ -75,8 +75,7 @@ std::vector<Candidate> candidates() {
             }
         }
     }
-    std::stable_partition(found.begin(), found.end(),
-                          [](const Candidate& c) { return !c.device.software; });
+    std::ranges::stable_partition(found, [](const Candidate& c) { return !c.device.software; });
     if (client_extension("EGL_MESA_platform_surfaceless")) {
         Candidate candidate;
         candidate.device.platform = "surfaceless";
@@ -89,24 +88,17 @@ std::vector<Candidate> candidates() {
 }
 
 const char* egl_error() {
-    switch (eglGetError()) {
-        case EGL_NOT_INITIALIZED:
-            return "EGL_NOT_INITIALIZED";
-        case EGL_BAD_ACCESS:
-            return "EGL_BAD_ACCESS";
-        case EGL_BAD_ALLOC:
-            return "EGL_BAD_ALLOC";
-        case EGL_BAD_ATTRIBUTE:
-            return "EGL_BAD_ATTRIBUTE";
-        case EGL_BAD_CONFIG:
-            return "EGL_BAD_CONFIG";
-        case EGL_BAD_MATCH:
-            return "EGL_BAD_MATCH";
-        case EGL_BAD_PARAMETER:
-            return "EGL_BAD_PARAMETER";
-        default:
-            return "EGL gives no reason";
-    }
+    constexpr std::array kNames = {std::pair(EGL_NOT_INITIALIZED, "EGL_NOT_INITIALIZED"),
+                                   std::pair(EGL_BAD_ACCESS, "EGL_BAD_ACCESS"),
+                                   std::pair(EGL_BAD_ALLOC, "EGL_BAD_ALLOC"),
+                                   std::pair(EGL_BAD_ATTRIBUTE, "EGL_BAD_ATTRIBUTE"),
+                                   std::pair(EGL_BAD_CONFIG, "EGL_BAD_CONFIG"),
+                                   std::pair(EGL_BAD_MATCH, "EGL_BAD_MATCH"),
+                                   std::pair(EGL_BAD_PARAMETER, "EGL_BAD_PARAMETER")};
+    const EGLint error = eglGetError();
+    for (const auto& [number, name] : kNames)
+        if (number == error) return name;
+    return "EGL gives no reason";
 }
 
 const char* gl_string(GLenum name) {
@@ -119,8 +111,9 @@ const char* gl_string(GLenum name) {
 bool is_software_renderer(std::string_view renderer) {
     // Mesa's (zink may stand on lavapipe, which is llvmpipe), SwiftShader, Windows' and Apple's.
     const std::string name = lower(renderer);
-    return std::any_of(kSoftwareRenderers.begin(), kSoftwareRenderers.end(),
-                       [&](std::string_view word) { return name.find(word) != std::string::npos; });
+    return std::ranges::any_of(kSoftwareRenderers, [&](std::string_view word) {
+        return name.find(word) != std::string::npos;
+    });
 }
 
 std::vector<Device> list_devices() {

@@ -1,6 +1,8 @@
 #include "gl/errors.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -15,22 +17,16 @@ constexpr std::size_t kLongestLabel = 255;  // GL_MAX_LABEL_LENGTH is 256 at lea
 }  // namespace
 
 std::string error_name(unsigned error) {
-    switch (error) {
-        case GL_INVALID_ENUM:
-            return "GL_INVALID_ENUM";
-        case GL_INVALID_VALUE:
-            return "GL_INVALID_VALUE";
-        case GL_INVALID_OPERATION:
-            return "GL_INVALID_OPERATION";
-        case GL_INVALID_FRAMEBUFFER_OPERATION:
-            return "GL_INVALID_FRAMEBUFFER_OPERATION";
-        case GL_OUT_OF_MEMORY:
-            return "GL_OUT_OF_MEMORY";
-        case GL_CONTEXT_LOST:
-            return "GL_CONTEXT_LOST";
-        default:
-            return fmt::format("GL error 0x{:04x}", error);
-    }
+    constexpr std::array kNames = {
+        std::pair(GL_INVALID_ENUM, "GL_INVALID_ENUM"),
+        std::pair(GL_INVALID_VALUE, "GL_INVALID_VALUE"),
+        std::pair(GL_INVALID_OPERATION, "GL_INVALID_OPERATION"),
+        std::pair(GL_INVALID_FRAMEBUFFER_OPERATION, "GL_INVALID_FRAMEBUFFER_OPERATION"),
+        std::pair(GL_OUT_OF_MEMORY, "GL_OUT_OF_MEMORY"),
+        std::pair(GL_CONTEXT_LOST, "GL_CONTEXT_LOST")};
+    for (const auto& [number, name] : kNames)
+        if (static_cast<unsigned>(number) == error) return name;
+    return fmt::format("GL error 0x{:04x}", error);
 }
 
 void expect_no_error(std::string_view before) {

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
-#include <optional>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -44,8 +43,8 @@ constexpr std::array kFormats{
 
 const Format* format_of(const std::filesystem::path& path) {
     const std::string ending = lower(path.extension().string());
-    const auto* const found = std::find_if(kFormats.begin(), kFormats.end(),
-                                           [&](const Format& f) { return ending == f.ending; });
+    const auto* const found =
+        std::ranges::find_if(kFormats, [&](const Format& f) { return ending == f.ending; });
     return found == kFormats.end() ? nullptr : found;
 }
 

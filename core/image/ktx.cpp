@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -71,8 +70,8 @@ constexpr std::array kFormats{
 };
 
 const FormatInfo& info(PixelFormat format) {
-    const auto found = std::find_if(kFormats.begin(), kFormats.end(),
-                                    [&](const FormatInfo& f) { return f.format == format; });
+    const auto found =
+        std::ranges::find_if(kFormats, [&](const FormatInfo& f) { return f.format == format; });
     assert(found != kFormats.end());
     return *found;
 }

@@ -93,7 +93,7 @@ void make_block(const dem::Heightfield& dem, Ground& ground) {
                     of_row = std::min(of_row, ground.frame.to_local(place).z);
             }
     });
-    ground.floor_m = *std::min_element(lowest.begin(), lowest.end());
+    ground.floor_m = *std::ranges::min_element(lowest);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <future>
@@ -22,27 +21,17 @@
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "base/units.h"
-#include "base/wide_loops.h"
 #include "dem/posts.h"
-#include "geo/ellipsoid.h"
 #include "light/raster/clearance.h"
 #include "light/raster/horizons.h"
+#include "render/shadow_texels.h"
 
 namespace relevo::render {
 namespace {
 
-constexpr int kMostLevels = 9;        // of means; the coarsest are of 512 x 512 posts
-constexpr int kMostSide = 16384;      // of textures, by OpenGL 4.5
-constexpr float kMostMargin = 60000;  // in halves, short of kHole
-constexpr double kMarginPosts = 4;    // a margin of so many spacings counts as one of any size
-
-/// A float as a half. What is smaller than a half's least normal number is 0.
-inline std::uint32_t half_of(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    const std::uint32_t sign = bits >> 16 & 0x8000U, size = bits & 0x7fffffffU;
-    const std::uint32_t half = (size - (112U << 23) + 0x1000U) >> 13;
-    return sign | (size < (113U << 23) ? 0 : half);
-}
+constexpr int kMostLevels = 9;      // of means; the coarsest are of 512 x 512 posts
+constexpr int kMostSide = 16384;    // of textures, by OpenGL 4.5
+constexpr double kMarginPosts = 4;  // a margin of so many spacings counts as one of any size
 
 /// Means of squares of posts, as Source::read() makes them: holes take no part.
 Array2d<float> means_of(const Array2d<float>& height_m, int side, float factor) {
@@ -71,27 +60,6 @@ Array2d<float> means_of(const Array2d<float>& height_m, int side, float factor) 
 struct Bytes2 {
     std::uint8_t value, coverage;
 };
-
-constexpr std::uint32_t kHoles = 0x7bff7bffU;  // GroundLight::kHole twice
-
-/// Margins as two halves, the upper limb's in the low one, and the share of the disc that is seen.
-RELEVO_WIDE_LOOPS void encode(const light::ClearanceRun& run, std::uint32_t* halves,
-                              std::uint16_t* shares) {
-    const float *const uppers = run.upper_m, *const lowers = run.lower_m;
-    const int count = run.count;
-    for (int i = 0; i < count; ++i) {
-        const float u = uppers[i], l = lowers[i];
-        const bool hole = !(u == u);
-        const float upper = std::min(kMostMargin, std::max(-kMostMargin, u)),
-                    lower = std::min(kMostMargin, std::max(-kMostMargin, l));
-        const std::uint32_t pair = half_of(upper) | half_of(lower) << 16;
-        halves[i] = hole ? kHoles : pair;
-        const float height = std::min(1.0F, std::max(0.0F, upper / std::max(upper - lower, 1e-3F)));
-        const float seen = lower >= 0 ? 1.0F : light::quick_share_of_disc(height);
-        const auto whole = static_cast<std::uint32_t>(static_cast<int>(255 * seen + 0.5F));
-        shares[i] = static_cast<std::uint16_t>(hole ? 0 : whole | 0xff00U);
-    }
-}
 
 /// Values and coverage with levels of means. Sides are such that each level halves the one before;
 /// what is beyond the posts has no coverage.
@@ -314,14 +282,14 @@ struct GroundLight::Impl {
     }
 
     void take(const light::ClearanceRun& run) {
-        encode(run, &halves.at(run.column, run.row), &post_shares.at(run.column, run.row));
+        encode_shadows(run, &halves.at(run.column, run.row), &post_shares.at(run.column, run.row));
     }
 
     /// All posts are in the shade, or none.
     void set_all(bool lit) {
         const std::uint32_t margin = half_of(lit ? kMostMargin : -kMostMargin);
-        std::fill(halves.begin(), halves.end(), margin << 16 | margin);
-        std::fill(post_shares.begin(), post_shares.end(), std::uint16_t(lit ? 0xffffU : 0xff00U));
+        std::ranges::fill(halves, margin << 16 | margin);
+        std::ranges::fill(post_shares, std::uint16_t(lit ? 0xffffU : 0xff00U));
     }
 
     /// Margins of a sun, where the DEM has one; false on maps of the world, whose rows end in

@@ -1,7 +1,6 @@
 #include "render/lod.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -275,8 +274,8 @@ std::vector<TileDraw> TileTree::select_from_eye(const LodView& view, const Resid
         return true;
     };
     take(take, root());
-    std::sort(draws.begin(), draws.end(),
-              [](const TileDraw& a, const TileDraw& b) { return a.distance_m < b.distance_m; });
+    std::ranges::sort(
+        draws, [](const TileDraw& a, const TileDraw& b) { return a.distance_m < b.distance_m; });
     return draws;
 }
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <vector>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -211,7 +210,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         auto program = gl::Program::build(vertex, head + own, path->filename().string(), failure);
         if (!program) {
             shader::LineMap lines(2);
-            for (int line = 1; line <= 1 + std::count(own.begin(), own.end(), '\n'); ++line)
+            for (int line = 1; line <= 1 + std::ranges::count(own, '\n'); ++line)
                 lines.push_back({module.id(), file, line});
             refuse(fmt::format("{}: the driver refuses it\n{}", file,
                                shader::parse_driver_log(failure.log, lines).text()));

@@ -68,7 +68,7 @@ struct PageCache::Impl {
     std::vector<int> oldest() const {
         std::vector<int> order(slots.size());
         std::iota(order.begin(), order.end(), 0);
-        std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+        std::ranges::stable_sort(order, [&](int a, int b) {
             return slots[static_cast<std::size_t>(a)].used <
                    slots[static_cast<std::size_t>(b)].used;
         });
@@ -110,7 +110,7 @@ struct PageCache::Impl {
         const std::vector<int> order = oldest();
         std::size_t next = 0;
         for (const MadePage& page : maker->take()) {
-            const auto found = std::find(wanted.begin(), wanted.end(), page.key);
+            const auto found = std::ranges::find(wanted, page.key);
             if (found == wanted.end()) continue;  // no longer wanted, or already there
             put(page, order[next++]);
             wanted.erase(found);

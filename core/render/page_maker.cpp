@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/contains.h"
 #include "base/parallel_for.h"
 
 namespace relevo::render {
@@ -32,9 +33,7 @@ PageMaker::~PageMaker() {
 void PageMaker::want(std::vector<TileKey> keys) {
     {
         const std::lock_guard lock(mutex_);
-        const auto is_under_way = [&](const TileKey& key) {
-            return std::find(in_work_.begin(), in_work_.end(), key) != in_work_.end();
-        };
+        const auto is_under_way = [&](const TileKey& key) { return contains(in_work_, key); };
         keys.erase(std::remove_if(keys.begin(), keys.end(), is_under_way), keys.end());
         wanted_ = std::move(keys);
     }

@@ -9,8 +9,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "base/wide_loops.h"
-
 namespace relevo::render {
 namespace {
 
@@ -132,7 +130,7 @@ inline std::uint32_t snorm16(float value) {
 }
 
 /// @param to  east in the lower half of each, north in the upper one
-RELEVO_WIDE_LOOPS void encode_normals(const NormalRow& given, std::uint32_t* to) {
+void encode_normals(const NormalRow& given, std::uint32_t* to) {
     using vec3 = glm::vec3;
     const NormalRow row = given;  // nothing is written to it, as far as compilers know
     for (int i = 0; i < kNormalPage_px; ++i) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace relevo::render {
 namespace {
@@ -145,8 +144,8 @@ PatchNet fit_patch_net(const PostPlace& place, const geo::LocalFrame& frame, glm
         positions[node] = frame.to_local({at.lat_rad, at.lon_rad, 0});
         verticals[node] = frame.up(at.lat_rad, at.lon_rad);
     }
-    if (!std::all_of(positions.begin(), positions.end(),
-                     [](const glm::dvec3& position) { return std::isfinite(position.x); }))
+    if (!std::ranges::all_of(positions,
+                             [](const glm::dvec3& position) { return std::isfinite(position.x); }))
         fit_what_is_on_earth(place, frame, first, sides, positions, verticals);
     PatchNet net;
     net.centre_m = positions[4];

@@ -18,9 +18,9 @@ namespace {
 
 /// Whether an effect answers a hook.
 bool answers(const shader::StitchInput& input, std::string_view hook) {
-    return std::any_of(
-        input.snippets.begin(), input.snippets.end(),
-        [&](const shader::Snippet* snippet) { return snippet->find(hook) != nullptr; });
+    return std::ranges::any_of(input.snippets, [&](const shader::Snippet* snippet) {
+        return snippet->find(hook) != nullptr;
+    });
 }
 
 }  // namespace
@@ -36,11 +36,10 @@ bool has_overlay(const shader::StitchInput& input, bool draped) {
 namespace {
 
 bool wants(const shader::StitchInput& input, std::string_view word) {
-    return std::any_of(
-        input.snippets.begin(), input.snippets.end(), [&](const shader::Snippet* snippet) {
-            return std::any_of(snippet->wanted.begin(), snippet->wanted.end(),
-                               [&](const auto& wanted) { return wanted.word == word; });
-        });
+    return std::ranges::any_of(input.snippets, [&](const shader::Snippet* snippet) {
+        return std::ranges::any_of(snippet->wanted,
+                                   [&](const auto& wanted) { return wanted.word == word; });
+    });
 }
 
 // Outputs beside the G-buffer: GL guarantees eight.

@@ -1,8 +1,8 @@
 #include "render/terrain.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -16,19 +16,10 @@
 
 #include "base/units.h"
 #include "render/pages.h"
+#include "render/tile_grid.h"
 
 namespace relevo::render {
 namespace {
-
-/// Vertices along a side: those of the tile and its skirt.
-constexpr int kGridSide = kTileQuads + 3;
-constexpr int kGridVertices = kGridSide * kGridSide;
-constexpr int kQuadrantQuads = (kGridSide - 1) / 2;
-constexpr int kQuadrantIndices = kQuadrantQuads * kQuadrantQuads * 6;
-
-/// Rounding leaves up to a step of the rasteriser between the sides of two tiles. The skirt of each
-/// reaches this far [quads] under its neighbour.
-constexpr float kSkirt_quads = 1.0f / 128.0f;
 
 constexpr int kMaxHeightPages = 1024;  // 73 MB
 constexpr int kMaxNormalPages = 384;   // 102 MB
@@ -44,35 +35,6 @@ std::uint64_t next_serial() {
     return ++last;
 }
 
-std::vector<float> grid_vertices() {
-    std::vector<float> vertices;
-    const auto coordinate = [](int i) {
-        if (i == 0) return -kSkirt_quads;
-        if (i == kGridSide - 1) return kTileQuads + kSkirt_quads;
-        return static_cast<float>(i - 1);
-    };
-    for (int y = 0; y < kGridSide; ++y)
-        for (int x = 0; x < kGridSide; ++x) {
-            vertices.push_back(coordinate(x));
-            vertices.push_back(coordinate(y));
-        }
-    return vertices;
-}
-
-/// Quadrant after quadrant, so that any of them can be drawn alone.
-std::vector<std::uint16_t> grid_indices() {
-    std::vector<std::uint16_t> indices;
-    for (int q = 0; q < 4; ++q)
-        for (int j = 0; j < kQuadrantQuads; ++j)
-            for (int i = 0; i < kQuadrantQuads; ++i) {
-                const int x = (q & 1) * kQuadrantQuads + i, y = (q >> 1) * kQuadrantQuads + j;
-                const int a = y * kGridSide + x, b = a + 1, c = a + kGridSide, d = c + 1;
-                for (const int index : {a, c, b, b, c, d})
-                    indices.push_back(static_cast<std::uint16_t>(index));
-            }
-    return indices;
-}
-
 int tiles_of_all_levels(const dem::Pyramid& pyramid) {
     int sum = 0;
     for (int level = 0; level < pyramid.levels(); ++level) {
@@ -85,13 +47,6 @@ int tiles_of_all_levels(const dem::Pyramid& pyramid) {
 int pages_across(int posts, int level) {
     const int posts_a_page = kNormalNodes << level;
     return std::max(1, (posts - 1 + posts_a_page - 1) / posts_a_page);
-}
-
-int power_of_two_from(int n) {
-    int power = 1;
-    while (power < n)
-        power *= 2;
-    return power;
 }
 
 /// The tolerance to try after one that asks for too much.
@@ -123,8 +78,8 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       drawn_m_(&heightfield.height_m),
       drawn_grid_(&heightfield.grid),
       reduction_(finer ? heightfield.reduction : 1),
-      grid_vertices_(gl::Buffer::of<float>(grid_vertices(), "terrain grid")),
-      grid_indices_(gl::Buffer::of<std::uint16_t>(grid_indices(), "terrain grid indices")),
+      grid_vertices_(gl::Buffer::of<float>(tile_grid_vertices(), "terrain grid")),
+      grid_indices_(gl::Buffer::of<std::uint16_t>(tile_grid_indices(), "terrain grid indices")),
       sides_(pyramid_) {
     options_.sky = {};  // the light has it
     const glm::dvec2 spacing_m = grid_.post_spacing_m();
@@ -142,8 +97,8 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
         normal_count +=
             pages_across(pyramid_.columns(), level) * pages_across(pyramid_.rows(), level);
     normal_layers_ = std::min({normal_count, kMaxNormalPages, most});
-    const int across = power_of_two_from(
-        std::max(pages_across(pyramid_.columns(), 0), pages_across(pyramid_.rows(), 0)));
+    const auto across = static_cast<int>(std::bit_ceil(static_cast<unsigned>(
+        std::max(pages_across(pyramid_.columns(), 0), pages_across(pyramid_.rows(), 0)))));
     page_table_ =
         gl::Texture(gl::TextureKind::D2, gl::Format::RG16UI, {across, across, 1}, 0, "page table");
     page_table_.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
@@ -291,11 +246,11 @@ TileSelection Terrain::select_beside(const LodView& wanted) {
         if (static_cast<int>(keys.size()) <= room && in_budget(wanted, draws)) break;
         view.tolerance = coarser(view.tolerance);
     }
-    complete_ = std::all_of(keys.begin(), keys.end(), is_there);
+    complete_ = std::ranges::all_of(keys, is_there);
     TileSelection selection = ready(view, draws);
     // Coarse ones first: they stand in for all that they cover.
-    std::stable_sort(keys.begin(), keys.end(),
-                     [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
+    std::ranges::stable_sort(keys,
+                             [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
     heights_.request(keys);
     return selection;
 }
@@ -380,8 +335,8 @@ void Terrain::prepare_surface(const LodView& view, Loading loading, bool afresh)
     }
     bool came = false;
     if (loading == Loading::Beside && !pages.empty()) {
-        std::stable_sort(pages.begin(), pages.end(),
-                         [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
+        std::ranges::stable_sort(
+            pages, [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
         came = surface_.require(std::span(pages).first(1));  // covers all of it
         came = surface_.request(pages) || came;
         for (const TileKey& page : pages)

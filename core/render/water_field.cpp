@@ -26,7 +26,7 @@ std::uint8_t unorm8(double value) {
 /// without one; empty where all have one.
 Array2d<WaterKind> with_kind_in_voids(const Array2d<WaterKind>& kind, const Array2d<float>& h) {
     const auto is_void = [](float height_m) { return std::isnan(height_m); };
-    if (kind.empty() || std::none_of(h.begin(), h.end(), is_void)) return {};
+    if (kind.empty() || std::ranges::none_of(h, is_void)) return {};
     Array2d<WaterKind> result = kind;
     constexpr int kFar = 1 << 30;
     Array2d<int> steps(kind.width(), kind.height(), 0);

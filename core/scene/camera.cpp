@@ -44,7 +44,7 @@ struct Fit {
     /// Whether the camera has all of these points in a part of its picture.
     bool shows(const Camera& camera, std::span<const glm::dvec3> points, const Room& room) const {
         const glm::dvec3 right = cross(camera.forward, camera.up);
-        return std::all_of(points.begin(), points.end(), [&](const glm::dvec3& point) {
+        return std::ranges::all_of(points, [&](const glm::dvec3& point) {
             const double depth = distance_m + dot(point, camera.forward);
             const double x = dot(point, right) - a, y = dot(point, camera.up) - b;
             return x >= depth * room.left && x <= depth * room.right && y >= depth * room.bottom &&

@@ -114,8 +114,7 @@ Aspect aspect_from(const GroundNet& net, double azimuth_deg, double elevation_de
     const glm::dvec3 to_camera = towards(azimuth_deg, elevation_deg);
     std::vector<Node> nodes = nodes_of(net, azimuth_deg, to_camera);
     if (nodes.empty()) return {};
-    std::sort(nodes.begin(), nodes.end(),
-              [](const Node& a, const Node& b) { return a.nearness > b.nearness; });
+    std::ranges::sort(nodes, [](const Node& a, const Node& b) { return a.nearness > b.nearness; });
     glm::dvec2 least(1e300), most(-1e300);
     for (const Node& node : nodes) {
         least = glm::min(least, glm::dvec2(node.right, node.up));

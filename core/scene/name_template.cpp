@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/text.h"
 
@@ -94,7 +95,7 @@ void NameTemplate::add_field(std::string_view field, const std::vector<std::stri
                 colon == std::string_view::npos ? "" : std::string(field.substr(colon + 1))};
     std::vector<std::string> fields{"dem", "n", "time"};
     fields.insert(fields.end(), known.begin(), known.end());
-    if (std::find(fields.begin(), fields.end(), piece.key) == fields.end()) {
+    if (!contains(fields, piece.key)) {
         const auto near = nearest(piece.key, fields);
         bad_input(fmt::format("expected one of {{{}}} but got {{{}}}{}", fmt::join(fields, "}, {"),
                               piece.key, near ? fmt::format("; did you mean {{{}}}?", *near) : ""));
@@ -103,7 +104,7 @@ void NameTemplate::add_field(std::string_view field, const std::vector<std::stri
         if (piece.text.empty()) piece.text = kTimeFormat;
         check_time_format(piece.text);
     } else if (piece.key == "n") {
-        const bool digits = std::all_of(piece.text.begin(), piece.text.end(), [](char letter) {
+        const bool digits = std::ranges::all_of(piece.text, [](char letter) {
             return std::isdigit(static_cast<unsigned char>(letter));
         });
         if (!digits || piece.text.size() > 2)

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
@@ -181,7 +182,7 @@ void remove(const std::vector<std::string>& ids, std::vector<std::string>& from)
 
 void add(const std::vector<std::string>& ids, std::vector<std::string>& to) {
     for (const std::string& id : ids)
-        if (std::find(to.begin(), to.end(), id) == to.end()) to.push_back(id);
+        if (!contains(to, id)) to.push_back(id);
 }
 
 }  // namespace
@@ -223,7 +224,7 @@ void show_stamps(const std::vector<std::string>& words, std::string_view who, St
         bad_input(fmt::format("{}: {}: expected all, none, or words of legend, {}", who,
                               printable(asked), fmt::join(all, ", ")));
     }
-    const bool all = std::find(words.begin(), words.end(), "all") != words.end();
+    const bool all = contains(words, "all");
     if (all && stamps.attribution_text.empty()) stamps.attribution = false;
 }
 

@@ -57,7 +57,7 @@ std::string joined(std::string_view path, const char* key) {
 bool is_clock(std::string_view text) {
     const std::vector<std::string> parts = split(text, ':');
     if (parts.size() < 2 || parts.size() > 3) return false;
-    return std::all_of(parts.begin(), parts.end(), [&](const std::string& part) {
+    return std::ranges::all_of(parts, [&](const std::string& part) {
         const bool hour = &part == &parts.front();
         return (part.size() == 2 || (hour && part.size() == 1)) &&
                part.find_first_not_of("0123456789") == std::string::npos;
@@ -71,7 +71,7 @@ void SceneReader::take(ObjectReader& object, std::string_view path, Scene& scene
     if (const Json* const value = object.take("dem")) dem(*value, joined(path, "dem"), scene);
     if (const Json* const value = object.take("time"))
         moment(*value, joined(path, "time"), scene.moment);
-    const auto known = std::find(refractions().begin(), refractions().end(), scene.refraction);
+    const auto known = std::ranges::find(refractions(), scene.refraction);
     scene.refraction = refractions()[object.choice(
         "refraction", refractions(), static_cast<std::size_t>(known - refractions().begin()))];
     if (const Json* const value = object.take("camera"))

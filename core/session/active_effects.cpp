@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/log.h"
 
 namespace relevo::session {
@@ -50,7 +51,7 @@ void ActiveEffects::take_ground(const effect::GroundWords& words, const scene::E
         effect::select_and_load(registry, presets, switches, values, {}, std::move(loaded), ground);
     if (!aloud) return;
     for (const std::string& notice : loaded.selection.notices)
-        if (std::find(said.begin(), said.end(), notice) == said.end()) log::info(notice);
+        if (!contains(said, notice)) log::info(notice);
     for (const effect::Setting& setting : asked.settings) {
         const std::string id = setting.address.substr(0, setting.address.find('.'));
         if (before.has(id) && !loaded.selection.has(id))
@@ -62,16 +63,13 @@ void ActiveEffects::take_ground(const effect::GroundWords& words, const scene::E
 }
 
 std::vector<std::string> ActiveEffects::switch_off_unasked(std::string_view word) {
-    const auto has = [](const std::vector<std::string>& ids, const std::string& id) {
-        return std::find(ids.begin(), ids.end(), id) != ids.end();
-    };
     std::vector<std::string> off;
     bool any = false;
     // All of them: where one is off, another one may take its place.
     for (const effect::Effect& effect : registry.effects()) {
         const std::string& id = effect.id();
-        if (!effect.provides(word) || has(switches.enable, id) || has(switches.disable, id) ||
-            (switches.only && has(*switches.only, id)))
+        if (!effect.provides(word) || contains(switches.enable, id) ||
+            contains(switches.disable, id) || (switches.only && contains(*switches.only, id)))
             continue;
         if (loaded.selection.has(id)) off.push_back(id);
         switches.disable.push_back(id);
@@ -91,10 +89,10 @@ render::EffectInputs ActiveEffects::inputs() const {
     for (const effect::Effect* effect : loaded.selection.effects)
         if (effect->manifest.displaces) inputs.displaces.push_back(*effect->manifest.displaces);
     for (const effect::LoadedTexture& texture : loaded.textures) {
-        const auto same = std::find_if(inputs.textures.begin(), inputs.textures.end(),
-                                       [&](const effect::LoadedTexture* other) {
-                                           return other->spec.same_texels(texture.spec);
-                                       });
+        const auto same =
+            std::ranges::find_if(inputs.textures, [&](const effect::LoadedTexture* other) {
+                return other->spec.same_texels(texture.spec);
+            });
         if (same == inputs.textures.end())
             inputs.textures.push_back(&texture);
         else
@@ -132,7 +130,7 @@ void move_to(const std::vector<std::string>& ids, std::vector<std::string>& from
              std::vector<std::string>& to) {
     for (const std::string& id : ids) {
         from.erase(std::remove(from.begin(), from.end(), id), from.end());
-        if (std::find(to.begin(), to.end(), id) == to.end()) to.push_back(id);
+        if (!contains(to, id)) to.push_back(id);
     }
 }
 
@@ -169,7 +167,7 @@ std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, 
     if (!aloud) return active;
     const std::vector<std::string>& disable = effects.switches.disable;
     for (const effect::BrokenEffect& broken : active->registry.broken())
-        if (std::find(disable.begin(), disable.end(), broken.id) == disable.end())
+        if (!contains(disable, broken.id))
             log::warning(fmt::format("{}; --disable {} silences this", broken.error, broken.id));
     say(active->loaded.selection);
     for (const std::string& notice : notices)

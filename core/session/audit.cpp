@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "dem/posts.h"
 #include "light/raster/shadows.h"
@@ -58,7 +59,7 @@ Array2d<float> swept(const Session& session) {
 std::string provider_of(const ActiveEffects& effects) {
     for (const effect::Effect* effect : effects.loaded.selection.effects) {
         const std::vector<std::string>& words = effect->manifest.provides;
-        if (std::find(words.begin(), words.end(), "shadow") != words.end()) return effect->id();
+        if (contains(words, "shadow")) return effect->id();
     }
     return {};
 }

@@ -241,8 +241,8 @@ void order_for_drawing(std::vector<scene::Shot>& shots) {
         order.push_back(places.size());
         places.emplace_back(dem, effect);
     }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return places[a] < places[b]; });
+    std::ranges::stable_sort(order,
+                             [&](std::size_t a, std::size_t b) { return places[a] < places[b]; });
     std::vector<scene::Shot> ordered;
     ordered.reserve(shots.size());
     for (const std::size_t at : order)

@@ -65,7 +65,7 @@ std::vector<chart::Ramp::Stop> stops_of(const ColourRamp& ramp, double from, dou
         stops.push_back(
             {from + (to - from) * static_cast<double>(k) / count, colour_of(ramp.colours[k])});
     if (ramp.is_ring) stops.push_back({to, stops.front().color});
-    if (to < from) std::reverse(stops.begin(), stops.end());
+    if (to < from) std::ranges::reverse(stops);
     return stops;
 }
 
@@ -91,10 +91,9 @@ std::vector<chart::Legend> colour_legends(const ActiveEffects& effects, const De
             const auto ends = ends_of(ramp, effects.values, ground);
             if (!ends) continue;
             auto stops = stops_of(ramp, ends->first, ends->second);
-            const auto same =
-                std::find_if(legends.begin(), legends.end(), [&](const chart::Legend& l) {
-                    return l.title == ramp.label && l.unit == ramp.unit;
-                });
+            const auto same = std::ranges::find_if(legends, [&](const chart::Legend& l) {
+                return l.title == ramp.label && l.unit == ramp.unit;
+            });
             if (same == legends.end())
                 legends.push_back({.title = ramp.label,
                                    .unit = ramp.unit,

@@ -24,7 +24,7 @@ constexpr std::array<int, 18> kSteps_s = {1,   2,   5,    10,   15,   30,    60,
                                           600, 900, 1800, 3600, 7200, 18000, 36000, 54000, 108000};
 
 /// One of the two coordinates at each pixel [degrees]; NaN where no ground is.
-using Field = std::vector<double>;
+using Field = Array2d<double>;
 
 struct Places {
     Field latitude, longitude;
@@ -32,22 +32,17 @@ struct Places {
 
 /// Longitudes without a leap in them, as far as one turn allows.
 Places places_of(const SeenGround& seen, const geo::LocalFrame& frame) {
-    const int width = seen.width_px();
-    const auto size = static_cast<std::size_t>(width) * static_cast<std::size_t>(seen.height_px());
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    Places places{Field(size, nan), Field(size, nan)};
+    const Field none(seen.width_px(), seen.height_px(), std::numeric_limits<double>::quiet_NaN());
+    Places places{none, none};
     const double middle_deg = degrees(frame.origin().lon_rad);
     parallel_for(0, seen.height_px(), 8, [&](int first, int end) {
         for (int y = first; y < end; ++y)
-            for (int x = 0; x < width; ++x) {
+            for (int x = 0; x < seen.width_px(); ++x) {
                 const auto point = seen.point(x, y);
                 if (!point) continue;
                 const geo::Geodetic place = frame.to_geodetic(*point);
-                const std::size_t at =
-                    static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                    static_cast<std::size_t>(x);
-                places.latitude[at] = degrees(place.lat_rad);
-                places.longitude[at] =
+                places.latitude.at(x, y) = degrees(place.lat_rad);
+                places.longitude.at(x, y) =
                     middle_deg + std::remainder(degrees(place.lon_rad) - middle_deg, 360);
             }
     });
@@ -65,12 +60,11 @@ double range_of(const Field& field) {
 
 /// What a coordinate changes by from a pixel to the next. Over a silhouette the neighbour beyond is
 /// other ground: the nearer of two counts.
-double change_at(const Field& field, int x, int y, int width, int height) {
+double change_at(const Field& field, int x, int y) {
     const auto at = [&](int column, int row) {
-        return column < 0 || row < 0 || column >= width || row >= height
+        return column < 0 || row < 0 || column >= field.width() || row >= field.height()
                    ? std::numeric_limits<double>::quiet_NaN()
-                   : field[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                           static_cast<std::size_t>(column)];
+                   : field.at(column, row);
     };
     const double here = at(x, y);
     const auto least = [](double a, double b) { return std::isnan(a) || b < a ? b : a; };
@@ -105,12 +99,10 @@ Courses draw(const Field& field, double step_deg, const SeenGround& seen, const 
     Courses courses;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                   static_cast<std::size_t>(x);
-            if (std::isnan(field[at])) continue;
-            const double value = field[at] / step_deg;
+            if (std::isnan(field.at(x, y))) continue;
+            const double value = field.at(x, y) / step_deg;
             const double away = std::abs(value - std::round(value));
-            const double change = change_at(field, x, y, width, height) / step_deg;
+            const double change = change_at(field, x, y) / step_deg;
             if (away > change * (kHalfEdge * unit + 0.5)) continue;
             const double wide =
                 std::clamp((1 / change / unit - kNarrow) / (kWide - kNarrow), 0.0, 1.0);
@@ -119,8 +111,9 @@ Courses draw(const Field& field, double step_deg, const SeenGround& seen, const 
             const auto share = [&](double half) {
                 return static_cast<float>(wide * std::clamp(half * unit + 0.5 - away_px, 0.0, 1.0));
             };
-            result.line[at] = std::max(result.line[at], kLineOpacity * share(kHalf));
-            result.edge[at] = std::max(result.edge[at], kEdgeOpacity * share(kHalfEdge));
+            const auto raise = [&](float& opacity, float to) { opacity = std::max(opacity, to); };
+            raise(result.line.at(x, y), kLineOpacity * share(kHalf));
+            raise(result.edge.at(x, y), kEdgeOpacity * share(kHalfEdge));
             if (away_px <= 0.5 && wide >= 1) note(courses, std::lround(value), {x, y});
         }
     return courses;
@@ -176,8 +169,7 @@ Graticule make_graticule(const SeenGround& seen, const geo::LocalFrame& frame,
                          const std::function<bool(const glm::dvec3& point_m)>& is_ground) {
     const Places places = places_of(seen, frame);
     Graticule result;
-    result.line.assign(places.latitude.size(), 0);
-    result.edge.assign(places.latitude.size(), 0);
+    result.line = result.edge = Array2d<float>(seen.width_px(), seen.height_px(), 0);
     const double range_lat = range_of(places.latitude), range_lon = range_of(places.longitude);
     if (!(range_lat > 0 && range_lon > 0)) return result;
     result.latitude_step_deg = graticule_step_deg(range_lat, kMostLines);
@@ -191,7 +183,7 @@ Graticule make_graticule(const SeenGround& seen, const geo::LocalFrame& frame,
 
 void draw_lines(const Graticule& graticule, image::Image8& picture) {
     for (std::size_t at = 0; at < graticule.line.size(); ++at) {
-        const float line = graticule.line[at], edge = graticule.edge[at];
+        const float line = graticule.line.data()[at], edge = graticule.edge.data()[at];
         if (line <= 0 && edge <= 0) continue;
         for (int channel = 0; channel < 3; ++channel) {
             std::uint8_t& value = picture.values[at * 3 + static_cast<std::size_t>(channel)];

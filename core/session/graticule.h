@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/array2d.h"
 #include "chart/stamps.h"
 #include "geo/local_frame.h"
 #include "session/seen_ground.h"
@@ -15,7 +16,7 @@ struct Graticule {
     double latitude_step_deg = 0, longitude_step_deg = 0;  ///< 0: no lines
     /// Opacity of the lines at each pixel, rows from the top, 0 to 1, and of the dark edge that
     /// lets them be seen on light ground.
-    std::vector<float> line, edge;
+    Array2d<float> line, edge;
     std::vector<chart::Stamps::Label> labels;
 };
 

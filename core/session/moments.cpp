@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "base/log.h"
-#include "dem/load.h"
 #include "dem/posts.h"
 #include "render/ground.h"
 #include "scene/framing.h"

@@ -41,7 +41,7 @@ chart::Ramp ramp_of(const std::vector<std::array<std::uint8_t, 4>>& colors) {
 
 /// Whether a band says of each post that it is lit or not.
 bool is_mask(const dem::BandOver& band) {
-    return band.whole && std::all_of(band.values.begin(), band.values.end(), [](float value) {
+    return band.whole && std::ranges::all_of(band.values, [](float value) {
                return value == 0 || value == 1 || std::isnan(value);
            });
 }

@@ -13,7 +13,6 @@
 #include "base/units.h"
 #include "dem/versions.h"
 #include "effect/selection.h"
-#include "render/ground.h"
 #include "session/active_effects.h"
 #include "session/words.h"
 #include "sun/position.h"

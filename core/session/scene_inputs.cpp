@@ -1,7 +1,6 @@
 #include "session/scene_inputs.h"
 
 #include <algorithm>
-#include <span>
 #include <system_error>
 #include <utility>
 
@@ -39,7 +38,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
         std::error_code ignored;
         if (entry->is_regular_file(ignored)) files.push_back(entry->path());
     }
-    std::sort(files.begin(), files.end());
+    std::ranges::sort(files);
     return files;
 }
 

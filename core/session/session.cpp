@@ -12,7 +12,6 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel_for.h"
-#include "base/units.h"
 #include "dem/files_of.h"
 #include "geo/format.h"
 #include "render/ground.h"
@@ -232,10 +231,11 @@ struct Session::Impl {
     void look_ahead(const std::vector<render::ProgramText>& texts) {
         if (terrain || sky_ahead.valid()) return;
         const auto reads_sky = [](const render::ProgramText& text) {
-            return std::any_of(text.stitched.textures.begin(), text.stitched.textures.end(),
-                               [](const auto& unit) { return unit.resource == "light_sky"; });
+            return std::ranges::any_of(text.stitched.textures, [](const auto& unit) {
+                return unit.resource == "light_sky";
+            });
         };
-        if (thread_count() > 1 && std::any_of(texts.begin(), texts.end(), reads_sky))
+        if (thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
             sky_ahead = render::find_sky_ahead(loaded->to_draw(), scene.exaggeration);
     }
 
@@ -664,8 +664,7 @@ const gl::Texture& Session::texture() const {
 bool Session::shows_ground() const {
     std::vector<float> depths_m;
     read_depths(depths_m);
-    return std::any_of(depths_m.begin(), depths_m.end(),
-                       [](float depth_m) { return std::isfinite(depth_m); });
+    return std::ranges::any_of(depths_m, [](float depth_m) { return std::isfinite(depth_m); });
 }
 
 void Session::read_depths(std::vector<float>& depths_m) const {

@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include "base/text.h"
-#include "base/units.h"
 #include "session/graticule.h"
 #include "session/seen_ground.h"
 #include "sun/zone.h"

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/text.h"
 #include "shader/tokenizer.h"
 
@@ -30,7 +31,7 @@ bool is_name(char c) {
 /// "Noise scale" of haze_noise_scale.
 std::string label_of(std::string_view name) {
     std::string label(name.substr(name.find('_') + 1));
-    std::replace(label.begin(), label.end(), '_', ' ');
+    std::ranges::replace(label, '_', ' ');
     if (!label.empty() && label[0] >= 'a' && label[0] <= 'z')
         label[0] = static_cast<char>(label[0] - 'a' + 'A');
     return label;
@@ -56,8 +57,7 @@ class ParamReader {
     void annotation(const std::vector<AnnotationWord>& words) {
         std::vector<std::string> seen;
         for (const AnnotationWord& word : words) {
-            if (std::find(seen.begin(), seen.end(), word.name) != seen.end())
-                fail(fmt::format("{} is given twice", word.name));
+            if (contains(seen, word.name)) fail(fmt::format("{} is given twice", word.name));
             seen.push_back(word.name);
             apply(word);
         }
@@ -169,9 +169,9 @@ class ParamReader {
         if (param_.type != ParamType::Int)
             fail(fmt::format("enum is for int, not for a {}", glsl_name(param_.type)));
         for (const std::string& value : word.arguments) {
-            if (value.empty() || !std::all_of(value.begin(), value.end(), is_name) ||
+            if (value.empty() || !std::ranges::all_of(value, is_name) ||
                 (value[0] >= '0' && value[0] <= '9') ||
-                std::count(word.arguments.begin(), word.arguments.end(), value) > 1)
+                std::ranges::count(word.arguments, value) > 1)
                 fail(fmt::format("expected enum(word, word, ...), all different, but got {}",
                                  written(word)));
         }
@@ -248,7 +248,7 @@ std::vector<AnnotationWord> parse_annotation(std::string_view text, std::string_
     };
     // Tabs are blanks here.
     std::string plain(text);
-    std::replace(plain.begin(), plain.end(), '\t', ' ');
+    std::ranges::replace(plain, '\t', ' ');
     if (plain != printable(plain)) fail("expected UTF-8 without control characters");
     for (skip_blanks(); at < text.size(); skip_blanks()) {
         AnnotationWord word;
@@ -302,8 +302,8 @@ Param parse_param(std::string_view type, std::string_view name, std::string_view
 }
 
 std::optional<ParamType> param_type(std::string_view name) {
-    const auto found = std::find_if(kTypes.begin(), kTypes.end(),
-                                    [&](ParamType type) { return glsl_name(type) == name; });
+    const auto found =
+        std::ranges::find_if(kTypes, [&](ParamType type) { return glsl_name(type) == name; });
     if (found == kTypes.end()) return std::nullopt;
     return *found;
 }

@@ -1,6 +1,5 @@
 #include "shader/colour_ramp.h"
 
-#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>

@@ -103,7 +103,7 @@ std::string DriverLog::text() const {
 }
 
 std::string DriverLog::blamed() const {
-    const auto found = std::find_if(diagnostics.begin(), diagnostics.end(), [](const auto& d) {
+    const auto found = std::ranges::find_if(diagnostics, [](const auto& d) {
         return d.severity == "error" && !d.origin.owner.empty();
     });
     return found == diagnostics.end() ? "" : found->origin.owner;

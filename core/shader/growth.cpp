@@ -123,7 +123,7 @@ class Growth {
             if (words[i].kind != TokenKind::Word) continue;
             const std::string_view word = source.str(words[i]);
             const bool is_call = i + 1 < words.size() && source.str(words[i + 1]) == "(";
-            const auto param = std::find(params.begin(), params.end(), word);
+            const auto param = std::ranges::find(params, word);
             if (param != params.end()) {
                 ++sum.of_params[static_cast<std::size_t>(param - params.begin())];
             } else if (const auto macro = macros_.find(word); macro != macros_.end()) {
@@ -144,8 +144,8 @@ class Growth {
         std::size_t end = i;
         std::vector<Count> arguments;
         const bool takes_arguments =
-            is_call && std::any_of(definitions.begin(), definitions.end(),
-                                   [](const Macro& macro) { return macro.is_function; });
+            is_call &&
+            std::ranges::any_of(definitions, [](const Macro& macro) { return macro.is_function; });
         if (takes_arguments) arguments = arguments_of(source, words, i + 1, params, end);
         // Of several the longest: which of them holds here is not asked.
         Count longest{0, std::vector<double>(params.size())};

@@ -44,8 +44,8 @@ std::span<const Hook> hooks() {
 }
 
 const Hook* find_hook(std::string_view name) {
-    const auto found = std::find_if(kHooks.begin(), kHooks.end(),
-                                    [&](const Hook& hook) { return hook.name == name; });
+    const auto found =
+        std::ranges::find_if(kHooks, [&](const Hook& hook) { return hook.name == name; });
     return found == kHooks.end() ? nullptr : &*found;
 }
 

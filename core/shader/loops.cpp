@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "base/contains.h"
 #include "base/text.h"
 
 namespace relevo::shader {
@@ -49,9 +50,8 @@ class Reader {
         for (const Param& param : source_.params)
             if (param.name == name)
                 return param.is_static && param.range && param.range->max <= kMaxTurns;
-        return std::any_of(source_.items.begin(), source_.items.end(), [&](const Item& item) {
-            const bool known =
-                std::find(item.names.begin(), item.names.end(), name) != item.names.end();
+        return std::ranges::any_of(source_.items, [&](const Item& item) {
+            const bool known = contains(item.names, name);
             return known && (item.kind == Item::Kind::Macro ||
                              (item.kind == Item::Kind::Declaration && str(item.first) == "const"));
         });
@@ -61,12 +61,9 @@ class Reader {
     bool writes(std::string_view name, std::size_t first, std::size_t last) const {
         constexpr std::array<std::string_view, 7> kWriting = {
             "=", "+=", "-=", "*=", "/=", "++", "--"};
-        const auto is_writing = [&](std::string_view mark) {
-            return std::find(kWriting.begin(), kWriting.end(), mark) != kWriting.end();
-        };
         for (std::size_t i = first; i < last; ++i)
             if (str(i) == name &&
-                (is_writing(str(i + 1)) || str(i - 1) == "++" || str(i - 1) == "--"))
+                (contains(kWriting, str(i + 1)) || str(i - 1) == "++" || str(i - 1) == "--"))
                 return true;
         return false;
     }

@@ -67,8 +67,7 @@ std::optional<ParamValue> parse_components(const Param& param, std::string_view 
 
 std::optional<ParamValue> read_value(const Param& param, std::string_view text) {
     if (param.type == ParamType::Bool) return parse_bool(text);
-    if (const auto word = std::find(param.words.begin(), param.words.end(), text);
-        word != param.words.end())
+    if (const auto word = std::ranges::find(param.words, text); word != param.words.end())
         return ParamValue{static_cast<double>(word - param.words.begin())};
     if (is_colour(param) && !text.empty() && text.front() == '#')
         return parse_hex_colour(param, text);
@@ -126,8 +125,8 @@ std::string describe_values(const Param& param) {
 }
 
 std::string expected_values(const Param& param, const ParamValue& given) {
-    const bool too_large = std::any_of(given.begin(), given.end(),
-                                       [](double v) { return !(std::abs(v) <= kMaxFloat); });
+    const bool too_large =
+        std::ranges::any_of(given, [](double v) { return !(std::abs(v) <= kMaxFloat); });
     std::string text = describe_values(param);
     if (too_large && !param.range) text += fmt::format(", none beyond {:.6g} in size", kMaxFloat);
     return text;

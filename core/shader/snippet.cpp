@@ -51,8 +51,8 @@ void read_wanted(Snippet& snippet, const Token& word) {
     const std::string_view text = snippet.source.str(word);
     if (word.kind != TokenKind::Word || text.substr(0, kHasPrefix.size()) != kHasPrefix) return;
     const std::string_view capability = text.substr(kHasPrefix.size());
-    const bool known = std::any_of(snippet.wanted.begin(), snippet.wanted.end(),
-                                   [&](const Wanted& wanted) { return wanted.word == capability; });
+    const bool known = std::ranges::any_of(
+        snippet.wanted, [&](const Wanted& wanted) { return wanted.word == capability; });
     if (!known) snippet.wanted.push_back({std::string(capability), word.line});
 }
 
@@ -90,9 +90,8 @@ void check_unique(const Snippet& snippet) {
 }  // namespace
 
 const HookFunction* Snippet::find(std::string_view hook_name) const {
-    const auto found = std::find_if(hooks.begin(), hooks.end(), [&](const HookFunction& function) {
-        return function.hook->name == hook_name;
-    });
+    const auto found = std::ranges::find_if(
+        hooks, [&](const HookFunction& function) { return function.hook->name == hook_name; });
     return found == hooks.end() ? nullptr : &*found;
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/contains.h"
 #include "base/text.h"
 #include "shader/annotation.h"
 #include "shader/source_checks.h"
@@ -14,11 +15,6 @@ namespace relevo::shader {
 namespace {
 
 constexpr std::string_view kIncludeForm = "//@ include lib/NAME.glsl";
-
-template <std::size_t N>
-bool is_one_of(std::string_view word, const std::array<std::string_view, N>& words) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
 
 constexpr std::array<std::string_view, 21> kQualifiers = {
     "const",    "uniform",   "in",      "out",    "inout",     "flat",       "smooth",
@@ -86,7 +82,7 @@ class Parser {
 
     int end_line(std::size_t i) const {
         const std::string_view text = str(i);
-        return token(i).line + static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+        return token(i).line + static_cast<int>(std::ranges::count(text, '\n'));
     }
 
     /// The token behind the bracket that closes the one at `i`.
@@ -151,7 +147,7 @@ class Parser {
             if (token(i).kind != TokenKind::Directive) continue;
             const std::vector<Token> words = directive_tokens(source_.text, token(i), source_.file);
             const std::string_view what = words.empty() ? "if" : source_.str(words[0]);
-            if (what == "define" || what == "undef" || !is_one_of(what, kDirectives))
+            if (what == "define" || what == "undef" || !contains(kDirectives, what))
                 fail(token(i).line,
                      fmt::format("#{} inside {}; move it out of the {}", what,
                                  names.empty() ? "a declaration" : names.front(),
@@ -212,7 +208,7 @@ class Parser {
         if (name == "version" || name == "extension")
             fail(line, fmt::format("#{} is core's: every program is plain GLSL 4.50 core", name));
         if (name == "line") fail(line, "#line would lose the file's own line numbers; remove it");
-        if (!is_one_of(name, kDirectives))
+        if (!contains(kDirectives, name))
             fail(line, fmt::format("#{} is not for here; there are #define, #undef and #if", name));
         if (name == "define" || name == "undef") {
             if (words.size() < 2 || words[1].kind != TokenKind::Word)
@@ -240,7 +236,7 @@ class Parser {
         const std::size_t first = at_;
         const int line = token(first).line;
         std::set<std::string, std::less<>> qualifiers;
-        while (is_word(at_) && is_one_of(str(at_), kQualifiers)) {
+        while (is_word(at_) && contains(kQualifiers, str(at_))) {
             qualifiers.emplace(str(at_));
             ++at_;
             if (is(at_ - 1, "layout") && is(at_, "(")) at_ = behind_brackets(at_);
@@ -249,7 +245,7 @@ class Parser {
 
         if (is_snippet()) {
             for (const std::string& qualifier : qualifiers)
-                if (is_one_of(qualifier, kNotForPlugins))
+                if (contains(kNotForPlugins, qualifier))
                     fail(line, fmt::format("{} is core's; a plugin declares parameters, samplers, "
                                            "varyings, constants, structs and functions",
                                            qualifier));
@@ -482,7 +478,7 @@ class Parser {
             fail(line, fmt::format("{}: expected ; behind the varying but got {}", varying.name,
                                    written(at_)));
         end_lifted(first, name);
-        if (is(type + 1, "[") || !is_one_of(varying.type, kVaryingTypes))
+        if (is(type + 1, "[") || !contains(kVaryingTypes, varying.type))
             fail(line, fmt::format("{}: expected a varying of type float, int or uint, a vector of "
                                    "them, mat3 or mat4, but got {}{}",
                                    varying.name, varying.type, is(type + 1, "[") ? "[]" : ""));

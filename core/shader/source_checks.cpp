@@ -1,9 +1,10 @@
 #include "shader/source_checks.h"
 
-#include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
+
+#include "base/contains.h"
 
 namespace relevo::shader {
 namespace {
@@ -18,11 +19,6 @@ constexpr std::array<std::string_view, 7> kBarriers = {"barrier",
                                                        "memoryBarrierImage",
                                                        "memoryBarrierShared",
                                                        "groupMemoryBarrier"};
-
-template <std::size_t N>
-bool is_among(const std::array<std::string_view, N>& words, std::string_view word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
 
 struct Open {
     char bracket;
@@ -108,14 +104,14 @@ void check_word(const Source& source, const Token& token) {
     };
     if (word.find("__") != std::string_view::npos)
         fail(fmt::format("{}: GLSL keeps names with __ to itself", word));
-    if (is_among(kOwnedByCore, word))
+    if (contains(kOwnedByCore, word))
         fail(fmt::format("{} is core's; a plugin moves the ground in {}_on_displace", word,
                          source.owner));
     if (word == "discard")
         fail(
             "discard: every pixel has to be written, or it keeps what another frame left there; "
             "leave the arguments as they are instead");
-    if (is_among(kBarriers, word))
+    if (contains(kBarriers, word))
         fail(fmt::format("{}: a plugin writes nothing that another would have to wait for", word));
     if (word.substr(0, 5) == "hook_")
         fail(fmt::format("{}: only core's main programs call hooks", word));

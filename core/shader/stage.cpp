@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "shader/annotation.h"
 
@@ -91,7 +92,7 @@ void Stage::add_includes(const Source& source, std::vector<std::string>& pending
         if (!lib)
             throw AuthorError(source.owner, fmt::format("shader: {}:{}: {}: core has no such file",
                                                         source.file, include.line, include.name));
-        if (std::find(pending.begin(), pending.end(), include.name) != pending.end())
+        if (contains(pending, include.name))
             failed(fmt::format("shader: {}:{}: {} includes itself", source.file, include.line,
                                include.name));
         pending.push_back(include.name);
@@ -158,8 +159,7 @@ void Stage::lift(const std::string& name, Lifted lifted) {
 // ---- look-ups
 
 const Unit& Stage::unit(UnitRole role) const {
-    return *std::find_if(units_.begin(), units_.end(),
-                         [&](const Unit& unit) { return unit.role == role; });
+    return *std::ranges::find_if(units_, [&](const Unit& unit) { return unit.role == role; });
 }
 
 const Item& Stage::item(const Place& place) const {
@@ -168,9 +168,8 @@ const Item& Stage::item(const Place& place) const {
 
 const Stage::Place& Stage::definition(const std::string& function) const {
     const std::vector<Place>& places = places_.find(function)->second;
-    const auto found = std::find_if(places.begin(), places.end(), [&](const Place& place) {
-        return item(place).kind == Item::Kind::Function;
-    });
+    const auto found = std::ranges::find_if(
+        places, [&](const Place& place) { return item(place).kind == Item::Kind::Function; });
     return found == places.end() ? places.front() : *found;
 }
 
@@ -219,8 +218,7 @@ std::vector<Define> Stage::has_macros() const {
     std::vector<Define> result;
     for (const auto& [name, by] : parents_) {
         if (name.substr(0, kHasPrefix.size()) != kHasPrefix) continue;
-        const bool present = std::find(input_.capabilities.begin(), input_.capabilities.end(),
-                                       name.substr(kHasPrefix.size())) != input_.capabilities.end();
+        const bool present = contains(input_.capabilities, name.substr(kHasPrefix.size()));
         result.push_back({name, present ? "1" : "0"});
     }
     return result;
@@ -245,17 +243,14 @@ std::vector<std::string> Stage::providers(const Hook& hook) const {
     std::vector<std::string> ids;
     for (const Snippet* snippet : input_.snippets) {
         if (!snippet->find(hook.name)) continue;
-        const bool read =
-            std::any_of(input_.snippets.begin(), input_.snippets.end(), [&](const Snippet* other) {
-                return other->id == snippet->id &&
-                       std::any_of(other->source.varyings.begin(), other->source.varyings.end(),
-                                   [&](const Varying& varying) {
-                                       return std::any_of(readers_.begin(), readers_.end(),
-                                                          [&](const Stage* reader) {
-                                                              return reader->reaches(varying.name);
-                                                          });
-                                   });
-            });
+        const bool read = std::ranges::any_of(input_.snippets, [&](const Snippet* other) {
+            return other->id == snippet->id &&
+                   std::ranges::any_of(other->source.varyings, [&](const Varying& varying) {
+                       return std::ranges::any_of(readers_, [&](const Stage* reader) {
+                           return reader->reaches(varying.name);
+                       });
+                   });
+        });
         if (hook.name != "vertex" || read) ids.push_back(snippet->id);
     }
     if (hook.kind != HookKind::Chain && ids.size() > 1)

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "shader/stage.h"
 
@@ -87,10 +88,7 @@ void Stage::check_name(const Place& place, const std::string& name, bool called)
 void Stage::check_stage(const Place& place, const Uses& uses) const {
     const bool vertex = kind_ == StageKind::Vertex;
     for (const std::string& name : uses.names) {
-        const bool foreign =
-            vertex
-                ? std::find(kFragmentOnly.begin(), kFragmentOnly.end(), name) != kFragmentOnly.end()
-                : std::find(kVertexOnly.begin(), kVertexOnly.end(), name) != kVertexOnly.end();
+        const bool foreign = vertex ? contains(kFragmentOnly, name) : contains(kVertexOnly, name);
         if (foreign)
             fail(place,
                  fmt::format("{} uses {}, which only the {} side has, but the {} side reaches it "
@@ -106,13 +104,12 @@ void Stage::check_recursion() const {
     const std::function<void(const std::string&)> visit = [&](const std::string& name) {
         const auto function = functions_.find(name);
         if (function == functions_.end() || done.count(name) > 0) return;
-        const auto start = std::find(path.begin(), path.end(), name);
+        const auto start = std::ranges::find(path, name);
         if (start != path.end()) {
             std::vector<std::string> circle(start, path.end());
             circle.push_back(name);
-            const auto written =
-                std::find_if(circle.begin(), circle.end(),
-                             [&](const std::string& f) { return places_.count(f) > 0; });
+            const auto written = std::ranges::find_if(
+                circle, [&](const std::string& f) { return places_.count(f) > 0; });
             fail(definition(*written), fmt::format("{} calls itself ({}); GLSL has no recursion",
                                                    *written, fmt::join(circle, " -> ")));
         }

@@ -1,12 +1,12 @@
 #include "shader/stitch.h"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/contains.h"
 #include "base/error.h"
 #include "shader/stage.h"
 #include "shader/stored_varyings.h"
@@ -158,8 +158,8 @@ class Stitcher {
 
     void write_params(TextBuilder& out, const Stage& stage) {
         out.heading("parameters");
-        const bool block = std::any_of(
-            result_.params.members.begin(), result_.params.members.end(),
+        const bool block = std::ranges::any_of(
+            result_.params.members,
             [&](const BlockMember& member) { return stage.reaches(member.param.name); });
         if (block) {
             result_.uses_params = true;
@@ -231,7 +231,7 @@ class Stitcher {
             const std::vector<Item>& items = units[i].source->items;
             for (std::size_t k = 0; k < items.size(); ++k)
                 if (units[i].kept[k] && items[k].kind == Item::Kind::Macro &&
-                    std::find(macros.begin(), macros.end(), items[k].names[0]) == macros.end())
+                    !contains(macros, items[k].names[0]))
                     macros.push_back(items[k].names[0]);
             if (i + 1 < units.size() && units[i + 1].source->owner == units[i].source->owner)
                 continue;
@@ -261,9 +261,8 @@ class Stitcher {
 
     void note_use(const Stage& stage, const Hook& hook) {
         if (!stage.calls(hook)) return;
-        const auto known =
-            std::find_if(result_.hooks.begin(), result_.hooks.end(),
-                         [&](const HookUse& use) { return use.hook->name == hook.name; });
+        const auto known = std::ranges::find_if(
+            result_.hooks, [&](const HookUse& use) { return use.hook->name == hook.name; });
         if (known == result_.hooks.end())
             result_.hooks.push_back({find_hook(hook.name), stage.providers(hook)});
     }

@@ -61,8 +61,8 @@ StoredVaryings::StoredVaryings(const Stage& shading, const std::string& program)
 }
 
 bool StoredVaryings::holds(const Varying& varying) const {
-    return std::any_of(stored_.begin(), stored_.end(),
-                       [&](const Stored& stored) { return stored.varying->name == varying.name; });
+    return std::ranges::any_of(
+        stored_, [&](const Stored& stored) { return stored.varying->name == varying.name; });
 }
 
 void StoredVaryings::write_store(TextBuilder& out) const {

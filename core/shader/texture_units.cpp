@@ -35,7 +35,7 @@ TextureUnits::TextureUnits(const Stage& vertex, const Stage& fragment, const Sti
         for (const auto& [sampler, owner] : stage->samplers())
             reads.push_back({sampler, owner, same_as(sampler->resource, input), false});
     for (Read& read : reads)
-        read.shared = std::any_of(reads.begin(), reads.end(), [&](const Read& other) {
+        read.shared = std::ranges::any_of(reads, [&](const Read& other) {
             return other.resource == read.resource && Stage::is_foreign(*other.sampler);
         });
     const auto rank = [&](const Read& read) {
@@ -44,8 +44,8 @@ TextureUnits::TextureUnits(const Stage& vertex, const Stage& fragment, const Sti
             kind, kind == 1 ? read.resource : std::string(),
             kind == 2 ? place_of(*read.sampler, input) : std::pair<std::size_t, std::size_t>());
     };
-    std::stable_sort(reads.begin(), reads.end(),
-                     [&](const Read& a, const Read& b) { return rank(a) < rank(b); });
+    std::ranges::stable_sort(reads,
+                             [&](const Read& a, const Read& b) { return rank(a) < rank(b); });
     for (const Read& read : reads)
         add(read);
     for (std::size_t i = 0; i < textures_.size(); ++i)
@@ -54,9 +54,8 @@ TextureUnits::TextureUnits(const Stage& vertex, const Stage& fragment, const Sti
 
 void TextureUnits::add(const Read& read) {
     const Sampler& sampler = *read.sampler;
-    const auto same = std::find_if(textures_.begin(), textures_.end(), [&](const Texture& texture) {
-        return texture.unit.resource == read.resource;
-    });
+    const auto same = std::ranges::find_if(
+        textures_, [&](const Texture& texture) { return texture.unit.resource == read.resource; });
     if (same == textures_.end()) {
         textures_.push_back(
             {{0, sampler.name, sampler.type, read.resource, read.owner, {}}, {&sampler}});
@@ -69,9 +68,8 @@ void TextureUnits::add(const Read& read) {
                                       "as in {}:{}, but got a {}",
                                       sampler.file, sampler.line, sampler.name, first.type,
                                       first.resource, first.file, first.line, sampler.type));
-    const bool known =
-        std::any_of(same->samplers.begin(), same->samplers.end(),
-                    [&](const Sampler* other) { return other->name == sampler.name; });
+    const bool known = std::ranges::any_of(
+        same->samplers, [&](const Sampler* other) { return other->name == sampler.name; });
     if (known) return;
     same->samplers.push_back(&sampler);
     if (sampler.resource != read.resource) same->unit.also.push_back(sampler.resource);
@@ -109,9 +107,8 @@ void TextureUnits::write(TextBuilder& out, const Stage& stage) const {
         const auto line =
             fmt::format("layout(binding = {}) uniform {} {};", unit.unit, unit.type, unit.name);
         if (samplers.empty() && stage.kind() == StageKind::Fragment) out.line(line);
-        const bool used =
-            std::any_of(samplers.begin(), samplers.end(),
-                        [&](const Sampler* sampler) { return stage.reaches(sampler->name); });
+        const bool used = std::ranges::any_of(
+            samplers, [&](const Sampler* sampler) { return stage.reaches(sampler->name); });
         if (!used) continue;
         out.line(line, {unit.owner, samplers[0]->file, samplers[0]->line});
         for (std::size_t i = 1; i < samplers.size(); ++i) {

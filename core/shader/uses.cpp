@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "base/contains.h"
+
 namespace relevo::shader {
 namespace {
 
@@ -37,15 +39,14 @@ class Reader {
     std::string_view str(std::size_t i) const { return source_.str(source_.tokens[i]); }
 
     bool is_local(std::string_view name) const {
-        return std::any_of(scopes_.begin(), scopes_.end(),
-                           [&](const auto& scope) { return scope.count(name) > 0; });
+        return std::ranges::any_of(scopes_,
+                                   [&](const auto& scope) { return scope.count(name) > 0; });
     }
 
     // `vec3 name` and `float[3] name` declare; `return name` and `in name` do not.
     bool declares(std::size_t i) const {
         if (item_.kind != Item::Kind::Function || i == item_.first) return false;
-        if (source_.tokens[i - 1].kind == TokenKind::Word)
-            return std::find(kNotTypes.begin(), kNotTypes.end(), str(i - 1)) == kNotTypes.end();
+        if (source_.tokens[i - 1].kind == TokenKind::Word) return !contains(kNotTypes, str(i - 1));
         return str(i - 1) == "]";
     }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -32,23 +31,10 @@ class EarthRotation {
   public:
     static const EarthRotation& built_in();
 
-    /// The user's copy of IERS Bulletin A (finals2000A.all, finals2000A.daily or .data), daily.
-    /// Used within its days and held after them; before them the built-in table is used.
-    /// @throws Error (BadInput) for a file that is not one
-    static EarthRotation load_finals2000a(const std::filesystem::path& path);
-
     /// For experts and tests: the same at all times, whatever the instants then mean.
     static EarthRotation fixed(const EarthOrientation& orientation);
 
     EarthOrientation at(Instant utc) const;
-
-    /// How far UT1 may be from what `at` says, while UTC is what clocks show. Before 1962 none, by
-    /// definition; where measured 0.006 s; where predicted, 0.00025 s times the 3/4 power of the
-    /// days (Bulletin A); after that a second a year, but no more than the 0.9 s that leap seconds
-    /// keep UTC within of UT1 (ITU-R TF.460) plus the value held. From 2035 on that bound is given
-    /// up (CGPM 2022, resolution 4) and the second a year goes on: leap seconds never came faster.
-    /// One second is 15 arcsec of the sun's hour angle.
-    double ut1_uncertainty_s(Instant utc) const;
 
   private:
     struct Node {
@@ -56,10 +42,7 @@ class EarthRotation {
     };
 
     std::optional<EarthOrientation> fixed_;
-    int first_mjd_ = 0;  // modified Julian date of the first node
-    int step_d_ = 1;
-    int last_measured_mjd_ = 0;
-    std::vector<Node> nodes_;  // from first_mjd_, step_d_ apart
+    std::vector<Node> nodes_;
 };
 
 /// UTC to TAI: whole leap seconds since 1972; before, from 1962, the drifting seconds of old UTC.

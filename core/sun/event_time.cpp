@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -72,7 +71,7 @@ std::optional<double> parse_step_s(std::string_view text) {
 
 bool is_event_time(std::string_view text) {
     return text.find('@') != std::string_view::npos ||
-           std::any_of(kNames.begin(), kNames.end(), [&](const Name& name) {
+           std::ranges::any_of(kNames, [&](const Name& name) {
                return text.find(name.name) != std::string_view::npos;
            });
 }
@@ -116,9 +115,9 @@ EventTime parse_event_time(std::string_view text) {
     }
 
     std::string word(rest);
-    std::replace(word.begin(), word.end(), '_', '-');
-    const auto found = std::find_if(kNames.begin(), kNames.end(),
-                                    [&](const Name& name) { return word == name.name; });
+    std::ranges::replace(word, '_', '-');
+    const auto found =
+        std::ranges::find_if(kNames, [&](const Name& name) { return word == name.name; });
     if (found == kNames.end()) {
         std::vector<std::string> names;
         for (const Name& name : kNames)

@@ -1,6 +1,7 @@
 #include "sun/events.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -18,6 +19,9 @@ namespace {
 constexpr double kCivil_rad = radians(-6.0);
 constexpr double kNautical_rad = radians(-12.0);
 constexpr double kAstronomical_rad = radians(-18.0);
+// Golden and blue hour are given by the centre's true elevation; photographers do not agree.
+constexpr double kGoldenFrom_rad = radians(-4.0), kGoldenTo_rad = radians(6.0);
+constexpr double kBlueFrom_rad = radians(-6.0), kBlueTo_rad = radians(-4.0);
 
 // Between samples the sun's elevation has at most one extreme, except within a degree of the pole
 // at the equinoxes, where two may lie closer: between them it then changes by less than 0.1 arcsec.
@@ -93,8 +97,7 @@ class Path {
             }
         }
         samples_.insert(samples_.end(), extremes_.begin(), extremes_.end());
-        std::sort(samples_.begin(), samples_.end(),
-                  [](const Sample& a, const Sample& b) { return a.t_s < b.t_s; });
+        std::ranges::sort(samples_, [](const Sample& a, const Sample& b) { return a.t_s < b.t_s; });
     }
 
     /// @param threshold_rad  of a distance in au
@@ -193,29 +196,11 @@ std::vector<TimeSpan> without(const std::vector<TimeSpan>& spans,
 }  // namespace
 
 std::string_view name_of(EventKind kind) {
-    switch (kind) {
-        case EventKind::AstronomicalDawn:
-            return "astronomical_dawn";
-        case EventKind::NauticalDawn:
-            return "nautical_dawn";
-        case EventKind::CivilDawn:
-            return "civil_dawn";
-        case EventKind::Sunrise:
-            return "sunrise";
-        case EventKind::Transit:
-            return "transit";
-        case EventKind::Sunset:
-            return "sunset";
-        case EventKind::CivilDusk:
-            return "civil_dusk";
-        case EventKind::NauticalDusk:
-            return "nautical_dusk";
-        case EventKind::AstronomicalDusk:
-            return "astronomical_dusk";
-        case EventKind::LowerTransit:
-            return "lower_transit";
-    }
-    return {};
+    constexpr std::array<std::string_view, 10> kNames = {
+        "astronomical_dawn", "nautical_dawn", "civil_dawn", "sunrise",
+        "transit",           "sunset",        "civil_dusk", "nautical_dusk",
+        "astronomical_dusk", "lower_transit"};
+    return kNames[static_cast<std::size_t>(kind)];
 }
 
 std::optional<Instant> Day::first(EventKind kind) const {
@@ -233,13 +218,6 @@ std::vector<Instant> Day::all(EventKind kind) const {
 
 Day day_events(const PositionTable& table, const TimeSpan& span, const Observer& observer,
                const DayOptions& options) {
-    if (!(options.golden_from_rad < options.golden_to_rad &&
-          options.blue_from_rad < options.blue_to_rad))
-        bad_input(
-            fmt::format("sun: golden hour {:.4g} to {:.4g}, blue hour {:.4g} to "
-                        "{:.4g} degrees: empty, expected the lower elevation first",
-                        degrees(options.golden_from_rad), degrees(options.golden_to_rad),
-                        degrees(options.blue_from_rad), degrees(options.blue_to_rad)));
     const Path path(table, span, observer);
     Day day;
     day.span = span;
@@ -255,8 +233,7 @@ Day day_events(const PositionTable& table, const TimeSpan& span, const Observer&
     path.add(day.events, EventKind::NauticalDawn, EventKind::NauticalDusk, nautical);
     path.add(day.events, EventKind::AstronomicalDawn, EventKind::AstronomicalDusk, astronomical);
     path.add_transits(day.events);
-    std::sort(day.events.begin(), day.events.end(),
-              [](const Event& a, const Event& b) { return a.utc < b.utc; });
+    std::ranges::sort(day.events, [](const Event& a, const Event& b) { return a.utc < b.utc; });
     day.sun = sun.state;
     day.civil = civil.state;
     day.nautical = nautical.state;
@@ -264,10 +241,9 @@ Day day_events(const PositionTable& table, const TimeSpan& span, const Observer&
     day.sun_up = sun.above;
     for (const TimeSpan& up : sun.above)
         day.day_length_s += up.length_s();
-    day.golden_hour = without(path.crossings(options.golden_from_rad).above,
-                              path.crossings(options.golden_to_rad).above);
-    day.blue_hour = without(path.crossings(options.blue_from_rad).above,
-                            path.crossings(options.blue_to_rad).above);
+    day.golden_hour =
+        without(path.crossings(kGoldenFrom_rad).above, path.crossings(kGoldenTo_rad).above);
+    day.blue_hour = without(path.crossings(kBlueFrom_rad).above, path.crossings(kBlueTo_rad).above);
     return day;
 }
 

@@ -45,11 +45,6 @@ enum class Crossing {
 
 struct DayOptions {
     RiseRule rule;
-    /// Golden and blue hour are given by the centre's true elevation; photographers do not agree.
-    double golden_from_rad = radians(-4.0);
-    double golden_to_rad = radians(6.0);
-    double blue_from_rad = radians(-6.0);
-    double blue_to_rad = radians(-4.0);
 };
 
 /// What the sun does on a local day.

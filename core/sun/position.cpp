@@ -1,6 +1,5 @@
 #include "sun/position.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <erfa.h>

@@ -65,9 +65,9 @@ Geocentric geocentric(const Epoch& epoch);
 /// @throws Error (BadInput) outside 1900-2100, for a latitude beyond 90 degrees, for a height that
 ///     is no place on Earth
 /// Accuracy, arcsec on the sky: with UT1 known 0.02 against JPL's DE431, 1900-2100; with the
-/// built-in table 0.1 from 1962 to 2026; for civil times to come 15 for every second of
-/// EarthRotation::ut1_uncertainty_s (tests/sun/test_position.cpp). The deflection of the vertical
-/// (up to 60 in mountains) is not modelled.
+/// built-in table 0.1 from 1962 to 2026; for civil times to come 15 for every second that
+/// UT1 differs from its last known value (tests/sun/test_position.cpp). The deflection of the
+/// vertical (up to 60 in mountains) is not modelled.
 /// Source: IAU SOFA in its BSD-licensed form ERFA: eraEpv00, eraPnm00b, eraEra00, eraPvtob, eraAb.
 Position position(const Epoch& epoch, const geo::Geodetic& place);
 Position position(Instant utc, const geo::Geodetic& place);

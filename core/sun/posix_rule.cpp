@@ -147,8 +147,8 @@ std::vector<OffsetChange> posix_rule_changes(std::string_view rule, int first_ye
         changes.push_back({start->wall_s(year) - standard_s, saving_s, *saving});
         changes.push_back({end->wall_s(year) - saving_s, standard_s, *standard});
     }
-    std::sort(changes.begin(), changes.end(),
-              [](const OffsetChange& a, const OffsetChange& b) { return a.unix_s < b.unix_s; });
+    std::ranges::sort(
+        changes, [](const OffsetChange& a, const OffsetChange& b) { return a.unix_s < b.unix_s; });
     return changes;
 }
 

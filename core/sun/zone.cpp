@@ -31,14 +31,13 @@ std::optional<std::string> suggestion(std::string_view name) {
         cities.push_back(zone.name().substr(zone.name().rfind('/') + 1));
     }
     std::string wanted(name);
-    std::replace(wanted.begin(), wanted.end(), ' ', '_');
+    std::ranges::replace(wanted, ' ', '_');
     for (const auto& words : {names, cities})
         for (std::size_t i = 0; i < words.size(); ++i)
             if (equal_ignoring_case(wanted, words[i])) return names[i];
     if (const auto found = nearest(wanted, names)) return found;
     if (const auto found = nearest(wanted, cities))
-        return names[static_cast<std::size_t>(std::find(cities.begin(), cities.end(), *found) -
-                                              cities.begin())];
+        return names[static_cast<std::size_t>(std::ranges::find(cities, *found) - cities.begin())];
     return std::nullopt;
 }
 
@@ -51,7 +50,7 @@ bool is_named_in(std::string_view zone, std::string_view text) {
 /// "PST", "AEST": capitals alone. The nearest name in spelling would be a wrong one.
 bool is_abbreviation(std::string_view text) {
     return text.size() <= 5 &&
-           std::all_of(text.begin(), text.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+           std::ranges::all_of(text, [](char c) { return c >= 'A' && c <= 'Z'; });
 }
 
 /// The rule for times after the last change listed in a zone's file, a POSIX TZ text: its last
@@ -319,21 +318,21 @@ ParsedTime with_offset(const FieldReader& reader, const WrittenTime& time, int o
 }
 
 /// A time by the clocks of a zone.
-ParsedTime by_clocks(const WrittenTime& time, const Zone& zone, int fold) {
+ParsedTime by_clocks(const WrittenTime& time, const Zone& zone) {
     ParsedTime result;
     result.zone = zone;
-    const ResolvedTime taken = zone.resolve(time.wall, fold);
+    const ResolvedTime taken = zone.resolve(time.wall);
     result.utc = taken.utc + time.fraction_s;
     result.kind = taken.kind;
     if (taken.kind == WallTimeKind::Nonexistent) {
         result.note = fmt::format("{}: does not exist in {} (clocks went forward); taken as {}",
                                   time.wall_text, zone.name(), to_iso(result.utc, zone));
     } else if (taken.kind == WallTimeKind::Ambiguous) {
-        const ResolvedTime other = zone.resolve(time.wall, fold == 0 ? 1 : 0);
+        const ResolvedTime other = zone.resolve(time.wall, 1);
         result.note = fmt::format(
-            "{}: is ambiguous in {} (clocks went back); taken as the {} ({}), not the {} ({})",
-            time.wall_text, zone.name(), fold == 0 ? "first" : "second",
-            offset_text(taken.utc_offset_s), fold == 0 ? "second" : "first",
+            "{}: is ambiguous in {} (clocks went back); taken as the first ({}), not the second "
+            "({})",
+            time.wall_text, zone.name(), offset_text(taken.utc_offset_s),
             offset_text(other.utc_offset_s));
     }
     return result;
@@ -341,7 +340,7 @@ ParsedTime by_clocks(const WrittenTime& time, const Zone& zone, int fold) {
 
 }  // namespace
 
-ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone, int fold) {
+ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone) {
     const std::string_view whole = trimmed(text);
     if (whole == kNow) {
         ParsedTime result;
@@ -356,7 +355,7 @@ ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone, in
         reader.fail(
             fmt::format("no time zone; write {0}Z for UTC or {0}+02:00, or pass --tz Europe/Zurich",
                         time.wall_text));
-    return by_clocks(time, *zone, fold);
+    return by_clocks(time, *zone);
 }
 
 bool is_wall_time(std::string_view text) {

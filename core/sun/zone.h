@@ -118,12 +118,10 @@ struct ParsedTime {
 ///
 /// Where the text has an offset, that counts, and the zone is for showing results; "Z" goes with
 /// any zone, but another offset must be the one that the zone has at that moment.
-/// @param fold  see Zone::resolve
 /// @throws Error (BadInput) for text that is not a time, a date or hour that does not exist, a leap
 ///     second, a year outside 1900-2100, a wall time without a zone, an offset that the zone does
 ///     not have
-ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone = std::nullopt,
-                      int fold = 0);
+ParsedTime parse_time(std::string_view text, const std::optional<Zone>& zone = std::nullopt);
 
 /// Whether a moment that parse_time() reads is a wall time, which means nothing without a zone.
 /// @throws Error (BadInput) for text that is not a time, as parse_time()

@@ -48,12 +48,6 @@ TEST(MgrsText, PoleIsInASquareOfItsOwn) {
     EXPECT_EQ(mgrs_text(geodetic_deg(90, 0), 1), "ZAH00");
 }
 
-TEST(DmsText, SecondsCarryIntoMinutes) {
-    EXPECT_EQ(dms_text(geodetic_deg(47 + 25 / 60.0 + 1.2 / 3600, 11.5)),
-              "47°25'01.2\"N 011°30'00.0\"E");
-    EXPECT_EQ(dms_text(geodetic_deg(-33.9999999, -0.5)), "34°00'00.0\"S 000°30'00.0\"W");
-}
-
 TEST(DegreesText, HemispheresAreLetters) {
     EXPECT_EQ(degrees_text(geodetic_deg(47.417, 11.437084)), "47.41700 N 11.43708 E");
     EXPECT_EQ(degrees_text(geodetic_deg(-34.01, -118.15)), "34.01000 S 118.15000 W");

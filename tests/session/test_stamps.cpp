@@ -131,8 +131,7 @@ Found places_on_lines(const Shown& shown, const Graticule& graticule, bool latit
             float most = 0;
             for (int dy = -1; dy <= 1; ++dy)
                 for (int dx = -1; dx <= 1; ++dx)
-                    most = std::max(
-                        most, graticule.line[static_cast<std::size_t>((y + dy) * 480 + x + dx)]);
+                    most = std::max(most, graticule.line.at(x + dx, y + dy));
             found.drawn += most > 0.4f;
         }
     return found;
