@@ -119,7 +119,13 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
         fan_ = std::make_unique<const Fan>(grid, place_, post_,
                                            longest_m(*posts_, place_, eye_m_, options),
                                            options.few_directions);
-    else if (grid.crs().is_geographic())
+    if (options.around && fan_) {
+        const dem::Grid& wider = options.around->grid();
+        fan_around_ = std::make_unique<const Fan>(
+            wider, place_, wider.post(place_), longest_m(*options.around, place_, eye_m_, options),
+            options.few_directions);
+    }
+    if (!fan_ && grid.crs().is_geographic())
         bad_input(
             fmt::format("horizon: {}: a map in degrees cannot be taken as flat ground; expected a "
                         "projected CRS",
@@ -161,7 +167,37 @@ HighestCrossing TerrainHorizon::look(double azimuth_rad, double until_m,
         fan_->trace(azimuth_rad, line);
     else
         line = line_on_map(posts_->grid(), post_, azimuth_rad + true_north_on_map_rad_);
-    return highest_crossing(*posts_, towards(azimuth_rad), line, until_m);
+    const HighestCrossing found = highest_crossing(*posts_, towards(azimuth_rad), line, until_m);
+    if (!fan_around_ || found.reach_m >= until_m) return found;
+    return look_around(azimuth_rad, until_m, found, line);
+}
+
+/// Goes on over the wider DEM from where the site ends.
+/// @param line  becomes the line of sight over the wider grid, from there on
+HighestCrossing TerrainHorizon::look_around(double azimuth_rad, double until_m,
+                                            const HighestCrossing& on_site,
+                                            std::vector<TracePoint>& line) const {
+    fan_around_->trace(azimuth_rad, line);
+    const auto next = std::find_if(line.begin(), line.end(), [&](const TracePoint& point) {
+        return point.distance_m > on_site.reach_m;
+    });
+    if (next == line.end() || next == line.begin()) return on_site;
+    const TracePoint &from = *(next - 1), &to = *next;
+    const double t = (on_site.reach_m - from.distance_m) / (to.distance_m - from.distance_m);
+    *(next - 1) = {from.post + t * (to.post - from.post), on_site.reach_m};
+    line.erase(line.begin(), next - 1);
+    HighestCrossing found = highest_crossing(*options_.around, towards(azimuth_rad), line, until_m);
+    const double reach_m = std::max(on_site.reach_m, found.reach_m);
+    if (found.tangent > on_site.tangent) {
+        const geo::Geodetic place = options_.around->grid().place(found.post.x, found.post.y);
+        found.post = posts_->grid().post(place);
+    } else {
+        found = on_site;
+    }
+    found.reach_m = reach_m;
+    found.first_void_m = on_site.first_void_m;
+    found.last_void_m = on_site.last_void_m;
+    return found;
 }
 
 /// A column and row of the posts as they are given.
@@ -182,8 +218,8 @@ HorizonPoint TerrainHorizon::at(double azimuth_rad) const {
     point.post = given(highest.post);
     point.height_m = highest.height_m;
     point.reach_m = highest.reach_m;
-    if (posts_->about().statistics.holes > 0)
-        point.reach_m = std::min(point.reach_m, outside_from_m(*posts_, line));
+    if (farthest_posts().about().statistics.holes > 0)
+        point.reach_m = std::min(point.reach_m, outside_from_m(farthest_posts(), line));
     point.elevation_rad = std::atan(highest.tangent);
     const double beyond_rad = ground_beyond_rad(azimuth_rad, highest, line);
     if (!(point.elevation_rad >= beyond_rad)) {
@@ -200,7 +236,8 @@ HorizonPoint TerrainHorizon::at(double azimuth_rad) const {
 double TerrainHorizon::ground_beyond_rad(double azimuth_rad, const HighestCrossing& highest,
                                          const std::vector<TracePoint>& line) const {
     if (highest.tangent >= 0) return -kPi / 2;  // no edge stands over it
-    const Edge edge = edge_along(*posts_, line).value_or(Edge{0, posts_->lowest_m()});
+    const Edge edge =
+        edge_along(farthest_posts(), line).value_or(Edge{0, farthest_posts().lowest_m()});
     return std::atan(tangent_beyond(edge, eye_m_, towards(azimuth_rad).curvature()));
 }
 

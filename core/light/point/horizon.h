@@ -30,6 +30,9 @@ struct HorizonOptions {
     /// those that are prepared for all directions together. A viewpoint with one direction takes a
     /// thirtieth of the time, 34 us (tests/light/bench_light.cpp, horizon_of_one_direction).
     bool few_directions = false;
+    /// A wider and coarser DEM around these posts, whose ground is in the horizon from where they
+    /// end; null: none. Outlives the horizon. Not on a map.
+    const dem::Posts* around = nullptr;
 };
 
 /// Of the Earth: Mount Everest [m].
@@ -151,6 +154,9 @@ class TerrainHorizon {
     TerrainHorizon(std::unique_ptr<const dem::Posts> owned, const geo::Geodetic& place,
                    const HorizonOptions& options);
 
+    HighestCrossing look_around(double azimuth_rad, double until_m, const HighestCrossing& on_site,
+                                std::vector<TracePoint>& line) const;
+    const dem::Posts& farthest_posts() const { return fan_around_ ? *options_.around : *posts_; }
     glm::dvec2 given(glm::dvec2 post) const;
 
     std::unique_ptr<const dem::Posts> owned_;  // those of a heightfield
@@ -160,7 +166,8 @@ class TerrainHorizon {
     std::optional<dem::Posts> unrolled_;
     int first_column_ = 0;  // of the given ones, that its first one is
     const dem::Posts* posts_;
-    std::unique_ptr<const Fan> fan_;  // none on a map
+    std::unique_ptr<const Fan> fan_around_;  // of HorizonOptions::around
+    std::unique_ptr<const Fan> fan_;         // none on a map
     HorizonOptions options_;
     geo::Geodetic place_;
     glm::dvec2 post_{0};

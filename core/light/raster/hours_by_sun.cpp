@@ -44,7 +44,7 @@ class LightSoFar {
             if (beams) beams->add(run, height_m, clearance_m, *ground_, &result_.beam_kwh.at(x, y));
             add_light(step, height_m, run.found, run.count, clearance_m, &result_.hours.at(x, y));
         };
-        each_shadow(sun.field, sun.tiles, part_, 0, use);
+        each_shadow(sun, part_, 0, use);
     }
 
     /// Posts that are lit at the first sun, or at the last one.

@@ -55,7 +55,7 @@ class EarthShadow {
                      lowest = lowest_tangent(sun, tile.posts.window);
         // For suns that are higher it is lower than the floor.
         const double highest = std::sqrt(2 * curvature * (terrain.lowest_m() - terrain.floor_m()));
-        if (lowest < highest)
+        if (lowest < highest && !terrain.is_nested())
             beyond_.emplace(terrain.posts(), tile, (highest - std::min(lowest, 0.0)) / curvature);
     }
     bool matters() const { return beyond_.has_value(); }
@@ -122,6 +122,61 @@ void each_shadow_of_two_airs(const SunField& field, const SunTile& tile, const T
     });
 }
 
+/// The shadow of a wider DEM's ground over the posts of a site: between its own posts linear.
+class OuterShadow {
+  public:
+    OuterShadow(const PlannedSun& around, const dem::Grid& site, const Window& window,
+                double offset_rad)
+        : grid_(around.field.terrain().grid()),
+          site_(site),
+          window_(window_over(grid_, site, window)),
+          shadow_m_(window_.columns, window_.rows, kNone_m) {
+        // Where no ground shades, floors of the two are not the same.
+        const float floor_m = around.field.terrain().floor_m();
+        each_shadow(around.field, around.tiles, window_, offset_rad, [&](const SweepRun& run) {
+            float* const to = &shadow_m_.at(run.column - window_.column, run.row - window_.row);
+            for (int i = 0; i < run.count; ++i)
+                to[i] = run.found[i] > floor_m ? run.found[i] : kNone_m;
+        });
+    }
+
+    /// @param shadow_m  gets the shadows of a run, raised to it
+    void raise(const SweepRun& run, float* shadow_m) const {
+        // Where posts are on the other grid is linear over a piece of a row.
+        constexpr int kPiece = 64;
+        for (int from = 0; from < run.count; from += kPiece) {
+            const int count = std::min(kPiece, run.count - from);
+            const auto other = [&](int i) {
+                return grid_.post(site_.place(run.column + i, run.row)) -
+                       glm::dvec2(window_.column, window_.row);
+            };
+            const glm::dvec2 first = other(from), last = other(from + count);
+            for (int i = 0; i < count; ++i)
+                shadow_m[from + i] =
+                    std::max(run.found[from + i], at(glm::mix(first, last, double(i) / count)));
+        }
+    }
+
+  private:
+    static constexpr float kNone_m = -1e9F;
+
+    float at(const glm::dvec2& post) const {
+        const int column = std::clamp(static_cast<int>(post.x), 0, window_.columns - 2),
+                  row = std::clamp(static_cast<int>(post.y), 0, window_.rows - 2);
+        const float u = static_cast<float>(post.x) - static_cast<float>(column),
+                    v = static_cast<float>(post.y) - static_cast<float>(row);
+        const auto between = [&](int r) {
+            return std::lerp(shadow_m_.at(column, r), shadow_m_.at(column + 1, r), u);
+        };
+        return std::lerp(between(row), between(row + 1), v);
+    }
+
+    const dem::Grid& grid_;
+    const dem::Grid& site_;
+    Window window_;  // of the wider DEM
+    Array2d<float> shadow_m_;
+};
+
 }  // namespace
 
 void each_shadow(const SunField& field, std::span<const SunTile> tiles, const Window& window,
@@ -143,6 +198,19 @@ void each_shadow(const SunField& field, std::span<const SunTile> tiles, const Wi
                 earth.raise(part, shadow_m.data());
                 use({part.row, part.column, part.count, shadow_m.data()});
             });
+        });
+    });
+}
+
+void each_shadow(const PlannedSun& sun, const Window& window, double offset_rad,
+                 const Sweep::Use& use) {
+    if (!sun.around) return each_shadow(sun.field, sun.tiles, window, offset_rad, use);
+    const OuterShadow outer(*sun.around, sun.field.terrain().grid(), window, offset_rad);
+    each_shadow(sun.field, sun.tiles, window, offset_rad, [&](const SweepRun& run) {
+        each_part(run, [&](const SweepRun& part) {
+            Figures shadow_m;
+            outer.raise(part, shadow_m.data());
+            use({part.row, part.column, part.count, shadow_m.data()});
         });
     });
 }

@@ -3,7 +3,7 @@
 #include <functional>
 #include <span>
 
-#include "light/raster/sun_field.h"
+#include "light/raster/sun_plan.h"
 
 namespace relevo::light {
 
@@ -20,6 +20,10 @@ constexpr int kLongestRun = 512;
 /// @param use         as Sweep::Use
 void each_shadow(const SunField& sun, std::span<const SunTile> tiles, const Window& window,
                  double offset_rad, const Sweep::Use& use);
+
+/// The same of a planned sun: where a wider DEM lies around, its ground and its Earth shade, too.
+void each_shadow(const PlannedSun& sun, const Window& window, double offset_rad,
+                 const Sweep::Use& use);
 
 /// Calls `use` with the posts of a window and the tangent of the elevation of the horizon, from the
 /// ground at each post. Where nothing of the DEM is higher, it is that of the ground beyond the

@@ -28,7 +28,7 @@ float visible_fraction(const DiscClearance& clearance) {
 /// The clearance of a part of the disc at every post.
 void find_all_clearances(const PlannedSun& sun, const WindowHeights& heights, const Window& part,
                          double offset_rad, Array2d<float>& clearance_m) {
-    each_shadow(sun.field, sun.tiles, part, offset_rad, [&](const SweepRun& run) {
+    each_shadow(sun, part, offset_rad, [&](const SweepRun& run) {
         find_clearances(heights.view.at(run.column, run.row), run.found, run.count,
                         &clearance_m.at(run.column - part.column, run.row - part.row));
     });

@@ -118,6 +118,14 @@ SunField SunField::level(const SunTerrain& terrain, const geo::Geodetic& place,
     return field;
 }
 
+SunField SunField::over(const SunTerrain& terrain) const {
+    if (azimuth_rad_) return SunField(terrain, *azimuth_rad_);
+    const geo::Geodetic& middle = terrain_->marks()[4];
+    SunField field(terrain, middle, at(middle));
+    field.is_level_ = is_level_;
+    return field;
+}
+
 bool SunField::is_night(const Window& window) const {
     constexpr double kWide_rad = radians(50);  // the sun may shine between posts so far apart
     if (is_level_) return false;

@@ -56,6 +56,9 @@ class SunField {
     static SunField level(const SunTerrain& terrain, const geo::Geodetic& place,
                           double azimuth_rad);
 
+    /// The same sun or direction over another DEM. @param terrain  outlives what is returned
+    SunField over(const SunTerrain& terrain) const;
+
     const SunTerrain& terrain() const { return *terrain_; }
     /// Whether it needs sweeps for the air of the lowest post and for that of the highest one.
     bool has_two_airs() const { return two_airs_; }

@@ -32,8 +32,13 @@ double turn_rad(const SunTerrain& terrain) {
 }  // namespace
 
 SunPlan::SunPlan(const dem::Posts& posts, const LightPath& path, const Window& window,
-                 bool with_discs)
-    : terrain_(std::make_unique<const SunTerrain>(posts, path, with_discs)),
+                 bool with_discs, const dem::Posts* around)
+    : around_(around ? std::make_unique<const SunTerrain>(
+                           *around, path, with_discs,
+                           SunTerrain::Nesting{.around = nullptr, .site = &posts.grid()})
+                     : nullptr),
+      terrain_(std::make_unique<const SunTerrain>(
+          posts, path, with_discs, SunTerrain::Nesting{.around = around_.get(), .site = nullptr})),
       window_(terrain_->window_of(window)) {}
 
 void SunPlan::divide_all(std::size_t first, const Window& window, double tolerance_rad) {
@@ -42,8 +47,17 @@ void SunPlan::divide_all(std::size_t first, const Window& window, double toleran
                      for (int i = begin; i < end; ++i) {
                          PlannedSun& sun = suns_[static_cast<std::size_t>(i)];
                          sun.tiles = divide(sun.field, window, window_, tolerance_rad);
+                         if (around_) sun.around = sun_around(sun, tolerance_rad);
                      }
                  });
+}
+
+std::shared_ptr<const PlannedSun> SunPlan::sun_around(const PlannedSun& sun,
+                                                      double tolerance_rad) const {
+    const Window under = window_over(around_->grid(), terrain_->grid(), window_);
+    PlannedSun outer{sun.at_s, sun.field.over(*around_), sun.semidiameter_rad};
+    outer.tiles = divide(outer.field, around_->window(), under, tolerance_rad);
+    return std::make_shared<const PlannedSun>(std::move(outer));
 }
 
 void SunPlan::add_suns(const geo::Geodetic& place, const std::vector<SunOverDem>& suns) {

@@ -17,6 +17,8 @@ struct PlannedSun {
     SunField field;
     double semidiameter_rad = 0;
     std::vector<SunTile> tiles{};  ///< none for a sun that no post sees
+    /// The same sun over the wider DEM around, where there is one.
+    std::shared_ptr<const PlannedSun> around{};
 };
 
 /// What is found of a DEM once a run, before any of its posts is looked at: the suns asked for, the
@@ -26,8 +28,10 @@ class SunPlan {
   public:
     /// @param posts   outlive this
     /// @param window  posts that will be asked for; without columns: all
+    /// @param around  a wider and coarser DEM, all of whose ground shades these posts, but for what
+    ///     lies on their own DEM; null: none. Outlives this. Of suns, not of directions
     SunPlan(const dem::Posts& posts, const LightPath& path, const Window& window,
-            bool with_discs = false);
+            bool with_discs = false, const dem::Posts* around = nullptr);
 
     /// Suns that stand so over a place.
     /// @throws Error (BadInput) as divide()
@@ -58,9 +62,10 @@ class SunPlan {
     }
 
   private:
+    std::shared_ptr<const PlannedSun> sun_around(const PlannedSun& sun, double tolerance_rad) const;
     void divide_all(std::size_t first, const Window& window, double tolerance_rad);
 
-    std::unique_ptr<const SunTerrain> terrain_;  // SunField has its address
+    std::unique_ptr<const SunTerrain> around_, terrain_;  // SunField has their addresses
     Window window_;
     std::vector<PlannedSun> suns_;
 };

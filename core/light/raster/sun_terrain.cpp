@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
+#include "base/array2d.h"
 #include "base/error.h"
 #include "base/units.h"
 #include "geo/ellipsoid.h"
@@ -34,6 +39,44 @@ Sweep sweep_over(const dem::Posts& posts) {
     return Sweep(all.first_m, columns, rows, all.stride);
 }
 
+/// Of the ground around a site. Posts on it are holes, but for those next to its edge, so that
+/// ground between a post on it and one beside it is not lost.
+Sweep sweep_around(const dem::Grid& site, const dem::Posts& posts) {
+    const dem::Grid& grid = posts.grid();
+    const Window box = window_over(grid, site, {0, 0, site.columns(), site.rows()});
+    auto hidden = std::make_shared<Array2d<std::uint8_t>>(box.columns, box.rows, 0);
+    const auto is_on_site = [&](int column, int row) {
+        const glm::dvec2 post = site.post(grid.place(column, row));
+        return post.x >= 0 && post.y >= 0 && post.x <= site.columns() - 1 &&
+               post.y <= site.rows() - 1;
+    };
+    for (int y = 0; y < box.rows; ++y)
+        for (int x = 0; x < box.columns; ++x) {
+            const int column = box.column + x, row = box.row + y;
+            hidden->at(x, y) = is_on_site(column - 1, row) && is_on_site(column + 1, row) &&
+                               is_on_site(column, row - 1) && is_on_site(column, row + 1);
+        }
+    const auto read = [&posts, box, hidden](const Window& window, std::vector<float>& buffer) {
+        std::vector<float> unused;
+        const dem::Posts::View view = posts.view(window, unused);
+        buffer.resize(static_cast<std::size_t>(window.columns) *
+                      static_cast<std::size_t>(window.rows));
+        float* to = buffer.data();
+        for (int row = window.row; row < window.end_row(); ++row, to += window.columns)
+            std::copy_n(view.at(window.column, row), window.columns, to);
+        const Window both = common(window, box);
+        for (int row = both.row; row < both.end_row(); ++row)
+            for (int column = both.column; column < both.end_column(); ++column)
+                if (hidden->at(column - box.column, row - box.row) != 0)
+                    buffer[static_cast<std::size_t>(row - window.row) *
+                               static_cast<std::size_t>(window.columns) +
+                           static_cast<std::size_t>(column - window.column)] =
+                        std::numeric_limits<float>::quiet_NaN();
+        return Sweep::Heights{buffer.data(), window.columns};
+    };
+    return Sweep(read, grid.columns(), grid.rows(), posts.lowest_m(), posts.highest_m());
+}
+
 std::array<geo::Geodetic, 9> marks_of(const dem::Grid& grid) {
     std::array<geo::Geodetic, 9> marks;
     for (int i = 0; i < 9; ++i)
@@ -61,12 +104,32 @@ double checked(double refraction) {
 
 }  // namespace
 
-SunTerrain::SunTerrain(const dem::Posts& posts, const LightPath& path, bool with_discs)
+Window window_over(const dem::Grid& grid, const dem::Grid& of, const Window& window) {
+    constexpr int kSteps = 16;
+    glm::dvec2 low(1e9), high(-1e9);
+    for (int i = 0; i <= kSteps; ++i)
+        for (int k = 0; k <= kSteps; ++k) {
+            const glm::dvec2 post =
+                grid.post(of.place(window.column + double(window.columns - 1) * i / kSteps,
+                                   window.row + double(window.rows - 1) * k / kSteps));
+            if (!std::isfinite(post.x + post.y)) continue;
+            low = glm::min(low, post), high = glm::max(high, post);
+        }
+    // Sides of a window are bent between the samples.
+    const glm::ivec2 first = glm::ivec2(glm::floor(low)) - 2,
+                     last = glm::ivec2(glm::ceil(high)) + 2;
+    return common({first.x, first.y, last.x - first.x + 1, last.y - first.y + 1},
+                  {0, 0, grid.columns(), grid.rows()});
+}
+
+SunTerrain::SunTerrain(const dem::Posts& posts, const LightPath& path, bool with_discs,
+                       const Nesting& nesting)
     : given_(posts),
       before_(posts.grid().columns_round().value_or(0) / 2),
       unrolled_(unrolled(posts, before_)),
       posts_(unrolled_ ? *unrolled_ : posts),
-      sweep_(sweep_over(posts_)),
+      around_(nesting.around),
+      sweep_(nesting.site ? sweep_around(*nesting.site, posts_) : sweep_over(posts_)),
       spacing_m_(posts.grid().post_spacing_m()),
       marks_(marks_of(posts.grid())),
       frame_(posts.grid().center()),
@@ -87,7 +150,8 @@ double SunTerrain::horizon_reach_m() const {
 }
 
 double SunTerrain::lowest_sun_rad() const {
-    return -std::sqrt(2 * curvature_ * relief_m_) - radians(0.7);
+    const double lowest_rad = -std::sqrt(2 * curvature_ * relief_m_) - radians(0.7);
+    return around_ ? std::min(lowest_rad, around_->lowest_sun_rad()) : lowest_rad;
 }
 
 double SunTerrain::apparent_rad(double elevation_rad, Air air) const {

@@ -33,10 +33,18 @@ struct LightPath {
 /// larger grid.
 class SunTerrain {
   public:
+    /// How a DEM lies in another one or around it.
+    struct Nesting {
+        const SunTerrain* around = nullptr;  ///< a wider DEM; outlives this
+        const dem::Grid* site = nullptr;     ///< a finer one, whose ground is not looked at here
+    };
     /// @param posts       outlive this
     /// @param with_discs  parts of the sun's disc are asked for, and not its centre alone
     /// @throws Error (BadInput) for a refraction that no air has
-    SunTerrain(const dem::Posts& posts, const LightPath& path, bool with_discs);
+    SunTerrain(const dem::Posts& posts, const LightPath& path, bool with_discs,
+               const Nesting& nesting);
+    SunTerrain(const dem::Posts& posts, const LightPath& path, bool with_discs)
+        : SunTerrain(posts, path, with_discs, Nesting{}) {}
 
     const dem::Posts& given() const { return given_; }  ///< the DEM as it is
     const dem::Posts& posts() const { return posts_; }
@@ -49,6 +57,8 @@ class SunTerrain {
         if (given.is_empty()) return window();
         return {given.column + before_, given.row, given.columns, given.rows};
     }
+    /// Whether a wider DEM has the ground around this one.
+    bool is_nested() const { return around_ != nullptr; }
     const Sweep& sweep() const { return sweep_; }
     const geo::LocalFrame& frame() const { return frame_; }
     const glm::dvec2& spacing_m() const { return spacing_m_; }  ///< the grid's post_spacing_m()
@@ -83,6 +93,7 @@ class SunTerrain {
     int before_ = 0;                      // columns of the grid before it
     std::optional<dem::Posts> unrolled_;  // of a DEM round the Earth
     const dem::Posts& posts_;
+    const SunTerrain* around_;
     Sweep sweep_;
     glm::dvec2 spacing_m_;
     std::array<geo::Geodetic, 9> marks_;
@@ -91,6 +102,9 @@ class SunTerrain {
     float floor_m_;
     std::vector<sun::Refraction> airs_;  // over the lowest post and the highest one, or none
 };
+
+/// The posts of a grid under and around a window of another one.
+Window window_over(const dem::Grid& grid, const dem::Grid& of, const Window& window);
 
 /// The heights of a window, and of the posts beside it.
 struct WindowHeights {
