@@ -34,16 +34,28 @@ geo::Geodetic place_at(double lat_deg, double lon_deg) {
 /// Hills about a place: a sum of Gaussians, the same on whatever grid.
 class Hills {
   public:
-    explicit Hills(const geo::Geodetic& middle) : frame_(middle) {}
+    /// @param wider, higher  factors of widths and distances, and of heights
+    explicit Hills(const geo::Geodetic& middle, double wider = 1, double higher = 1)
+        : frame_(middle), wider_(wider), higher_(higher) {}
 
     double height_m(const geo::Geodetic& place) const {
-        const glm::dvec3 at = frame_.to_local(place);
-        double sum = 400;
+        const glm::dvec2 at = glm::dvec2(frame_.to_local(place)) / wider_;
+        if (glm::length(at) > 20e3) return 400;  // hills are under 1e-14 m there
+        double sum = 0;
         for (const auto& [x_m, y_m, up_m, width_m] : kHills) {
             const double dx = at.x - x_m, dy = at.y - y_m;
             sum += up_m * std::exp(-(dx * dx + dy * dy) / (2 * width_m * width_m));
         }
-        return sum;
+        return 400 + higher_ * sum;
+    }
+
+    /// 625 places among them, where hours are compared.
+    std::vector<geo::Geodetic> places() const {
+        std::vector<geo::Geodetic> places;
+        for (int i = -12; i <= 12; ++i)
+            for (int k = -12; k <= 12; ++k)
+                places.push_back(frame_.to_geodetic({170 * wider_ * i, 170 * wider_ * k, 0}));
+        return places;
     }
 
   private:
@@ -56,9 +68,9 @@ class Hills {
                                                                   {400, 400, 500, 900},
                                                                   {1800, -5200, 1300, 1400}}};
     geo::LocalFrame frame_;
+    double wider_, higher_;
 };
 
-/// Grids about a place, of `side` posts a side.
 struct NamedGrid {
     std::string name, crs;
     dem::Affine affine;
@@ -89,44 +101,61 @@ NamedGrid turned(const std::string& name, const std::string& crs, const geo::Geo
             side};
 }
 
-std::vector<NamedGrid> grids_about(const geo::Geodetic& middle) {
-    const std::string utm = "EPSG:32632";
-    std::vector<NamedGrid> grids{turned("UTM", utm, middle, 30, 0)};
-    for (int turn_deg = 10; turn_deg <= 90; turn_deg += 10)
-        grids.push_back(turned(fmt::format("turned by {}", turn_deg), utm, middle, 30, turn_deg));
-    NamedGrid flipped = grids.front();
-    flipped.name = "south-up";
-    flipped.affine.y0 += flipped.affine.y_row * (flipped.rows - 1);
-    flipped.affine.y_row *= -1;
-    grids.push_back(flipped);
-    NamedGrid transposed = grids.front();
-    transposed.name = "transposed";
-    std::swap(transposed.affine.x_column, transposed.affine.x_row);
-    std::swap(transposed.affine.y_column, transposed.affine.y_row);
-    grids.push_back(transposed);
-    NamedGrid mirrored = grids.front();
-    mirrored.name = "mirrored";
-    mirrored.affine.x0 += mirrored.affine.x_column * (mirrored.columns - 1);
-    mirrored.affine.x_column *= -1;
-    grids.push_back(mirrored);
-    NamedGrid bordered = grids.front();
-    bordered.name = "with a border of voids";
-    bordered.with_border = true;
-    grids.push_back(bordered);
-    constexpr double kLat_m = 111150;
-    NamedGrid degrees = turned("degrees", "EPSG:4326", middle, 30 / kLat_m, 0);
-    degrees.affine.x_column /= std::cos(middle.lat_rad);
-    degrees.affine.x0 =
-        relevo::degrees(middle.lon_rad) - (degrees.columns - 1) / 2.0 * degrees.affine.x_column;
-    grids.push_back(degrees);
-    grids.push_back(turned("square degrees", "EPSG:4326", middle, 30 / kLat_m, 0, 481));
-    grids.push_back(turned("feet", "+proj=utm +zone=32 +datum=WGS84 +units=us-ft", middle,
-                           30 / 0.3048006096, 0));
-    grids.push_back(turned("polar", "EPSG:3995", middle, 30 * 1.15, 0));
-    grids.push_back(turned("polar, turned", "EPSG:3995", middle, 30 * 1.15, 37));
-    grids.push_back(turned("Mercator", "EPSG:3857", middle, 30 * 1.45, 0));
-    grids.push_back(turned("equal area", "EPSG:3035", middle, 30, 0));
+/// In degrees from west to east and north to south, `step_m` apart both ways in the middle.
+NamedGrid in_degrees(const std::string& name, const geo::Geodetic& middle, double step_m,
+                     int side = 401) {
+    NamedGrid grid = turned(name, "EPSG:4326", middle, step_m / 111150, 0, side);
+    grid.affine.x_column /= std::cos(middle.lat_rad);
+    grid.affine.x0 = degrees(middle.lon_rad) - (side - 1) / 2.0 * grid.affine.x_column;
+    return grid;
+}
+
+/// The same posts in another order.
+std::vector<NamedGrid> reordered(const NamedGrid& grid) {
+    std::vector<NamedGrid> grids{3, grid};
+    grids[0].name = "south-up";
+    grids[0].affine.y0 += grid.affine.y_row * (grid.rows - 1);
+    grids[0].affine.y_row *= -1;
+    grids[1].name = "transposed";
+    std::swap(grids[1].affine.x_column, grids[1].affine.x_row);
+    std::swap(grids[1].affine.y_column, grids[1].affine.y_row);
+    grids[2].name = "mirrored";
+    grids[2].affine.x0 += grid.affine.x_column * (grid.columns - 1);
+    grids[2].affine.x_column *= -1;
     return grids;
+}
+
+std::vector<NamedGrid> turned_grids(const geo::Geodetic& middle) {
+    std::vector<NamedGrid> grids;
+    for (int turn_deg = 5; turn_deg <= 90; turn_deg += 5)
+        grids.push_back(
+            turned(fmt::format("turned by {}", turn_deg), "EPSG:32632", middle, 30, turn_deg));
+    return grids;
+}
+
+/// Of other kinds than UTM.
+std::vector<NamedGrid> projected_grids(const geo::Geodetic& middle) {
+    constexpr double kDegree_m = 111150;
+    NamedGrid turned_degrees = turned("degrees, turned", "EPSG:4326", middle, 30 / kDegree_m, 30);
+    turned_degrees.affine.x_column /= std::cos(middle.lat_rad);
+    turned_degrees.affine.x_row /= std::cos(middle.lat_rad);
+    turned_degrees.affine.x0 = degrees(middle.lon_rad) -
+                               (turned_degrees.columns - 1) / 2.0 *
+                                   (turned_degrees.affine.x_column + turned_degrees.affine.x_row);
+    NamedGrid bordered = turned("with a border of voids", "EPSG:32632", middle, 30, 0);
+    bordered.with_border = true;
+    return {bordered,
+            in_degrees("degrees", middle, 30),
+            turned("square degrees", "EPSG:4326", middle, 30 / kDegree_m, 0, 481),
+            turned_degrees,
+            turned("feet", "+proj=utm +zone=32 +datum=WGS84 +units=us-ft", middle,
+                   30 / 0.3048006096, 0),
+            turned("polar", "EPSG:3995", middle, 30 * 1.15, 0),
+            turned("polar, turned", "EPSG:3995", middle, 30 * 1.15, 37),
+            turned("Mercator", "EPSG:3857", middle, 30 * 1.45, 0),
+            turned("equal area", "EPSG:3035", middle, 30, 0),
+            turned("Lambert's conic", "EPSG:2154", middle, 30, 0),
+            turned("oblique Mercator", "EPSG:2056", middle, 30, 0)};
 }
 
 /// Hours at a place, linear between posts.
@@ -137,16 +166,23 @@ double hours_at(const Array2d<float>& hours, const glm::dvec2& post) {
            v * ((1 - u) * double{hours.at(c, r + 1)} + u * double{hours.at(c + 1, r + 1)});
 }
 
-std::vector<double> hours_of(const NamedGrid& of, const Hills& hills, const geo::Geodetic& middle,
-                             sun::Instant begin) {
+/// Hours of sun at the places of the hills.
+std::vector<double> hours_of(const NamedGrid& of, const Hills& hills, const sun::TimeSpan& span) {
     const dem::Heightfield field = sampled(of, hills);
-    const SunHours found = sun_hours(dem::Posts(field), begin, begin + 86400.0);
-    const geo::LocalFrame frame(middle);
+    std::vector<glm::dvec2> posts;
+    glm::dvec2 least(1e9), most(-1e9);
+    for (const geo::Geodetic& place : hills.places()) {
+        posts.push_back(field.grid.post(place));
+        least = glm::min(least, posts.back());
+        most = glm::max(most, posts.back());
+    }
+    SunHoursOptions options;
+    const glm::ivec2 first = glm::floor(least), end = glm::floor(most) + 2.0;
+    options.part = {first.x, first.y, end.x - first.x, end.y - first.y};
+    const SunHours found = sun_hours(dem::Posts(field), span.begin, span.end, options);
     std::vector<double> hours;
-    for (int i = -12; i <= 12; ++i)
-        for (int k = -12; k <= 12; ++k)
-            hours.push_back(hours_at(
-                found.hours, field.grid.post(frame.to_geodetic({170.0 * i, 170.0 * k, 0}))));
+    for (const glm::dvec2& post : posts)
+        hours.push_back(hours_at(found.hours, post - glm::dvec2(first)));
     return hours;
 }
 
@@ -166,37 +202,69 @@ Difference difference(const std::vector<double>& a, const std::vector<double>& b
     return found;
 }
 
+/// Compares hours at the same places.
+void expect_same_hours(const std::string& name, const std::vector<double>& hours,
+                       const std::vector<double>& expected, double mean_min, double most_min) {
+    const Difference found = difference(hours, expected);
+    fmt::print(
+        "[ accuracy ] hours on a grid {}: off by {:.3f} min in the mean (limit {}), 99 % within "
+        "{:.2f} (limit {})\n",
+        name, found.mean_min, mean_min, found.most_min, most_min);
+    EXPECT_LE(found.mean_min, mean_min) << name;
+    EXPECT_LE(found.most_min, most_min) << name;
+}
+
 TEST(Grids, OfOneReliefHaveTheSameHours) {
     const geo::Geodetic middle = place_at(46.5, 9.3);
     const Hills hills(middle);
-    const std::vector<NamedGrid> grids = grids_about(middle);
-    const sun::Instant begin = utc("2026-03-20T00:00Z");
-    const std::vector<double> expected = hours_of(grids.front(), hills, middle, begin);
-    for (const NamedGrid& grid : grids) {
-        const Difference found = difference(hours_of(grid, hills, middle, begin), expected);
-        fmt::print(
-            "[ accuracy ] hours on a grid {}: off by {:.3f} min in the mean, 99 % within "
-            "{:.2f}\n",
-            grid.name, found.mean_min, found.most_min);
-        const bool is_same =
-            grid.name == "south-up" || grid.name == "transposed" || grid.name == "mirrored";
-        EXPECT_LE(found.mean_min, is_same ? 0.01 : 0.5) << grid.name;
-        EXPECT_LE(found.most_min, is_same ? 0.05 : 2.5) << grid.name;
-    }
+    const NamedGrid utm = turned("UTM", "EPSG:32632", middle, 30, 0);
+    const sun::TimeSpan day{utc("2026-03-20T00:00Z"), utc("2026-03-21T00:00Z")};
+    const std::vector<double> expected = hours_of(utm, hills, day);
+    for (const NamedGrid& grid : reordered(utm))
+        expect_same_hours(grid.name, hours_of(grid, hills, day), expected, 0.01, 0.05);
+    for (const std::vector<NamedGrid>& grids : {turned_grids(middle), projected_grids(middle)})
+        for (const NamedGrid& grid : grids)
+            expect_same_hours(grid.name, hours_of(grid, hills, day), expected, 0.5, 2.5);
 }
 
 TEST(Grids, AcrossTheAntimeridianHaveTheSameHours) {
     const geo::Geodetic middle = place_at(51.9, 179.999);
     const Hills hills(middle);
-    const sun::Instant begin = utc("2026-03-20T12:00Z");
-    const NamedGrid utm = turned("UTM", "EPSG:32660", middle, 30, 0);
-    NamedGrid degrees = turned("degrees", "EPSG:4326", middle, 30 / 111250.0, 0);
-    degrees.affine.x_column /= std::cos(middle.lat_rad);
-    degrees.affine.x0 = 179.999 - (degrees.columns - 1) / 2.0 * degrees.affine.x_column;
-    const Difference found =
-        difference(hours_of(utm, hills, middle, begin), hours_of(degrees, hills, middle, begin));
-    EXPECT_LE(found.mean_min, 0.5);
-    EXPECT_LE(found.most_min, 2.5);
+    const sun::TimeSpan day{utc("2026-03-19T12:00Z"), utc("2026-03-20T12:00Z")};
+    const std::vector<double> expected =
+        hours_of(turned("UTM", "EPSG:32660", middle, 30, 0), hills, day);
+    const NamedGrid east = in_degrees("in degrees to 180.1", middle, 30);
+    NamedGrid west = east;
+    west.name = "in degrees from -180.1";
+    west.affine.x0 -= 360;
+    for (const NamedGrid& grid : {east, west})
+        expect_same_hours(grid.name, hours_of(grid, hills, day), expected, 0.5, 2.5);
+}
+
+TEST(Grids, OfManyDegreesHaveTheHoursOfLocalOnes) {
+    // Posts 1.2 km apart, as 30 m all around the Earth are 880 000 columns. So hills are 40 times
+    // as wide, and 5 times as high, as the Earth's curvature hides low ground. The sun differs by 2
+    // degrees between the places, so each is compared with itself on a local grid.
+    const geo::Geodetic middle = place_at(46.5, 9.3);
+    const Hills hills(middle, 40, 5);
+    // An afternoon until after sunset, as a sun over all of the Earth is never down. Its rays cross
+    // the first column.
+    const sun::TimeSpan afternoon{utc("2026-03-20T11:30Z"), utc("2026-03-20T18:00Z")};
+    const std::vector<double> expected = hours_of(
+        turned("local", "+proj=stere +lat_0=46.5 +lon_0=9.3 +datum=WGS84", middle, 1200, 0), hills,
+        afternoon);
+    constexpr int kRound = 22930;
+    constexpr double kStep_deg = 360.0 / kRound;
+    NamedGrid round = in_degrees("round the Earth", middle, 1200);
+    round.columns = kRound;
+    round.affine.x_column = kStep_deg;
+    round.affine.x0 = 7;  // among the hills, 90 km west of the places
+    NamedGrid wide = round;
+    wide.name = "60 degrees wide";
+    wide.columns = kRound / 6;
+    wide.affine.x0 = -10;
+    for (const NamedGrid& grid : {round, wide})
+        expect_same_hours(grid.name, hours_of(grid, hills, afternoon), expected, 0.5, 2.5);
 }
 
 /// Flat ground in degrees, with bumps.
