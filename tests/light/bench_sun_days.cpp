@@ -70,6 +70,7 @@ struct Differences {
     };
     Worst worst{}, within{};  // of all, and of posts that are not near the edge
     static constexpr int kEdge = 8;
+    int by_3_min = 0, by_3_min_within = 0;  // posts, likewise
 
     Differences(const Array2d<float>& hours, const Array2d<float>& expected) {
         for (int r = 0; r < hours.height(); ++r)
@@ -79,9 +80,12 @@ struct Differences {
                 minutes.push_back(off_min);
                 far += off_min > 1;
                 worst.take(off_min, c, r);
-                if (std::min(c, r) >= kEdge && c + kEdge < hours.width() &&
-                    r + kEdge < hours.height())
-                    within.take(off_min, c, r);
+                by_3_min += off_min > 3;
+                if (std::min(c, r) < kEdge || c + kEdge >= hours.width() ||
+                    r + kEdge >= hours.height())
+                    continue;
+                within.take(off_min, c, r);
+                by_3_min_within += off_min > 3;
             }
     }
 };
@@ -102,8 +106,8 @@ double quantile(std::vector<double> numbers, double share) {
 void print_steps(const Paths& paths) {
     fmt::print(
         "| DEM | date | posts | suns apart [s] | mean [min] | beyond 1 min [%] | "
-        "worst [min] | column, row | worst {} posts from the edge [min] | column, row |\n"
-        "|---|---|---|---|---|---|---|---|---|---|\n",
+        "posts beyond 3 min | worst [min] | column, row | {} posts and more from the edge: beyond "
+        "3 min | worst [min] | column, row |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n",
         Differences::kEdge);
     for (const std::string& path : paths) {
         const dem::Heightfield field = dem::load(path);
@@ -114,12 +118,14 @@ void print_steps(const Paths& paths) {
             for (const double step_s : {600.0, 180.0, 60.0, 30.0}) {
                 const Differences off(hours_of(posts, day, {.step_s = step_s}).hours, expected);
                 fmt::print(
-                    "| {} | {} | {} | {} | {:.4f} | {:.4f} | {:.2f} | {}, {} | {:.2f} | {}, {} |\n",
+                    "| {} | {} | {} | {} | {:.4f} | {:.4f} | {} | {:.2f} | {}, {} | {} | {:.2f} | "
+                    "{}, "
+                    "{} |\n",
                     std::filesystem::path(path).filename().string(), date, off.minutes.size(),
                     step_s, mean(off.minutes),
-                    100.0 * off.far / static_cast<double>(off.minutes.size()), off.worst.minutes,
-                    off.worst.column, off.worst.row, off.within.minutes, off.within.column,
-                    off.within.row);
+                    100.0 * off.far / static_cast<double>(off.minutes.size()), off.by_3_min,
+                    off.worst.minutes, off.worst.column, off.worst.row, off.by_3_min_within,
+                    off.within.minutes, off.within.column, off.within.row);
                 std::fflush(stdout);
             }
         }
