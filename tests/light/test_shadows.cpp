@@ -313,5 +313,38 @@ TEST(Shadows, WhatItCannotDoIsRefused) {
               "gdalwarp -t_srs");
 }
 
+TEST(Shadows, TerrestrialRefractionBendsTheRays) {
+    // A ridge 79 km off stands higher the more the air bends lines of sight.
+    const dem::Heightfield ridge =
+        test::field_of(420, 60, {400000, 200, 0, 5200000, 0, -200}, "EPSG:32632",
+                       [](int column, int) { return column == 400 ? 1800.0 : 100.0; });
+    const dem::Posts posts(ridge);
+    const dem::Grid& grid = posts.grid();
+    std::vector<double> horizons_deg;
+    for (const double k : {0.0, 0.13, 0.5}) {
+        HorizonOptions options;
+        options.refraction = k;
+        const glm::dvec2 post(5, 30);
+        const TerrainHorizon horizon(posts, grid.place(post.x, post.y), options);
+        // Where the middle's sun has to stand for it to be on the horizon of the post.
+        const double azimuth_rad = radians(90);
+        horizons_deg.push_back(degrees(horizon.elevation_rad(azimuth_rad)));
+        const SunTerrain terrain(posts, {k, {}}, false);
+        for (const double over_deg : {-0.03, 0.03}) {
+            SunOverDem sun{azimuth_rad, radians(horizons_deg.back()), 0};
+            for (int i = 0; i < 4; ++i) {
+                const SunOverDem there = SunField(terrain, grid.center(), sun).at(post);
+                sun.azimuth_rad += azimuth_rad - there.azimuth_rad;
+                sun.elevation_rad += radians(horizons_deg.back() + over_deg) - there.elevation_rad;
+            }
+            ShadowOptions of_k;
+            of_k.refraction = k;
+            EXPECT_EQ(shadows(posts, sun, of_k).lit.at(5, 30), over_deg > 0 ? 1 : 0)
+                << "k " << k << ", " << horizons_deg.back() << " deg";
+        }
+    }
+    EXPECT_GT(horizons_deg[2], horizons_deg[0] + 0.1);
+}
+
 }  // namespace
 }  // namespace relevo::light
