@@ -89,7 +89,7 @@ struct SceneThread::Impl {
 
     std::thread thread;
 
-    /// Changes what is wanted, and wakes the thread.
+    /// Sets the work to do next and wakes the thread.
     template <typename Change>
     void change(const Change& change) {
         {

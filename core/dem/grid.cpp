@@ -71,22 +71,22 @@ glm::dvec2 Grid::post(const geo::Geodetic& place) const {
     return affine_.inverse(point);
 }
 
-/// In a turn of longitude; 0 on a map without turns, or whose rows do not run along parallels.
-double Grid::columns_a_turn() const {
-    if (!crs_.is_geographic() || affine_.x_column == 0 || affine_.x_row != 0) return 0;
+/// Columns from a longitude to the same one again; 0 where no row of the grid has both.
+double Grid::turn_columns() const {
+    if (!crs_.is_geographic() || affine_.x_column == 0 || affine_.y_column != 0) return 0;
     return 2 * kPi / crs_.unit_si() / std::abs(affine_.x_column);
 }
 
 glm::dvec2 Grid::post(const geo::Geodetic& place, const glm::dvec2& near) const {
     glm::dvec2 post = this->post(place);
-    if (const double turn = columns_a_turn(); turn > 0)
+    if (const double turn = turn_columns(); turn > 0)
         post.x -= turn * std::round((post.x - near.x) / turn);
     return post;
 }
 
-std::optional<int> Grid::columns_round() const {
+std::optional<int> Grid::columns_per_turn() const {
     constexpr double kApart = 0.01;  // columns: the last and the first are no farther from a whole
-    const double turn = columns_a_turn();
+    const double turn = turn_columns();
     const bool is_whole = turn > 0 && std::abs(turn - std::round(turn)) < kApart;
     if (!is_whole || columns_ < std::lround(turn)) return std::nullopt;
     return static_cast<int>(std::lround(turn));

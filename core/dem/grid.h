@@ -68,7 +68,7 @@ class Grid {
 
     /// How many columns a turn of longitude has, where the grid goes round the Earth, so that its
     /// first column follows on its last one.
-    std::optional<int> columns_round() const;
+    std::optional<int> columns_per_turn() const;
 
     /// The middle of the grid, on the ellipsoid.
     geo::Geodetic center() const;
@@ -99,7 +99,7 @@ class Grid {
     Grid part(const Window& window, int columns, int rows) const;
 
   private:
-    double columns_a_turn() const;
+    double turn_columns() const;
 
     int columns_;
     int rows_;

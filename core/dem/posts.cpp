@@ -66,7 +66,7 @@ struct Posts::Impl {
         }
         View view(const Window& window, std::vector<float>& buffer) const;
     };
-    std::optional<Unrolled> unrolled;  // if so, nothing else is given
+    std::optional<Unrolled> unrolled;  // instead of all that follows
 
     std::optional<Source> own_source;
     std::optional<Heightfield> own_field;
@@ -306,10 +306,16 @@ Posts Posts::unrolled(const Posts& posts, int first, int columns) {
     Affine affine = grid.affine();
     affine.x0 += first * affine.x_column;
     auto impl = std::make_unique<Impl>();
-    impl->unrolled.emplace(Impl::Unrolled{posts, first, grid.columns_round().value(),
+    impl->unrolled.emplace(Impl::Unrolled{posts, first, grid.columns_per_turn().value(),
                                           Grid(columns, grid.rows(), affine, grid.crs())});
-    impl->about = posts.about();
     return Posts(std::move(impl));
+}
+
+std::optional<Posts> Posts::around(const Posts& posts, const geo::Geodetic& place) {
+    const std::optional<int> turn = posts.grid().columns_per_turn();
+    const double column = posts.grid().post(place).x;
+    if (!turn || !std::isfinite(column)) return std::nullopt;
+    return unrolled(posts, static_cast<int>(std::lround(column)) - *turn / 2, *turn + 1);
 }
 
 const Grid& Posts::grid() const {
@@ -317,6 +323,7 @@ const Grid& Posts::grid() const {
 }
 
 const Description& Posts::about() const {
+    if (impl_->unrolled) return impl_->unrolled->posts.about();
     return impl_->about;
 }
 
@@ -326,7 +333,7 @@ bool Posts::in_memory() const {
 
 float Posts::bound_m(int first_column, int last_column, int first_row, int last_row) const {
     if (impl_->unrolled) {
-        // The cell between the last column and the first has its posts in those beside it.
+        // The cell across the first column has its corners in the cells on either side.
         float bound_m = -kInfinity;
         impl_->unrolled->each_piece(first_column, last_column + 2, [&](int from, int count, int) {
             bound_m = std::max(bound_m, impl_->unrolled->posts.bound_m(from, from + count - 1,
@@ -371,8 +378,10 @@ float Posts::thinned_m(int column, int row) const {
 /// Spreads from the voids at the edges of the thinned grid.
 void Posts::Impl::find_outside() {
     const int columns = thinned(grid().columns()), rows = thinned(grid().rows());
+    const bool is_round = grid().columns_per_turn().has_value();
     std::vector<std::pair<int, int>> open;
     const auto take = [&](int column, int row) {
+        if (is_round) column = (column + columns) % columns;
         if (column < 0 || row < 0 || column >= columns || row >= rows ||
             !std::isnan(thinned_at(column, row)))
             return;
@@ -381,7 +390,7 @@ void Posts::Impl::find_outside() {
     };
     for (int column = 0; column < columns; ++column)
         take(column, 0), take(column, rows - 1);
-    for (int row = 0; row < rows && !grid().columns_round(); ++row)
+    for (int row = 0; row < rows && !is_round; ++row)
         take(0, row), take(columns - 1, row);
     while (!open.empty()) {
         const auto [column, row] = open.back();
@@ -401,14 +410,17 @@ bool Posts::is_outside(int column, int row) const {
     // Slivers along the edge may lie between thinned posts, as the rims of voids do.
     const int to_side = std::min(column, grid().columns() - 1 - column),
               to_end = std::min(row, grid().rows() - 1 - row);
-    if (step > 1 && (grid().columns_round() ? to_end : std::min(to_side, to_end)) < step)
+    if (step > 1 && (grid().columns_per_turn() ? to_end : std::min(to_side, to_end)) < step)
         return true;
     if (impl.outside.empty()) return false;
     const int beside = step > 1 ? 1 : 0;
     const int c = column / step, r = row / step;
-    for (int y = r; y <= std::min(r + beside, impl.outside.height() - 1); ++y)
-        for (int x = c; x <= std::min(c + beside, impl.outside.width() - 1); ++x)
-            if (impl.outside.at(x, y) != 0) return true;
+    const int columns = impl.outside.width(), rows = impl.outside.height();
+    for (int y = r; y <= std::min(r + beside, rows - 1); ++y)
+        for (int x = c; x <= c + beside; ++x) {
+            if (x >= columns && !grid().columns_per_turn()) continue;
+            if (impl.outside.at(x % columns, y) != 0) return true;
+        }
     return false;
 }
 

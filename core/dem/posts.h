@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,10 +39,12 @@ class Posts {
     /// @throws Error (BadInput) as dem::load, and for heights that no ground of the Earth has
     static Posts load(std::span<const std::string> paths, const LoadOptions& options = {});
 
-    /// The posts of a grid that goes round the Earth, begun at another column and gone on with for
-    /// as many columns as wanted, also for more than a turn: column 0 is `first` of the others.
-    /// @param posts  Grid::columns_round() is a number; outlives this
+    /// The posts of a grid that goes round the Earth, starting at another column and repeated as
+    /// often as wanted: column 0 is `first` of the others.
+    /// @param posts  Grid::columns_per_turn() is a number; outlives this
     static Posts unrolled(const Posts& posts, int first, int columns);
+    /// A turn of them with a place in the middle; none of a grid that does not go round the Earth.
+    static std::optional<Posts> around(const Posts& posts, const geo::Geodetic& place);
 
     Posts(Posts&&) noexcept;
     Posts& operator=(Posts&&) noexcept;
@@ -49,7 +52,7 @@ class Posts {
 
     const Grid& grid() const;
     const Description& about() const;  ///< its statistics are those of all posts
-    bool in_memory() const;            ///< all in one piece
+    bool in_memory() const;            ///< as one array: not so of unrolled posts
     float lowest_m() const { return about().statistics.min_m; }
     float highest_m() const { return about().statistics.max_m; }
 

@@ -70,7 +70,7 @@ struct Differences {
     };
     Worst worst{}, within{};  // of all, and of posts that are not near the edge
     static constexpr int kEdge = 8;
-    int by_3_min = 0, by_3_min_within = 0;  // posts, likewise
+    int by_3_min = 0, by_3_min_within = 0;  // how many posts are off by more than 3 minutes
 
     Differences(const Array2d<float>& hours, const Array2d<float>& expected) {
         for (int r = 0; r < hours.height(); ++r)

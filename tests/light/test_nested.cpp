@@ -14,15 +14,22 @@
 namespace relevo::light {
 namespace {
 
-/// The hills, so wide that their shadows cross the border of a site in their middle.
-TEST(Nested, ASiteIsLitAsInAWideFineDem) {
+/// A site in the middle of hills whose shadows cross its border; they on a coarse grid, and all of
+/// them on one as fine as the site's.
+struct NestedHills {
     const geo::Geodetic middle = place_at(46.5, 9.3);
-    const Hills hills(middle);
-    const std::string utm = "EPSG:32632";
-    const dem::Heightfield site = sampled(turned("site", utm, middle, 30, 0, 121), hills),
-                           coarse = sampled(turned("around", utm, middle, 90, 20, 201), hills),
-                           fine = sampled(turned("all", utm, middle, 30, 0, 601), hills);
-    const dem::Posts posts(site), around(coarse), whole(fine);
+    const Hills hills{middle};
+    const dem::Heightfield site = on("site", 30, 0, 121), coarse = on("around", 90, 20, 201),
+                           fine = on("all", 30, 0, 601);
+
+    dem::Heightfield on(const std::string& name, double step_m, double turn_deg, int side) const {
+        return sampled(turned(name, "EPSG:32632", middle, step_m, turn_deg, side), hills);
+    }
+};
+
+TEST(Nested, ASiteIsLitAsInAWideFineDem) {
+    const NestedHills hills;
+    const dem::Posts posts(hills.site), around(hills.coarse), whole(hills.fine);
     const auto lit = [](const dem::Posts& of, const dem::Posts* wider, const SunOverDem& sun,
                         const Window& part) {
         SunPlan plan(of, {}, part, false, wider);
@@ -55,16 +62,12 @@ TEST(Nested, ASiteIsLitAsInAWideFineDem) {
 }
 
 TEST(Nested, AHorizonGoesOnOverTheWiderDem) {
-    const geo::Geodetic middle = place_at(46.5, 9.3);
-    const Hills hills(middle);
-    const std::string utm = "EPSG:32632";
-    const dem::Heightfield site = sampled(turned("site", utm, middle, 30, 0, 121), hills),
-                           coarse = sampled(turned("around", utm, middle, 90, 20, 201), hills),
-                           fine = sampled(turned("all", utm, middle, 30, 0, 601), hills);
-    const dem::Posts around(coarse);
+    const NestedHills hills;
+    const dem::Posts around(hills.coarse);
     HorizonOptions options;
     options.around = &around;
-    const TerrainHorizon nested(site, middle, options), whole(fine, middle), alone(site, middle);
+    const TerrainHorizon nested(hills.site, hills.middle, options), whole(hills.fine, hills.middle),
+        alone(hills.site, hills.middle);
     double worst = 0, worst_alone = 0;
     for (int azimuth_deg = 0; azimuth_deg < 360; ++azimuth_deg) {
         const HorizonPoint found = nested.at(radians(azimuth_deg)),
@@ -81,6 +84,95 @@ TEST(Nested, AHorizonGoesOnOverTheWiderDem) {
         degrees(worst), degrees(worst_alone));
     EXPECT_LE(degrees(worst), 0.03);
     EXPECT_GE(degrees(worst_alone), 5);
+}
+
+/// Ground of 200 m with a wall of 2000 m that runs north, on a grid in degrees.
+dem::Heightfield walled(double west_deg, double step_deg, int columns, int rows) {
+    return test::field_of(columns, rows,
+                          {west_deg, step_deg, 0, 46 + step_deg * (rows - 1) / 2, 0, -step_deg},
+                          "EPSG:4326", [&](int column, int) {
+                              const double lon = radians(west_deg + column * step_deg);
+                              return std::cos(lon) < std::cos(radians(179.95)) ? 2000.0 : 200.0;
+                          });
+}
+
+TEST(Nested, ASiteLiesAcrossTheFirstColumnOfADemRoundTheEarth) {
+    // The wall, at 180 degrees, is in the wider DEM alone: its first columns and its last.
+    const dem::Heightfield site = test::field_of(40, 40, {180.1, 0.001, 0, 46.02, 0, -0.001},
+                                                 "EPSG:4326", [](int, int) { return 200.0; }),
+                           wider = walled(-180, 1 / 30.0, 10800, 21);
+    const dem::Posts posts(site), around(wider);
+    HorizonOptions options;
+    options.around = &around;
+    const TerrainHorizon horizon(posts, place_at(46, -179.88), options);
+    EXPECT_GT(degrees(horizon.elevation_rad(radians(270))), 10);
+    EXPECT_LT(degrees(horizon.elevation_rad(radians(90))), 1);
+    const auto lit = [&](double azimuth_deg) {
+        SunPlan plan(posts, {}, {}, false, &around);
+        plan.add_suns(site.grid.center(), {{radians(azimuth_deg), radians(5), 0}});
+        return shadows(plan, plan.suns().front(), {}).lit_posts;
+    };
+    EXPECT_EQ(lit(270), 0);
+    EXPECT_EQ(lit(90), 1600);
+}
+
+TEST(Nested, VoidsOfASiteAreGroundOfTheWiderDem) {
+    // The west of the site has no heights; the wall there is in the wider DEM.
+    const auto field = [](double step_m, int side, bool has_west) {
+        return test::field_of(side, side,
+                              {500000 - step_m * (side - 1) / 2, step_m, 0,
+                               5200000 + step_m * (side - 1) / 2, 0, -step_m},
+                              "EPSG:32632", [=](int column, int) {
+                                  const double x_m = step_m * (column - (side - 1) / 2.0);
+                                  if (!has_west && x_m < -500) return std::nan("");
+                                  return std::abs(x_m + 1500) < 100 ? 800.0 : 100.0;
+                              });
+    };
+    const dem::Heightfield site = field(30, 121, false), wider = field(90, 121, true);
+    const dem::Posts posts(site), around(wider);
+    SunPlan plan(posts, {}, {}, false, &around);
+    plan.add_suns(site.grid.center(), {{radians(270), radians(10), 0}});
+    EXPECT_EQ(shadows(plan, plan.suns().front(), {}).lit.at(60, 60), 0);
+    HorizonOptions options;
+    options.around = &around;
+    const TerrainHorizon horizon(posts, site.grid.place(60, 60), options);
+    EXPECT_GT(degrees(horizon.elevation_rad(radians(270))), 20);
+}
+
+TEST(Nested, AHighSiteInAFlatDemSeesTheSunBelowTheLevel) {
+    const auto island = [](double step_m, int side) {
+        return test::field_of(side, side,
+                              {500000 - step_m * (side - 1) / 2, step_m, 0,
+                               5200000 + step_m * (side - 1) / 2, 0, -step_m},
+                              "EPSG:32632", [=](int column, int row) {
+                                  const double x_m = step_m * (column - (side - 1) / 2.0),
+                                               y_m = step_m * (row - (side - 1) / 2.0);
+                                  return std::max(0.0, 3000 - 0.5 * std::hypot(x_m, y_m));
+                              });
+    };
+    const dem::Heightfield site = island(60, 121),
+                           flat = test::field_of(201, 201, {400000, 1000, 0, 5300000, 0, -1000},
+                                                 "EPSG:32632", [](int, int) { return 0.0; });
+    const dem::Posts posts(site), around(flat);
+    SunPlan plan(posts, {}, {}, false, &around);
+    plan.add_suns(site.grid.center(), {{radians(180), radians(-1.2), 0}});
+    EXPECT_EQ(shadows(plan, plan.suns().front(), {}).lit.at(60, 60), 1);
+}
+
+TEST(Nested, ADemThatDoesNotContainTheSiteIsRefused) {
+    const dem::Heightfield site = test::field_of(40, 40, {500000, 30, 0, 5200000, 0, -30},
+                                                 "EPSG:32632", [](int, int) { return 100.0; }),
+                           beside = test::field_of(40, 40, {510000, 90, 0, 5200000, 0, -90},
+                                                   "EPSG:32632", [](int, int) { return 100.0; });
+    const dem::Posts posts(site), around(beside);
+    EXPECT_EQ(test::error_of([&] { SunPlan(posts, {}, {}, false, &around); }),
+              "exit 3: sun: the wider DEM does not contain all of the DEM in it");
+    HorizonOptions options;
+    options.around = &around;
+    EXPECT_NE(test::error_of([&] {
+                  TerrainHorizon(posts, site.grid.place(20, 20), options);
+              }).find("outside of the wider DEM"),
+              std::string::npos);
 }
 
 }  // namespace

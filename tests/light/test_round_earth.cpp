@@ -7,7 +7,9 @@
 
 #include "base/units.h"
 #include "light/fields.h"
+#include "light/point/ground_at.h"
 #include "light/point/horizon.h"
+#include "light/point/light_along.h"
 #include "light/raster/clearance.h"
 #include "light/raster/horizons.h"
 #include "light/raster/shadows.h"
@@ -79,6 +81,22 @@ int differ(const Array2d<float>& before, const Array2d<float>& after, const Arra
     return count;
 }
 constexpr int kFew = 2 * kBeside * kRows / 50;  // tiles end elsewhere: suns are 0.05 degrees off
+
+TEST(RoundTheEarth, ASummitIsFoundAcrossTheFirstColumn) {
+    const dem::Heightfield field = ridge_from(-180);
+    const geo::Geodetic summit =
+        summit_near(dem::Posts(field), geo::geodetic_deg(46, 179.9, 0), 20'000);
+    EXPECT_EQ(summit.height_m, 6500);
+}
+
+TEST(RoundTheEarth, AWalkGoesOnAcrossTheFirstColumn) {
+    const dem::Heightfield field = ridge_from(-180);
+    const sun::Instant noon = sun::parse_time("2026-03-20T00:00Z", {}).utc;
+    const Walk walk =
+        Walk::timed({geo::geodetic_deg(46, 179.95, 0), geo::geodetic_deg(46, -179.95, 0)},
+                    {noon, noon + 3600.0});
+    EXPECT_GT(light_along(dem::Posts(field), walk, {}).length_m, 7000);
+}
 
 TEST(RoundTheEarth, ShadowsGoOnAcrossTheFirstColumn) {
     const dem::Heightfield a = ridge_from(-180), b = ridge_from(0);

@@ -1,4 +1,4 @@
-// Suns that are looked at more or less often.
+// Hours of sun by shorter and longer steps of time.
 #include <algorithm>
 #include <cmath>
 #include <string>

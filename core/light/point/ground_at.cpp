@@ -117,7 +117,9 @@ Ground ground_at(const dem::Posts& posts, const geo::Geodetic& place) {
     return {post, height_m};
 }
 
-geo::Geodetic summit_near(const dem::Posts& posts, const geo::Geodetic& place, double radius_m) {
+geo::Geodetic summit_near(const dem::Posts& given, const geo::Geodetic& place, double radius_m) {
+    const std::optional<dem::Posts> unrolled = dem::Posts::around(given, place);
+    const dem::Posts& posts = unrolled ? *unrolled : given;
     const dem::Grid& grid = posts.grid();
     const auto [post, ground_m] = ground_at(posts, place);
     const glm::dvec2 spacing_m = grid.post_spacing_m();

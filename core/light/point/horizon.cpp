@@ -100,11 +100,8 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
             fmt::format("horizon: refraction {:.10g}: impossible, expected -1 to 0.9 of the "
                         "Earth's curvature; 0.13 is the mean",
                         options.refraction));
-    if (const std::optional<int> round = posts.grid().columns_round()) {
-        first_column_ = static_cast<int>(std::lround(posts.grid().post(place).x)) - *round / 2;
-        unrolled_.emplace(dem::Posts::unrolled(posts, first_column_, *round + 1));
-        posts_ = &*unrolled_;
-    }
+    unrolled_ = dem::Posts::around(posts, place);
+    if (unrolled_) posts_ = &*unrolled_;
     const Ground ground = ground_at(*posts_, place);
     post_ = ground.post;
     const dem::Grid& grid = posts_->grid();
@@ -120,10 +117,14 @@ TerrainHorizon::TerrainHorizon(const dem::Posts& posts, const geo::Geodetic& pla
                                            longest_m(*posts_, place_, eye_m_, options),
                                            options.few_directions);
     if (options.around && fan_) {
-        const dem::Grid& wider = options.around->grid();
-        fan_around_ = std::make_unique<const Fan>(
-            wider, place_, wider.post(place_), longest_m(*options.around, place_, eye_m_, options),
-            options.few_directions);
+        unrolled_around_ = dem::Posts::around(*options.around, place_);
+        around_ = unrolled_around_ ? &*unrolled_around_ : options.around;
+        const dem::Grid& wider = around_->grid();
+        if (!is_within(wider, wider.post(place_)))
+            bad_input(fmt::format("horizon: {}: outside of the wider DEM", place_text(place_)));
+        fan_around_ = std::make_unique<const Fan>(wider, place_, wider.post(place_),
+                                                  longest_m(*around_, place_, eye_m_, options),
+                                                  options.few_directions);
     }
     if (!fan_ && grid.crs().is_geographic())
         bad_input(
@@ -168,44 +169,48 @@ HighestCrossing TerrainHorizon::look(double azimuth_rad, double until_m,
     else
         line = line_on_map(posts_->grid(), post_, azimuth_rad + true_north_on_map_rad_);
     const HighestCrossing found = highest_crossing(*posts_, towards(azimuth_rad), line, until_m);
-    if (!fan_around_ || found.reach_m >= until_m) return found;
-    return look_around(azimuth_rad, until_m, found, line);
+    if (!around_) return found;
+    const bool has_holes = posts_->about().statistics.holes > 0;
+    const double end_m =
+        has_holes ? std::min(found.reach_m, outside_from_m(*posts_, line)) : found.reach_m;
+    if (end_m >= until_m) return found;
+    fan_around_->trace(azimuth_rad, line);
+    return look_around(azimuth_rad, end_m, until_m, found, line);
 }
 
 /// Goes on over the wider DEM from where the site ends.
-/// @param line  becomes the line of sight over the wider grid, from there on
-HighestCrossing TerrainHorizon::look_around(double azimuth_rad, double until_m,
+/// @param line  over the wider grid; becomes what of it is beyond the site
+HighestCrossing TerrainHorizon::look_around(double azimuth_rad, double from_m, double until_m,
                                             const HighestCrossing& on_site,
                                             std::vector<TracePoint>& line) const {
-    fan_around_->trace(azimuth_rad, line);
     const auto next = std::find_if(line.begin(), line.end(), [&](const TracePoint& point) {
-        return point.distance_m > on_site.reach_m;
+        return point.distance_m > from_m;
     });
     if (next == line.end() || next == line.begin()) return on_site;
     const TracePoint &from = *(next - 1), &to = *next;
-    const double t = (on_site.reach_m - from.distance_m) / (to.distance_m - from.distance_m);
-    *(next - 1) = {from.post + t * (to.post - from.post), on_site.reach_m};
+    const double t = (from_m - from.distance_m) / (to.distance_m - from.distance_m);
+    *(next - 1) = {from.post + t * (to.post - from.post), from_m};
     line.erase(line.begin(), next - 1);
-    HighestCrossing found = highest_crossing(*options_.around, towards(azimuth_rad), line, until_m);
-    const double reach_m = std::max(on_site.reach_m, found.reach_m);
-    if (found.tangent > on_site.tangent) {
-        const geo::Geodetic place = options_.around->grid().place(found.post.x, found.post.y);
-        found.post = posts_->grid().post(place);
-    } else {
-        found = on_site;
+    const HighestCrossing beyond = highest_crossing(*around_, towards(azimuth_rad), line, until_m);
+    HighestCrossing found = on_site;
+    if (beyond.tangent > on_site.tangent) {
+        found = beyond;
+        found.post =
+            posts_->grid().post(around_->grid().place(beyond.post.x, beyond.post.y), post_);
     }
-    found.reach_m = reach_m;
-    found.first_void_m = on_site.first_void_m;
-    found.last_void_m = on_site.last_void_m;
+    found.reach_m = std::max(on_site.reach_m, beyond.reach_m);
+    found.first_void_m = std::min(on_site.first_void_m, beyond.first_void_m);
+    found.last_void_m = std::max(on_site.last_void_m, beyond.last_void_m);
     return found;
 }
 
 /// A column and row of the posts as they are given.
 glm::dvec2 TerrainHorizon::given(glm::dvec2 post) const {
     if (!unrolled_) return post;
-    const double round = *given_.grid().columns_round();
-    post.x += first_column_;
-    post.x -= round * std::floor(post.x / round);
+    const dem::Affine &here = unrolled_->grid().affine(), &there = given_.grid().affine();
+    const double turn = *given_.grid().columns_per_turn();
+    post.x += std::round((here.x0 - there.x0) / here.x_column);
+    post.x -= turn * std::floor(post.x / turn);
     return post;
 }
 
@@ -245,7 +250,7 @@ double TerrainHorizon::ground_beyond_rad(double azimuth_rad, const HighestCrossi
 double TerrainHorizon::hole_rad(double azimuth_rad, const HighestCrossing& highest) const {
     if (!(highest.first_void_m < kInfinity)) return -kPi / 2;
     const ApparentElevation elevation = towards(azimuth_rad);
-    const double high_m = posts_->highest_m();
+    const double high_m = std::max(posts_->highest_m(), farthest_posts().highest_m());
     const double void_m =
         std::min(elevation.farthest_rise_m(high_m, highest.first_void_m), highest.last_void_m);
     return std::atan(elevation.tangent(high_m, void_m));

@@ -154,9 +154,10 @@ class TerrainHorizon {
     TerrainHorizon(std::unique_ptr<const dem::Posts> owned, const geo::Geodetic& place,
                    const HorizonOptions& options);
 
-    HighestCrossing look_around(double azimuth_rad, double until_m, const HighestCrossing& on_site,
+    HighestCrossing look_around(double azimuth_rad, double from_m, double until_m,
+                                const HighestCrossing& on_site,
                                 std::vector<TracePoint>& line) const;
-    const dem::Posts& farthest_posts() const { return fan_around_ ? *options_.around : *posts_; }
+    const dem::Posts& farthest_posts() const { return around_ ? *around_ : *posts_; }
     glm::dvec2 given(glm::dvec2 post) const;
 
     std::unique_ptr<const dem::Posts> owned_;  // those of a heightfield
@@ -164,10 +165,11 @@ class TerrainHorizon {
     /// A DEM that goes round the Earth, with the place in its middle: lines of sight end before
     /// they are half way round. Columns are of this one, but for those that callers get.
     std::optional<dem::Posts> unrolled_;
-    int first_column_ = 0;  // of the given ones, that its first one is
     const dem::Posts* posts_;
-    std::unique_ptr<const Fan> fan_around_;  // of HorizonOptions::around
-    std::unique_ptr<const Fan> fan_;         // none on a map
+    std::optional<dem::Posts> unrolled_around_;  // likewise of HorizonOptions::around
+    const dem::Posts* around_ = nullptr;
+    std::unique_ptr<const Fan> fan_around_;
+    std::unique_ptr<const Fan> fan_;  // none on a map
     HorizonOptions options_;
     geo::Geodetic place_;
     glm::dvec2 post_{0};

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -301,7 +302,9 @@ std::string_view name_of(WalkLight light) {
     return {};
 }
 
-LightAlong light_along(const dem::Posts& posts, const Walk& walk, const WalkOptions& options) {
+LightAlong light_along(const dem::Posts& given, const Walk& walk, const WalkOptions& options) {
+    const std::optional<dem::Posts> unrolled = dem::Posts::around(given, walk.places().front());
+    const dem::Posts& posts = unrolled ? *unrolled : given;
     const glm::dvec2 post_m = posts.grid().post_spacing_m();
     LightAlong result;
     result.spacing_m = std::min(post_m.x, post_m.y);

@@ -93,21 +93,27 @@ class Division {
             return sun_.ray(on_diagonal(window, way, share), window, way.along_columns);
         };
         std::vector<SunTile> tiles;
-        double from = 0, width = std::clamp(0.9 * tolerance_rad_ / error_of_all_rad, 0.02, 0.5);
+        const double least = double(kLeastWidth) / posts;
+        double from = 0;
+        double width =
+            std::max(least, std::clamp(0.9 * tolerance_rad_ / error_of_all_rad, 0.02, 0.5));
         std::optional<Ray> begin, end;
         constexpr int kMostTries = 400;
         for (int tries = 0; tries < kMostTries; ++tries) {
-            const int left = static_cast<int>(std::ceil((1 - from) / width - 1e-9));
+            const int most = static_cast<int>((1 - from) / least + 1e-9),
+                      left = std::min(static_cast<int>(std::ceil((1 - from) / width - 1e-9)),
+                                      std::max(1, most));
             const bool is_last = left <= 1;
             const double to = is_last ? 1 : from + (1 - from) / left;
+            if (to - from < least - 1e-9) return false;
             end.reset();
             if (!is_last && !(end = ray_at(to))) return false;
             const std::optional<SunTile> tile = sun_.tile({window, begin, end}, way.along_columns);
             if (!tile) return false;
             const bool has_posts = !tile->posts.window.is_empty();
             const double error_rad = has_posts ? sun_.error_rad(*tile) : 0;
-            if ((to - from) * posts < kLeastWidth) return false;
             if (error_rad > tolerance_rad_) {
+                if (left >= most) return false;  // no narrower
                 width = (to - from) * std::min(0.9, 0.97 * tolerance_rad_ / error_rad);
                 continue;
             }

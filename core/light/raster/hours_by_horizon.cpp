@@ -87,13 +87,16 @@ HorizonHours::Block HorizonHours::block_of(const Window& window, const Window& w
 
 std::shared_ptr<const HorizonHours::Tables> HorizonHours::tables_of(const Block& block) const {
     const std::lock_guard lock(mutex_);
-    if (!kept_ || kept_for_.lat_rad != block.middle.lat_rad ||
-        kept_for_.lon_rad != block.middle.lon_rad) {
-        kept_ = nullptr;
-        kept_ = std::make_shared<const Tables>(tables_over(block.middle));
-        kept_for_ = block.middle;
+    const auto found = std::find_if(kept_.begin(), kept_.end(),
+                                    [&](const auto& kept) { return kept.first == block.window; });
+    if (found != kept_.end()) {
+        std::rotate(kept_.begin(), found, found + 1);
+    } else {
+        if (kept_.size() == kMostKept) kept_.pop_back();
+        kept_.insert(kept_.begin(),
+                     {block.window, std::make_shared<const Tables>(tables_over(block.middle))});
     }
-    return kept_;
+    return kept_.front().second;
 }
 
 HorizonHours::Sample HorizonHours::sample(double from_s, double until_s,

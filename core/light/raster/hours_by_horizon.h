@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "light/raster/direction_table.h"
@@ -46,7 +47,8 @@ class HorizonHours {
         std::vector<Direction> directions{};
     };
     Block block_of(const Window& window, const Window& wanted) const;
-    /// Those of the block that was asked for last are kept: one part after the other lies in it.
+    /// Those of the blocks that were asked for last are kept: as many as meet in a corner, so that
+    /// a part of a raster finds those that the part before it had.
     std::shared_ptr<const Tables> tables_of(const Block& block) const;
     Tables tables_over(const geo::Geodetic& middle) const;
     struct Sample {
@@ -70,8 +72,8 @@ class HorizonHours {
     sun::PositionTable table_;
     std::vector<Block> blocks_;
     mutable std::mutex mutex_;
-    mutable geo::Geodetic kept_for_;
-    mutable std::shared_ptr<const Tables> kept_;
+    static constexpr std::size_t kMostKept = 4;
+    mutable std::vector<std::pair<Window, std::shared_ptr<const Tables>>> kept_;  // last one first
 };
 
 }  // namespace relevo::light

@@ -32,7 +32,8 @@ double air_left(const SunTerrain& terrain, double height_m) {
     return (low - pressure(height_m)) / (low - high);
 }
 
-Nodes::Nodes(const dem::Grid& grid) {
+Nodes::Nodes(const SunTerrain& terrain) : first_column_(terrain.window().column) {
+    const dem::Grid& grid = terrain.given().grid();
     const glm::dvec2 sides_m = grid.sides_m();
     columns_ = 2 + static_cast<int>(sides_m.x / kNode_m);
     rows_ = 2 + static_cast<int>(sides_m.y / kNode_m);
@@ -41,7 +42,8 @@ Nodes::Nodes(const dem::Grid& grid) {
 }
 
 Nodes::Around Nodes::around(double column, double row) const {
-    const double x = column / column_step_, y = row / row_step_;  // beyond the last it goes on
+    const double x = (column - first_column_) / column_step_,
+                 y = row / row_step_;  // beyond the last it goes on
     const int c = std::clamp(static_cast<int>(x), 0, columns_ - 2),
               r = std::clamp(static_cast<int>(y), 0, rows_ - 2);
     const double u = x - c, v = y - r;
@@ -53,7 +55,7 @@ Nodes::Around Nodes::around(double column, double row) const {
 
 SunBeams::SunBeams(const SunTerrain& terrain, const sun::PositionTable& table, double before_s,
                    double at_s, double linke)
-    : nodes_(terrain.grid()),
+    : nodes_(terrain),
       lowest_m_(terrain.lowest_m()),
       step_m_((highest_m(terrain) - terrain.lowest_m()) / (kHeights - 1)),
       hours_((at_s - before_s) / kHour_s) {
@@ -137,7 +139,7 @@ float SunBeams::gain_of(const Beam& beam, float sine, float height_m, float befo
 }
 
 OpenSky::OpenSky(const SunTerrain& terrain, sun::Instant begin, double length_s, double linke)
-    : nodes_(terrain.grid()), energies_(static_cast<std::size_t>(nodes_.count())) {
+    : nodes_(terrain), energies_(static_cast<std::size_t>(nodes_.count())) {
     const sun::PositionTable table(begin, begin + length_s);
     const double step_s = length_s > 40 * kDay_s ? 600 : 60;
     const auto steps = static_cast<int>(std::ceil(length_s / step_s - 1e-9));

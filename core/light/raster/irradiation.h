@@ -31,11 +31,11 @@ struct InclinedGround {
 /// Places all over a DEM, for what changes slowly over the Earth.
 class Nodes {
   public:
-    explicit Nodes(const dem::Grid& grid);
+    explicit Nodes(const SunTerrain& terrain);
 
     int count() const { return columns_ * rows_; }
     glm::dvec2 post(int node) const {
-        return {node % columns_ * column_step_, node / columns_ * row_step_};
+        return {first_column_ + node % columns_ * column_step_, node / columns_ * row_step_};
     }
     /// The nodes around a post, and their weights.
     struct Around {
@@ -45,6 +45,7 @@ class Nodes {
     Around around(double column, double row) const;
 
   private:
+    int first_column_;  // of the DEM as it is
     double column_step_, row_step_;
     int columns_, rows_;
 };

@@ -129,6 +129,7 @@ class OuterShadow {
                 double offset_rad)
         : grid_(around.field.terrain().grid()),
           site_(site),
+          middle_(grid_.post(site.center())),
           window_(window_over(grid_, site, window)),
           shadow_m_(window_.columns, window_.rows, kNone_m) {
         // Where no ground shades, floors of the two are not the same.
@@ -147,7 +148,7 @@ class OuterShadow {
         for (int from = 0; from < run.count; from += kPiece) {
             const int count = std::min(kPiece, run.count - from);
             const auto other = [&](int i) {
-                return grid_.post(site_.place(run.column + i, run.row)) -
+                return grid_.post(site_.place(run.column + i, run.row), middle_) -
                        glm::dvec2(window_.column, window_.row);
             };
             const glm::dvec2 first = other(from), last = other(from + count);
@@ -173,7 +174,8 @@ class OuterShadow {
 
     const dem::Grid& grid_;
     const dem::Grid& site_;
-    Window window_;  // of the wider DEM
+    glm::dvec2 middle_;  // of the site, on the wider DEM
+    Window window_;      // of the wider DEM
     Array2d<float> shadow_m_;
 };
 

@@ -35,10 +35,10 @@ SunPlan::SunPlan(const dem::Posts& posts, const LightPath& path, const Window& w
                  bool with_discs, const dem::Posts* around)
     : around_(around ? std::make_unique<const SunTerrain>(
                            *around, path, with_discs,
-                           SunTerrain::Nesting{.around = nullptr, .site = &posts.grid()})
+                           SunTerrain::Nesting{.around = nullptr, .site = &posts})
                      : nullptr),
       terrain_(std::make_unique<const SunTerrain>(
-          posts, path, with_discs, SunTerrain::Nesting{.around = around_.get(), .site = nullptr})),
+          posts, path, with_discs, SunTerrain::Nesting{.around = around, .site = nullptr})),
       window_(terrain_->window_of(window)) {}
 
 void SunPlan::divide_all(std::size_t first, const Window& window, double tolerance_rad) {
@@ -56,7 +56,7 @@ std::shared_ptr<const PlannedSun> SunPlan::sun_around(const PlannedSun& sun,
                                                       double tolerance_rad) const {
     const Window under = window_over(around_->grid(), terrain_->grid(), window_);
     PlannedSun outer{sun.at_s, sun.field.over(*around_), sun.semidiameter_rad};
-    outer.tiles = divide(outer.field, around_->window(), under, tolerance_rad);
+    outer.tiles = divide(outer.field, under, under, tolerance_rad);
     return std::make_shared<const PlannedSun>(std::move(outer));
 }
 

@@ -16,7 +16,7 @@ struct PlannedSun {
     double at_s = 0;  ///< when, from the beginning
     SunField field;
     double semidiameter_rad = 0;
-    std::vector<SunTile> tiles{};  ///< none for a sun that no post sees
+    std::vector<SunTile> tiles{};  ///< of night, where no post sees the sun
     /// The same sun over the wider DEM around, where there is one.
     std::shared_ptr<const PlannedSun> around{};
 };

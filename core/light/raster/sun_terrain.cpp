@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "geo/ellipsoid.h"
+#include "light/point/edge_ground.h"
 
 namespace relevo::light {
 namespace {
@@ -39,23 +40,35 @@ Sweep sweep_over(const dem::Posts& posts) {
     return Sweep(all.first_m, columns, rows, all.stride);
 }
 
-/// Of the ground around a site. Posts on it are holes, but for those next to its edge, so that
-/// ground between a post on it and one beside it is not lost.
-Sweep sweep_around(const dem::Grid& site, const dem::Posts& posts) {
-    const dem::Grid& grid = posts.grid();
-    const Window box = window_over(grid, site, {0, 0, site.columns(), site.rows()});
-    auto hidden = std::make_shared<Array2d<std::uint8_t>>(box.columns, box.rows, 0);
-    const auto is_on_site = [&](int column, int row) {
-        const glm::dvec2 post = site.post(grid.place(column, row));
-        return post.x >= 0 && post.y >= 0 && post.x <= site.columns() - 1 &&
-               post.y <= site.rows() - 1;
-    };
+/// The posts of a wider DEM whose ground is left to a site: those on it, where it has heights, but
+/// for the ones next to its edge, so that ground between a post on it and one beside it is kept.
+Array2d<std::uint8_t> hidden_posts(const dem::Posts& site, const dem::Grid& wider,
+                                   const Window& box) {
+    Array2d<std::uint8_t> on_site(box.columns, box.rows, 0), hidden = on_site;
+    const dem::Grid& grid = site.grid();
     for (int y = 0; y < box.rows; ++y)
         for (int x = 0; x < box.columns; ++x) {
-            const int column = box.column + x, row = box.row + y;
-            hidden->at(x, y) = is_on_site(column - 1, row) && is_on_site(column + 1, row) &&
-                               is_on_site(column, row - 1) && is_on_site(column, row + 1);
+            const glm::dvec2 post = grid.post(wider.place(box.column + x, box.row + y));
+            if (!is_on(grid, post)) continue;
+            const int column = static_cast<int>(std::lround(post.x)),
+                      row = static_cast<int>(std::lround(post.y));
+            on_site.at(x, y) =
+                !std::isnan(site.thinned_m(column, row)) || !site.is_outside(column, row);
         }
+    for (int y = 1; y < box.rows - 1; ++y)
+        for (int x = 1; x < box.columns - 1; ++x)
+            hidden.at(x, y) = on_site.at(x - 1, y) != 0 && on_site.at(x + 1, y) != 0 &&
+                              on_site.at(x, y - 1) != 0 && on_site.at(x, y + 1) != 0;
+    return hidden;
+}
+
+/// Of the ground around a site: its own posts are holes here.
+Sweep sweep_around(const dem::Posts& site, const dem::Posts& posts) {
+    const dem::Grid& grid = posts.grid();
+    const Window box =
+        window_over(grid, site.grid(), {0, 0, site.grid().columns(), site.grid().rows()});
+    const auto hidden =
+        std::make_shared<const Array2d<std::uint8_t>>(hidden_posts(site, grid, box));
     const auto read = [&posts, box, hidden](const Window& window, std::vector<float>& buffer) {
         std::vector<float> unused;
         const dem::Posts::View view = posts.view(window, unused);
@@ -106,18 +119,21 @@ double checked(double refraction) {
 
 Window window_over(const dem::Grid& grid, const dem::Grid& of, const Window& window) {
     constexpr int kSteps = 16;
-    glm::dvec2 low(1e9), high(-1e9);
+    const glm::dvec2 middle = grid.post(of.center());
+    glm::dvec2 low = middle, high = middle;
     for (int i = 0; i <= kSteps; ++i)
         for (int k = 0; k <= kSteps; ++k) {
             const glm::dvec2 post =
                 grid.post(of.place(window.column + double(window.columns - 1) * i / kSteps,
-                                   window.row + double(window.rows - 1) * k / kSteps));
-            if (!std::isfinite(post.x + post.y)) continue;
+                                   window.row + double(window.rows - 1) * k / kSteps),
+                          middle);
+            if (i == 0 && k == 0) low = high = post;
             low = glm::min(low, post), high = glm::max(high, post);
         }
+    if (!is_on(grid, low) || !is_on(grid, high))
+        bad_input("sun: the wider DEM does not contain all of the DEM in it");
     // Sides of a window are bent between the samples.
-    const glm::ivec2 first = glm::ivec2(glm::floor(low)) - 2,
-                     last = glm::ivec2(glm::ceil(high)) + 2;
+    const glm::ivec2 first = glm::ivec2(low) - 2, last = glm::ivec2(high) + 3;
     return common({first.x, first.y, last.x - first.x + 1, last.y - first.y + 1},
                   {0, 0, grid.columns(), grid.rows()});
 }
@@ -125,19 +141,24 @@ Window window_over(const dem::Grid& grid, const dem::Grid& of, const Window& win
 SunTerrain::SunTerrain(const dem::Posts& posts, const LightPath& path, bool with_discs,
                        const Nesting& nesting)
     : given_(posts),
-      before_(posts.grid().columns_round().value_or(0) / 2),
+      before_(posts.grid().columns_per_turn().value_or(0) / 2),
       unrolled_(unrolled(posts, before_)),
       posts_(unrolled_ ? *unrolled_ : posts),
-      around_(nesting.around),
+      is_nested_(nesting.around != nullptr),
       sweep_(nesting.site ? sweep_around(*nesting.site, posts_) : sweep_over(posts_)),
       spacing_m_(posts.grid().post_spacing_m()),
       marks_(marks_of(posts.grid())),
       frame_(posts.grid().center()),
       curvature_((1 - checked(path.refraction)) / geo::kEquatorialRadius_m),
-      relief_m_(double{posts.highest_m()} - posts.lowest_m()),
-      floor_m_(floor_under(posts.lowest_m(), relief_m_, curvature_, with_discs)) {
+      lowest_m_(posts.lowest_m()),
+      relief_m_(double{posts.highest_m()} - posts.lowest_m()) {
+    if (const dem::Posts* const other = nesting.other()) {
+        lowest_m_ = std::min(posts.lowest_m(), other->lowest_m());
+        relief_m_ = std::max(posts.highest_m(), other->highest_m()) - lowest_m_;
+    }
+    floor_m_ = floor_under(static_cast<float>(lowest_m_), relief_m_, curvature_, with_discs);
     if (!path.air) return;
-    for (const float height_m : {posts.lowest_m(), posts.highest_m()}) {
+    for (const double height_m : {lowest_m_, lowest_m_ + relief_m_}) {
         geo::Geodetic place = grid().center();
         place.height_m = height_m;
         airs_.push_back(path.air(place));
@@ -150,8 +171,7 @@ double SunTerrain::horizon_reach_m() const {
 }
 
 double SunTerrain::lowest_sun_rad() const {
-    const double lowest_rad = -std::sqrt(2 * curvature_ * relief_m_) - radians(0.7);
-    return around_ ? std::min(lowest_rad, around_->lowest_sun_rad()) : lowest_rad;
+    return -std::sqrt(2 * curvature_ * relief_m_) - radians(0.7);
 }
 
 double SunTerrain::apparent_rad(double elevation_rad, Air air) const {

@@ -28,15 +28,18 @@ struct LightPath {
 
 /// What of a DEM is the same for all suns over it.
 ///
-/// A DEM that goes round the Earth is gone on with for half a turn on either side, so that ground
+/// A DEM that goes round the Earth is repeated for half a turn on either side, so that ground
 /// shades across the meridian at which its columns begin: posts and windows here are those of this
 /// larger grid.
 class SunTerrain {
   public:
-    /// How a DEM lies in another one or around it.
+    /// Another DEM, in which this one lies or around which it lies: both have one relief and one
+    /// air.
     struct Nesting {
-        const SunTerrain* around = nullptr;  ///< a wider DEM; outlives this
-        const dem::Grid* site = nullptr;     ///< a finer one, whose ground is not looked at here
+        const dem::Posts* around = nullptr;  ///< a wider one, whose ground and Earth shade, too
+        const dem::Posts* site = nullptr;    ///< a finer one, whose ground is left to it
+
+        const dem::Posts* other() const { return around ? around : site; }
     };
     /// @param posts       outlive this
     /// @param with_discs  parts of the sun's disc are asked for, and not its centre alone
@@ -51,6 +54,7 @@ class SunTerrain {
     const dem::Grid& grid() const { return posts_.grid(); }
     /// Where the DEM as it is lies on the grid.
     Window window() const { return {before_, 0, given_.grid().columns(), given_.grid().rows()}; }
+    /// That with what is repeated on either side.
     Window whole_grid() const { return {0, 0, grid().columns(), grid().rows()}; }
     /// A window of the DEM as it is; where it has no posts, all of it.
     Window window_of(const Window& given) const {
@@ -58,7 +62,7 @@ class SunTerrain {
         return {given.column + before_, given.row, given.columns, given.rows};
     }
     /// Whether a wider DEM has the ground around this one.
-    bool is_nested() const { return around_ != nullptr; }
+    bool is_nested() const { return is_nested_; }
     const Sweep& sweep() const { return sweep_; }
     const geo::LocalFrame& frame() const { return frame_; }
     const glm::dvec2& spacing_m() const { return spacing_m_; }  ///< the grid's post_spacing_m()
@@ -66,7 +70,7 @@ class SunTerrain {
     /// Where its corners, the middles of its sides and its own middle are.
     const std::array<geo::Geodetic, 9>& marks() const { return marks_; }
     double curvature() const { return curvature_; }  ///< of lines of sight over the ground [1/m]
-    double lowest_m() const { return posts_.lowest_m(); }
+    double lowest_m() const { return lowest_m_; }
     double relief_m() const { return relief_m_; }
 
     /// Shadows need be no lower. That is so far under the lowest post that a clearance which it
@@ -93,17 +97,18 @@ class SunTerrain {
     int before_ = 0;                      // columns of the grid before it
     std::optional<dem::Posts> unrolled_;  // of a DEM round the Earth
     const dem::Posts& posts_;
-    const SunTerrain* around_;
+    bool is_nested_;
     Sweep sweep_;
     glm::dvec2 spacing_m_;
     std::array<geo::Geodetic, 9> marks_;
     geo::LocalFrame frame_;
-    double curvature_, relief_m_;
+    double curvature_, lowest_m_, relief_m_;
     float floor_m_;
     std::vector<sun::Refraction> airs_;  // over the lowest post and the highest one, or none
 };
 
-/// The posts of a grid under and around a window of another one.
+/// The posts of a grid under and around a window of another one, whose middle lies on it.
+/// @throws Error (BadInput) where the window is not within the grid
 Window window_over(const dem::Grid& grid, const dem::Grid& of, const Window& window);
 
 /// The heights of a window, and of the posts beside it.

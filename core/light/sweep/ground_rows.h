@@ -52,6 +52,11 @@ class GroundRows {
         return from(line) + lines_.origin(row) + lines_.row(row).column;
     }
 
+    /// The ground of a post; kNothing_m where it is not kept.
+    float at(int row, int column) {
+        const int i = column - first_column(row);
+        return i >= 0 && i < width_ ? begin_of(row)[i] : kNothing_m;
+    }
     float* begin_of(int row) {
         return height_m_.data() + static_cast<std::ptrdiff_t>(row % kept(lines_)) * pitch_;
     }

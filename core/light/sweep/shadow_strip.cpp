@@ -13,7 +13,7 @@ ShadowStrip::ShadowStrip(const SweepLines& lines, int line, int count, float low
       zero_m_(std::isfinite(lowest_m) ? kZero_m * std::floor(lowest_m / kZero_m) : 0),
       floor_m_(floor_m),
       ground_(lines, line, count + 1),
-      shadow_m_(static_cast<std::size_t>(in_vectors(count))) {
+      shadow_m_(static_cast<std::size_t>(in_vectors(count) + kVectorFloats)) {
     for (std::vector<float>& set : height_m_)
         set.assign(static_cast<std::size_t>(in_vectors(count + 1) + kVectorFloats), kNothing_m);
 }
@@ -53,8 +53,30 @@ void ShadowStrip::raise(int row) {
     }
 }
 
+/// Lines up to a quarter of a post beside the grid meet the ground of its edge. A post at the edge
+/// stands between one line within and one beside, and is shaded by the mean of both: with ground
+/// under the inner one alone it would be lit until its own ray is a quarter of a post within.
+void ShadowStrip::raise_beside(int row) {
+    constexpr double kBeside = 0.25 + SweepLines::kOnPost;
+    const double first = lines_.row(row).shift;
+    for (int set = 0; set < kNearness.line_sets; ++set) {
+        const double shift = first + double(set) / kNearness.line_sets;
+        const auto raise_line = [&](int line, int column) {
+            if (line < line_ || line > line_ + count_) return;
+            float& height_m =
+                height_m_[static_cast<std::size_t>(set)][static_cast<std::size_t>(line - line_)];
+            height_m = std::max(height_m, ground_.at(row, column));
+        };
+        const int before = static_cast<int>(std::ceil(-shift)) - 1,
+                  behind = static_cast<int>(std::floor(columns_ - 1 - shift)) + 1;
+        if (shift + before >= -kBeside) raise_line(before, 0);
+        if (shift + behind <= columns_ - 1 + kBeside) raise_line(behind, columns_ - 1);
+    }
+}
+
 void ShadowStrip::come_to(int row, const Sheet& sheet) {
     rebase(row);
+    columns_ = sheet.columns;
     ground_.take(sheet, row,
                  {.from_m = nullptr,
                   .to_m = nullptr,
@@ -64,13 +86,18 @@ void ShadowStrip::come_to(int row, const Sheet& sheet) {
                   .line = 0,
                   .between = 0,
                   .base_m = -zero_m_});
-    if (const int far = row - kNearness.near_rows - 1; far >= lines_.begin()) raise(far);
+    if (const int far = row - kNearness.near_rows - 1; far >= lines_.begin()) {
+        raise(far);
+        raise_beside(far);
+    }
 }
 
-const float* ShadowStrip::look(int row, int first, int end) {
+/// Finds the shadows at the posts of lines [first, end).
+/// @param far  with those of ground beyond the nearest rows
+void ShadowStrip::find(int row, int first, int end, bool far, float* shadow_m) {
     const SweepLines::Row& at = lines_.row(row);
     const std::span<const Crossing> crossings = lines_.of_posts(row);
-    ShadowLook look{.shadow_m = shadow_m_.data(),
+    ShadowLook look{.shadow_m = shadow_m,
                     .count = end - first,
                     .before_m = nullptr,
                     .behind_m = nullptr,
@@ -84,7 +111,7 @@ const float* ShadowStrip::look(int row, int first, int end) {
                     .ground_m = ground_.from(first),
                     .crossings = crossings.data(),
                     .crossing_count = static_cast<int>(crossings.size())};
-    if (row - kNearness.near_rows - 1 >= lines_.begin()) {
+    if (far) {
         const float on = at.between * kNearness.line_sets;
         const auto set = static_cast<std::size_t>(on);
         look.part = on - static_cast<float>(set);
@@ -96,7 +123,27 @@ const float* ShadowStrip::look(int row, int first, int end) {
                                 : height_m_[0].data() + (first - line_) + 1;
     }
     look_for_shadows(look);
-    return shadow_m_.data();
+}
+
+const float* ShadowStrip::look(int row, int first, int end) {
+    const int far = row - kNearness.near_rows - 1;
+    float* const shadow_m = shadow_m_.data();
+    if (far < lines_.begin()) {
+        find(row, first, end, false, shadow_m);
+        return shadow_m;
+    }
+    // Where the own ray of a post lies beside the grid at that row, there is no far ground.
+    const SweepLines::Row& at = lines_.row(row);
+    const double moved = at.shift - lines_.row(far).shift - at.column;
+    const int begin =
+                  std::clamp(static_cast<int>(std::ceil(moved - SweepLines::kOnPost)), first, end),
+              last = std::clamp(
+                  static_cast<int>(std::floor(columns_ - 1 + moved + SweepLines::kOnPost)) + 1,
+                  begin, end);
+    find(row, first, begin, false, shadow_m);
+    find(row, begin, last, true, shadow_m + (begin - first));
+    find(row, last, end, false, shadow_m + (last - first));
+    return shadow_m;
 }
 
 }  // namespace relevo::light

@@ -39,9 +39,12 @@ class ShadowStrip {
     float fallen_m(int row) const;
     void rebase(int row);
     void raise(int row);
+    void raise_beside(int row);
+    void find(int row, int first, int end, bool far, float* shadow_m);
 
     const SweepLines& lines_;
     int line_, count_;
+    int columns_ = 0;  // of the sheet
     float zero_m_, floor_m_;
     double base_m_ = 0;
     GroundRows ground_;
