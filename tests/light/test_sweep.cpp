@@ -210,6 +210,29 @@ void expect_near(const Heights& a, const Heights& b, double tolerance_m, double 
     EXPECT_LE(worst_m, tolerance_m);
 }
 
+TEST(Sweep, AThinWallBetweenNearRowsAndFarOnesShades) {
+    // Two posts, between which the rays of the posts four and five rows behind them pass.
+    constexpr int kAt = 20;
+    for (const bool along_columns : {false, true})
+        for (const int side : {-1, 1})
+            for (const int aside : {-4, -3, -2, -1, 1, 2, 3, 4}) {
+                const Heights heights = heights_of(41, 41, [&](int c, int r) {
+                    if (along_columns) std::swap(c, r);
+                    return c == kAt && (r == kAt || r == kAt + side) ? 100 : 0;
+                });
+                const glm::dvec2 way(-aside, -4.5 * side);  // from the post to the sun
+                glm::ivec2 post(kAt + aside, kAt + 5 * side);
+                MapSun map{degrees(std::atan2(way.x, -way.y)), 10, {30, 30}, 0};
+                if (along_columns) {
+                    map.azimuth_deg = degrees(std::atan2(way.y, -way.x));
+                    std::swap(post.x, post.y);
+                }
+                EXPECT_NEAR(edge_of(heights, map.over(heights)).at(post.x, post.y),
+                            marched_edge_m(heights, map, post.x, post.y, 100), 1e-3)
+                    << along_columns << " " << side << " " << aside;
+            }
+}
+
 TEST(Sweep, WallCastsAShadowOfItsHeightOverTheTangent) {
     // 100 m high, along a column; the sun in the east and the north-east.
     const Heights wall =

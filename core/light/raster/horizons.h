@@ -19,9 +19,9 @@ struct Horizons {
     std::string definition;  ///< a sentence, to be printed with results
 };
 
-/// Eyes are on the ground. What lies farther off than the nearest four posts is met within a
-/// quarter of a post of the direction. Beyond the DEM lies a smooth Earth as high as its edge
-/// there, as in TerrainHorizon. Accuracy: tests/light/test_horizons.cpp.
+/// Eyes are on the ground. What lies farther off than the nearest eight rows is met within half a
+/// post of the direction. Beyond the DEM lies a smooth Earth as high as its edge there, as in
+/// TerrainHorizon. Accuracy: tests/light/test_horizons.cpp.
 /// @param azimuth_rad  directions, from true north at each post
 /// @param refraction   terrestrial, as in HorizonOptions
 /// @throws Error (BadInput) as shadows()

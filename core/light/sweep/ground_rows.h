@@ -21,15 +21,17 @@ class GroundRows {
           height_m_(static_cast<std::size_t>(pitch_) * static_cast<std::size_t>(kept(lines)),
                     kNothing_m) {}
 
-    /// Rows that are kept: those before a post, and the two at which the lines are meanwhile.
-    static int kept(const SweepLines& lines) { return lines.nearness().near_rows + 3; }
+    /// Rows that are kept: the post's own, those before it on which its own ray is followed, and
+    /// the two between which the lines are meanwhile.
+    static int kept(const SweepLines& lines) { return lines.sampling().near_rows + 3; }
     static int pitch(const SweepLines& lines, int count) {
         return width(lines, count) + kVectorFloats;
     }
 
-    /// Puts a row of a sheet over the one that is kept longest.
-    /// @param tilt  what is done to its heights; where from, where to and how many is set here
-    void take(const Sheet& sheet, int row, RowTilt tilt) {
+    /// Loads a row of a sheet over the oldest one.
+    /// @param fall_m, fall_per_line_m, height_offset_m  added to its heights, as RowTilt has it
+    void load(const Sheet& sheet, int row, float fall_m = 0, float fall_per_line_m = 0,
+              float height_offset_m = 0) {
         const int column = first_column(row);
         const int from = std::clamp(-column, 0, width_),
                   to = std::clamp(sheet.columns - column, from, width_);
@@ -37,12 +39,15 @@ class GroundRows {
         std::fill(out, out + from, kNothing_m);
         std::fill(out + to, out + width_, kNothing_m);
         if (from == to) return;
-        tilt.from_m = sheet.first_m + row * sheet.stride + column + from;
-        tilt.to_m = out + from;
-        tilt.count = to - from;
-        tilt.line = column + from - lines_.row(row).column;
-        tilt.between = lines_.row(row).between;
-        tilt_row(tilt);
+        tilt_row({.from_m = sheet.first_m + row * sheet.stride + column + from,
+                  .to_m = out + from,
+                  .count = to - from,
+                  .fall_m = fall_m,
+                  .fall_per_line_m = fall_per_line_m,
+                  // The line of the first of these posts, were each on the line that it belongs to.
+                  .line = column + from - lines_.row(row).column,
+                  .post_offset = lines_.row(row).post_offset,
+                  .height_offset_m = height_offset_m});
     }
 
     /// What crossings are over, from a line on.

@@ -9,17 +9,17 @@
 namespace relevo::light {
 
 HorizonStrip::HorizonStrip(const SweepLines& lines, int line, int count, double curvature,
-                           double least)
+                           double least_tangent)
     : lines_(lines),
       curvature_(curvature),
       line_(line),
       count_(count),
-      least_(least),
+      least_tangent_(least_tangent),
       ground_(lines, line, count + 1),
       height_m_(kFanRays * kPitch, kNothing_m),
       distance_m_(kFanRays * kPitch, -kFarther_m),  // whatever is seen there is infinitely low
       tangent_(static_cast<std::size_t>(in_vectors(count))) {
-    static_assert(kNearness.line_sets == 1);
+    static_assert(kSampling.line_sets == 1);
     for (std::size_t k = 0; k < tangents_.size(); ++k)
         tangents_[k] = static_cast<float>(std::tan(radians(kFanDegrees[k])));
 }
@@ -28,9 +28,9 @@ Fans HorizonStrip::fans() {
     return {height_m_.data(), distance_m_.data(), kPitch, tangents_.data()};
 }
 
-void HorizonStrip::come_to(int row, const Sheet& sheet) {
-    ground_.take(sheet, row, {});
-    if (const int far = row - kNearness.near_rows - 1; far >= lines_.begin()) raise(far);
+void HorizonStrip::advance_to(int row, const Sheet& sheet) {
+    ground_.load(sheet, row);
+    if (const int far = row - kSampling.near_rows - 1; far >= lines_.begin()) raise(far);
 }
 
 /// To the ground of a row, and of the columns before it.
@@ -55,13 +55,13 @@ void HorizonStrip::raise(int row) {
     }
 }
 
-const float* HorizonStrip::look(int row, int first, int end) {
+const float* HorizonStrip::find(int row, int first, int end) {
     // The line nearest to a post: its own, or the next one.
-    const int nearest = first - line_ + (lines_.row(row).between >= 0.5F);
+    const int nearest = first - line_ + (lines_.row(row).post_offset >= 0.5F);
     const float* const eyes_m = ground_.posts(row, first);
-    const double s = distance_m(row), tilt = curvature_ * s;
+    const double s = distance_m(row), slope = curvature_ * s;
     int ray = 0;
-    while (ray < kFanRays && tangents_[static_cast<std::size_t>(ray)] - tilt < least_)
+    while (ray < kFanRays && tangents_[static_cast<std::size_t>(ray)] - slope < least_tangent_)
         ++ray;
     Fans fans = this->fans();
     fans.height_m += nearest, fans.distance_m += nearest;
@@ -72,8 +72,8 @@ const float* HorizonStrip::look(int row, int first, int end) {
                     .first_ray = ray,
                     .from_m = static_cast<float>(s),
                     .sunk_m = static_cast<float>(curvature_ * s * s / 2),
-                    .tilt = static_cast<float>(tilt),
-                    .both = least_ == -std::numeric_limits<double>::infinity()});
+                    .plane_slope = static_cast<float>(slope),
+                    .also_next = least_tangent_ == -std::numeric_limits<double>::infinity()});
     look_at_near_ground(row, first, end, eyes_m);
     return tangent_.data();
 }

@@ -11,22 +11,23 @@ namespace relevo::light {
 /// Finds the horizon of posts of lines next to each other, row by row away from where they look.
 ///
 /// Each line carries a fan of rays over the ground that it has passed, some degrees apart; of each
-/// ray it knows the ground that holds it up. A post sees, over the steepest ray that passes over
-/// it, the ground that holds this one up. Heights are less what the ground has sunk by below the
-/// tangent plane of the ray's reference.
+/// ray it knows the ground that it grazes. The horizon of a post is the ground that the steepest
+/// ray over it grazes, of the line nearest to it: a mean of two lines would be no ground at all.
+/// Heights are less what the ground has sunk by below the tangent plane of the ray's reference.
 class HorizonStrip {
   public:
-    static constexpr Nearness kNearness{.near_rows = 8, .line_sets = 1, .distances = true};
+    static constexpr Sampling kSampling{.near_rows = 8, .line_sets = 1, .distances = true};
     static constexpr int kMostLines = 63;  ///< a fan is 58 numbers
 
-    /// @param lines      of a sun whose tangent is 1 everywhere: what they fall by is how far they
-    /// go
-    /// @param curvature  of the ground under a line of sight [1/m]
-    /// @param least      the tangent below which no ray is looked at; minus infinity: none
-    HorizonStrip(const SweepLines& lines, int line, int count, double curvature, double least);
+    /// @param lines          of a sun whose tangent is 1 everywhere: what they fall by is how far
+    ///     they go
+    /// @param curvature      of the ground under a line of sight [1/m]
+    /// @param least_tangent  below which no ray is looked at; minus infinity: none
+    HorizonStrip(const SweepLines& lines, int line, int count, double curvature,
+                 double least_tangent);
 
-    void come_to(int row, const Sheet& sheet);       ///< as ShadowStrip
-    const float* look(int row, int first, int end);  ///< likewise, tangents
+    void advance_to(int row, const Sheet& sheet);    ///< as ShadowStrip
+    const float* find(int row, int first, int end);  ///< likewise, tangents
 
   private:
     static constexpr float kFarther_m = 1e9F;  // than any ground
@@ -40,7 +41,7 @@ class HorizonStrip {
     const SweepLines& lines_;
     double curvature_;
     int line_, count_;
-    double least_;
+    double least_tangent_;
     GroundRows ground_;
     std::array<float, kFanRays> tangents_;
     std::vector<float> height_m_, distance_m_;  // of the fans

@@ -21,21 +21,21 @@ using V = hn::Vec<Floats>;
 constexpr Floats kFloats;
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(Floats()));
 
-/// a + part * (b - a), each step rounded.
-HWY_INLINE V between(V a, V b, V part) {
-    return hn::Add(a, hn::Mul(part, hn::Sub(b, a)));
+/// a + weight * (b - a), each step rounded.
+HWY_INLINE V lerp(V a, V b, V weight) {
+    return hn::Add(a, hn::Mul(weight, hn::Sub(b, a)));
 }
 HWY_INLINE V ground_at(const float* ground_m, const Crossing& at) {
-    return between(hn::LoadU(kFloats, ground_m + at.p), hn::LoadU(kFloats, ground_m + at.q),
-                   hn::Set(kFloats, at.part));
+    return lerp(hn::LoadU(kFloats, ground_m + at.p), hn::LoadU(kFloats, ground_m + at.q),
+                hn::Set(kFloats, at.weight));
 }
 /// first, first + 1, first + 2 ...
 HWY_INLINE V count_from(int first) {
     return hn::Iota(kFloats, static_cast<float>(first));
 }
 
-/// Calls `some` with how many vectors are done at once, and from where on: so that they and what is
-/// between them fit into registers, four or one.
+/// Goes over `count` numbers: calls `some` with how many vectors it is to do at once, and from
+/// where on. Four as long as there are so many, as they still fit into registers; then one.
 template <typename Some>
 HWY_INLINE void by_vectors(int count, const Some& some) {
     int i = 0;
@@ -55,9 +55,9 @@ HWY_INLINE void raise(V (&height)[kVectors], const float* ground_m, const Crossi
 }
 
 void TiltRow(const RowTilt& row) {
-    const V nothing = hn::Set(kFloats, kNothing_m), base = hn::Set(kFloats, row.base_m),
-            fall = hn::Set(kFloats, row.fall_m), ramp = hn::Set(kFloats, row.ramp_m),
-            on = hn::Set(kFloats, row.between);
+    const V nothing = hn::Set(kFloats, kNothing_m), base = hn::Set(kFloats, row.height_offset_m),
+            fall = hn::Set(kFloats, row.fall_m), ramp = hn::Set(kFloats, row.fall_per_line_m),
+            on = hn::Set(kFloats, row.post_offset);
     const auto tilted = [&](V h, int i) {
         const V fallen = hn::Add(fall, hn::Mul(ramp, hn::Add(count_from(row.line + i), on)));
         return hn::IfThenElse(hn::IsNaN(h), nothing, hn::Add(hn::Add(h, base), fallen));
@@ -87,9 +87,9 @@ void RaiseLines(float* height_m, int count, const float* ground_m, const Crossin
 
 void LookForShadows(const ShadowLook& look) {
     const V nothing = hn::Set(kFloats, kNothing_m), fall = hn::Set(kFloats, look.fall_m),
-            ramp = hn::Set(kFloats, look.ramp_m), on = hn::Set(kFloats, look.between),
-            base = hn::Set(kFloats, look.base_m), floor = hn::Set(kFloats, look.floor_m),
-            part = hn::Set(kFloats, look.part), low = hn::Set(kFloats, -1e20F);  // no ground
+            ramp = hn::Set(kFloats, look.fall_per_line_m), on = hn::Set(kFloats, look.post_offset),
+            base = hn::Set(kFloats, look.height_offset_m), floor = hn::Set(kFloats, look.floor_m),
+            weight = hn::Set(kFloats, look.weight), low = hn::Set(kFloats, -1e20F);  // no ground
     by_vectors(look.count, [&](auto vectors, int i) {
         constexpr int kVectors = decltype(vectors)::value;
         V fallen[kVectors], height[kVectors];
@@ -97,12 +97,12 @@ void LookForShadows(const ShadowLook& look) {
             const int at = i + k * kWidth;
             fallen[k] = hn::Add(fall, hn::Mul(ramp, hn::Add(count_from(look.line + at), on)));
             height[k] = nothing;
-            if (!look.before_m) continue;
+            if (!look.left_m) continue;
             const V least = hn::Add(hn::Sub(floor, base), fallen[k]);
-            const V a = hn::LoadU(kFloats, look.before_m + at),
-                    b = hn::LoadU(kFloats, look.behind_m + at);
-            height[k] = between(hn::IfThenElse(hn::Ge(a, least), a, nothing),
-                                hn::IfThenElse(hn::Ge(b, least), b, nothing), part);
+            const V a = hn::LoadU(kFloats, look.left_m + at),
+                    b = hn::LoadU(kFloats, look.right_m + at);
+            height[k] = lerp(hn::IfThenElse(hn::Ge(a, least), a, nothing),
+                             hn::IfThenElse(hn::Ge(b, least), b, nothing), weight);
         }
         raise(height, look.ground_m, look.crossings, look.crossing_count, i);
         for (int k = 0; k < kVectors; ++k) {
@@ -152,7 +152,7 @@ void RaiseFans(const Fans& fans, int count, const float* ground_m, const FanPoin
 }
 
 void LookOverFans(const FanLook& look) {
-    const V from = hn::Set(kFloats, look.from_m), tilt = hn::Set(kFloats, look.tilt),
+    const V from = hn::Set(kFloats, look.from_m), slope = hn::Set(kFloats, look.plane_slope),
             nothing = hn::Set(kFloats, kNothing_m), one = hn::Set(kFloats, 1.0F);
     for (int i = 0; i < look.count; i += kWidth) {
         const V eye = hn::Sub(hn::LoadU(kFloats, look.ground_m + i), hn::Set(kFloats, look.sunk_m));
@@ -170,8 +170,8 @@ void LookOverFans(const FanLook& look) {
             over_last = over;
         }
         V tangent = hn::Div(rise, way);
-        if (look.both) tangent = hn::Max(hn::Div(next_rise, next_way), tangent);
-        hn::StoreU(hn::Sub(tangent, tilt), kFloats, look.tangent + i);
+        if (look.also_next) tangent = hn::Max(hn::Div(next_rise, next_way), tangent);
+        hn::StoreU(hn::Sub(tangent, slope), kFloats, look.tangent + i);
     }
 }
 
@@ -221,7 +221,7 @@ HWY_INLINE void transpose_block(const float* from, std::ptrdiff_t from_stride, f
 }
 #endif
 
-/// Whole blocks of them.
+/// Numbers of rows and of columns that are multiples of four.
 void TransposeBlocks(const float* from, std::ptrdiff_t from_stride, int rows, int columns,
                      float* to, std::ptrdiff_t to_stride) {
     for (int c = 0; c < columns; c += 4)
@@ -288,12 +288,11 @@ void transpose(const float* from, std::ptrdiff_t from_stride, int rows, int colu
 }
 
 void set_widest_vector(int floats) {
-    const std::int64_t wide = HWY_AVX3 | HWY_AVX3_DL, middle = HWY_AVX2,
-                       narrow = HWY_SSE4 | HWY_SSSE3 | HWY_NEON;
+    // On x86-64 targets are numbered from the best one on.
     std::int64_t off = 0;
-    if (floats < 16) off |= wide;
-    if (floats < 8) off |= middle;
-    if (floats < 4) off |= narrow;
+    if (floats < 16) off |= HWY_AVX2 - 1;
+    if (floats < 8) off |= HWY_AVX2;
+    if (floats < 4) off = ~(HWY_SCALAR | HWY_EMU128);
     hwy::SetSupportedTargetsForTest(0);
     if (off != 0) hwy::SetSupportedTargetsForTest(hwy::SupportedTargets() & ~off);
 }

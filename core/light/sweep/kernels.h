@@ -22,10 +22,10 @@ constexpr int in_vectors(int count) {
 constexpr float kNothing_m = -1e30F;
 
 /// Where a ray meets ground between two posts of a row or of a column. For the i-th of rays next to
-/// each other, the ground is ground[p + i] + part * (ground[q + i] - ground[p + i]) high.
+/// each other, the ground is ground[p + i] + weight * (ground[q + i] - ground[p + i]) high.
 struct Crossing {
     std::int32_t p, q;
-    float part;
+    float weight;
 };
 
 /// Copies a row of ground. To each height is added what the rays have fallen by since the row of
@@ -33,11 +33,11 @@ struct Crossing {
 struct RowTilt {
     const float* from_m;
     float* to_m;
-    int count;             ///< any number: nothing beyond it is touched
-    float fall_m, ramp_m;  ///< fallen: fall_m + ramp_m * (line + i + between)
+    int count;                      ///< any number: nothing beyond it is touched
+    float fall_m, fall_per_line_m;  ///< fallen: fall_m + fall_per_line_m * (line + i + post_offset)
     int line;
-    float between;
-    float base_m;  ///< added, too
+    float post_offset;
+    float height_offset_m;  ///< added, too
 };
 void tilt_row(const RowTilt& row);
 
@@ -51,12 +51,13 @@ void raise_lines(float* height_m, int count, const float* ground_m, const Crossi
 struct ShadowLook {
     float* shadow_m;  ///< gets them: floor_m or more
     int count;
-    const float *before_m, *behind_m;  ///< heights of the lines; null: there are none yet
-    float part;                        ///< of the way from the one to the other
-    float fall_m, ramp_m;              ///< as in RowTilt; taken away again
+    const float *left_m,
+        *right_m;  ///< heights of the lines on either side; null: there are none yet
+    float weight;  ///< of the right one; the left one has the rest
+    float fall_m, fall_per_line_m;  ///< as in RowTilt; taken away again
     int line;
-    float between;
-    float base_m;           ///< likewise
+    float post_offset;
+    float height_offset_m;  ///< added to what is found
     float floor_m;          ///< minus infinity for none
     const float* ground_m;  ///< at the first post's line
     const Crossing* crossings;
@@ -64,9 +65,10 @@ struct ShadowLook {
 };
 void look_for_shadows(const ShadowLook& look);
 
-/// Tangents of rays, some degrees apart, that every line carries over its ground: for each the
-/// post that holds it up, whose distance and height are known. Between two of them a horizon is
-/// seen over that post's neighbours, from where their difference is of second order.
+/// Elevations of the rays of a fan, some degrees apart, that every line carries over its ground. Of
+/// each the distance and the height of the ground that it grazes are known. A horizon between two
+/// of them is taken to be that of the lower ray's ground, which is too low by the square of what
+/// they are apart.
 constexpr std::array kFanDegrees{-4.0, -2.5, -1.3, -0.3, 0.7,  1.7,  2.9,  4.2,  5.6,  7.1,
                                  8.7,  10.4, 12.2, 14.1, 16.1, 18.2, 20.5, 23.0, 25.7, 28.6,
                                  31.8, 35.2, 38.8, 42.6, 46.8, 51.4, 57.0, 64.0, 73.0};
@@ -92,13 +94,14 @@ void raise_fans(const Fans& fans, int count, const float* ground_m, const FanPoi
 
 /// Posts next to each other behind fans, one fan for each.
 struct FanLook {
-    float* tangent;  ///< gets that of what holds the steepest ray up that passes over a post
+    float* tangent;  ///< gets that of the ground which the steepest ray over the post grazes
     int count;
     const float* ground_m;
     Fans fans;
-    int first_ray;               ///< that is looked at
-    float from_m, sunk_m, tilt;  ///< how far off the posts are, and the tangent plane there
-    bool both;                   ///< what holds the next steeper ray up is looked over, too
+    int first_ray;         ///< that is looked at
+    float from_m, sunk_m;  ///< how far off the posts are; what they lie below the tangent plane by
+    float plane_slope;     ///< tangent of that plane against the level there
+    bool also_next;        ///< the ground that the next steeper ray grazes is looked over, too
 };
 void look_over_fans(const FanLook& look);
 

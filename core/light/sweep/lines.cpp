@@ -19,27 +19,27 @@ int ceil_of(double x) {
 
 }  // namespace
 
-double reach_m(const SweepSun& sun, const Window& window, double drop_m) {
+double reach_m(const SweepSun& sun, const Window& window, double most_fall_m) {
     const glm::dvec2& more = sun.tangent_per_post;
     const double lowest = sun.tangent_at(more.x > 0 ? window.column : window.end_column() - 1,
                                          more.y > 0 ? window.row : window.end_row() - 1);
     // Towards the sun it stands higher still, by so much with each metre.
     const double a_metre = more.x * sun.ray.first.x + more.y * sun.ray.first.y;
-    const double sum = lowest + std::sqrt(lowest * lowest + 2 * a_metre * drop_m);
-    return a_metre >= 0 && sum > 0 ? kMargin * 2 * drop_m / sum : kInfinity;
+    const double sum = lowest + std::sqrt(lowest * lowest + 2 * a_metre * most_fall_m);
+    return a_metre >= 0 && sum > 0 ? kMargin * 2 * most_fall_m / sum : kInfinity;
 }
 
 SweepLines::SweepLines(const Sheet& sheet, const SweepSun& sun, const SheetPosts& posts,
-                       const Nearness& nearness, double drop_m)
-    : nearness_(nearness), first_wanted_(posts.window.row) {
-    add_rows(sun, posts, drop_m);
-    find_line_ranges(sheet, posts, reach_m(sun, posts.window, drop_m));
+                       const Sampling& sampling, double most_fall_m)
+    : sampling_(sampling), first_wanted_(posts.window.row) {
+    add_rows(sun, posts, most_fall_m);
+    find_line_ranges(sheet, posts, reach_m(sun, posts.window, most_fall_m));
     find_ground_columns();
 }
 
-void SweepLines::add_rows(const SweepSun& sun, const SheetPosts& posts, double drop_m) {
+void SweepLines::add_rows(const SweepSun& sun, const SheetPosts& posts, double most_fall_m) {
     const Window& window = posts.window;
-    const double far_m = sun.ray.distance_m(window.row) + reach_m(sun, window, drop_m);
+    const double far_m = sun.ray.distance_m(window.row) + reach_m(sun, window, most_fall_m);
     const auto row_at = [&](double s) {
         Row at;
         at.distance_m = s;
@@ -47,10 +47,10 @@ void SweepLines::add_rows(const SweepSun& sun, const SheetPosts& posts, double d
         const glm::dvec2 ways = sun.ray.way_integral(s);
         at.fall_m =
             -(sun.tangent * s + sun.tangent_per_post.x * ways.x + sun.tangent_per_post.y * ways.y);
-        at.ramp_m = -s * sun.tangent_per_post.x;
+        at.fall_per_line_m = -s * sun.tangent_per_post.x;
         at.column = ceil_of(at.shift - kOnPost);
-        const double between = std::max(0.0, at.column - at.shift);
-        at.between = static_cast<float>(between < kOnPost ? 0 : between);
+        const double offset = std::max(0.0, at.column - at.shift);
+        at.post_offset = static_cast<float>(offset < kOnPost ? 0 : offset);
         return at;
     };
     // Towards the sun, some rows at once.
@@ -130,7 +130,7 @@ void SweepLines::find_ground_columns() {
 
 void SweepLines::add_crossing(const Crossing& crossing, double distance_m) {
     crossings_.push_back(crossing);
-    if (nearness_.distances) distances_m_.push_back(distance_m);
+    if (sampling_.distances) distances_m_.push_back(distance_m);
 }
 
 /// The ground on a row, of rays that are at `shift` there.
@@ -168,25 +168,28 @@ void SweepLines::find_crossings(int pitch, int kept) {
     const auto next = [&] { begins_.push_back(static_cast<std::uint32_t>(crossings_.size())); };
     for (int at = begin_; at < end(); ++at) {
         const Row& here = row(at);
-        for (int set = 0; set < nearness_.line_sets; ++set) {
+        for (int set = 0; set < sampling_.line_sets; ++set) {
             next();
-            const double offset = double(set) / nearness_.line_sets;
+            const double offset = double(set) / sampling_.line_sets;
             add_row_crossing(at, here.shift + offset, here.distance_m);
             if (at > begin_) add_column_crossings(at, offset, here.distance_m);
         }
         next();
         if (at < first_wanted_) continue;
-        const double between = std::max(0.0, here.column - here.shift);
-        for (int near = at - 1; near >= std::max(at - nearness_.near_rows, begin_); --near) {
-            add_row_crossing(near, row(near).shift + between, here.distance_m);
-            add_column_crossings(near + 1, between, here.distance_m);
+        const double offset = std::max(0.0, here.column - here.shift);
+        for (int near = at - 1; near >= std::max(at - sampling_.near_rows, begin_); --near) {
+            add_row_crossing(near, row(near).shift + offset, here.distance_m);
+            add_column_crossings(near + 1, offset, here.distance_m);
         }
+        // Lines have been raised to the row before those, not on their way from there.
+        if (const int far = at - sampling_.near_rows - 1; far >= begin_)
+            add_column_crossings(far + 1, offset, here.distance_m);
     }
     next();
 }
 
-std::span<const Crossing> SweepLines::part(int k, int row) const {
-    const auto i = static_cast<std::size_t>((row - begin_) * (nearness_.line_sets + 1) + k);
+std::span<const Crossing> SweepLines::crossings_of(int k, int row) const {
+    const auto i = static_cast<std::size_t>((row - begin_) * (sampling_.line_sets + 1) + k);
     return std::span(crossings_).subspan(begins_[i], begins_[i + 1] - begins_[i]);
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -38,9 +37,13 @@ struct SheetPosts {
     }
 };
 
-/// How a sweep looks at ground.
-struct Nearness {
-    int near_rows;   ///< over whose ground the ray of each post itself is followed
+/// Which ground a sweep looks at, and how.
+///
+/// Ground near a post is met by the post's own ray: a false ridge beside it would be a false shade
+/// at once. More such rows cost time at each post, fewer show the lines as stripes. Farther ground
+/// is met by lines, of which a post has as many as there are sets.
+struct Sampling {
+    int near_rows;   ///< rows before a post that its own ray is followed over
     int line_sets;   ///< lines from one post to the next: sets of lines that are a post apart
     bool distances;  ///< whether it matters how far off ground is
 };
@@ -57,22 +60,22 @@ class SweepLines {
         double distance_m = 0;  ///< of line 0, from the reference on, towards the sun
         double shift = 0;       ///< the column of line 0
         double fall_m = 0;      ///< that line 0 has come down by since the row of the reference
-        double ramp_m = 0;      ///< likewise, how much more for each further line
-        int column = 0;         ///< of the post that belongs to line 0: the next one to it
-        float between = 0;      ///< how far on from its line towards the next one each post stands
+        double fall_per_line_m = 0;  ///< likewise, how much more for each further line
+        int column = 0;  ///< of the first post on line 0 or after it: it belongs to that line
+        float post_offset = 0;  ///< of each post from the line that it belongs to [columns], 0 to 1
         ColumnRange lines;      ///< those that matter to the posts wanted
         int ground_column = 0;  ///< the first one whose ground line 0, or its post, meets
     };
 
     /// @param sun      over the sheet; its ray comes from lower rows
-    /// @param drop_m   by so much rays may fall before nothing that they passed matters any more
+    /// @param most_fall_m   a ray that has fallen by so much shades nothing any more
     SweepLines(const Sheet& sheet, const SweepSun& sun, const SheetPosts& posts,
-               const Nearness& nearness, double drop_m);
+               const Sampling& sampling, double most_fall_m);
 
     int begin() const { return begin_; }  ///< the first row whose ground matters
     int end() const { return begin_ + static_cast<int>(rows_.size()); }
     const Row& row(int row) const { return rows_[static_cast<std::size_t>(row - begin_)]; }
-    const Nearness& nearness() const { return nearness_; }
+    const Sampling& sampling() const { return sampling_; }
     const ColumnRange& lines() const { return lines_; }  ///< to which any post wanted belongs
     /// How many columns of ground next to each other one line meets at most.
     int ground_columns() const { return ground_columns_; }
@@ -83,9 +86,11 @@ class SweepLines {
     /// a row's first is `ground_column`. To be called before crossings are asked for.
     void find_crossings(int pitch, int kept);
     /// What the lines of a set meet at a row and on their way there from the row before.
-    std::span<const Crossing> of_lines(int set, int row) const { return part(set, row); }
+    std::span<const Crossing> of_lines(int set, int row) const { return crossings_of(set, row); }
     /// What the rays of the posts of a row meet over the rows just before it.
-    std::span<const Crossing> of_posts(int row) const { return part(nearness_.line_sets, row); }
+    std::span<const Crossing> of_posts(int row) const {
+        return crossings_of(sampling_.line_sets, row);
+    }
     /// How far off each of these is [m]; where distances matter.
     const double* distances_m(std::span<const Crossing> of) const {
         return distances_m_.data() + (of.data() - crossings_.data());
@@ -96,15 +101,15 @@ class SweepLines {
     static constexpr double kOnPost = 1e-6;  ///< columns: a ray so near to a post meets that
 
   private:
-    void add_rows(const SweepSun& sun, const SheetPosts& posts, double drop_m);
+    void add_rows(const SweepSun& sun, const SheetPosts& posts, double most_fall_m);
     void find_line_ranges(const Sheet& sheet, const SheetPosts& posts, double reach_m);
     void find_ground_columns();
     void add_row_crossing(int row, double shift, double from_m);
     void add_column_crossings(int row, double offset, double from_m);
     void add_crossing(const Crossing& crossing, double distance_m);
-    std::span<const Crossing> part(int k, int row) const;
+    std::span<const Crossing> crossings_of(int k, int row) const;
 
-    Nearness nearness_;
+    Sampling sampling_;
     int begin_ = 0, first_wanted_ = 0;
     std::vector<Row> rows_;
     ColumnRange lines_;
@@ -116,7 +121,7 @@ class SweepLines {
 };
 
 /// How far shade can reach over posts of a window.
-/// @param drop_m  as SweepLines has it
-double reach_m(const SweepSun& sun, const Window& window, double drop_m);
+/// @param most_fall_m  as SweepLines has it
+double reach_m(const SweepSun& sun, const Window& window, double most_fall_m);
 
 }  // namespace relevo::light

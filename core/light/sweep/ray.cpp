@@ -4,6 +4,17 @@
 #include <limits>
 
 namespace relevo::light {
+namespace {
+
+/// Rows that a ray passes in s metres, and its rows for each metre there.
+double rows_at(const Ray& ray, double s) {
+    return ((ray.third.y / 6 * s + ray.second.y / 2) * s + ray.first.y) * s;
+}
+double slope_at(const Ray& ray, double s) {
+    return (ray.third.y / 2 * s + ray.second.y) * s + ray.first.y;
+}
+
+}  // namespace
 
 double Ray::distance_m(double row) const {
     const double posts = row - reference.y;
@@ -11,9 +22,9 @@ double Ray::distance_m(double row) const {
     if (second.y == 0 && third.y == 0) return s;
     // Newton's method; two or three steps do.
     for (int step = 0; step < 8; ++step) {
-        const double slope = (third.y / 2 * s + second.y) * s + first.y;
+        const double slope = slope_at(*this, s);
         if (!(slope * first.y > 0)) return std::numeric_limits<double>::quiet_NaN();
-        const double off_m = (((third.y / 6 * s + second.y / 2) * s + first.y) * s - posts) / slope;
+        const double off_m = (rows_at(*this, s) - posts) / slope;
         s -= off_m;
         if (std::abs(off_m) <= 1e-11 * std::abs(s)) return s;
     }
@@ -25,10 +36,8 @@ std::vector<double> Ray::distances_m(int begin, int end) const {
     // which rows are asked for.
     constexpr int kRows = 64;
     std::vector<double> distances(static_cast<std::size_t>(std::max(0, end - begin)));
-    const auto slope = [&](double s) { return (third.y / 2 * s + second.y) * s + first.y; };
-    const auto off = [&](double s, double posts) {
-        return ((third.y / 6 * s + second.y / 2) * s + first.y) * s - posts;
-    };
+    const auto slope = [&](double s) { return slope_at(*this, s); };
+    const auto off = [&](double s, double posts) { return rows_at(*this, s) - posts; };
     for (int from = begin - ((begin % kRows) + kRows) % kRows; from < end; from += kRows) {
         double s = distance_m(from);
         const bool turns = std::isnan(s);

@@ -16,8 +16,8 @@ struct Ray {
     glm::dvec2 first{0};             ///< derivatives of its place by s: [posts / m],
     glm::dvec2 second{0}, third{0};  ///< [posts / m^2], [posts / m^3]
 
-    /// Whether a sweep goes from column to column instead of from row to row: best as the ray's
-    /// larger step is.
+    /// Whether a sweep goes from column to column instead of from row to row. Right where the ray
+    /// passes more columns than rows; a ray along one row can only be swept so.
     bool along_columns = false;
 
     /// From the reference to where it is after s metres [posts].

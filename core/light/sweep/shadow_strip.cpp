@@ -10,7 +10,8 @@ ShadowStrip::ShadowStrip(const SweepLines& lines, int line, int count, float low
     : lines_(lines),
       line_(line),
       count_(count),
-      zero_m_(std::isfinite(lowest_m) ? kZero_m * std::floor(lowest_m / kZero_m) : 0),
+      height_origin_m_(
+          std::isfinite(lowest_m) ? kHeightOrigins_m * std::floor(lowest_m / kHeightOrigins_m) : 0),
       floor_m_(floor_m),
       ground_(lines, line, count + 1),
       shadow_m_(static_cast<std::size_t>(in_vectors(count) + kVectorFloats)) {
@@ -19,16 +20,16 @@ ShadowStrip::ShadowStrip(const SweepLines& lines, int line, int count, float low
 }
 
 float ShadowStrip::fallen_m(int row) const {
-    return static_cast<float>(lines_.row(row).fall_m - base_m_);
+    return static_cast<float>(lines_.row(row).fall_m - fall_origin_m_);
 }
 
-/// Counts what rays have fallen by from another base on, where it is too much or too little.
-void ShadowStrip::rebase(int row) {
-    const double fallen_m = lines_.row(row).fall_m - base_m_;
-    if (fallen_m >= 0 && fallen_m < kBase_m) return;
-    const double base_m = kBase_m * std::floor(lines_.row(row).fall_m / kBase_m);
-    const auto more_m = static_cast<float>(base_m - base_m_);
-    base_m_ = base_m;
+/// Counts what rays have fallen by from another origin on, where it is too much or too little.
+void ShadowStrip::move_fall_origin(int row) {
+    const double fallen_m = lines_.row(row).fall_m - fall_origin_m_;
+    if (fallen_m >= 0 && fallen_m < kFallOrigins_m) return;
+    const double origin_m = kFallOrigins_m * std::floor(lines_.row(row).fall_m / kFallOrigins_m);
+    const auto more_m = static_cast<float>(origin_m - fall_origin_m_);
+    fall_origin_m_ = origin_m;
     if (row == lines_.begin()) return;
     const auto lower = [&](float* heights_m, int count) {
         for (int i = 0; i < count; ++i)
@@ -45,7 +46,7 @@ void ShadowStrip::raise(int row) {
     const int from = std::max(line_, matter.begin) - line_,
               to = std::min(line_ + count_ + 1, matter.end) - line_;
     if (from >= to) return;
-    for (int set = 0; set < kNearness.line_sets; ++set) {
+    for (int set = 0; set < kSampling.line_sets; ++set) {
         const std::span<const Crossing> crossings = lines_.of_lines(set, row);
         raise_lines(height_m_[static_cast<std::size_t>(set)].data() + from, to - from,
                     ground_.from(line_ + from), crossings.data(),
@@ -59,8 +60,8 @@ void ShadowStrip::raise(int row) {
 void ShadowStrip::raise_beside(int row) {
     constexpr double kBeside = 0.25 + SweepLines::kOnPost;
     const double first = lines_.row(row).shift;
-    for (int set = 0; set < kNearness.line_sets; ++set) {
-        const double shift = first + double(set) / kNearness.line_sets;
+    for (int set = 0; set < kSampling.line_sets; ++set) {
+        const double shift = first + double(set) / kSampling.line_sets;
         const auto raise_line = [&](int line, int column) {
             if (line < line_ || line > line_ + count_) return;
             float& height_m =
@@ -74,19 +75,12 @@ void ShadowStrip::raise_beside(int row) {
     }
 }
 
-void ShadowStrip::come_to(int row, const Sheet& sheet) {
-    rebase(row);
+void ShadowStrip::advance_to(int row, const Sheet& sheet) {
+    move_fall_origin(row);
     columns_ = sheet.columns;
-    ground_.take(sheet, row,
-                 {.from_m = nullptr,
-                  .to_m = nullptr,
-                  .count = 0,
-                  .fall_m = fallen_m(row),
-                  .ramp_m = static_cast<float>(lines_.row(row).ramp_m),
-                  .line = 0,
-                  .between = 0,
-                  .base_m = -zero_m_});
-    if (const int far = row - kNearness.near_rows - 1; far >= lines_.begin()) {
+    ground_.load(sheet, row, fallen_m(row), static_cast<float>(lines_.row(row).fall_per_line_m),
+                 -height_origin_m_);
+    if (const int far = row - kSampling.near_rows - 1; far >= lines_.begin()) {
         raise(far);
         raise_beside(far);
     }
@@ -94,45 +88,47 @@ void ShadowStrip::come_to(int row, const Sheet& sheet) {
 
 /// Finds the shadows at the posts of lines [first, end).
 /// @param far  with those of ground beyond the nearest rows
-void ShadowStrip::find(int row, int first, int end, bool far, float* shadow_m) {
+void ShadowStrip::find_with(int row, int first, int end, bool far, float* shadow_m) {
     const SweepLines::Row& at = lines_.row(row);
     const std::span<const Crossing> crossings = lines_.of_posts(row);
     ShadowLook look{.shadow_m = shadow_m,
                     .count = end - first,
-                    .before_m = nullptr,
-                    .behind_m = nullptr,
-                    .part = 0,
+                    .left_m = nullptr,
+                    .right_m = nullptr,
+                    .weight = 0,
                     .fall_m = fallen_m(row),
-                    .ramp_m = static_cast<float>(at.ramp_m),
+                    .fall_per_line_m = static_cast<float>(at.fall_per_line_m),
                     .line = first,
-                    .between = at.between,
-                    .base_m = zero_m_,
+                    .post_offset = at.post_offset,
+                    .height_offset_m = height_origin_m_,
                     .floor_m = floor_m_,
                     .ground_m = ground_.from(first),
                     .crossings = crossings.data(),
                     .crossing_count = static_cast<int>(crossings.size())};
     if (far) {
-        const float on = at.between * kNearness.line_sets;
+        const float on = at.post_offset * kSampling.line_sets;
         const auto set = static_cast<std::size_t>(on);
-        look.part = on - static_cast<float>(set);
-        look.before_m = look.behind_m = height_m_[set].data() + (first - line_);
+        look.weight = on - static_cast<float>(set);
+        look.left_m = look.right_m = height_m_[set].data() + (first - line_);
         // The line after those of the last set is the next one of the first set.
-        if (look.part != 0)
-            look.behind_m = set + 1 < kNearness.line_sets
-                                ? height_m_[set + 1].data() + (first - line_)
-                                : height_m_[0].data() + (first - line_) + 1;
+        if (look.weight != 0)
+            look.right_m = set + 1 < kSampling.line_sets
+                               ? height_m_[set + 1].data() + (first - line_)
+                               : height_m_[0].data() + (first - line_) + 1;
     }
     look_for_shadows(look);
 }
 
-const float* ShadowStrip::look(int row, int first, int end) {
-    const int far = row - kNearness.near_rows - 1;
+const float* ShadowStrip::find(int row, int first, int end) {
+    const int far = row - kSampling.near_rows - 1;
     float* const shadow_m = shadow_m_.data();
     if (far < lines_.begin()) {
-        find(row, first, end, false, shadow_m);
+        find_with(row, first, end, false, shadow_m);
         return shadow_m;
     }
-    // Where the own ray of a post lies beside the grid at that row, there is no far ground.
+    // Where the own ray of a post lies beside the grid at that row, there is no far ground: the ray
+    // of the post of line i is there at column i - moved. Each call writes whole vectors, of which
+    // the next one overwrites what is too much.
     const SweepLines::Row& at = lines_.row(row);
     const double moved = at.shift - lines_.row(far).shift - at.column;
     const int begin =
@@ -140,9 +136,9 @@ const float* ShadowStrip::look(int row, int first, int end) {
               last = std::clamp(
                   static_cast<int>(std::floor(columns_ - 1 + moved + SweepLines::kOnPost)) + 1,
                   begin, end);
-    find(row, first, begin, false, shadow_m);
-    find(row, begin, last, true, shadow_m + (begin - first));
-    find(row, last, end, false, shadow_m + (last - first));
+    find_with(row, first, begin, false, shadow_m);
+    find_with(row, begin, last, true, shadow_m + (begin - first));
+    find_with(row, last, end, false, shadow_m + (last - first));
     return shadow_m;
 }
 

@@ -9,15 +9,16 @@
 namespace relevo::light {
 
 /// Finds heights of shadows over posts of lines next to each other, row by row away from the sun.
+/// Of two ridges the one whose ray is higher at the post counts; no line remembers the other one.
 ///
 /// A line is as high as the highest ground that it has passed, lowered by what its ray has fallen
 /// by since. So that nothing has to be lowered at every row, what rays have fallen by is added to
 /// the ground instead (RowTilt), and taken away again from what is found: among such heights rays
-/// are level. As rays may fall by any amount, whole numbers of kBase_m are taken from that: how
-/// many hangs on the row alone, so that every window rounds alike.
+/// are level. As rays may fall by any amount, whole numbers of kFallOrigins_m are taken from that:
+/// how many hangs on the row alone, so that every window rounds alike.
 class ShadowStrip {
   public:
-    static constexpr Nearness kNearness{.near_rows = 4, .line_sets = 2, .distances = false};
+    static constexpr Sampling kSampling{.near_rows = 4, .line_sets = 2, .distances = false};
     static constexpr int kMostLines = 2047;  ///< so that the rows kept fit into the cache
 
     /// @param line, count  the first line, and how many
@@ -27,28 +28,29 @@ class ShadowStrip {
 
     /// Goes on to a row: takes its ground from the sheet, and raises the lines to the ground of the
     /// row that has become far.
-    void come_to(int row, const Sheet& sheet);
+    void advance_to(int row, const Sheet& sheet);
     /// The shadows at the posts of this row that belong to lines [first, end) of the strip, from
     /// the first one on.
-    const float* look(int row, int first, int end);
+    const float* find(int row, int first, int end);
 
   private:
-    static constexpr float kZero_m = 256;  // of which heights have some taken away
-    static constexpr double kBase_m = 2048;
+    // Heights, and what rays have fallen by, count from whole multiples of these.
+    static constexpr float kHeightOrigins_m = 256;
+    static constexpr double kFallOrigins_m = 2048;
 
     float fallen_m(int row) const;
-    void rebase(int row);
+    void move_fall_origin(int row);
     void raise(int row);
     void raise_beside(int row);
-    void find(int row, int first, int end, bool far, float* shadow_m);
+    void find_with(int row, int first, int end, bool far, float* shadow_m);
 
     const SweepLines& lines_;
     int line_, count_;
     int columns_ = 0;  // of the sheet
-    float zero_m_, floor_m_;
-    double base_m_ = 0;
+    float height_origin_m_, floor_m_;
+    double fall_origin_m_ = 0;
     GroundRows ground_;
-    std::array<std::vector<float>, kNearness.line_sets> height_m_;  // of the lines of each set
+    std::array<std::vector<float>, kSampling.line_sets> height_m_;  // of the lines of each set
     std::vector<float> shadow_m_;
 };
 

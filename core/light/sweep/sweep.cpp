@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 
 #include "base/parallel_for.h"
@@ -195,11 +196,17 @@ void Sweep::read(const Job& job, const Window& window, Sheet& sheet,
                     (window.row * sheet.stride + window.column);
 }
 
-/// Has strips of lines go from the first row that matters to the last that is wanted.
+/// Has strips of lines go from the first row that matters to the last that is wanted. A strip says
+/// how it samples ground (kSampling) and how many lines it takes at most (kMostLines); it is told
+/// of every row by advance_to(), and asked for the posts of those that are wanted by find().
 /// @param make  a strip of some lines, from one on
 template <typename Strip, typename Make>
-void Sweep::sweep_strips(const Job& job, double drop_m, const Make& make, const Use& use) const {
-    SweepLines lines(job.sheet, job.sun, job.posts, Strip::kNearness, drop_m);
+void Sweep::sweep_strips(const Job& job, double most_fall_m, const Make& make,
+                         const Use& use) const {
+    SweepLines lines(job.sheet, job.sun, job.posts, Strip::kSampling, most_fall_m);
+    for (int row = job.posts.window.row; row < lines.begin(); ++row)
+        if (!job.posts.at(row).is_empty())
+            throw std::logic_error("sweep: the ray of a tile turns back within its posts");
     const int count = lines.lines().end - lines.lines().begin;
     if (count <= 0) return;
     const int width = width_of_strips(count, Strip::kMostLines);
@@ -226,13 +233,13 @@ void Sweep::sweep_strips(const Job& job, double drop_m, const Make& make, const 
                                {columns.begin, row, columns.end - columns.begin, last - row});
                     if (!wanted.is_empty()) read(job, wanted, sheet, buffer);
                 }
-                strip.come_to(row, sheet);
+                strip.advance_to(row, sheet);
                 if (row < job.posts.window.row) continue;
                 const ColumnRange posts = job.posts.at(row);
                 const int column = lines.row(row).column;
                 const int from = std::max(line, posts.begin - column),
                           to = std::min(line + width, posts.end - column);
-                if (from < to) runs.add(row, column + from, to - from, strip.look(row, from, to));
+                if (from < to) runs.add(row, column + from, to - from, strip.find(row, from, to));
             }
             runs.finish();
         }
@@ -246,10 +253,10 @@ void Sweep::each_shadow(const SweepSun& sun, const TilePosts& posts, float floor
         given.tangent = std::copysign(kSteepest, given.tangent);
         given.tangent_per_post = {0, 0};
     }
-    const double drop_m =
+    const double most_fall_m =
         std::max(0.0, double{highest_m_} - (floor_m > kNoFloor_m ? floor_m : lowest_m_));
     sweep_strips<ShadowStrip>(
-        job_for(given, posts), drop_m,
+        job_for(given, posts), most_fall_m,
         [&](const SweepLines& lines, int line, int count) {
             return ShadowStrip(lines, line, count, lowest_m_, floor_m);
         },
@@ -258,7 +265,8 @@ void Sweep::each_shadow(const SweepSun& sun, const TilePosts& posts, float floor
 
 void Sweep::each_horizon(const Ray& ray, double curvature, double reach_m, const TilePosts& posts,
                          const Use& use) const {
-    // Of ground that is farther off some windows see more than others, but never higher than so.
+    // Some windows have more ground beyond reach_m than others, all of it under this tangent: no
+    // ray so low is looked at, so that figures are the same for every window.
     const double relief_m = std::max(0.0, double{highest_m_} - lowest_m_);
     const double across_m = reach_m * std::hypot(ray.first.x, ray.first.y);
     const double least = across_m > std::hypot(columns_, rows_)

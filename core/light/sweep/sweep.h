@@ -59,7 +59,8 @@ class Sweep {
         const float* first_m;
         std::ptrdiff_t stride;
     };
-    /// Says so; heights that are nowhere yet are put into the array. Called on several threads.
+    /// Returns where they are; what is not in memory is read into the array. Called on several
+    /// threads.
     using Read = std::function<Heights(const Window&, std::vector<float>&)>;
     /// Heights that are read where they are needed, strip by strip, so that a sweep of any length
     /// takes little memory. What is found is the same, to the bit.
@@ -75,8 +76,9 @@ class Sweep {
     /// @param sun      its tangent may be of any sign and size
     /// @param posts    where it is wanted; ground outside of them shades all the same
     /// @param floor_m  shadows are no lower, and ground so far off that it makes only lower ones is
-    ///     not swept: where it is under the lowest post it changes no shade. Minus infinity: none;
-    ///     then shadows are minus infinity where nothing of the grid lies towards the sun
+    ///     not swept. A post between a line above it and a line below has no far shade. Minus
+    ///     infinity: none; then shadows are minus infinity where nothing of the grid lies towards
+    ///     the sun
     void each_shadow(const SweepSun& sun, const TilePosts& posts, float floor_m,
                      const Use& use) const;
 
