@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -70,10 +71,9 @@ constexpr std::array kFormats{
 };
 
 const FormatInfo& info(PixelFormat format) {
-    const auto found =
-        std::ranges::find_if(kFormats, [&](const FormatInfo& f) { return f.format == format; });
-    assert(found != kFormats.end());
-    return *found;
+    for (const FormatInfo& each : kFormats)
+        if (each.format == format) return each;
+    throw std::logic_error("ktx: a format without an entry");
 }
 
 std::size_t level_bytes(const FormatInfo& f, int width, int height, int depth, int layers,
