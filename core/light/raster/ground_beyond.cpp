@@ -93,10 +93,22 @@ Edge GroundBeyond::edge_of(const dem::Posts& posts, double line, double begin_m,
 
 void GroundBeyond::find(int row, int column, int count, float* height_m, float* distance_m) const {
     const int lines = static_cast<int>(height_m_.size());
-    const int step_row = along_columns_ ? 1 : 0;
     auto k = static_cast<std::size_t>((along_columns_ ? column : row) - first_row_);
-    for (int i = 0; i < count; ++i, k += static_cast<std::size_t>(step_row)) {
-        const int line = (along_columns_ ? row : column + i) - line_column_[k];
+    if (!along_columns_) {
+        // The lines of posts next to each other are, too.
+        const std::ptrdiff_t line = std::ptrdiff_t{column} - line_column_[k];
+        const auto begin = std::clamp<std::ptrdiff_t>(-line, 0, count),
+                   end = std::clamp<std::ptrdiff_t>(lines - line, begin, count);
+        std::fill_n(distance_m, count, kNowhere_m);
+        std::fill_n(height_m, count, kNowhere_m);
+        for (std::ptrdiff_t i = begin; i < end; ++i) {
+            height_m[i] = height_m_[static_cast<std::size_t>(line + i)];
+            distance_m[i] = distance_m_[static_cast<std::size_t>(line + i)] - row_distance_m_[k];
+        }
+        return;
+    }
+    for (int i = 0; i < count; ++i, ++k) {
+        const int line = row - line_column_[k];
         const bool has = line >= 0 && line < lines;
         const auto at = static_cast<std::size_t>(has ? line : 0);
         height_m[i] = has ? height_m_[at] : kNowhere_m;

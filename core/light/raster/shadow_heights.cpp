@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "base/array2d.h"
@@ -94,18 +95,19 @@ void each_night(const Window& window, const Sweep::Use& use) {
             use({row, column, std::min(kRun, window.end_column() - column), shadow_m.data()});
 }
 
-/// @param low_m  room for figures of `w`, in which each tile has posts of its own
+/// @param low_m  room for a figure of each post of `w`, in which each tile has posts of its own
 void each_shadow_of_two_airs(const SunField& field, const SunTile& tile, const TilePosts& posts,
-                             double offset_rad, const Window& w, Array2d<float>& low_m,
+                             double offset_rad, const Window& w, float* low_m,
                              const Sweep::Use& use) {
     const SunTerrain& terrain = field.terrain();
     const SweepSun low = field.sun(tile, SunTerrain::kOfLowest, offset_rad),
                    high = field.sun(tile, SunTerrain::kOfHighest, offset_rad);
+    const auto low_of = [&](const SweepRun& run) {
+        return low_m + std::ptrdiff_t{run.row - w.row} * w.columns + (run.column - w.column);
+    };
     const EarthShadow low_earth(terrain, tile, low), high_earth(terrain, tile, high);
     terrain.sweep().each_shadow(low, posts, terrain.floor_m(), [&](const SweepRun& run) {
-        each_part(run, [&](const SweepRun& part) {
-            low_earth.raise(part, &low_m.at(part.column - w.column, part.row - w.row));
-        });
+        each_part(run, [&](const SweepRun& part) { low_earth.raise(part, low_of(part)); });
     });
     const WindowHeights heights(terrain.posts(), posts.window);
     const auto bottom_m = static_cast<float>(terrain.lowest_m()),
@@ -114,9 +116,8 @@ void each_shadow_of_two_airs(const SunField& field, const SunTile& tile, const T
         each_part(run, [&](const SweepRun& part) {
             Figures shadow_m;
             high_earth.raise(part, shadow_m.data());
-            mix_by_height(heights.view.at(part.column, part.row), bottom_m, a_metre,
-                          &low_m.at(part.column - w.column, part.row - w.row), part.count,
-                          shadow_m.data());
+            mix_by_height(heights.view.at(part.column, part.row), bottom_m, a_metre, low_of(part),
+                          part.count, shadow_m.data());
             use({part.row, part.column, part.count, shadow_m.data()});
         });
     });
@@ -184,12 +185,15 @@ class OuterShadow {
 void each_shadow(const SunField& field, std::span<const SunTile> tiles, const Window& window,
                  double offset_rad, const Sweep::Use& use) {
     const SunTerrain& terrain = field.terrain();
-    Array2d<float> low_m;
-    if (field.has_two_airs()) low_m = Array2d<float>(window.columns, window.rows);
+    std::unique_ptr<float[]> low_m;
+    if (field.has_two_airs())
+        low_m = std::make_unique_for_overwrite<float[]>(static_cast<std::size_t>(window.columns) *
+                                                        static_cast<std::size_t>(window.rows));
     each_tile(tiles, window, [&](const SunTile& tile, const TilePosts& posts) {
         if (tile.is_night) return each_night(posts.window, use);
         if (field.has_two_airs())
-            return each_shadow_of_two_airs(field, tile, posts, offset_rad, window, low_m, use);
+            return each_shadow_of_two_airs(field, tile, posts, offset_rad, window, low_m.get(),
+                                           use);
         const SweepSun sun = field.sun(tile, SunTerrain::kMean, offset_rad);
         const EarthShadow earth(terrain, tile, sun);
         if (!earth.matters())

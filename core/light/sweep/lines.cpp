@@ -10,13 +10,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMargin = 1.05;  // of a reach
 
-int floor_of(double x) {
-    return static_cast<int>(std::floor(x));
-}
-int ceil_of(double x) {
-    return static_cast<int>(std::ceil(x));
-}
-
 }  // namespace
 
 double reach_m(const SweepSun& sun, const Window& window, double most_fall_m) {
@@ -165,6 +158,9 @@ void SweepLines::add_column_crossings(int row, double offset, double from_m) {
 
 void SweepLines::find_crossings(int pitch, int kept) {
     pitch_ = pitch, kept_ = kept;
+    // Rays pass no more columns than rows, but where they are bent.
+    crossings_.reserve(rows_.size() * 2 *
+                       static_cast<std::size_t>(sampling_.line_sets + sampling_.near_rows + 1));
     const auto next = [&] { begins_.push_back(static_cast<std::uint32_t>(crossings_.size())); };
     for (int at = begin_; at < end(); ++at) {
         const Row& here = row(at);

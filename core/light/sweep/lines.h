@@ -11,6 +11,16 @@
 
 namespace relevo::light {
 
+/// As std::floor and std::ceil, which are calls on processors without SSE 4.1; of what an int
+/// holds.
+inline int floor_of(double x) {
+    const int towards_zero = static_cast<int>(x);
+    return towards_zero - (towards_zero > x);
+}
+inline int ceil_of(double x) {
+    return -floor_of(-x);
+}
+
 /// A grid as a sweep goes over it, row by row away from the sun: row 0 is the one nearest to it.
 /// The rows of a sheet are rows of the grid or, where rays go rather along these, columns of it.
 struct Sheet {

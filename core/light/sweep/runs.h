@@ -44,13 +44,15 @@ class Runs {
     void finish() {
         if (filled_.empty()) return;
         const int rows = static_cast<int>(filled_.size());
-        transpose(buffer_.data(), width_, kBufferRows, width_, transposed_.data(), kBufferRows);
         ColumnRange any = filled_.front(),
                     all = any;  // where some row has posts, and where all have
         for (const ColumnRange& row : filled_) {
             any = {std::min(any.begin, row.begin), std::max(any.end, row.end)};
             all = {std::max(all.begin, row.begin), std::min(all.end, row.end)};
         }
+        const std::ptrdiff_t first = any.begin - first_column_;
+        transpose(buffer_.data() + first, width_, kBufferRows, any.end - any.begin,
+                  transposed_.data() + first * kBufferRows, kBufferRows);
         for (int column = any.begin; column < any.end; ++column) {
             if (column >= all.begin && column < all.end)
                 hand_on(column, 0, rows);

@@ -68,8 +68,7 @@ void ShadowStrip::raise_beside(int row) {
                 height_m_[static_cast<std::size_t>(set)][static_cast<std::size_t>(line - line_)];
             height_m = std::max(height_m, ground_.at(row, column));
         };
-        const int before = static_cast<int>(std::ceil(-shift)) - 1,
-                  behind = static_cast<int>(std::floor(columns_ - 1 - shift)) + 1;
+        const int before = ceil_of(-shift) - 1, behind = floor_of(columns_ - 1 - shift) + 1;
         if (shift + before >= -kBeside) raise_line(before, 0);
         if (shift + behind <= columns_ - 1 + kBeside) raise_line(behind, columns_ - 1);
     }
@@ -131,11 +130,9 @@ const float* ShadowStrip::find(int row, int first, int end) {
     // the next one overwrites what is too much.
     const SweepLines::Row& at = lines_.row(row);
     const double moved = at.shift - lines_.row(far).shift - at.column;
-    const int begin =
-                  std::clamp(static_cast<int>(std::ceil(moved - SweepLines::kOnPost)), first, end),
-              last = std::clamp(
-                  static_cast<int>(std::floor(columns_ - 1 + moved + SweepLines::kOnPost)) + 1,
-                  begin, end);
+    const int begin = std::clamp(ceil_of(moved - SweepLines::kOnPost), first, end),
+              last =
+                  std::clamp(floor_of(columns_ - 1 + moved + SweepLines::kOnPost) + 1, begin, end);
     find_with(row, first, begin, false, shadow_m);
     find_with(row, begin, last, true, shadow_m + (begin - first));
     find_with(row, last, end, false, shadow_m + (last - first));
