@@ -10,6 +10,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "geo/ellipsoid.h"
+
 namespace relevo::light {
 namespace {
 
@@ -152,12 +154,13 @@ SunOverDem SunField::at(const geo::Geodetic& place) const {
             std::atan2(glm::dot(direction_, axes.up), std::hypot(east, north)), 0};
 }
 
+double SunField::shade_m(double apparent_rad) const {
+    const double c = terrain_->curvature(), t = std::tan(std::min(apparent_rad, radians(89.9)));
+    return (std::sqrt(t * t + 2 * c * terrain_->relief_m()) - t) / c;
+}
+
 double SunField::reach_m(double apparent_rad) const {
-    const SunTerrain& terrain = *terrain_;
-    const double t = std::tan(std::min(apparent_rad, radians(89.9)));
-    const double risen_m =
-        (std::sqrt(t * t + 2 * terrain.curvature() * terrain.relief_m()) - t) / terrain.curvature();
-    return std::max(4 * terrain.widest_spacing_m(), risen_m);
+    return std::max(4 * terrain_->widest_spacing_m(), shade_m(apparent_rad));
 }
 
 glm::dvec2 SunField::step(const glm::dvec2& post) const {
@@ -228,6 +231,16 @@ std::optional<SunTile> SunField::tile(const TilePosts& posts, bool along_columns
     return tile;
 }
 
+/// With each metre towards the sun, it stands higher by the Earth's curvature, but the ground falls
+/// away under a ray by that less the ray's own. A tile has one of the two: where shade does not
+/// reach so far that the rays' own matters, the first one, as suns are then linear over long tiles.
+double SunField::curvature_along_ray(double tangent) const {
+    constexpr double kTolerance_rad = radians(0.02);
+    const double earth = 1 / geo::kEquatorialRadius_m, over_ray = terrain_->curvature();
+    const double off_rad = std::abs(earth - over_ray) * shade_m(std::atan(tangent)) / 2;
+    return off_rad < kTolerance_rad ? earth : over_ray;
+}
+
 SweepSun SunField::sun(const SunTile& tile, SunTerrain::Air air, double offset_rad) const {
     // The plane through tangents at the marks, by least squares; a tile may be one post wide.
     const glm::dvec2& at = tile.ray.reference;
@@ -243,11 +256,9 @@ SweepSun SunField::sun(const SunTile& tile, SunTerrain::Air air, double offset_r
     }
     const glm::dvec3 fit = glm::inverse(sums) * found;
     SweepSun sun{tile.ray, fit.x, {fit.y / size.x, fit.z / size.y}};
-    // A ray towards the sun rises over the ground as the Earth's curvature less that of the air's
-    // has it, which is not quite by how much higher the sun stands there.
     const glm::dvec2& first = tile.ray.first;
     const glm::dvec2 along = first * terrain_->spacing_m() * terrain_->spacing_m();
-    const double rises = terrain_->curvature() * (1 + sun.tangent * sun.tangent);
+    const double rises = curvature_along_ray(sun.tangent) * (1 + sun.tangent * sun.tangent);
     sun.tangent_per_post +=
         along * (rises - glm::dot(sun.tangent_per_post, first)) / glm::dot(along, first);
     return sun;
@@ -297,6 +308,11 @@ double SunField::path_error_rad(const SunTile& tile, const SunTile::Mark& mark) 
 double SunField::error_rad(const SunTile& tile) const {
     double worst = 0;
     const auto add = [&](double error_rad) { worst = error_rad <= worst ? worst : error_rad; };
+    if (is_level_) {  // a direction alone: no elevation is asked for
+        for (const SunTile::Mark& mark : tile.marks)
+            add(path_error_rad(tile, mark));
+        return worst <= kPi ? worst : kPi;
+    }
     for (int k = 0; k < (two_airs_ ? 2 : 1); ++k) {
         const SunTerrain::Air air = k == 0 ? first_air() : SunTerrain::kOfHighest;
         const SweepSun model = sun(tile, air, 0);

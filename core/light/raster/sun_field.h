@@ -78,6 +78,8 @@ class SunField {
     const glm::dvec3& direction() const { return direction_; }
 
     /// As far as ground can shade: where a ray has risen over all relief of a round Earth.
+    double shade_m(double apparent_rad) const;
+    /// So far, and some posts at least.
     double reach_m(double apparent_rad) const;
 
     /// The posts of a window between two rays as one tile, whose window is no larger than they
@@ -96,6 +98,7 @@ class SunField {
     glm::dvec2 step(const glm::dvec2& post) const;
 
   private:
+    double curvature_along_ray(double tangent) const;
     double path_error_rad(const SunTile& tile, const SunTile::Mark& mark) const;
 
     const SunTerrain* terrain_;
