@@ -40,6 +40,7 @@ class GroundRows {
         std::fill(out + to, out + width_, kNothing_m);
         if (from == to) return;
         tilt_row({.from_m = sheet.first_m + row * sheet.stride + column + from,
+                  .stride = sheet.stride,
                   .to_m = out + from,
                   .count = to - from,
                   .fall_m = fall_m,

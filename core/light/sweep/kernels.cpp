@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
@@ -63,8 +64,10 @@ void TiltRow(const RowTilt& row) {
         return hn::IfThenElse(hn::IsNaN(h), nothing, hn::Add(hn::Add(h, base), fallen));
     };
     int i = 0;
-    for (; i + kWidth <= row.count; i += kWidth)
+    for (; i + kWidth <= row.count; i += kWidth) {
+        hwy::Prefetch(row.from_m + i + row.stride);
         hn::StoreU(tilted(hn::LoadU(kFloats, row.from_m + i), i), kFloats, row.to_m + i);
+    }
     if (i == row.count) return;
     float last[kWidth] = {};
     std::copy(row.from_m + i, row.from_m + row.count, last);

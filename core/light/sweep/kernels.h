@@ -32,6 +32,7 @@ struct Crossing {
 /// the reference, so that rays are level among them; a hole becomes kNothing_m.
 struct RowTilt {
     const float* from_m;
+    std::ptrdiff_t stride;  ///< to the next row: it is fetched into the cache meanwhile
     float* to_m;
     int count;                      ///< any number: nothing beyond it is touched
     float fall_m, fall_per_line_m;  ///< fallen: fall_m + fall_per_line_m * (line + i + post_offset)
