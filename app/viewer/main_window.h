@@ -156,6 +156,7 @@ class MainWindow {
             act();
         } catch (const Error& error) {
             state_.message = error.what();
+            log::warning(error.what());
         }
     }
 

@@ -9,7 +9,9 @@
 #include "base/output_file.h"
 #include "dem/remote.h"
 #include "image/image.h"
+#include "render/renderer.h"
 #include "scene/job.h"
+#include "session/not_numbers.h"
 #include "session/record.h"
 #include "session/stamps.h"
 #include "session/words.h"
@@ -115,6 +117,10 @@ std::string sun_of(const Picture& picture, const scene::Scene& scene,
 
 std::string save_picture(const Picture& picture, const scene::Scene& scene, const Opened& opened,
                          const Coloured& coloured) {
+    if (const int pixels = render::count_not_numbers(picture.rgba); pixels > 0)
+        failed(
+            "picture: " + session::not_numbers_text(pixels, {picture.width_px, picture.height_px}) +
+            "; relevo capture names the effect");
     image::Image8 image = image::from_device(picture.width_px, picture.height_px, picture.rgba);
     const geo::LocalFrame& frame = opened.ground.frame;
     session::Stamped stamped{scene, *opened.dem, frame, picture.camera};

@@ -636,16 +636,19 @@ int Renderer::triangles() const {
     return impl_->tiles.triangles();
 }
 
+int count_not_numbers(std::span<const std::uint8_t> rgba) {
+    int count = 0;
+    for (std::size_t alpha = 3; alpha < rgba.size(); alpha += 4)
+        count += rgba[alpha] != 255;
+    return count;
+}
+
 image::Image8 Renderer::read_picture(int* not_numbers) const {
     const int width = impl_->options.width_px, height = impl_->options.height_px;
     std::vector<std::uint8_t> texels(static_cast<std::size_t>(width) *
                                      static_cast<std::size_t>(height) * 4);
     impl_->picture.read(0, std::as_writable_bytes(std::span(texels)));
-    if (not_numbers) {
-        *not_numbers = 0;
-        for (std::size_t alpha = 3; alpha < texels.size(); alpha += 4)
-            *not_numbers += texels[alpha] != 255;
-    }
+    if (not_numbers) *not_numbers = count_not_numbers(texels);
     return image::from_device(width, height, texels);
 }
 

@@ -119,9 +119,7 @@ class Renderer {
     const shader::ParamStore& values() const;
     int triangles() const;  ///< of terrain in the last frame
     /// The last frame as RGB, rows from the top.
-    /// @param not_numbers  filled, if not null, with how many pixels have light or colour that is
-    /// no
-    ///                     number, or infinite, before the picture clamps it
+    /// @param not_numbers  filled, if not null, with count_not_numbers()
     image::Image8 read_picture(int* not_numbers = nullptr) const;
     /// The last frame before exposure and tone mapping: linear radiance, RGB.
     image::ImageF read_radiance(int* not_numbers = nullptr) const;
@@ -130,5 +128,9 @@ class Renderer {
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// How many pixels of a Renderer::picture() have light or colour that is no number, or infinite,
+/// before the picture clamps it: they are not opaque.
+int count_not_numbers(std::span<const std::uint8_t> rgba);
 
 }  // namespace relevo::render

@@ -29,6 +29,13 @@ int not_numbers_of(const FaultyPicture& picture, const ActiveEffects& effects) {
 
 }  // namespace
 
+std::string not_numbers_text(int pixels, glm::ivec2 size_px) {
+    return fmt::format(
+        "expected light that is a number in every pixel but got {} of {} pixels that have none or "
+        "an infinite one",
+        pixels, std::int64_t{size_px.x} * size_px.y);
+}
+
 void refuse_not_numbers(const FaultyPicture& picture) {
     // Without its maker there are fewest; of several such effects, what others build upon takes
     // more of them along than the maker itself.
@@ -42,12 +49,8 @@ void refuse_not_numbers(const FaultyPicture& picture) {
             (trial.pixels == best.pixels && !best.id.empty() && trial.effects > best.effects))
             best = trial;
     }
-    const auto pixels = std::int64_t{1} * picture.options.width_px * picture.options.height_px;
-    const std::string what = fmt::format(
-        "expected light that is a number in every pixel but got {} of {} pixels that have none or "
-        "an "
-        "infinite one",
-        picture.pixels, pixels);
+    const std::string what =
+        not_numbers_text(picture.pixels, {picture.options.width_px, picture.options.height_px});
     if (best.id.empty())
         failed(
             fmt::format("capture: {}, whichever effect is off; --only with fewer effects may draw "

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+
+#include <glm/vec2.hpp>
+
 #include "session/active_effects.h"
 
 namespace relevo::session {
@@ -15,6 +19,9 @@ struct FaultyPicture {
     const render::FrameInputs& frame;
     int pixels = 0;  ///< that are no number, or infinite
 };
+
+/// What is wrong with a picture of which some pixels are no number.
+std::string not_numbers_text(int pixels, glm::ivec2 size_px);
 
 /// Finds the effects that make them, by drawing the picture without each in turn.
 /// @throws Error (Failed) that names them, always

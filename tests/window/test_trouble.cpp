@@ -2,6 +2,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include <fmt/format.h>
@@ -69,6 +70,26 @@ TEST_F(Trouble, TwoWindowsThatTakePicturesAtOnceTakeTwo) {
         EXPECT_TRUE(test::WindowedProgram::wait([&] { return count(folder_) == pictures; }, 10))
             << count(folder_) << " of " << pictures;
     }
+}
+
+TEST_F(Trouble, APictureOfWhatIsNoNumberIsNotTaken) {
+    const std::filesystem::path plugin = folder_ / "plugins/sick";
+    std::filesystem::create_directories(plugin);
+    std::ofstream(plugin / "plugin.json")
+        << R"({"format": 1, "id": "sick", "name": "sick", "version": "1"})";
+    std::ofstream(plugin / "sick.glsl")
+        << "uniform float sick_zero = 0.0; //@ range(-1, 1)\n"
+           "void sick_on_lit(in Surface s, inout vec3 radiance) { radiance /= sick_zero; }\n";
+    test::WindowedProgram window(
+        display_, test::build_dir() / "bin/relevo",
+        {dem_, "--only", "sick", "--plugin-path", (folder_ / "plugins").string()}, {}, folder_);
+    ASSERT_TRUE(opens(window)) << window.output();
+    press(window, "F12");
+    EXPECT_TRUE(test::WindowedProgram::wait([&] {
+        return window.output().find("picture: expected light that is a number in every pixel") !=
+               std::string::npos;
+    })) << window.output();
+    EXPECT_EQ(count(folder_), 1);  // the plugins
 }
 
 TEST_F(Trouble, WithoutItsFolderItGoesOn) {
