@@ -18,6 +18,17 @@ using geo::kEquatorialRadius_m;
 using geo::kFlattening;
 constexpr double kBennett45_rad = radians(59.7 / 3600);  // frame.glsl: eye_sun_light.a
 
+/// Of a sun, at a place where its geometric elevation has a sine: irradiance, and in `a` how far
+/// along the vertical the air moves its direction.
+glm::dvec4 light_at(const SunLight& sun, double sine) {
+    const double elevation = std::asin(std::clamp(sine, -1.0, 1.0));
+    const double lift = sun.refraction_rad ? sun.refraction_rad(elevation) : 0.0;
+    // normalize(direction + a up) is lifted by the refraction; at the zenith there is none.
+    const double cosine = std::cos(elevation + lift);
+    return {sun::direct_transmittance(elevation + lift, sun.ground_height_m),
+            cosine > 1e-6 ? std::sin(lift) / cosine : 0.0};
+}
+
 }  // namespace
 
 glm::dmat4 view_matrix(const scene::Camera& camera) {
@@ -42,35 +53,22 @@ glm::dmat4 projection_matrix(const scene::Camera& camera, int width_px, int heig
     return p;
 }
 
-SunLightFit fit_sun_light(const SunLight& sun) {
-    const double centre = 0.5 * (sun.lowest_sine + sun.highest_sine);
-    const double half = std::max(0.5 * (sun.highest_sine - sun.lowest_sine), 1e-4);
-    // Interpolation through four Chebyshev nodes, by divided differences, then to powers of t.
-    std::array<double, 4> t{};
-    std::array<glm::dvec4, 4> f{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        t[i] = std::cos(kPi * (2 * static_cast<double>(i) + 1) / 8);
-        const double elevation = std::asin(std::clamp(centre + half * t[i], -1.0, 1.0));
-        const double lift = sun.refraction_rad ? sun.refraction_rad(elevation) : 0.0;
-        const glm::dvec3 light = sun::direct_transmittance(elevation + lift, sun.ground_height_m);
-        // normalize(direction + a up) is lifted by the refraction; at the zenith there is none.
-        const double cosine = std::cos(elevation + lift);
-        f[i] = glm::dvec4(light, cosine > 1e-6 ? std::sin(lift) / cosine : 0.0);
+double sun_light_scale(double sine) {
+    return sine / (std::abs(sine) + 0.1);
+}
+
+SunLightTable sun_light_table(const SunLight& sun) {
+    // Margins make up for single precision.
+    const double begin = sun_light_scale(sun.lowest_sine) - 1e-5,
+                 step = (sun_light_scale(sun.highest_sine) + 1e-5 - begin) /
+                        (SunLightTable::kEntries - 1);
+    SunLightTable table;
+    table.domain = {static_cast<float>(begin), static_cast<float>(1 / step)};
+    for (std::size_t i = 0; i < SunLightTable::kEntries; ++i) {
+        const double scaled = begin + static_cast<double>(i) * step;
+        table.light[i] = glm::vec4(light_at(sun, 0.1 * scaled / (1 - std::abs(scaled))));
     }
-    for (std::size_t order = 1; order < 4; ++order)
-        for (std::size_t i = 3; i >= order; --i)
-            f[i] = (f[i] - f[i - 1]) / (t[i] - t[i - order]);
-    std::array<glm::dvec4, 4> powers{f[3], glm::dvec4(0), glm::dvec4(0), glm::dvec4(0)};
-    for (std::size_t k = 3; k-- > 0;) {
-        for (std::size_t i = 3; i > 0; --i)
-            powers[i] = powers[i - 1] - t[k] * powers[i];
-        powers[0] = f[k] - t[k] * powers[0];
-    }
-    SunLightFit fit;
-    for (std::size_t i = 0; i < 4; ++i)
-        fit.powers[i] = glm::vec4(powers[i]);
-    fit.domain = {static_cast<float>(centre), static_cast<float>(1 / half)};
-    return fit;
+    return table;
 }
 
 // In one piece: a list of members, each filled once.
@@ -128,9 +126,11 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     block.sun_apparent = glm::vec4(
         std::cos(elevation + lift) * heading + glm::dvec3(0, 0, std::sin(elevation + lift)),
         elevation + lift);
-    const SunLightFit fit = fit_sun_light(inputs.sun);
-    block.sun_light = fit.powers;
-    block.sun_light_domain = {fit.domain.x, fit.domain.y, 0, 0};
+    block.sun_light[0] =
+        glm::vec4(light_at(inputs.sun, 0.5 * (inputs.sun.lowest_sine + inputs.sun.highest_sine)));
+    const SunLightTable table = sun_light_table(inputs.sun);
+    block.sun_light_table = table.light;
+    block.sun_light_domain = {table.domain.x, table.domain.y, 0, 0};
     block.sky_irradiance = glm::vec4(sun::sky_irradiance(elevation), 0);
     block.height_range = {ground.lowest_m, 1 / std::max(ground.highest_m - ground.lowest_m, 1e-3),
                           inputs.exaggeration,

@@ -15,8 +15,10 @@ layout(std140, binding = 0) uniform Frame {
     vec4 polar_axis;          // xyz: unit vector along the Earth's axis, northwards
     vec4 sun_direction;       // xyz: towards the sun at the DEM's centre, geometric; w: its elevation [rad]
     vec4 sun_apparent;        // xyz: the same with refraction; w: apparent elevation [rad]
-    vec4 sun_light[4];        // polynomial over the DEM: rgb irradiance, a refraction (sun_light())
-    vec4 sun_light_domain;    // x: its centre, y: 1/half-width, in sines of the geometric elevation
+    vec4 sun_light[4];        // [0]: rgb irradiance on a surface that faces the sun, in the middle of the DEM, a
+                              // refraction; the others are 0
+    vec4 sun_light_domain;    // of sun_light_table; x: where it begins, y: entries of it a unit, on the scale of
+                              // sun_light_scale()
     vec4 sky_irradiance;      // rgb: on level ground from the whole sky
     vec4 height_range;        // x: lowest post [m], y: 1/(highest - lowest) [1/m], z: exaggeration,
                               // w: lowest that effects move ground to [m], before exaggeration
@@ -42,4 +44,5 @@ layout(std140, binding = 0) uniform Frame {
                               // w: greatest margin [m]
     vec4 light_axes;          // xy: columns and rows of the DEM to a metre east, zw: north, at its centre
     vec4 light_map;           // x: 1 where these are so everywhere by the compass, 0 where they are by the frame's x, y
+    vec4 sun_light_table[128];  // over the DEM, by the sine of the geometric elevation: as sun_light[0] (sun_light())
 } frame;

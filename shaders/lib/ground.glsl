@@ -22,13 +22,20 @@ float height_unit_of(in float height_m) {
     return clamp((height_m - frame.height_range.x) * frame.height_range.y, 0.0, 1.0);
 }
 
+/// Where a sine of the sun's elevation is on the scale of frame.sun_light_table, which is finest near the
+/// horizon, where a degree changes the light most.
+float sun_light_scale(in float sine) {
+    return sine / (abs(sine) + 0.1);
+}
+
 /// The sun as seen from a point with the given local vertical.
 /// @param to_sun  its apparent direction: refraction lifts it towards the vertical
 /// @returns irradiance on a surface that faces it, rgb
 vec3 sun_light(in vec3 up, out vec3 to_sun) {
-    float t = (dot(frame.sun_direction.xyz, up) - frame.sun_light_domain.x) * frame.sun_light_domain.y;
-    vec4 light = frame.sun_light[0] +
-                 t * (frame.sun_light[1] + t * (frame.sun_light[2] + t * frame.sun_light[3]));
+    float scaled = sun_light_scale(dot(frame.sun_direction.xyz, up));
+    float at = clamp((scaled - frame.sun_light_domain.x) * frame.sun_light_domain.y, 0.0, 127.0);
+    int entry = min(int(at), 126);
+    vec4 light = mix(frame.sun_light_table[entry], frame.sun_light_table[entry + 1], at - float(entry));
     to_sun = normalize(frame.sun_direction.xyz + light.a * up);
-    return max(light.rgb, vec3(0.0));
+    return light.rgb;
 }
