@@ -187,11 +187,9 @@ Array2d<std::uint8_t> mask_of(const Array2d<float>& lit) {
 }
 
 std::vector<dem::Window> raster_parts(const dem::Window& window, std::int64_t most_posts) {
-    // Of whole blocks of the result where they are so large.
-    constexpr int kBlock = 512, kLeast = 64;
+    constexpr int kBlock = 512;  // of the result's posts
     const int fitting = static_cast<int>(std::sqrt(static_cast<double>(most_posts)));
-    const int step = fitting >= kBlock ? kBlock : kLeast;
-    const int side = std::max(kLeast, fitting / step * step);
+    const int side = std::max(kBlock, fitting / kBlock * kBlock);
     std::vector<dem::Window> parts;
     for (int row = 0; row < window.rows; row += side)
         for (int column = 0; column < window.columns; column += side)

@@ -54,12 +54,13 @@ output::RasterMetadata raster_metadata(const dem::Posts& posts, const std::strin
 /// 0 in the shade, 1 lit, 255 without a figure. @param lit  as light::Shadows
 Array2d<std::uint8_t> mask_of(const Array2d<float>& lit);
 
-/// Squares of a window, one after the other, of so many posts at most.
+/// Squares of a window, one after the other, of so many posts at most, but of whole blocks of the
+/// result: smaller ones would sweep the same ground again and again.
 std::vector<dem::Window> raster_parts(const dem::Window& window, std::int64_t most_posts);
 
 /// Of a DEM beyond its memory a part of the result has this share of the posts that may be in
-/// memory, as each takes some ten times as much as a height.
-inline constexpr std::int64_t kPostsAPart = 32;
+/// memory, as each takes some times as much as a height.
+inline constexpr std::int64_t kPostsAPart = 8;
 
 enum class SunFigure { Hours, Shadow, SkyView };
 

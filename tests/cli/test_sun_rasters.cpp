@@ -253,10 +253,10 @@ TEST(SunMemory, WhatABudgetIsMakesNoDifference) {
         hills("metres.tif", "EPSG:32632", {{500000, 30, 0, 5300000, 0, -20}}),
         hills("turned.tif", "EPSG:32632", {{500000, 25, 9, 5300000, 8, -27}}),
         hills("degrees.tif", "EPSG:4326", {{11, 0.001, 0, 47.6, 0, -0.0007}})};
-    // Of a part, which takes four parts of that budget, for the time that all would take.
-    const std::vector<std::string> clips{"--clip=505000,5294000,509500,5297000",
-                                         "--clip=506000,5295000,509000,5298000",
-                                         "--clip=11.2,47.4,11.35,47.5"};
+    // Of two parts of that budget, some 600 posts by 80, for the time that all would take.
+    const std::vector<std::string> clips{"--clip=503000,5294000,521000,5295600",
+                                         "--clip=503000,5297000,518500,5298000",
+                                         "--clip=11.05,47.42,11.65,47.48"};
     for (std::size_t k = 0; k < dems.size(); ++k)
         for (const std::vector<std::string>& question : questions()) {
             if (k == 1 && question.front() == "hours") continue;  // sweeps as those of metres
@@ -271,7 +271,7 @@ TEST(SunMemory, WhatABudgetIsMakesNoDifference) {
     const Result dry = relevo(
         {"sun", "sky-view", dems.front(), "--dry-run", "--memory", "1", "-o", out("dry.tif")});
     EXPECT_TRUE(dry.out.starts_with(
-        "posts               281101, in 77 parts\nmemory              some 387 MiB, 257 of "
+        "posts               281101, in 2 parts\nmemory              some 388 MiB, 257 of "
         "them heights\n"))
         << dry.out;
 }

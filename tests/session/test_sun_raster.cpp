@@ -95,10 +95,14 @@ TEST(SunRasterParts, AFileHasTheVoidsOfAllOfItsParts) {
     EXPECT_EQ(dem::band_metadata(written.string(), 1).at("HOLES"), "75");
 }
 
+TEST(SunRasterParts, AreWholeBlocksHoweverLittleMemoryThereIs) {
+    EXPECT_EQ(raster_parts({0, 0, 1300, 600}, 5000).size(), 6U);
+}
+
 TEST(SunRasterParts, HoldEachPostOnceWhateverTheShape) {
     for (const dem::Window& window :
-         {dem::Window{0, 0, 1300, 200}, {7, 3, 100, 1500}, {5, 900, 513, 512}, {0, 0, 30, 20}})
-        for (const std::int64_t most : {std::int64_t{5000}, std::int64_t{300000}}) {
+         {dem::Window{0, 0, 2300, 200}, {7, 3, 100, 1500}, {5, 900, 513, 512}, {0, 0, 30, 20}})
+        for (const std::int64_t most : {std::int64_t{300000}, std::int64_t{1100000}}) {
             Array2d<std::uint8_t> held(window.columns, window.rows);
             for (const dem::Window& part : raster_parts(window, most)) {
                 ASSERT_GE(part.column, window.column);
