@@ -5,6 +5,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <span>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -187,34 +188,37 @@ void ServiceTables::fill_tables() {
                       copy_out(services.frame(), frame);
                   });
               }};
-    draw_ = {sizeof draw_,
-             0,
-             this,
-             [](void* self, const char* file, relevo_program* program) {
-                 return serve_device(self, "relevo.draw: program", [&](Services& services) {
-                     there(program, "program");
-                     *program = services.create_program(there(file, "file"));
-                 });
-             },
-             [](void* self, relevo_program program) {
-                 return serve_device(self, "relevo.draw: destroy_program", [&](Services& services) {
-                     services.destroy_program(program);
-                 });
-             },
-             [](void* self, const relevo_draw* given) {
-                 return serve_device(self, "relevo.draw: draw", [&](Services& services) {
-                     const relevo_draw draw = copy_in(given, "draw");
-                     if (draw.input_count < 0 || draw.input_count > RELEVO_MAX_INPUTS ||
-                         draw.value_count < 0 || draw.value_count > RELEVO_MAX_VALUES)
-                         refuse("expected up to " + std::to_string(RELEVO_MAX_INPUTS) +
-                                " inputs and " + std::to_string(RELEVO_MAX_VALUES) +
-                                " values but got " + std::to_string(draw.input_count) + " and " +
-                                std::to_string(draw.value_count));
-                     if (draw.input_count > 0) there(draw.inputs, "draw->inputs");
-                     if (draw.value_count > 0) there(draw.values, "draw->values");
-                     services.draw(draw);
-                 });
-             }};
+    draw_ = {
+        sizeof draw_,
+        0,
+        this,
+        [](void* self, const char* file, relevo_program* program) {
+            return serve_device(self, "relevo.draw: program", [&](Services& services) {
+                there(program, "program");
+                *program = services.create_program(there(file, "file"));
+            });
+        },
+        [](void* self, relevo_program program) {
+            return serve_device(self, "relevo.draw: destroy_program",
+                                [&](Services& services) { services.destroy_program(program); });
+        },
+        [](void* self, const relevo_draw* given) {
+            return serve_device(self, "relevo.draw: draw", [&](Services& services) {
+                const relevo_draw draw = copy_in(given, "draw");
+                if (draw.input_count < 0 || draw.input_count > RELEVO_MAX_INPUTS ||
+                    draw.value_count < 0 || draw.value_count > RELEVO_MAX_VALUES)
+                    refuse("expected up to " + std::to_string(RELEVO_MAX_INPUTS) + " inputs and " +
+                           std::to_string(RELEVO_MAX_VALUES) + " values but got " +
+                           std::to_string(draw.input_count) + " and " +
+                           std::to_string(draw.value_count));
+                if (draw.input_count > 0) there(draw.inputs, "draw->inputs");
+                if (draw.value_count > 0) there(draw.values, "draw->values");
+                const std::span inputs(draw.inputs, static_cast<std::size_t>(draw.input_count));
+                if (std::ranges::find(inputs, draw.target) != inputs.end())
+                    refuse("expected a target that the same draw does not read");
+                services.draw(draw);
+            });
+        }};
     terrain_ = {
         sizeof terrain_,
         0,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <mutex>
 #include <utility>
 
 #include <dlfcn.h>
@@ -245,11 +246,30 @@ struct Context::Impl {
     }
 };
 
+std::string fall_back_notice(std::span<const RefusedDevice> refused, const DeviceInfo& chosen) {
+    const auto hardware = std::ranges::find_if(refused, [](const RefusedDevice& each) {
+        return each.device.platform == "device" && !each.device.software;
+    });
+    if (hardware == refused.end() || !chosen.device.software) return "";
+    return fmt::format("gl: {} draws, on the processor, as device {} ({}) {}", chosen.renderer,
+                       hardware->device.index, hardware->device.description, hardware->reason);
+}
+
+namespace {
+
+void tell_of_fall_back(std::span<const RefusedDevice> refused, const DeviceInfo& chosen) {
+    static std::once_flag once;
+    if (const std::string notice = fall_back_notice(refused, chosen); !notice.empty())
+        std::call_once(once, [&] { log::warning(notice); });
+}
+
+}  // namespace
+
 Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()) {
     const std::vector<Candidate> all = candidates();
     const std::string wanted = lower(options.device.empty() ? "auto" : options.device);
     const std::optional<double> index = parse_number(wanted);
-    std::string tried;
+    std::vector<RefusedDevice> refused;
     for (const Candidate& candidate : all) {
         const Device& device = candidate.device;
         if (index && device.index != static_cast<int>(*index)) continue;
@@ -265,11 +285,12 @@ Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()
             reason = fmt::format("is {}", impl_->info.renderer);
         if (reason.empty()) {
             impl_->start(options.debug);
+            log::debug(fmt::format("gl: {} draws", impl_->info.renderer));
+            if (wanted == "auto") tell_of_fall_back(refused, impl_->info);
             return;
         }
         impl_->close();
-        tried += fmt::format("\n  {}: {} ({}) {}", device.index, device.platform,
-                             device.description, reason);
+        refused.push_back({device, reason});
     }
     if (const std::string missing = missing_library(); !missing.empty())
         throw Error(
@@ -281,6 +302,10 @@ Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()
         throw Error(ErrorCode::NoDevice,
                     "gl: no GL device: EGL offers none; install Mesa's software renderer "
                     "(libegl1, libegl-mesa0, libgl1-mesa-dri)");
+    std::string tried;
+    for (const auto& [device, reason] : refused)
+        tried += fmt::format("\n  {}: {} ({}) {}", device.index, device.platform,
+                             device.description, reason);
     throw Error(ErrorCode::NoDevice,
                 fmt::format("gl: no GL device: none of the {} found is \"{}\" and can draw with "
                             "OpenGL 4.5 core{}; see `relevo doctor`",

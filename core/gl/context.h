@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,12 @@ std::vector<Device> list_devices();
 /// Whether a renderer, by the name that GL gives it, is known to draw on the processor.
 bool is_software_renderer(std::string_view renderer);
 
+/// A device that was tried and would not do.
+struct RefusedDevice {
+    Device device;
+    std::string reason;  ///< "has no OpenGL 4.5 core"
+};
+
 /// What GL says of itself once a context is current.
 struct DeviceInfo {
     Device device;
@@ -38,6 +45,9 @@ struct DeviceInfo {
     int max_samples = 0;        ///< of a half-float colour target
     double max_anisotropy = 1;  ///< 1 where there is no anisotropic filter
 };
+
+/// That a software renderer draws as hardware would not do; empty where there was none.
+std::string fall_back_notice(std::span<const RefusedDevice> refused, const DeviceInfo& chosen);
 
 struct ContextOptions {
     /// "auto", the index of a device, "software", or a part of a renderer's name ("nvidia").
@@ -55,6 +65,7 @@ struct ContextOptions {
 /// when they go.
 class Context {
   public:
+    /// Says so once where any device was asked for and a software one takes the place of hardware.
     /// @throws Error (NoDevice) with each device that was tried and why it would not do
     explicit Context(const ContextOptions& options = {});
     /// A context that someone else has made, such as a window's, and made current on this thread.

@@ -1,5 +1,7 @@
 #include "gl/program.h"
 
+#include <array>
+
 #include <epoxy/gl.h>
 
 #include "gl/errors.h"
@@ -38,7 +40,58 @@ std::optional<std::string> compile(const Shader& shader, std::string_view text) 
     return info_log(shader.name(), glGetShaderiv, glGetShaderInfoLog);
 }
 
+/// @param is_sampler  of the type of a uniform; the kind none where no Texture is of it
+std::optional<TextureKind> kind_of(GLenum type, bool& is_sampler) {
+    is_sampler = true;
+    switch (type) {
+        case GL_SAMPLER_2D:
+        case GL_SAMPLER_2D_SHADOW:
+        case GL_INT_SAMPLER_2D:
+        case GL_UNSIGNED_INT_SAMPLER_2D:
+            return TextureKind::D2;
+        case GL_SAMPLER_2D_ARRAY:
+        case GL_SAMPLER_2D_ARRAY_SHADOW:
+        case GL_INT_SAMPLER_2D_ARRAY:
+        case GL_UNSIGNED_INT_SAMPLER_2D_ARRAY:
+            return TextureKind::D2Array;
+        case GL_SAMPLER_3D:
+        case GL_INT_SAMPLER_3D:
+        case GL_UNSIGNED_INT_SAMPLER_3D:
+            return TextureKind::D3;
+        case GL_SAMPLER_1D:
+        case GL_SAMPLER_1D_ARRAY:
+        case GL_SAMPLER_2D_MULTISAMPLE:
+        case GL_SAMPLER_2D_RECT:
+        case GL_SAMPLER_BUFFER:
+        case GL_SAMPLER_CUBE:
+        case GL_SAMPLER_CUBE_MAP_ARRAY:
+            return std::nullopt;
+        default:
+            is_sampler = false;
+            return std::nullopt;
+    }
+}
+
 }  // namespace
+
+std::vector<Program::Sampler> Program::samplers() const {
+    std::vector<Sampler> found;
+    GLint uniforms = 0;
+    glGetProgramiv(name(), GL_ACTIVE_UNIFORMS, &uniforms);
+    for (GLint i = 0; i < uniforms; ++i) {
+        std::array<char, 256> text{};
+        GLint size = 0, unit = 0;
+        GLenum type = 0;
+        glGetActiveUniform(name(), static_cast<GLuint>(i), static_cast<GLsizei>(text.size()),
+                           nullptr, &size, &type, text.data());
+        bool is_sampler = false;
+        const std::optional<TextureKind> kind = kind_of(type, is_sampler);
+        if (!is_sampler) continue;
+        glGetUniformiv(name(), glGetUniformLocation(name(), text.data()), &unit);
+        found.push_back({text.data(), unit, kind});
+    }
+    return found;
+}
 
 void Program::destroy(unsigned name) {
     glDeleteProgram(name);

@@ -3,8 +3,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gl/handle.h"
+#include "gl/texture.h"
 
 namespace relevo::gl {
 
@@ -25,6 +27,14 @@ class Program {
                                         std::string_view label, Failure& failure);
 
     void use() const;
+
+    /// What the text reads textures by.
+    struct Sampler {
+        std::string name;
+        int unit = 0;
+        std::optional<TextureKind> kind;  ///< none: of a kind that no Texture is
+    };
+    std::vector<Sampler> samplers() const;
 
     unsigned name() const { return handle_.name(); }
 

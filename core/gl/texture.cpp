@@ -11,6 +11,19 @@
 #include "gl/errors.h"
 
 namespace relevo::gl {
+
+std::string_view sampler_name(TextureKind kind) {
+    switch (kind) {
+        case TextureKind::D2:
+            return "sampler2D";
+        case TextureKind::D2Array:
+            return "sampler2DArray";
+        case TextureKind::D3:
+            return "sampler3D";
+    }
+    return "";
+}
+
 namespace {
 
 /// Of one call that reads texels: GL counts them in 31 bits, and drivers in fewer.

@@ -13,6 +13,8 @@ namespace relevo::gl {
 using Format = PixelFormat;
 
 enum class TextureKind { D2, D2Array, D3 };
+/// What GLSL calls samplers of such textures, without letters before or after: "sampler2DArray".
+std::string_view sampler_name(TextureKind kind);
 enum class Wrap { Clamp, Repeat };
 enum class Filter { Nearest, Linear, Mipmap };
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -81,7 +82,11 @@ struct NativeHost::Impl : effect::ModuleServices {
 
     effect::ServiceTables tables{*this};
     NativeTextures textures;
-    std::map<relevo_program, gl::Program> programs;
+    struct OwnProgram {
+        gl::Program program;
+        std::vector<gl::Program::Sampler> samplers;
+    };
+    std::map<relevo_program, OwnProgram> programs;
     relevo_program last_program = 0;
     gl::VertexArray no_inputs;
     gl::Buffer frame_block{sizeof(FrameBlock), "sun frame block"};
@@ -215,12 +220,29 @@ struct NativeHost::Impl : effect::ModuleServices {
             refuse(fmt::format("{}: the driver refuses it\n{}", file,
                                shader::parse_driver_log(failure.log, lines).text()));
         }
-        programs.emplace(++last_program, std::move(*program));
+        std::vector<gl::Program::Sampler> samplers = program->samplers();
+        programs.emplace(++last_program, OwnProgram{std::move(*program), std::move(samplers)});
         return last_program;
     }
 
     void destroy_program(relevo_program program) override {
         if (programs.erase(program) == 0) refuse(fmt::format("there is no program {}", program));
+    }
+
+    void check_inputs(const OwnProgram& program, const relevo_draw& draw) {
+        const std::span inputs(draw.inputs, static_cast<std::size_t>(draw.input_count));
+        for (const gl::Program::Sampler& sampler : program.samplers) {
+            if (sampler.unit >= draw.input_count)
+                refuse(fmt::format("expected an input for {} of unit {} but got {} inputs",
+                                   sampler.name, sampler.unit, draw.input_count));
+            const gl::TextureKind kind =
+                textures.get(inputs[static_cast<std::size_t>(sampler.unit)]).kind();
+            if (sampler.kind != kind)
+                refuse(
+                    fmt::format("expected a texture of the kind that {} of unit {} reads but "
+                                "got one of {}",
+                                sampler.name, sampler.unit, gl::sampler_name(kind)));
+        }
     }
 
     void draw(const relevo_draw& draw) override {
@@ -230,8 +252,9 @@ struct NativeHost::Impl : effect::ModuleServices {
         if (draw.layer < 0 || draw.layer >= target.extent().depth || draw.level < 0 ||
             draw.level >= target.levels() || target.format() == gl::Format::Depth32F)
             refuse("expected a layer and a level of a colour texture");
+        check_inputs(program->second, draw);
         const gl::Framebuffer framebuffer(target, draw.level, draw.layer, module.id());
-        program->second.use();
+        program->second.program.use();
         for (int i = 0; i < draw.input_count; ++i)
             textures.get(draw.inputs[i]).bind(static_cast<unsigned>(i));
         if (draw.value_count > 0) glUniform4fv(0, draw.value_count, draw.values);

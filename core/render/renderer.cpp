@@ -31,6 +31,16 @@
 namespace relevo::render {
 namespace {
 
+/// @throws Error (Failed) for a texture of another kind than its sampler is: that would be black
+void check_kind(const gl::Texture& texture, const shader::TextureUnit& unit) {
+    const std::string_view kind = gl::sampler_name(texture.kind());
+    // Of "usampler2DArray" the letter does not matter.
+    if (unit.type.ends_with(kind) || unit.type == fmt::format("{}Shadow", kind)) return;
+    failed(fmt::format(
+        "render: {}: {} {}: expected a texture of that kind but the module makes {} one of {}",
+        unit.owner, unit.type, unit.name, unit.resource, kind));
+}
+
 constexpr unsigned kFrameBinding = 0;
 constexpr unsigned kParamsBinding = 1;
 
@@ -326,8 +336,11 @@ struct Renderer::Impl {
         for (const shader::TextureUnit& unit : program.textures) {
             const gl::Texture* texture = core_texture(unit.resource, ground);
             if (!texture) texture = effect_textures.find(unit.resource);
-            for (const NativeHost& native : natives)
-                if (!texture) texture = native.find(unit.resource);
+            for (const NativeHost& native : natives) {
+                if (texture) break;
+                texture = native.find(unit.resource);
+                if (texture) check_kind(*texture, unit);
+            }
             if (!texture)
                 failed(fmt::format("render: the texture {} of {} does not exist", unit.resource,
                                    unit.owner));

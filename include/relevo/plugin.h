@@ -203,7 +203,9 @@ typedef struct relevo_draw {
     int32_t input_count;
     int32_t value_count;
     uint32_t reserved;
-    const relevo_texture* inputs; /* bound to units 0, 1, ...; null where there are none */
+    /* Bound to units 0, 1, ...; null where there are none. One for each sampler of the program, of
+     * its kind, and not the target. */
+    const relevo_texture* inputs;
     const float* values; /* vec4s of the program's `values`, four floats each; null likewise */
 } relevo_draw;
 #define RELEVO_MAX_VALUES 16

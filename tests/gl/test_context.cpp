@@ -1,7 +1,9 @@
 #include <array>
 #include <cstdlib>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -54,6 +56,23 @@ TEST(Context, KnowsASoftwareRendererWhateverThePlatform) {
          {"NVIDIA H100/PCIe/SSE2", "Mesa Intel(R) UHD Graphics 620 (KBL GT2)",
           "AMD Radeon RX 6800 (navi21, LLVM 15.0.6, DRM 3.49)"})
         EXPECT_FALSE(is_software_renderer(renderer)) << renderer;
+}
+
+TEST(Context, SaysThatSoftwareTakesThePlaceOfHardwareThatWouldNotDo) {
+    const std::vector<RefusedDevice> refused{
+        {{.index = 0, .platform = "device", .description = "/dev/dri/renderD128"},
+         "has no OpenGL 4.5 core"},
+        {{.index = 1, .platform = "device", .description = "software renderer", .software = true},
+         "does not open"}};
+    DeviceInfo chosen;
+    chosen.renderer = "llvmpipe (LLVM 15.0.6, 256 bits)";
+    chosen.device.software = true;
+    EXPECT_EQ(fall_back_notice(refused, chosen),
+              "gl: llvmpipe (LLVM 15.0.6, 256 bits) draws, on the processor, as device 0 "
+              "(/dev/dri/renderD128) has no OpenGL 4.5 core");
+    EXPECT_EQ(fall_back_notice(std::span(refused).subspan(1), chosen), "");
+    chosen.device.software = false;
+    EXPECT_EQ(fall_back_notice(refused, chosen), "");
 }
 
 TEST(Context, MissingLibrariesAreAMessage) {

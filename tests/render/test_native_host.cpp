@@ -165,6 +165,63 @@ TEST_F(NativeHostTest, WhatTheDriverRefusesOfAProgramHasFileAndLine) {
     EXPECT_TRUE(error.ends_with(kTail)) << error;
 }
 
+TEST_F(NativeHostTest, ADrawHasAnInputOfItsKindForEachSamplerAndDoesNotReadItsTarget) {
+    std::ofstream(folder_ / "copy.glsl")
+        << "layout(binding = 0) uniform sampler2D one;\nlayout(binding = 1) uniform sampler2DArray "
+           "many;\nout vec4 colour;\n"
+           "void main() { colour = texture(one, vec2(0.5)) + texture(many, vec3(0.5)); }\n";
+    std::vector<std::string> errors;
+    for (int k = 0; k < 4; ++k)
+        errors.push_back(draw([k](const relevo_host* host) {
+            const auto& textures = service<relevo_texture_1>(host, "relevo.texture");
+            const auto& draws = service<relevo_draw_1>(host, "relevo.draw");
+            relevo_texture_info info = texture_info(RELEVO_FORMAT_RGBA16F, 4);
+            relevo_texture target = 0, flat = 0, layered = 0;
+            textures.create(textures.self, &info, &target);
+            textures.create(textures.self, &info, &flat);
+            info.layers = 2;
+            textures.create(textures.self, &info, &layered);
+            const relevo_texture inputs[4][2] = {
+                {flat, layered}, {target, layered}, {flat, flat}, {flat, layered}};
+            relevo_draw drawn{};
+            drawn.size = sizeof drawn;
+            drawn.target = target;
+            drawn.inputs = inputs[k];
+            drawn.input_count = k == 3 ? 1 : 2;
+            draws.program(draws.self, "copy.glsl", &drawn.program);
+            return draws.draw(draws.self, &drawn);
+        }));
+    EXPECT_THAT(
+        errors,
+        testing::ElementsAre(
+            "no error",
+            head() + "relevo.draw: draw: expected a target that the same draw does not read" +
+                kTail,
+            head() +
+                "expected a texture of the kind that many of unit 1 reads but got one of "
+                "sampler2D" +
+                kTail,
+            head() + "expected an input for many of unit 1 but got 1 inputs" + kTail));
+}
+
+TEST_F(NativeHostTest, ATextureOfAnotherKindThanItsSamplerIsAnError) {
+    const std::string error = draw(
+        [](const relevo_host* host) {
+            const auto& textures = service<relevo_texture_1>(host, "relevo.texture");
+            relevo_texture_info info = texture_info(RELEVO_FORMAT_R32F, 4);
+            info.name = "map";
+            relevo_texture texture = 0;
+            return textures.create(textures.self, &info, &texture);
+        },
+        "uniform sampler2DArray puppet_map;\n"
+        "void puppet_on_albedo(inout Surface s) {\n"
+        "    s.diffuse = texture(puppet_map, vec3(0.5)).rgb;\n"
+        "}\n");
+    EXPECT_EQ(error,
+              "exit 1: render: puppet: sampler2DArray puppet_map: expected a texture of that kind "
+              "but the module makes puppet.map one of sampler2D");
+}
+
 TEST_F(NativeHostTest, AFailedDepthPassLeavesTheStateAsItWas) {
     bool drawn = true;
     std::vector<GLenum> left;
