@@ -18,7 +18,11 @@ thread_local const Messages* of_thread = nullptr;
 std::atomic<const Messages*> newest{nullptr};
 
 std::mutex guards_mutex;
-std::vector<const Messages*> guards;  // in their order
+struct Guard {
+    const Messages* messages;
+    SignalsOf whose;
+};
+std::vector<Guard> guards;  // in their order
 std::array<struct sigaction, kFatalSignals.size()> old_actions;
 
 void on_signal(int signal) {
@@ -29,10 +33,16 @@ void on_signal(int signal) {
     raise(signal);
 }
 
-void add(const Messages* messages) {
+void find_newest() {
+    newest = nullptr;
+    for (const Guard& guard : guards)
+        if (guard.whose == SignalsOf::ThreadsWithoutAGuard) newest = guard.messages;
+}
+
+void add(const Guard& guard) {
     const std::lock_guard lock(guards_mutex);
-    guards.push_back(messages);
-    newest = messages;
+    guards.push_back(guard);
+    find_newest();
     if (guards.size() > 1) return;
     struct sigaction action {};
     action.sa_handler = on_signal;
@@ -43,8 +53,8 @@ void add(const Messages* messages) {
 
 void remove(const Messages* messages) {
     const std::lock_guard lock(guards_mutex);
-    std::erase(guards, messages);
-    newest = guards.empty() ? nullptr : guards.back();
+    std::erase_if(guards, [&](const Guard& guard) { return guard.messages == messages; });
+    find_newest();
     if (!guards.empty()) return;
     for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
         sigaction(kFatalSignals[i].number, &old_actions[i], nullptr);
@@ -60,7 +70,8 @@ struct FatalSignalGuard::Impl {
     stack_t old_stack{};
 };
 
-FatalSignalGuard::FatalSignalGuard(const std::function<std::string(const char* ending)>& message)
+FatalSignalGuard::FatalSignalGuard(const std::function<std::string(const char* ending)>& message,
+                                   SignalsOf whose)
     : impl_(std::make_unique<Impl>()) {
     for (std::size_t i = 0; i < kFatalSignals.size(); ++i)
         impl_->messages[i] = message(kFatalSignals[i].name);
@@ -70,7 +81,7 @@ FatalSignalGuard::FatalSignalGuard(const std::function<std::string(const char* e
     sigaltstack(&stack, &impl_->old_stack);
     impl_->outer = of_thread;
     of_thread = &impl_->messages;
-    add(&impl_->messages);
+    add({&impl_->messages, whose});
 }
 
 FatalSignalGuard::~FatalSignalGuard() {

@@ -104,9 +104,12 @@ ModuleCall::ModuleCall(ModuleInProcess& module, const std::string& function)
       signals_(new Signals{.running = {.on_exit = module.message(function, "ended the program"),
                                        .watchdog = &module.watchdog_,
                                        .thread = std::this_thread::get_id()},
-                           .guard = FatalSignalGuard([&](const char* ending) {
-                               return module.message(function, fmt::format("ended in {}", ending));
-                           })}) {
+                           .guard = FatalSignalGuard(
+                               [&](const char* ending) {
+                                   return module.message(function,
+                                                         fmt::format("ended in {}", ending));
+                               },
+                               SignalsOf::ThisThread)}) {
     running.store(&signals_->running);
     const std::chrono::milliseconds limit = patience();
     module.watchdog_.start(
