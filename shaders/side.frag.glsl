@@ -36,6 +36,10 @@ void main() {
     s.tangent = normalize(cross(s.up, s.normal) + 1e-6 * s.up);
     s.bitangent = cross(s.normal, s.tangent);
     s.ground_dx_m = s.ground_dy_m = vec3(0.0);
+    // Of a DEM that lies along the compass; of another one near to it.
+    vec2 share = (s.ground_m.xy - frame.ground_extent.xy) * frame.ground_extent.zw;
+    s.post = clamp(vec2(share.x, 1.0 - share.y), 0.0, 1.0) * (frame.posts.xy - 1.0);
+    s.pixel_posts = max(length(dFdx(s.post)), length(dFdy(s.post)));
     s.texture_at = s.texture_dx = s.texture_dy = vec2(0.0);
     s.height_dx_m = s.height_dy_m = 0.0;
     s.gloss = 1.0;

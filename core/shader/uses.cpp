@@ -24,8 +24,7 @@ class Reader {
             if (!active_[i]) continue;
             const Token& token = source_.tokens[i];
             if (token.kind == TokenKind::Directive) {
-                for (const Token& word : directive_tokens(source_.text, token, source_.file))
-                    if (word.kind == TokenKind::Word) uses_.names.emplace(source_.str(word));
+                directive(token);
             } else if (token.kind == TokenKind::Word) {
                 word(i);
             } else {
@@ -37,6 +36,19 @@ class Reader {
 
   private:
     std::string_view str(std::size_t i) const { return source_.str(source_.tokens[i]); }
+
+    void directive(const Token& token) {
+        const std::vector<Token> words = directive_tokens(source_.text, token, source_.file);
+        // The text of a macro is behind its name, and calls as any other does.
+        const bool defines = !words.empty() && source_.str(words[0]) == "define";
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            if (words[i].kind != TokenKind::Word) continue;
+            uses_.names.emplace(source_.str(words[i]));
+            const bool called =
+                defines && i > 1 && i + 1 < words.size() && source_.str(words[i + 1]) == "(";
+            if (called) uses_.calls.emplace(source_.str(words[i]));
+        }
+    }
 
     bool is_local(std::string_view name) const {
         return std::ranges::any_of(scopes_,
@@ -52,6 +64,7 @@ class Reader {
 
     void word(std::size_t i) {
         const std::string name(str(i));
+        if (name == "for") begin_loop();
         if (i > item_.first && str(i - 1) == ".") return;
         const bool called = i + 1 < item_.last && str(i + 1) == "(";
         const bool head = item_.kind == Item::Kind::Function || item_.kind == Item::Kind::Prototype;
@@ -81,6 +94,29 @@ class Reader {
         }
     }
 
+    /// What the head of a loop declares holds to the end of its body.
+    struct Loop {
+        int round;           // depth of ( and [ where it stands
+        std::size_t scopes;  // with its own
+        bool in_head = true;
+        bool has_block = false;
+    };
+    void begin_loop() {
+        scopes_.emplace_back();
+        loops_.push_back({round_, scopes_.size()});
+    }
+    /// A statement ends: with it the loops whose body it is.
+    /// @param with_block  at the } of a block
+    void end_loops(bool with_block) {
+        while (!loops_.empty()) {
+            const Loop& loop = loops_.back();
+            if (loop.in_head || loop.round != round_ || loop.scopes != scopes_.size()) return;
+            if (loop.has_block && !with_block) return;
+            scopes_.pop_back();
+            loops_.pop_back();
+        }
+    }
+
     void mark(std::string_view text) {
         if (text == "(" || text == "[") {
             ++round_;
@@ -88,12 +124,17 @@ class Reader {
             // Arguments of a function end with its ), declarators inside a for(...) with their ;
             settle();
             --round_;
+            if (!loops_.empty() && loops_.back().round == round_) loops_.back().in_head = false;
         } else if (text == "," || text == ";") {
             settle();
+            if (text == ";") end_loops(/*with_block=*/false);
         } else if (text == "{") {
+            if (!loops_.empty() && loops_.back().scopes == scopes_.size())
+                loops_.back().has_block = true;
             scopes_.emplace_back();
         } else if (text == "}") {
             if (scopes_.size() > 1) scopes_.pop_back();
+            end_loops(/*with_block=*/true);
         }
     }
 
@@ -108,6 +149,7 @@ class Reader {
     Uses uses_;
     std::vector<std::set<std::string, std::less<>>> scopes_;
     std::vector<Pending> pending_;
+    std::vector<Loop> loops_;
     int round_ = 0;
     bool head_read_ = false;
 };

@@ -43,6 +43,24 @@ TEST(Uses, ALoopsCounterIsALocal) {
     EXPECT_THAT(uses("void f() { for (int i = 0; i < n; ++i) g(i); }").names, Not(Contains("i")));
 }
 
+TEST(Uses, ALoopsCounterEndsWithTheLoop) {
+    for (const char* loop :
+         {"for (int i = 0; i < n; ++i) g(i);", "for (int i = 0; i < n; ++i) { g(i); }",
+          "for (int i = 0; i < n; ++i) for (int k = 0; k < i; ++k) g(k);",
+          "for (int i = 0; i < n; ++i) { if (n > 2) { g(i); } g(i); }"}) {
+        EXPECT_THAT(uses(std::string("void f() { ") + loop + " }").names, Not(Contains("i")))
+            << loop;
+        EXPECT_THAT(uses(std::string("void f() { ") + loop + " y = i; }").names, Contains("i"))
+            << loop;
+    }
+}
+
+TEST(Uses, TheTextOfAMacroCalls) {
+    EXPECT_THAT(uses("#define LIT(s) (sky(s) * K + s)\n").calls, ElementsAre("sky"));
+    EXPECT_THAT(uses("void f() {\n#if defined(SKY) && (K > 2)\n#endif\n}").calls,
+                testing::IsEmpty());
+}
+
 TEST(Uses, ArraysOfEitherSpellingAreLocals) {
     EXPECT_THAT(uses("void f() { float[2] a; float b[n]; a[0] = b[1]; }").names,
                 ElementsAre("float", "n", "void"));
