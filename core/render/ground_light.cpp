@@ -373,6 +373,11 @@ void GroundLight::follow(const SunLight& light, double exaggeration, double pixe
     my.sun = wanted;
 }
 
+std::optional<glm::dvec3> GroundLight::followed() const {
+    if (!impl_->sun) return std::nullopt;
+    return impl_->sun->direction;
+}
+
 void GroundLight::look_up(double exaggeration) {
     Impl& my = *impl_;
     if (my.sky_found && my.sky_found->ground.exaggeration == exaggeration) return;

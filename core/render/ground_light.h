@@ -2,7 +2,10 @@
 
 #include <future>
 #include <memory>
+#include <optional>
 #include <string_view>
+
+#include <glm/vec3.hpp>
 
 #include "dem/heightfield.h"
 #include "geo/local_frame.h"
@@ -46,6 +49,8 @@ class GroundLight {
     /// @param pixel_posts  posts along the side of the picture's finest pixel of ground
     /// @throws Error (BadInput) for a refraction that no air has
     void follow(const SunLight& sun, double exaggeration, double pixel_posts = 1);
+    /// Towards the sun that margins and shares are of, as SunLight; none while there are none.
+    std::optional<glm::dvec3> followed() const;
     /// Has the sky be there. Nothing is done where it is.
     void look_up(double exaggeration);
 

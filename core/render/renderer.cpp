@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include <epoxy/gl.h>
@@ -369,9 +370,13 @@ struct Renderer::Impl {
     /// Has the light by place be there that the programs read.
     void light(Terrain& ground, const FrameInputs& inputs, FrameBlock& block) const {
         const double pixel_rad = length(glm::dvec3(block.pixel_ray_dx));
-        if (reads_sun)
-            ground.light().follow(inputs.sun, inputs.exaggeration,
-                                  tiles.nearest_m() * pixel_rad / ground.normal_spacing_m());
+        // Where no ground is in sight the light of whatever sun there is does, else the coarsest.
+        const bool sees_ground = tiles.triangles() > 0;
+        const double pixel_posts = sees_ground
+                                       ? tiles.nearest_m() * pixel_rad / ground.normal_spacing_m()
+                                       : std::numeric_limits<double>::infinity();
+        if (reads_sun && (sees_ground || !ground.light().followed()))
+            ground.light().follow(inputs.sun, inputs.exaggeration, pixel_posts);
         if (reads_sky) ground.light().look_up(inputs.exaggeration);
         if (reads_sun || reads_sky) ground.light().describe(block);
     }

@@ -1,6 +1,7 @@
 // The light by place that shaders read of core's figures.
 #include <cmath>
 
+#include "dem/load.h"
 #include "drawn.h"
 #include "light/fields.h"
 #include "render/ground_light.h"
@@ -87,6 +88,35 @@ TEST(GroundLight, TheFootOfAWallSeesHalfOfIt) {
         open_sky(plain([](int x, int) { return x > 64 ? 2100.0 : 100.0; }), 3500);
     EXPECT_LT(least, 0.6);
     EXPECT_GT(most, 0.9);
+}
+
+TEST(GroundLight, IsOfTheSunAsItIsWhereGroundIsInSight) {
+    const std::vector<effect::Effect> shadows{
+        effect::load_effect(test::source_dir() / "plugins/shadows", test::source_dir() / "data")};
+    Drawn drawn(dem::load((test::source_dir() / "data/dem/jacksboro.tif").string()), {}, 64, 48, 0,
+                shadows);
+    const auto draw = [&](double pitch_deg) {
+        drawn.stand(0.5, 0.5, 3000, 0, pitch_deg);
+        drawn.renderer().render_frame(drawn.terrain(), drawn.ground(), drawn.frame());
+        return drawn.terrain().light().followed();
+    };
+    const glm::dvec3 morning = drawn.frame().sun.direction;
+    EXPECT_EQ(draw(-40), morning);
+    drawn.shine("2026-06-21T19:00Z");
+    const glm::dvec3 afternoon = drawn.frame().sun.direction;
+    ASSERT_NE(morning, afternoon);
+    EXPECT_EQ(draw(60), morning);  // at the sky alone
+    EXPECT_EQ(draw(-40), afternoon);
+}
+
+TEST(GroundLight, IsThereWhereTheFirstPictureIsOfTheSky) {
+    const std::vector<effect::Effect> shadows{
+        effect::load_effect(test::source_dir() / "plugins/shadows", test::source_dir() / "data")};
+    Drawn drawn(dem::load((test::source_dir() / "data/dem/jacksboro.tif").string()), {}, 64, 48, 0,
+                shadows);
+    drawn.stand(0.5, 0.5, 3000, 0, 60);
+    drawn.renderer().render_frame(drawn.terrain(), drawn.ground(), drawn.frame());
+    EXPECT_TRUE(drawn.terrain().light().followed());
 }
 
 }  // namespace
