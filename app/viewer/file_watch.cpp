@@ -15,20 +15,9 @@ void FileWatch::watch(std::vector<fs::path> paths) {
 FileWatch::Times FileWatch::look() const {
     Times times;
     std::error_code ignored;
-    const auto add = [&](const fs::path& file) {
+    for (const fs::path& file : paths_) {
         const fs::file_time_type time = fs::last_write_time(file, ignored);
         if (!ignored) times[file] = time;
-    };
-    for (const fs::path& path : paths_) {
-        if (!fs::is_directory(path, ignored)) {
-            add(path);
-            continue;
-        }
-        for (fs::recursive_directory_iterator it(path, ignored), end; it != end;
-             it.increment(ignored)) {
-            if (ignored) break;
-            if (it->is_regular_file(ignored)) add(it->path());
-        }
     }
     return times;
 }

@@ -9,7 +9,7 @@ namespace relevo::viewer {
 /// Tells when files are written: by their times, looked at now and then.
 class FileWatch {
   public:
-    /// Files, and folders with all that lies in them.
+    /// Files; those that are not there are waited for.
     void watch(std::vector<std::filesystem::path> paths);
     /// Whether any has changed since the last call that said so, come or gone; after a change it
     /// waits until nothing has changed any more, so that a file is whole.

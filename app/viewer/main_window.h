@@ -12,6 +12,7 @@
 #include "viewer/charts_panel.h"
 #include "viewer/discard.h"
 #include "viewer/file_watch.h"
+#include "viewer/folder_watch.h"
 #include "viewer/hand.h"
 #include "viewer/open_panel.h"
 #include "viewer/overlay_panel.h"
@@ -223,7 +224,8 @@ class MainWindow {
     bool has_gone_back_ = false, has_failed_ = false;
     std::optional<std::future<std::vector<std::string>>> asked_files_;
     OpenPanel open_panel_;  // where the desktop has no dialog
-    FileWatch effect_files_, dem_files_;
+    FolderWatch effect_files_;
+    FileWatch dem_files_;
     Clock::time_point watched_at_ = Clock::now();
     bool sun_moved_ = false;  // in the frame before
     std::string told_;

@@ -248,7 +248,8 @@ void MainWindow::watch(const scene::Scene& scene) {
     std::vector<std::filesystem::path> plugins{share_dir() / "plugins"};
     plugins.insert(plugins.end(), scene.effects.plugin_path.begin(),
                    scene.effects.plugin_path.end());
-    effect_files_.watch(std::move(plugins));
+    // Images in a plugin's folder are none of these: saving one reads nothing again.
+    effect_files_.watch(plugins, {".json", ".glsl", ".so"});
 }
 
 void MainWindow::read_again() {

@@ -110,11 +110,9 @@ struct SceneThread::Impl {
             FilesInUse files;
             session = std::make_unique<session::Session>(scene, options, files);
             // The view of the whole DEM hangs on the window's size.
-            std::unique_lock lock(mutex);
-            changed.wait(lock, [&] { return ends || has_new_wants; });
-            session->resize(wanted.width_px, wanted.height_px);
-            opened = as_opened();
-            look_beside_panels(*opened, wanted.insets);
+            const Wanted first = first_wanted();
+            session->resize(first.width_px, first.height_px);
+            publish_opened(first.insets);
         } catch (...) {
             const std::lock_guard lock(mutex);
             failure = std::current_exception();
@@ -122,6 +120,20 @@ struct SceneThread::Impl {
         on_change();
         if (!failure) draw_until_end();
         session.reset();
+    }
+
+    Wanted first_wanted() {
+        std::unique_lock lock(mutex);
+        changed.wait(lock, [&] { return ends || has_new_wants; });
+        return wanted;
+    }
+
+    /// The window waits for none of this: the lock is for handing over alone.
+    void publish_opened(const scene::Insets& insets) {
+        auto anew = as_opened();
+        look_beside_panels(*anew, insets);
+        const std::lock_guard lock(mutex);
+        opened = std::move(anew);
     }
 
     /// At the whole of the scene, while the window has not said from where.
@@ -163,13 +175,10 @@ struct SceneThread::Impl {
         });
     }
 
-    void take(std::shared_ptr<const session::LoadedDem> posts) {
+    void take(std::shared_ptr<const session::LoadedDem> posts, const scene::Insets& insets) {
         session->take(std::move(posts), scene);
         new_pages_at = Clock::now();
-        auto anew = as_opened();
-        const std::lock_guard lock(mutex);
-        look_beside_panels(*anew, wanted.insets);
-        opened = std::move(anew);
+        publish_opened(insets);
     }
 
     void draw_until_end() {
@@ -200,7 +209,7 @@ struct SceneThread::Impl {
             lock.unlock();
             if (new_posts) {
                 try {
-                    take(std::move(new_posts));
+                    take(std::move(new_posts), now.insets);
                 } catch (...) {
                     lock.lock();
                     failure = std::current_exception();

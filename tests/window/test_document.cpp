@@ -21,6 +21,7 @@
 #include "support/support.h"
 #include "viewer/document.h"
 #include "viewer/file_watch.h"
+#include "viewer/folder_watch.h"
 #include "viewer/fonts.h"
 #include "viewer/navigation.h"
 #include "viewer/point_light.h"
@@ -477,22 +478,49 @@ TEST(Folder, HasNeighboursByName) {
 
 TEST(FileWatch, TellsOfChangesOnceTheyRest) {
     const std::filesystem::path folder = test::scratch_dir("watch");
-    std::ofstream(folder / "a.glsl") << "1";
+    std::ofstream(folder / "a.tif") << "1";
     FileWatch watch;
-    watch.watch({folder, folder / "none"});
+    watch.watch({folder / "a.tif", folder / "b.tif"});
     EXPECT_FALSE(watch.changed());
-    std::ofstream(folder / "b.glsl") << "2";
+    std::ofstream(folder / "b.tif") << "2";
     EXPECT_FALSE(watch.changed());  // it may still be written
     EXPECT_TRUE(watch.changed());
     EXPECT_FALSE(watch.changed());
     std::filesystem::last_write_time(
-        folder / "a.glsl",
-        std::filesystem::last_write_time(folder / "a.glsl") + std::chrono::seconds(2));
+        folder / "a.tif",
+        std::filesystem::last_write_time(folder / "a.tif") + std::chrono::seconds(2));
     watch.changed();
     EXPECT_TRUE(watch.changed());
-    std::filesystem::remove(folder / "b.glsl");
+    std::filesystem::remove(folder / "b.tif");
     watch.changed();
     EXPECT_TRUE(watch.changed());
+}
+
+TEST(FolderWatch, TellsOfFilesOfItsKindsOnceTheyRest) {
+    const std::filesystem::path folder = test::scratch_dir("folder_watch");
+    std::filesystem::create_directories(folder / "one");
+    std::ofstream(folder / "one/a.glsl") << "1";
+    FolderWatch watch;
+    watch.watch({folder, folder / "none"}, {".glsl", ".json"});
+    const auto tells = [&] {
+        EXPECT_FALSE(watch.changed());  // it may still be written
+        const bool told = watch.changed();
+        EXPECT_FALSE(watch.changed());
+        return told;
+    };
+    EXPECT_FALSE(watch.changed());
+    std::ofstream(folder / "one/picture.png") << "3";
+    EXPECT_FALSE(watch.changed() || watch.changed());
+    std::ofstream(folder / "one/a.glsl") << "2";
+    EXPECT_TRUE(tells());
+    std::filesystem::rename(folder / "one/a.glsl", folder / "one/b.glsl");
+    EXPECT_TRUE(tells());
+    std::filesystem::create_directories(folder / "two/deep");
+    EXPECT_TRUE(tells());
+    std::ofstream(folder / "two/deep/c.json") << "{}";
+    EXPECT_TRUE(tells());
+    std::filesystem::remove(folder / "two/deep/c.json");
+    EXPECT_TRUE(tells());
 }
 
 }  // namespace
