@@ -103,7 +103,7 @@ float layering_angle_deg(in float cosine) {
 /// @param cosine  of the angle between the ground's normal and the vertical
 float layering_steepness(in float cosine, in float noise) {
     if (!layering_slope) return 0.0;
-    return smoothstep(layering_slope_deg.x, layering_slope_deg.y,
+    return smoothstep(layering_slope_deg.x, max(layering_slope_deg.y, layering_slope_deg.x + 0.01),
                       layering_angle_deg(cosine) + 12.0 * noise);
 }
 
@@ -138,7 +138,7 @@ vec3 layering_tint(in int material, in vec4 small, in vec4 broad, in float flatn
     // Grass: straw where it is dry, and shrubs in groups where it is not, fewer on steep ground.
     float dry = smoothstep(-0.12, 0.42, hue + 0.4 * tone);
     vec3 grass = mix(vec3(0.88, 0.97, 0.84), vec3(1.55, 1.28, 1.12), dry) * (1.0 + 0.5 * tone + 0.35 * fine);
-    float groups = smoothstep(0.62, 0.38, broad.g) * smoothstep(0.40, 0.62, broad.a);
+    float groups = (1.0 - smoothstep(0.38, 0.62, broad.g)) * smoothstep(0.40, 0.62, broad.a);
     float shrubs = small.b * groups * smoothstep(0.55, 0.8, flatness);
     return mix(grass, vec3(0.42, 0.52, 0.44) * (1.0 + 0.8 * fine), 0.8 * shrubs);
 }

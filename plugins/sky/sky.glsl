@@ -60,7 +60,7 @@ float sky_exponent(in float eye_height_m) {
 /// Equation 3: 0 on the horizon and below, 1 in the zenith.
 /// @param sine  of the elevation
 float sky_t(in float sine, in float exponent) {
-    return pow(clamp(sine, 0.0, 1.0), exponent);
+    return sine > 0.0 ? pow(min(sine, 1.0), exponent) : 0.0;
 }
 
 /// The sine of an elevation that counts from the horizon, which lies the lower the higher the eye.

@@ -10,6 +10,6 @@ uniform float skylight_albedo = 0.2;  //@ range(0, 1) label("Albedo") descriptio
 uniform float skylight_strength = 1.0;  //@ range(0, 4) label("Strength") description("1: physical; higher values darken hollows further")
 
 void skylight_on_ambient(in Surface s, inout vec3 irradiance) {
-    float seen = pow(surface_open_sky(s), skylight_strength);
+    float seen = pow(max(surface_open_sky(s), 1e-5), skylight_strength);  // 0 to the power of 0 is undefined
     irradiance *= seen + (1.0 - seen) * skylight_albedo;
 }
