@@ -8,7 +8,7 @@
 namespace relevo::viewer {
 
 /// Tells when files of some kinds are written in folders, or in those inside them, by what the
-/// system says of them (inotify): no folder is looked through but when it is new.
+/// system says of them (inotify). A folder is listed once, when it is new.
 class FolderWatch {
   public:
     FolderWatch() = default;
@@ -16,8 +16,7 @@ class FolderWatch {
     FolderWatch& operator=(const FolderWatch&) = delete;
     ~FolderWatch();
 
-    /// Warns where the system does not let them be watched.
-    /// @param folders  those that are not there are left out
+    /// Warns where the system does not let them be watched. Folders that do not exist are left out.
     /// @param endings  of names that matter: ".glsl"
     void watch(const std::vector<std::filesystem::path>& folders, std::vector<std::string> endings);
     /// Whether any such file has been written, has come or gone since the last call that said so;

@@ -21,8 +21,7 @@ std::vector<Sector> sectors_of(const std::vector<bool>& holds);
 struct OpenSector : Sector {
     double reach_m = 0;   ///< the least that the DEM goes there
     double needed_m = 0;  ///< as far as it would have to go
-    double least_m =
-        0;  ///< only terrain above this height, beyond the DEM, could change the horizon
+    double least_m = 0;   ///< lower terrain beyond the DEM could not change the horizon
 
     /// Takes the figures of another one in as well.
     void include(const OpenSector& other);

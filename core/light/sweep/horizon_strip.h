@@ -22,12 +22,12 @@ class HorizonStrip {
     /// @param lines          of a sun whose tangent is 1 everywhere: what they fall by is how far
     ///     they go
     /// @param curvature      of the ground under a line of sight [1/m]
-    /// @param least_tangent  below which no ray is looked at; minus infinity: none
+    /// @param least_tangent  rays below this tangent are ignored; minus infinity: none are
     HorizonStrip(const SweepLines& lines, int line, int count, double curvature,
                  double least_tangent);
 
     void advance_to(int row, const Sheet& sheet);    ///< as ShadowStrip
-    const float* find(int row, int first, int end);  ///< likewise, tangents
+    const float* find(int row, int first, int end);  ///< as ShadowStrip, but tangents
 
   private:
     static constexpr float kFarther_m = 1e9F;  // than any ground

@@ -58,7 +58,7 @@ struct ShadowLook {
     float fall_m, fall_per_line_m;  ///< as in RowTilt; taken away again
     int line;
     float post_offset;
-    float height_offset_m;  ///< added to what is found
+    float height_offset_m;  ///< added to each shadow
     float floor_m;          ///< minus infinity for none
     const float* ground_m;  ///< at the first post's line
     const Crossing* crossings;
@@ -99,10 +99,10 @@ struct FanLook {
     int count;
     const float* ground_m;
     Fans fans;
-    int first_ray;         ///< that is looked at
+    int first_ray;         ///< lower ones are ignored
     float from_m, sunk_m;  ///< how far off the posts are; what they lie below the tangent plane by
     float plane_slope;     ///< tangent of that plane against the level there
-    bool also_next;        ///< the ground that the next steeper ray grazes is looked over, too
+    bool also_next;        ///< the ground that the next steeper ray grazes counts, too
 };
 void look_over_fans(const FanLook& look);
 

@@ -49,9 +49,9 @@ struct SheetPosts {
 
 /// Which ground a sweep looks at, and how.
 ///
-/// Ground near a post is met by the post's own ray: a false ridge beside it would be a false shade
-/// at once. More such rows cost time at each post, fewer show the lines as stripes. Farther ground
-/// is met by lines, of which a post has as many as there are sets.
+/// The nearest rows are tested on the post's own ray, as an error there shows as a false shadow.
+/// Fewer such rows leave stripes along the lines, more cost time at every post. Farther ground is
+/// met by the lines, of which each post has as many as there are sets.
 struct Sampling {
     int near_rows;   ///< rows before a post that its own ray is followed over
     int line_sets;   ///< lines from one post to the next: sets of lines that are a post apart
@@ -70,7 +70,7 @@ class SweepLines {
         double distance_m = 0;  ///< of line 0, from the reference on, towards the sun
         double shift = 0;       ///< the column of line 0
         double fall_m = 0;      ///< that line 0 has come down by since the row of the reference
-        double fall_per_line_m = 0;  ///< likewise, how much more for each further line
+        double fall_per_line_m = 0;  ///< how much more that is for each further line
         int column = 0;  ///< of the first post on line 0 or after it: it belongs to that line
         float post_offset = 0;  ///< of each post from the line that it belongs to [columns], 0 to 1
         ColumnRange lines;      ///< those that matter to the posts wanted

@@ -14,8 +14,8 @@ namespace relevo::light {
 /// A line is as high as the highest ground that it has passed, lowered by what its ray has fallen
 /// by since. So that nothing has to be lowered at every row, what rays have fallen by is added to
 /// the ground instead (RowTilt), and taken away again from what is found: among such heights rays
-/// are level. As rays may fall by any amount, whole numbers of kFallOrigins_m are taken from that:
-/// how many hangs on the row alone, so that every window rounds alike.
+/// are level. As rays may fall by any amount, whole multiples of kFallOrigins_m are taken from
+/// that. Which multiple depends on the row alone, so that every window rounds alike.
 class ShadowStrip {
   public:
     static constexpr Sampling kSampling{.near_rows = 4, .line_sets = 2, .distances = false};
