@@ -27,6 +27,9 @@ OWNERS = {
 }
 
 
+# Rooms of a layer that see nothing of it but themselves, and what they may include.
+ROOMS = {"light/sweep": {"base"}, "render/graph": {"base"}}
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -52,6 +55,9 @@ def check_core(root):
         for number, kind, name in includes(path):
             if kind == '"':
                 other = name.split("/")[0]
+                room = "/".join(path.relative_to(root / "core").parts[:2])
+                if room in ROOMS and other not in ROOMS[room] and not name.startswith(room + "/"):
+                    yield f"{where}:{number}: {room} includes {name}, but may see {', '.join(ROOMS[room])} alone"
                 if other not in RANK:
                     yield f"{where}:{number}: {name} is not of core/"
                 elif other != layer and RANK[other] >= RANK[layer]:

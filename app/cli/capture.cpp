@@ -213,8 +213,8 @@ void capture(const Arguments& arguments) {
                              .audited = arguments.audit,
                              .compared = compared};
     if (!arguments.dump_shaders.empty())
-        options.stitched = [&](const std::vector<render::ProgramText>& texts) {
-            render::dump_programs(texts, arguments.dump_shaders, arguments.overwrite);
+        options.stitched = [&](const render::StitchedFrames& frames) {
+            render::dump_programs(frames, arguments.dump_shaders, arguments.overwrite);
         };
     image::load_format(output);
     session::SceneInputs inputs(RELEVO_VERSION);

@@ -15,6 +15,8 @@
 #include "dem/versions.h"
 #include "effect/registry.h"
 #include "gl/context.h"
+#include "render/programs.h"
+#include "session/active_effects.h"
 
 namespace relevo::cli {
 namespace {
@@ -240,6 +242,18 @@ void print(const Findings& found) {
         line("advice", text);
 }
 
+/// Prints the graph of the frames that the effects draw which are on without a word.
+void print_graph(const std::string& device) {
+    const auto effects = session::ActiveEffects::of({}, /*aloud=*/false);
+    shader::StitchInput input = effects->inputs().stitch;
+    input.max_texture_units = gl::Context({.device = device}).info().max_texture_units;
+    render::ProgramOptions options{.shown = true};
+    for (const effect::NativeModule* const module : effects->inputs().modules)
+        options.natives.push_back(module->id());
+    fmt::print("{}", render::graph_text(render::stitch_frames(
+                         shader::FolderTexts(share_dir() / "shaders"), input, options)));
+}
+
 void doctor(const std::string& wanted, bool as_json) {
     const Findings found = examine(wanted);
     if (as_json)
@@ -254,7 +268,7 @@ void doctor(const std::string& wanted, bool as_json) {
 void add_doctor(CLI::App& app) {
     struct Arguments {
         std::string device = "auto";
-        bool json = false;
+        bool json = false, graph = false;
     };
     const auto arguments = std::make_shared<Arguments>();
     CLI::App& verb =
@@ -262,7 +276,13 @@ void add_doctor(CLI::App& app) {
     verb.add_option("--device", arguments->device,
                     "GL device: auto, an index, software, or a part of its name");
     verb.add_flag("--json", arguments->json, "One JSON object on standard output");
-    verb.callback([arguments] { doctor(arguments->device, arguments->json); });
+    verb.add_flag("--graph", arguments->graph,
+                  "The passes and textures of a frame in Graphviz's language, instead")
+        ->excludes("--json");
+    verb.callback([arguments] {
+        if (arguments->graph) return print_graph(arguments->device);
+        doctor(arguments->device, arguments->json);
+    });
 }
 
 }  // namespace relevo::cli

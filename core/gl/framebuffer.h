@@ -39,6 +39,7 @@ class Framebuffer {
     void copy_to_window(int width_px, int height_px, float share = 1) const;
 
     Extent extent() const { return extent_; }
+    unsigned name() const { return handle_.name(); }  ///< 0: there is none
 
   private:
     static void destroy(unsigned name);

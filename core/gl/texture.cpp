@@ -266,6 +266,12 @@ void Texture::make_mipmaps() {
     glGenerateTextureMipmap(name());
 }
 
+void Texture::fill_with_ones() {
+    const std::vector<std::byte> ones(static_cast<std::size_t>(layout_of(format_).bytes()),
+                                      std::byte{0xff});
+    glClearTexImage(name(), 0, channels(format_), number_type(format_), ones.data());
+}
+
 void Texture::bind(unsigned unit) const {
     glBindTextureUnit(unit, name());
 }

@@ -31,16 +31,14 @@ std::set<std::string> present_in(const shader::Stitched& stitched) {
 
 }  // namespace
 
-DrawWatch::Turn::Turn(std::optional<DrawWatch>& watch, const ProgramText& program, double parts)
-    : watch_(watch ? &*watch : nullptr) {
-    if (!watch_) return;
+DrawWatch::Turn::Turn(DrawWatch& watch, const ProgramText& program, double parts) : watch_(watch) {
     const double patience_ms = static_cast<double>(patience().count());
     const double limit_ms = std::max(patience_ms, patience_ms * kPart_share * parts);
-    const std::string blamed = watch_->blame(program.stitched);
-    watch_->watchdog_.start(std::chrono::milliseconds(static_cast<long>(limit_ms)),
-                            fmt::format("render: program {}: the device took more than {:g} s{}",
-                                        program.name, limit_ms / 1e3, blamed));
-    const std::set<std::string> foreign = watch_->foreign(program.stitched);
+    const std::string blamed = watch_.blame(program.stitched);
+    watch_.watchdog_.start(std::chrono::milliseconds(static_cast<long>(limit_ms)),
+                           fmt::format("render: program {}: the device took more than {:g} s{}",
+                                       program.name, limit_ms / 1e3, blamed));
+    const std::set<std::string> foreign = watch_.foreign(program.stitched);
     guard_.emplace([&](const char* ending) {
         return fmt::format("render: program {}: the driver ended in {}{}", program.name, ending,
                            !foreign.empty()
@@ -51,7 +49,7 @@ DrawWatch::Turn::Turn(std::optional<DrawWatch>& watch, const ProgramText& progra
 }
 
 DrawWatch::Turn::~Turn() {
-    if (watch_) watch_->watchdog_.stop();
+    watch_.watchdog_.stop();
 }
 
 std::set<std::string> DrawWatch::foreign(const shader::Stitched& stitched) const {

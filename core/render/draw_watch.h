@@ -22,15 +22,14 @@ class DrawWatch {
     /// that size where that is longer. At its end the device has to have finished.
     class Turn {
       public:
-        /// @param watch  nothing: nobody watches
         /// @param parts  pixels and triangles
-        Turn(std::optional<DrawWatch>& watch, const ProgramText& program, double parts);
+        Turn(DrawWatch& watch, const ProgramText& program, double parts);
         ~Turn();
         Turn(const Turn&) = delete;
         Turn& operator=(const Turn&) = delete;
 
       private:
-        DrawWatch* watch_;
+        DrawWatch& watch_;
         std::optional<FatalSignalGuard> guard_;
     };
 

@@ -3,9 +3,10 @@
 #include <cmath>
 #include <span>
 
-#include <epoxy/gl.h>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
+
+#include "render/draw_scope.h"
 
 namespace relevo::render {
 namespace {
@@ -45,19 +46,17 @@ void GroundProbe::aim(const FrameInputs& inputs, const Ground& ground, FrameBloc
     block.view_projection = glm::mat4(view);
 }
 
-void GroundProbe::bind() {
+std::optional<double> GroundProbe::height_m(bool has_voids, const std::function<void()>& draw) {
     if (depth_.name() == 0) {
         depth_ = gl::Texture(gl::TextureKind::D2, gl::Format::Depth32F, {1, 1, 1}, 1, "probe");
         target_ = gl::Framebuffer({}, &depth_, "probe");
     }
-    target_.bind();
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
-    target_.clear_depth(0);
-    glDepthFunc(GL_GREATER);
-}
-
-std::optional<double> GroundProbe::height_m() const {
+    {
+        const DrawScope scope(
+            target_, {.depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true, /*clear=*/0.0F},
+                      .clips_voids = has_voids});
+        draw();
+    }
     float depth = 0;
     depth_.read(0, std::as_writable_bytes(std::span(&depth, 1)));
     if (depth <= 0) return std::nullopt;

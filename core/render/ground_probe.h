@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "gl/framebuffer.h"
@@ -22,12 +23,11 @@ class GroundProbe {
     /// Has a frame's block show the vertical through its eye, and heights as depths.
     void aim(const FrameInputs& inputs, const Ground& ground, FrameBlock& block);
 
-    /// Draws go into the pixel from now on; the highest ground counts.
-    void bind();
-
-    /// Height of the highest ground drawn since [m]: ellipsoidal, exaggerated; accurate to 1 cm of
-    /// a range of heights of 20 km (tests/session/test_standing.cpp). None where none was drawn.
-    std::optional<double> height_m() const;
+    /// Draws into the pixel. @returns the height of the highest ground drawn [m]: ellipsoidal,
+    /// exaggerated; accurate to 1 cm of a range of heights of 20 km
+    /// (tests/session/test_standing.cpp). None where none is drawn.
+    /// @param has_voids  the ground is clipped at them
+    std::optional<double> height_m(bool has_voids, const std::function<void()>& draw);
 
   private:
     gl::Texture depth_;

@@ -23,6 +23,7 @@
 #include "gl/framebuffer.h"
 #include "gl/program.h"
 #include "gl/vertex_array.h"
+#include "render/draw_scope.h"
 #include "render/native_textures.h"
 #include "shader/driver_log.h"
 #include "shader/tokenizer.h"
@@ -49,18 +50,6 @@ void write_matrix(const glm::dmat4& from, double (&to)[16]) {
 glm::dmat3 axes_of(const relevo_box& box) {
     return {vector_of(box.right), vector_of(box.up), vector_of(box.towards)};
 }
-
-/// Switches off at its end, however that comes, what draw_depth() switches on.
-struct DepthState {
-    DepthState() = default;
-    DepthState(const DepthState&) = delete;
-    DepthState& operator=(const DepthState&) = delete;
-    ~DepthState() {
-        for (const GLenum capability :
-             {GL_CULL_FACE, GL_CLIP_DISTANCE0, GL_DEPTH_CLAMP, GL_DEPTH_TEST})
-            glDisable(capability);
-    }
-};
 
 /// What relevo_frame says beside the ground.
 struct FrameState {
@@ -258,8 +247,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         for (int i = 0; i < draw.input_count; ++i)
             textures.get(draw.inputs[i]).bind(static_cast<unsigned>(i));
         if (draw.value_count > 0) glUniform4fv(0, draw.value_count, draw.values);
-        glDisable(GL_DEPTH_TEST);
-        framebuffer.bind();
+        const DrawScope scope(framebuffer, {});
         no_inputs.bind();
         glDrawArrays(GL_TRIANGLES, 0, 3);
     }
@@ -324,20 +312,14 @@ struct NativeHost::Impl : effect::ModuleServices {
         frame_block.bind_uniform(kFrameBinding);
 
         const gl::Framebuffer framebuffer({}, &depth_texture, module.id());
-        framebuffer.bind();
-        const DepthState left_as_found;
-        glEnable(GL_DEPTH_TEST);
-        glDepthMask(GL_TRUE);
-        framebuffer.clear_depth(0);
-        glDepthFunc(GL_GREATER);
-        glEnable(GL_DEPTH_CLAMP);
-        if (drawn.terrain.has_holes()) {
-            glEnable(GL_CLIP_DISTANCE0);
-        } else {
-            // Light meets the ground's upper side first. Under a hole it may meet the lower one.
-            glEnable(GL_CULL_FACE);
-            glFrontFace(drawn.terrain.winds_counterclockwise() ? GL_CCW : GL_CW);
-        }
+        DrawState drawing{
+            .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true, /*clear=*/0.0F},
+            .clips_voids = drawn.terrain.has_holes(),
+            .clamps_depth = true};
+        // Light meets the ground's upper side first. Under a void it may meet the lower one.
+        if (!drawn.terrain.has_holes())
+            drawing.winds_counterclockwise = drawn.terrain.winds_counterclockwise();
+        const DrawScope scope(framebuffer, drawing);
         use_depth(drawn.terrain);
         drawn.terrain.draw(tiles, origin_m);
         return tiles.finest_level();

@@ -9,7 +9,9 @@
 #include "base/error.h"
 #include "base/output_file.h"
 #include "base/paths.h"
+#include "base/sha256.h"
 #include "base/text.h"
+#include "render/graph/plan.h"
 #include "shader/driver_log.h"
 
 namespace relevo::render {
@@ -29,10 +31,6 @@ bool shows_block(const shader::StitchInput& input) {
     return answers(input, "side") || answers(input, "backdrop");
 }
 
-bool has_overlay(const shader::StitchInput& input, bool draped) {
-    return draped || answers(input, "display");
-}
-
 namespace {
 
 bool wants(const shader::StitchInput& input, std::string_view word) {
@@ -41,9 +39,6 @@ bool wants(const shader::StitchInput& input, std::string_view word) {
                                    [&](const auto& wanted) { return wanted.word == word; });
     });
 }
-
-// Outputs beside the G-buffer: GL guarantees eight.
-constexpr int kMaxStored = 7;
 
 /// Whether an effect reads how the height changes from pixel to pixel.
 bool reads_height_steps(const shader::StitchInput& input) {
@@ -59,113 +54,107 @@ bool reads_height_steps(const shader::StitchInput& input) {
     return false;
 }
 
-/// Where the geometry program puts them: behind the stored varyings.
-shader::Define height_steps_define(const shader::Stitched& geometry) {
-    if (geometry.varying_targets >= kMaxStored)
-        bad_input(
-            fmt::format("render: height_dx_m and height_dy_m: expected varyings of up to {} floats "
-                        "in addition but got {} textures of four; switch an effect off",
-                        4 * (kMaxStored - 1), geometry.varying_targets));
-    return {kHeightStepsDefine, std::to_string(1 + geometry.varying_targets)};
-}
-
-}  // namespace
-
-namespace {
-
-/// The recipes of one frame's programs, and what they have in common.
+/// Stitches the programs of a frame graph and tells its passes what they read.
 class Stitcher {
   public:
     Stitcher(const shader::CoreTexts& core, const shader::StitchInput& input,
              const ProgramOptions& options)
-        : core_(core), input_(input), options_(options), displaced_(answers(input, "displace")) {
-        if (options.shown)
-            ends_.push_back({"SHOWN", ""});
-        else if (overlays())
-            ends_.push_back({"DISPLAY_OVERLAY", ""});
+        : core_(core), input_(input) {
+        facts_.radiance = !options.shown;
+        facts_.antialias = options.antialias;
+        facts_.overlays = options.draped || answers(input, "display");
+        facts_.draped = options.draped;
+        facts_.audited = options.audited;
+        facts_.vertex_normals = options.vertex_normals;
+        facts_.displaced = answers(input, "displace");
+        facts_.natives = options.natives;
+        facts_.wants_night = wants(input, kNightWord);
+        facts_.wants_outside = wants(input, kOutsideWord);
     }
 
-    std::vector<ProgramText> run() {
-        ground(input_, "");
-        if (shows_block(input_)) block();
-        if (options_.depth) {
-            std::vector<shader::Define> defines{{"TERRAIN_DEPTH", ""}};
-            if (displaced_) defines.push_back({"DISPLACED", ""});
-            add("depth", {.vertex_main = "terrain.vert.glsl",
-                          .fragment_main = "depth.frag.glsl",
-                          .defines = defines});
+    StitchedFrames run() {
+        result_.within = graph();
+        if (shows_block(input_)) {
+            facts_.outside = true;
+            result_.outside = graph();
         }
-        for (const std::string name : {"background", "post", "edges", "antialias"}) {
-            if (name == "post" && options_.shown) continue;
-            shader::ProgramRecipe recipe{.vertex_main = "fullscreen.vert.glsl",
-                                         .fragment_main = name + ".frag.glsl"};
-            if (name == "background" || name == "post") recipe.defines = ends_;
-            add(name, recipe);
-            if (name == "background" && wants(input_, kNightWord)) {
-                shader::StitchInput night = input_;
-                night.capabilities.push_back(kNightWord);
-                programs_.push_back({"background_night", shader::stitch(core_, recipe, night)});
-            }
-        }
-        return std::move(programs_);
+        return std::move(result_);
     }
 
   private:
-    /// Whether the ground's programs write an overlay beside the light.
-    bool overlays() const { return !options_.shown && has_overlay(input_, options_.draped); }
-
-    void add(const std::string& name, const shader::ProgramRecipe& recipe) {
-        programs_.push_back({name, shader::stitch(core_, recipe, input_)});
+    FrameGraph graph() {
+        facts_.varying_targets = 0;
+        facts_.height_steps = false;
+        if (reads_height_steps(input_)) {
+            // Their output is the first after the varyings, which the geometry program counts.
+            const CoreFrame without = core_frame(facts_);
+            facts_.varying_targets = stitched(geometry_of(without)).varying_targets;
+            facts_.height_steps = true;
+        }
+        CoreFrame frame = core_frame(facts_);
+        for (const ProgramRecipe& recipe : frame.programs)
+            if (!result_.find(recipe.name))
+                result_.programs.push_back(ProgramText::of(recipe.name, stitched(recipe)));
+        facts_.varying_targets = result_.find(geometry_of(frame).name)->stitched.varying_targets;
+        frame = core_frame(facts_);
+        for (Pass& pass : frame.graph.passes) {
+            add_reads(frame.graph, pass, pass.program);
+            add_reads(frame.graph, pass, pass.program_at_night);
+        }
+        return std::move(frame.graph);
     }
 
-    /// The two programs of the ground.
-    void ground(const shader::StitchInput& input, const std::string& ending) {
-        shader::ProgramRecipe geometry{.vertex_main = "terrain.vert.glsl",
-                                       .fragment_main = "geometry.frag.glsl",
-                                       .shaded_by = "terrain.frag.glsl"};
-        shader::ProgramRecipe terrain{.vertex_main = "fullscreen.vert.glsl",
-                                      .fragment_main = "terrain.frag.glsl",
-                                      .geometry_of = "terrain.vert.glsl"};
-        if (options_.vertex_normals) {
-            geometry.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
-            terrain.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
-        }
-        if (displaced_)
-            for (shader::ProgramRecipe* const recipe : {&geometry, &terrain})
-                recipe->defines.push_back({"DISPLACED", ""});
-        if (options_.draped) terrain.defines.push_back({"DRAPED", ""});
-        terrain.defines.insert(terrain.defines.end(), ends_.begin(), ends_.end());
-        if (options_.audited) terrain.defines.push_back({kAuditedDefine, overlays() ? "2" : "1"});
-        if (reads_height_steps(input)) {
-            const shader::Define define =
-                height_steps_define(shader::stitch(core_, geometry, input));
-            geometry.defines.push_back(define);
-            terrain.defines.push_back(define);
-        }
-        programs_.push_back({"geometry" + ending, shader::stitch(core_, geometry, input)});
-        programs_.push_back({"terrain" + ending, shader::stitch(core_, terrain, input)});
+    shader::Stitched stitched(const ProgramRecipe& recipe) const {
+        if (recipe.word.empty()) return shader::stitch(core_, recipe.recipe, input_);
+        shader::StitchInput input = input_;
+        input.capabilities.push_back(recipe.word);
+        return shader::stitch(core_, recipe.recipe, input);
     }
 
-    /// What is seen from outside alone.
-    void block() {
-        if (wants(input_, kOutsideWord)) {
-            shader::StitchInput outside = input_;
-            outside.capabilities.push_back(kOutsideWord);
-            ground(outside, kOutsideEnding);
+    static const ProgramRecipe& geometry_of(const CoreFrame& frame) {
+        return *std::ranges::find_if(frame.programs, [](const ProgramRecipe& program) {
+            return !program.recipe.shaded_by.empty();
+        });
+    }
+
+    void add_reads(FrameGraph& graph, Pass& pass, const std::string& program) const {
+        if (program.empty()) return;
+        const auto add = [&](const std::string& resource) {
+            for (const Access& access : accesses(pass))
+                if (access.mode == Access::Mode::Read && access.version.resource == resource)
+                    return;
+            pass.reads.push_back(resource);
+        };
+        add("frame");
+        if (pass.kind != PassKind::Host) add("parameters");
+        for (const shader::TextureUnit& unit : result_.find(program)->stitched.textures) {
+            if (!graph.find(unit.resource)) provide(graph, unit.resource);
+            // The depth program may read what native effects make, also the one that draws with it:
+            // they stand in the order of `after`.
+            if (pass.kind != PassKind::Host || !made_by_native(unit.resource)) add(unit.resource);
         }
-        add("side",
-            {.vertex_main = "side.vert.glsl", .fragment_main = "side.frag.glsl", .defines = ends_});
-        add("backdrop", {.vertex_main = "fullscreen.vert.glsl",
-                         .fragment_main = "backdrop.frag.glsl",
-                         .defines = ends_});
+    }
+
+    static std::string owner_of(const std::string& resource) {
+        return resource.substr(0, resource.find('.'));
+    }
+
+    bool made_by_native(const std::string& resource) const {
+        return std::ranges::find(facts_.natives, owner_of(resource)) != facts_.natives.end();
+    }
+
+    /// A native effect makes what bears its id.
+    void provide(FrameGraph& graph, const std::string& resource) const {
+        graph.resources.push_back({.name = resource, .lifetime = Lifetime::Provided});
+        if (!made_by_native(resource)) return;
+        std::ranges::find(graph.passes, owner_of(resource), &Pass::name)
+            ->writes.push_back(resource);
     }
 
     const shader::CoreTexts& core_;
     const shader::StitchInput& input_;
-    const ProgramOptions& options_;
-    bool displaced_;
-    std::vector<shader::Define> ends_;  // what the shading programs end in
-    std::vector<ProgramText> programs_;
+    FrameFacts facts_;
+    StitchedFrames result_;
 };
 
 /// How to go on without what a driver refuses.
@@ -184,9 +173,18 @@ std::string remedy(const shader::Stitched& stitched, const std::string& blamed) 
 
 }  // namespace
 
-std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
-                                         const shader::StitchInput& input,
-                                         const ProgramOptions& options) {
+ProgramText ProgramText::of(std::string name, shader::Stitched stitched) {
+    std::string hash = sha256_of_text(stitched.vertex.text + '\0' + stitched.fragment.text);
+    return {std::move(name), std::move(stitched), std::move(hash)};
+}
+
+const ProgramText* StitchedFrames::find(std::string_view program) const {
+    const auto found = std::ranges::find(programs, program, &ProgramText::name);
+    return found == programs.end() ? nullptr : &*found;
+}
+
+StitchedFrames stitch_frames(const shader::CoreTexts& core, const shader::StitchInput& input,
+                             const ProgramOptions& options) {
     try {
         return Stitcher(core, input, options).run();
     } catch (const shader::AuthorError& error) {
@@ -196,7 +194,14 @@ std::vector<ProgramText> stitch_programs(const shader::CoreTexts& core,
     }
 }
 
-void dump_programs(const std::vector<ProgramText>& programs, const std::filesystem::path& folder,
+std::string graph_text(const StitchedFrames& frames) {
+    std::string text = dot_text(frames.within, plan(frames.within), "frame");
+    if (frames.outside)
+        text += dot_text(*frames.outside, plan(*frames.outside), "frame from outside");
+    return text;
+}
+
+void dump_programs(const StitchedFrames& frames, const std::filesystem::path& folder,
                    bool overwrite) {
     constexpr std::string_view kWho = "--dump-shaders";
     std::error_code error;
@@ -207,7 +212,8 @@ void dump_programs(const std::vector<ProgramText>& programs, const std::filesyst
     if (std::filesystem::equivalent(folder, share_dir() / "shaders", error))
         bad_input(fmt::format("{}: {}: is where the program's own shaders are; name another folder",
                               kWho, printable(folder.string())));
-    for (const ProgramText& program : programs) {
+    write_text(folder / "frame.dot", graph_text(frames), overwrite, kWho);
+    for (const ProgramText& program : frames.programs) {
         const auto dump = [&](const char* ending, const std::string& text) {
             write_text(folder / (program.name + ending), text, overwrite, kWho);
         };
@@ -216,11 +222,11 @@ void dump_programs(const std::vector<ProgramText>& programs, const std::filesyst
     }
 }
 
-LinkedProgram link_program(const ProgramText& text) {
+gl::Program link_program(const ProgramText& text) {
     gl::Program::Failure failure;
     auto program = gl::Program::build(text.stitched.vertex.text, text.stitched.fragment.text,
                                       text.name, failure);
-    if (program) return {std::move(*program), text.stitched.textures};
+    if (program) return std::move(*program);
     const bool vertex = failure.stage == gl::Program::Failure::Stage::Vertex;
     const shader::StageText& stage = vertex ? text.stitched.vertex : text.stitched.fragment;
     const char* where = vertex                                                   ? "vertex side"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,7 +13,9 @@
 #include "image/image.h"
 #include "render/effect_textures.h"
 #include "render/frame_block.h"
-#include "render/programs.h"
+#include "render/pass_timers.h"
+#include "render/program_cache.h"
+#include "render/readback.h"
 #include "render/terrain.h"
 #include "shader/param_store.h"
 
@@ -34,8 +35,12 @@ struct RendererOptions {
     bool outside = false;
     /// Keep what the ground's program makes of the sun's light, for read_sun_seen().
     bool audited = false;
+    /// Linked programs of the context that renderers share; null: it has its own.
+    ProgramCache* programs = nullptr;
+    /// Memory of the graph is filled with NaN where a resource begins: a test's.
+    bool poison = false;
     /// Called with the programs' texts before a driver sees them, if there is one.
-    std::function<void(const std::vector<ProgramText>&)> stitched{};
+    std::function<void(const StitchedFrames&)> stitched{};
 };
 
 /// The enabled effects, as drawing needs them.
@@ -51,24 +56,9 @@ struct EffectInputs {
 /// Core's own parameters, beside those of plugins: `terrain.normal`, fragment or vertex.
 std::vector<shader::Param> core_params();
 
-/// Milliseconds of the stages of one frame, by their names: "select", the id of each native effect,
-/// "geometry", "terrain", "side", "background", "post", "antialias".
-using PassTimes = std::vector<std::pair<std::string, double>>;
-
-/// How much of the sun a pixel of the ground was drawn with, by the pass that drew the picture.
-struct SunSeen {
-    glm::dvec2 post{0};      ///< column and row of the DEM, the first post at 0
-    double share = 0;        ///< of the sun, by all effects that answer the hook `visibility`
-    double pixel_posts = 0;  ///< posts along the pixel's side on the ground
-    bool faces = false;      ///< the ground is turned to the sun
-    bool moved = false;      ///< an effect has moved the ground from where the DEM has it
-};
-
 /// Draws frames with one selection of effects.
 ///
-/// A frame is a row of passes: geometry (what is where, once for every pixel), terrain (its light),
-/// side (of a block, where one is seen from outside), background, post (tone mapping, sRGB; only
-/// with the radiance) and antialias.
+/// core_passes.h declares the passes of a frame.
 class Renderer {
   public:
     /// Stitches and compiles the programs, and loads the textures they read.
@@ -128,9 +118,5 @@ class Renderer {
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
-
-/// How many pixels of a Renderer::picture() have light or colour that is no number, or infinite,
-/// before the picture clamps it: they are not opaque.
-int count_not_numbers(std::span<const std::uint8_t> rgba);
 
 }  // namespace relevo::render

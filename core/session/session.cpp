@@ -81,6 +81,7 @@ struct Session::Impl {
 
     // In the order in which each needs those above.
     std::optional<gl::Context> context;
+    render::ProgramCache programs;
     std::shared_ptr<const LoadedDem> loaded;
     render::SkyAhead sky_ahead;  // of the first ground
     DrawnEffects drawn;
@@ -205,20 +206,21 @@ struct Session::Impl {
         if (drawing.others) drawing.others->fit(context->info(), /*aloud=*/false);
     }
 
-    render::RendererOptions renderer_options() const {
+    render::RendererOptions renderer_options() {
         return {.width_px = scene.width_px,
                 .height_px = scene.height_px,
                 .radiance = options.radiance,
                 .draped = drape || (scene.overlay && !terrain),
                 .outside = !scene.view.eye,
-                .audited = options.audited};
+                .audited = options.audited,
+                .programs = &programs};
     }
 
     void compile(DrawnEffects& drawing) {
         render::RendererOptions with_texts = renderer_options();
-        with_texts.stitched = [this](const std::vector<render::ProgramText>& texts) {
-            if (options.stitched) options.stitched(texts);
-            look_ahead(texts);
+        with_texts.stitched = [this](const render::StitchedFrames& frames) {
+            if (options.stitched) options.stitched(frames);
+            look_ahead(frames.programs);
         };
         drawing.renderer =
             std::make_unique<render::Renderer>(*context, drawing.effects->inputs(), with_texts);
@@ -739,6 +741,10 @@ std::string Session::climate_text() const {
     const ClimateReport report =
         climate_report(impl_->terrain->climate_map(), middle_of(*impl_->ground), impl_->utc);
     return session::climate_text(report) + "; " + ground_text(report);
+}
+
+int Session::linked_programs() const {
+    return impl_->programs.links();
 }
 
 const StageTimes& Session::stages() const {

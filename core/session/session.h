@@ -80,7 +80,7 @@ struct Options {
     /// Effects of a comparison: pictures have them on the left and not on the right.
     std::vector<std::string> compared{};
     /// Called with the programs' texts before a driver sees them.
-    std::function<void(const std::vector<render::ProgramText>&)> stitched{};
+    std::function<void(const render::StitchedFrames&)> stitched{};
 };
 
 struct ActiveEffects;
@@ -209,6 +209,8 @@ class Session {
     std::string climate_text() const;
 
     const StageTimes& stages() const;
+    /// How many programs the driver has linked so far.
+    int linked_programs() const;
     int triangles() const;  ///< of the last frame
     const gl::DeviceInfo& device() const;
 

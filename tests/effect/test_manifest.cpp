@@ -405,7 +405,8 @@ TEST(Manifest, NoIdIsWhatCoresNamesBeginWith) {
     std::set<std::string> words = core_prefixes();
     EXPECT_EQ(words.count("background"), 1u);
     // Passes and stages of a frame, and words of the command line.
-    words.insert({"select", "geometry", "terrain", "post", "edges", "antialias", "all", "none"});
+    words.insert({"select", "footprint", "geometry", "terrain", "post", "copy", "edges",
+                  "antialias", "all", "none"});
     const std::string guide =
         read_text(relevo::test::source_dir() / "docs/plugin-guide.md", "test");
     const std::size_t list = guide.find("`id` cannot be a word that core uses");

@@ -268,7 +268,7 @@ std::vector<ProgramText> stitched(const std::vector<shader::Snippet>& snippets) 
     input.max_texture_units = 32;
     for (const shader::Snippet& snippet : snippets)
         input.snippets.push_back(&snippet);
-    return stitch_programs(shader::FolderTexts(test::source_dir() / "shaders"), input, {});
+    return stitch_frames(shader::FolderTexts(test::source_dir() / "shaders"), input, {}).programs;
 }
 
 TEST(HeightSteps, AreNotThereWhereNothingReadsThem) {

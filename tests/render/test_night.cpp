@@ -34,7 +34,7 @@ TEST(Night, IsAProgramOfItsOwnAndNothingOfItIsInTheOthers) {
     shader::StitchInput input;
     input.snippets = {&sky};
     int found = 0;
-    for (const ProgramText& program : stitch_programs(core, input, {.shown = true})) {
+    for (const ProgramText& program : stitch_frames(core, input, {.shown = true}).programs) {
         const bool night = program.name == "background_night";
         found += night;
         EXPECT_EQ(program.stitched.fragment.text.find("float owl_hoot()") != std::string::npos,
@@ -46,7 +46,7 @@ TEST(Night, IsAProgramOfItsOwnAndNothingOfItIsInTheOthers) {
 
 TEST(Night, HasNoProgramWhereNoEffectWantsIt) {
     const shader::FolderTexts core(share_dir() / "shaders");
-    const auto programs = stitch_programs(core, {}, {});
+    const auto programs = stitch_frames(core, {}, {}).programs;
     EXPECT_TRUE(std::none_of(programs.begin(), programs.end(), [](const ProgramText& program) {
         return program.name == "background_night";
     }));

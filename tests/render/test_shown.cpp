@@ -94,6 +94,39 @@ TEST(Picture, IsTheSameWithAndWithoutKeepingItsRadiance) {
     EXPECT_LE(image::compare(pictures[0], pictures[1]).worst, 1);
 }
 
+TEST(Picture, ReadsNothingThatNoPassHasWritten) {
+    // With NaN in all memory that the frame graph gives out, every picture is the same.
+    Bundled bundled("2026-06-21T22:30Z");
+    bundled.orbit(320.0 / 256);
+    const shader::Snippet block = shader::parse_snippet(
+        "cut", "cut.glsl",
+        "vec3 cut_on_side(in Surface s, in float depth_m) { return s.diffuse * s.normal.zzz; }\n"
+        "void cut_on_display(in Surface s, inout vec4 colour) { colour = vec4(0.5 * "
+        "s.height_unit); }\n");
+    bundled.effects.stitch.snippets = {&block};
+    int frames = 0;
+    for (const bool radiance : {true, false})
+        for (const bool antialias : {true, false}) {
+            std::vector<image::Image8> pictures;
+            for (const bool poison : {false, true}) {
+                Renderer renderer(bundled.context, bundled.effects,
+                                  {.width_px = 320,
+                                   .height_px = 256,
+                                   .antialias = antialias,
+                                   .radiance = radiance,
+                                   .poison = poison});
+                int not_numbers = 0;
+                bundled.picture(renderer);
+                pictures.push_back(bundled.picture(renderer));
+                renderer.read_picture(&not_numbers);
+                EXPECT_EQ(not_numbers, 0);
+                ++frames;
+            }
+            EXPECT_EQ(pictures[0].values, pictures[1].values) << radiance << antialias;
+        }
+    EXPECT_EQ(frames, 8);
+}
+
 TEST(Picture, DithersByOneStepOfEightBits) {
     // A sky of one colour is drawn in the two numbers next to it.
     const shader::Snippet even = shader::parse_snippet(

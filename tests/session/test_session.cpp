@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "base/units.h"
+#include "render/drape.h"
 #include "session/session.h"
 #include "session/words.h"
 #include "sun/time.h"
@@ -66,7 +67,7 @@ TEST(Session, CameraMomentParametersAndSizeChangeWithoutANewProgram) {
     FilesInUse files;
     int stitched = 0;
     Options options{.device = "software"};
-    options.stitched = [&](const std::vector<render::ProgramText>&) { ++stitched; };
+    options.stitched = [&](const render::StitchedFrames&) { ++stitched; };
     Session session(bundled_scene(), options, files);
     session.draw();
     const image::Image8 before = session.picture();
@@ -96,6 +97,51 @@ TEST(Session, CameraMomentParametersAndSizeChangeWithoutANewProgram) {
     session.resize(first.width_px, first.height_px);
     session.draw();
     EXPECT_EQ(session.picture().values, before.values);
+}
+
+TEST(Session, AToggleThereAndBackLinksNothing) {
+    using Clock = std::chrono::steady_clock;
+    const auto ms_since = [](Clock::time_point began) {
+        return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+    };
+    FilesInUse files;
+    scene::Scene scene = bundled_scene();
+    scene.effects = {};  // all that is on without a word
+    scene.width_px = 640;
+    scene.height_px = 480;
+    Session session(scene, {.device = "software"}, files);
+    scene::Effects fewer;
+    fewer.switches.disable = {"haze", "bump"};
+    const auto colours =
+        std::make_shared<render::Drape>(render::Drape{Array2d<std::uint32_t>(2, 2, 0x80ff0000u)});
+    std::vector<image::Image8> pictures;
+    double switch_ms = 1e9, frame_ms = 1e9;
+    int linked = 0;
+    for (const bool again : {false, true}) {
+        std::size_t i = 0;
+        for (const bool overlay : {false, true})
+            for (const bool all : {true, false}) {
+                const auto began = Clock::now();
+                session.set_effects(all ? scene::Effects{} : fewer);
+                switch_ms = std::min(switch_ms, ms_since(began));
+                session.drape(overlay ? colours : nullptr);
+                const auto drawn = Clock::now();
+                session.draw_alone();
+                frame_ms = std::min(frame_ms, ms_since(drawn));
+                pictures.push_back(session.picture());
+                EXPECT_TRUE(!again || pictures.back().values == pictures[i].values) << i;
+                ++i;
+            }
+        EXPECT_TRUE(!again || session.linked_programs() == linked);
+        linked = session.linked_programs();
+    }
+    EXPECT_NE(pictures[0].values, pictures[1].values);
+    EXPECT_NE(pictures[0].values, pictures[2].values);
+    EXPECT_GT(linked, 8);
+    fmt::print(
+        "[ toggle ] {} programs linked; {:.0f} ms to another selection with its first "
+        "frame, {:.0f} ms a frame\n",
+        linked, switch_ms, frame_ms);
 }
 
 TEST(Session, DrawsCoarserGroundUntilItsPagesAreThere) {

@@ -60,7 +60,7 @@ std::vector<glm::vec4> GpuSnippet::run(const std::string& body, int columns, int
     input.values = &values_;
     const shader::Stitched stitched = shader::stitch(
         texts, {.vertex_main = "fullscreen.vert.glsl", .fragment_main = "test.frag.glsl"}, input);
-    const render::LinkedProgram program = render::link_program({"test", stitched});
+    const gl::Program program = render::link_program(render::ProgramText::of("test", stitched));
 
     const gl::Texture target(gl::TextureKind::D2, gl::Format::RGBA32F, {columns, rows, 1}, 1,
                              "results");
@@ -73,7 +73,7 @@ std::vector<glm::vec4> GpuSnippet::run(const std::string& body, int columns, int
     const gl::VertexArray no_inputs;
     no_inputs.bind();
     framebuffer.bind();
-    program.program.use();
+    program.use();
     glDrawArrays(GL_TRIANGLES, 0, 3);
     std::vector<glm::vec4> results(static_cast<std::size_t>(columns * rows));
     target.read(0, std::as_writable_bytes(std::span(results)));

@@ -1,0 +1,270 @@
+#include "render/core_passes.h"
+
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+#include "base/error.h"
+#include "render/pass_context.h"
+#include "shader/stored_varyings.h"
+
+namespace relevo::render {
+namespace {
+
+constexpr const char* kFullscreen = "fullscreen.vert.glsl";
+constexpr const char* kTerrain = "terrain.vert.glsl";
+constexpr std::array<float, 4> kNothing{0, 0, 0, 0};
+
+// Outputs beside the G-buffer: GL guarantees eight.
+constexpr int kMaxStored = 7;
+
+/// Recomputes the light by place that programs read, if the sun has moved.
+void light(PassContext& frame) {
+    Terrain& terrain = frame.terrain;
+    const double pixel_rad = length(glm::dvec3(frame.block.pixel_ray_dx));
+    // Without ground in sight the light of any sun will do, else the coarsest.
+    const bool sees_ground = frame.tiles.triangles() > 0;
+    const double pixel_posts =
+        sees_ground ? frame.tiles.nearest_m() * pixel_rad / terrain.normal_spacing_m()
+                    : std::numeric_limits<double>::infinity();
+    const bool reads_sun = frame.is_read("light_margins");
+    if (reads_sun && (sees_ground || !terrain.light().followed()))
+        terrain.light().follow(frame.inputs.sun, frame.inputs.exaggeration, pixel_posts);
+    if (frame.is_read("light_sky")) terrain.light().look_up(frame.inputs.exaggeration);
+    terrain.light().describe(frame.block);
+}
+
+class Declaration {
+  public:
+    explicit Declaration(const FrameFacts& facts)
+        : facts_(facts),
+          end_(facts.antialias ? "colour" : "picture"),
+          light_(facts.radiance ? "radiance" : end_) {
+        if (!facts.radiance)
+            ends_.push_back({"SHOWN", ""});
+        else if (facts.overlays)
+            ends_.push_back({"DISPLAY_OVERLAY", ""});
+    }
+
+    CoreFrame run() {
+        resources();
+        prepare();
+        natives();
+        geometry();
+        terrain();
+        if (facts_.outside) side();
+        background();
+        if (facts_.radiance) post();
+        if (facts_.antialias) antialias();
+        return std::move(frame_);
+    }
+
+  private:
+    void add(Pass pass) { frame_.graph.passes.push_back(std::move(pass)); }
+    void add(Resource resource) { frame_.graph.resources.push_back(std::move(resource)); }
+    void provided(const char* name) { add(Resource{.name = name, .lifetime = Lifetime::Provided}); }
+
+    /// @returns its name
+    std::string program(const char* name, shader::ProgramRecipe recipe, bool wants = false,
+                        const char* word = "") {
+        const std::string full = wants ? std::string(name) + "_" + word : name;
+        frame_.programs.push_back({full, std::move(recipe), wants ? word : ""});
+        return full;
+    }
+
+    void resources() {
+        using enum PixelFormat;
+        for (const char* name : {"tiles", "frame", "parameters", "light_margins", "light_shares",
+                                 "light_sky", "floor_ground"})
+            provided(name);
+        add(Resource{.name = "gbuffer", .format = RGBA32UI, .output = facts_.audited});
+        add(Resource{.name = "depth", .format = Depth32F, .output = true});
+        if (facts_.varying_targets > 0)
+            add(Resource{.name = shader::StoredVaryings::kTexture,
+                         .kind = ResourceKind::Texture2DArray,
+                         .format = RGBA32F,
+                         .size = {.depth = facts_.varying_targets}});
+        if (facts_.height_steps) add(Resource{.name = kHeightStepsTexture, .format = RG32F});
+        if (facts_.radiance)
+            add(Resource{.name = "radiance", .format = RGBA16F, .linear = true, .output = true});
+        if (facts_.radiance && facts_.overlays)
+            add(Resource{.name = "overlay", .format = RGBA8, .linear = true});
+        if (facts_.audited)
+            add(Resource{.name = "sun_seen", .format = RGBA32F, .linear = true, .output = true});
+        if (facts_.antialias) {
+            add(Resource{.name = "colour", .format = RGBA8, .linear = true});
+            add(Resource{.name = "edges", .format = Stencil8});
+        }
+        add(Resource{.name = "picture", .format = RGBA8, .linear = true, .output = true});
+    }
+
+    /// What the host does before anything is drawn.
+    void prepare() {
+        add(Pass{.name = "select",
+                 .kind = PassKind::Host,
+                 .writes = {"tiles"},
+                 .body = [](PassContext& frame) {
+                     frame.tiles = frame.terrain.select_for_picture(
+                         frame.inputs.camera, frame.width_px, frame.height_px,
+                         frame.inputs.exaggeration, frame.inputs.loading, frame.inputs.afresh);
+                 }});
+        add(Pass{.name = "light",
+                 .kind = PassKind::Host,
+                 .reads = {"tiles"},
+                 .writes = {"light_margins", "light_shares", "light_sky"},
+                 .body = light});
+        add(Pass{.name = "footprint",
+                 .kind = PassKind::Host,
+                 .when = When::Dem,
+                 .writes = {"floor_ground"}});
+        add(Pass{.name = "frame",
+                 .kind = PassKind::Host,
+                 .writes = {"frame"},
+                 .after = {"select", "light"}});
+    }
+
+    /// Each draws the ground's depth as often as it likes and may write parameters.
+    void natives() {
+        if (facts_.natives.empty()) return;
+        shader::ProgramRecipe recipe{.vertex_main = kTerrain,
+                                     .fragment_main = "depth.frag.glsl",
+                                     .defines = {{"TERRAIN_DEPTH", ""}}};
+        if (facts_.displaced) recipe.defines.push_back({"DISPLACED", ""});
+        const std::string depth = program("depth", recipe);
+        std::string before;
+        for (const std::string& id : facts_.natives) {
+            add(Pass{.name = id,
+                     .kind = PassKind::Host,
+                     .program = depth,
+                     .reads = {"tiles"},
+                     .updates = {"parameters"},
+                     .after = {before}});
+            before = id;
+        }
+    }
+
+    void geometry() {
+        shader::ProgramRecipe recipe{.vertex_main = kTerrain,
+                                     .fragment_main = "geometry.frag.glsl",
+                                     .shaded_by = "terrain.frag.glsl"};
+        ground_defines(recipe);
+        Pass pass{.name = "geometry",
+                  .kind = PassKind::Geometry,
+                  .program = program("geometry", recipe, is_outside_word(), kOutsideWord),
+                  .reads = {"tiles"},
+                  .colours = {{"gbuffer"}},
+                  .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true, /*clear=*/0.0F},
+                  .clips_voids = true,
+                  .body = [](PassContext& frame) {
+                      frame.terrain.draw(frame.tiles, frame.inputs.camera.eye_m);
+                  }};
+        if (facts_.varying_targets > 0) pass.colours.push_back({shader::StoredVaryings::kTexture});
+        if (facts_.height_steps) pass.colours.push_back({kHeightStepsTexture});
+        add(std::move(pass));
+    }
+
+    void ground_defines(shader::ProgramRecipe& recipe) const {
+        if (facts_.vertex_normals) recipe.defines.push_back({"TERRAIN_NORMAL_VERTEX", ""});
+        if (facts_.displaced) recipe.defines.push_back({"DISPLACED", ""});
+        if (!facts_.height_steps) return;
+        if (facts_.varying_targets >= kMaxStored)
+            bad_input("render: height_dx_m and height_dy_m: expected varyings of up to " +
+                      std::to_string(4 * (kMaxStored - 1)) + " floats in addition but got " +
+                      std::to_string(facts_.varying_targets) +
+                      " textures of four; switch an effect off");
+        recipe.defines.push_back({kHeightStepsDefine, std::to_string(1 + facts_.varying_targets)});
+    }
+
+    bool is_outside_word() const { return facts_.outside && facts_.wants_outside; }
+    bool has_overlay() const { return facts_.radiance && facts_.overlays; }
+
+    /// Shades what the geometry pass has drawn.
+    void terrain() {
+        shader::ProgramRecipe recipe{.vertex_main = kFullscreen,
+                                     .fragment_main = "terrain.frag.glsl",
+                                     .geometry_of = kTerrain};
+        ground_defines(recipe);
+        if (facts_.draped) recipe.defines.push_back({"DRAPED", ""});
+        recipe.defines.insert(recipe.defines.end(), ends_.begin(), ends_.end());
+        if (facts_.audited) recipe.defines.push_back({kAuditedDefine, has_overlay() ? "2" : "1"});
+        Pass pass{.name = "terrain",
+                  .program = program("terrain", recipe, is_outside_word(), kOutsideWord),
+                  .colours = {{light_}},
+                  .depth = Depth{"depth@geometry", DepthTest::Covered}};
+        if (has_overlay()) pass.colours.push_back({"overlay", kNothing});
+        if (facts_.audited) pass.colours.push_back({"sun_seen", kNothing});
+        add(std::move(pass));
+    }
+
+    /// The walls of a block that is seen from outside.
+    void side() {
+        Pass pass{.name = "side",
+                  .kind = PassKind::Geometry,
+                  .program = program("side", {.vertex_main = "side.vert.glsl",
+                                              .fragment_main = "side.frag.glsl",
+                                              .defines = ends_}),
+                  .reads = {"tiles"},
+                  .colours = {{.resource = light_, .over = true}},
+                  .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
+                  .body = [](PassContext& frame) {
+                      frame.terrain.draw_sides(frame.tiles, frame.inputs.camera.eye_m);
+                  }};
+        if (has_overlay()) pass.colours.push_back({.resource = "overlay", .over = true});
+        add(std::move(pass));
+    }
+
+    /// The sky, or what is behind a block.
+    void background() {
+        const char* const name = facts_.outside ? "backdrop" : "background";
+        const shader::ProgramRecipe recipe{.vertex_main = kFullscreen,
+                                           .fragment_main = std::string(name) + ".frag.glsl",
+                                           .defines = ends_};
+        Pass pass{.name = "background",
+                  .program = program(name, recipe),
+                  .colours = {{.resource = light_, .over = true}},
+                  .depth = Depth{"depth", DepthTest::Uncovered},
+                  .after = {"side"}};
+        if (!facts_.outside && facts_.wants_night)
+            pass.program_at_night = program(name, recipe, true, kNightWord);
+        add(std::move(pass));
+    }
+
+    /// Tone mapping of the stored radiance.
+    void post() {
+        add(Pass{.name = "post",
+                 .program = program("post", {.vertex_main = kFullscreen,
+                                             .fragment_main = "post.frag.glsl",
+                                             .defines = ends_}),
+                 .colours = {{end_}}});
+    }
+
+    /// Two draws: the first marks the few pixels of silhouettes, the second smooths those over a
+    /// copy. One draw over all pixels takes five times as long on a software renderer.
+    void antialias() {
+        add(Pass{
+            .name = "copy", .kind = PassKind::Host, .reads = {"colour"}, .writes = {"picture"}});
+        add(Pass{.name = "edges",
+                 .program = program(
+                     "edges", {.vertex_main = kFullscreen, .fragment_main = "edges.frag.glsl"}),
+                 .stencil = Stencil{"edges", /*marks=*/true}});
+        add(Pass{.name = "antialias",
+                 .program = program("antialias", {.vertex_main = kFullscreen,
+                                                  .fragment_main = "antialias.frag.glsl"}),
+                 .colours = {{.resource = "picture", .over = true}},
+                 .stencil = Stencil{"edges"}});
+    }
+
+    const FrameFacts& facts_;
+    std::string end_;    // resource of the tone-mapped colours
+    std::string light_;  // what the shading passes draw into
+    std::vector<shader::Define> ends_;
+    CoreFrame frame_;
+};
+
+}  // namespace
+
+CoreFrame core_frame(const FrameFacts& facts) {
+    return Declaration(facts).run();
+}
+
+}  // namespace relevo::render

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "gl/context.h"
+#include "gl/vertex_array.h"
+#include "render/graph_targets.h"
+#include "render/pass_context.h"
+#include "render/pass_timers.h"
+#include "render/watched_programs.h"
+#include "shader/param_store.h"
+
+namespace relevo::render {
+
+/// Executes frame graphs: for each step of the plan it binds the program, its textures and the
+/// targets, sets the state, and draws.
+class FrameRunner {
+  public:
+    /// A texture that no pass of the graph's own makes, by the resource's name; null: there is
+    /// none.
+    using Provider =
+        std::function<const gl::Texture*(const shader::TextureUnit& unit, const Terrain& terrain)>;
+
+    /// @param frames  whose passes have their bodies; must outlive this, as must the rest
+    FrameRunner(gl::Context& context, const StitchedFrames& frames, WatchedPrograms& programs,
+                Provider provider, const shader::ParamStore& values);
+
+    /// Frames are of this size and place of the eye from now on.
+    void arrange(bool outside, int width_px, int height_px);
+
+    const FrameGraph& graph() const;
+    const Plan& plan() const { return plan_; }
+    const gl::Texture& texture(std::string_view resource) const;
+    gl::Texture& texture(std::string_view resource);
+
+    /// Draws a frame.
+    /// @param night  passes with a program for nights take that
+    /// @param times  filled with what each pass took if not null
+    void run(PassContext& frame, bool night, PassTimes* times);
+
+    /// Makes a program and its textures current. @throws Error (Failed) where a texture is missing
+    void use(const std::string& program, const Terrain& terrain);
+
+    /// Fills memory with NaN where the contents of a resource begin, for tests.
+    void set_poison(bool poison) { poisons_ = poison; }
+
+  private:
+    /// What a pass that is not executed in every frame was executed for.
+    struct Executed {
+        std::uint64_t ground = 0;
+        glm::dvec3 sun{0};
+        std::vector<shader::ParamValue> values;
+        bool operator==(const Executed&) const = default;
+    };
+    bool is_due(const Pass& pass, const PassContext& frame);
+    void execute(std::size_t step, PassContext& frame, bool night);
+    void draw(const Pass& pass, const std::string& program, PassContext& frame);
+    void draw_in_bands(const std::string& program, const PassContext& frame);
+
+    gl::Context& context_;
+    const StitchedFrames& frames_;
+    WatchedPrograms& programs_;
+    Provider provider_;
+    const shader::ParamStore& values_;
+    bool outside_ = false, poisons_ = false;
+    Plan plan_;
+    GraphTargets targets_;
+    std::map<std::string, Executed> executed_;
+    gl::VertexArray no_inputs_;
+};
+
+}  // namespace relevo::render

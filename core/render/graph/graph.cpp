@@ -1,0 +1,43 @@
+#include "render/graph/graph.h"
+
+#include <algorithm>
+
+namespace relevo::render {
+
+const Resource* FrameGraph::find(std::string_view resource) const {
+    const auto found = std::ranges::find(resources, resource, &Resource::name);
+    return found == resources.end() ? nullptr : &*found;
+}
+
+Version Version::of(std::string_view text) {
+    const std::size_t at = text.find('@');
+    if (at == std::string_view::npos) return {std::string(text), ""};
+    return {std::string(text.substr(0, at)), std::string(text.substr(at + 1))};
+}
+
+std::vector<Access> accesses(const Pass& pass) {
+    using Mode = Access::Mode;
+    std::vector<Access> all;
+    const auto add = [&](Mode mode, const std::string& name) {
+        const Access access{mode, Version::of(name)};
+        if (std::ranges::find(all, access) == all.end()) all.push_back(access);
+    };
+    for (const Colour& colour : pass.colours)
+        add(colour.over ? Mode::Update : Mode::Write, colour.resource);
+    if (const auto& depth = pass.depth)
+        add(!depth->writes ? Mode::Read
+            : depth->clear ? Mode::Write
+                           : Mode::Update,
+            depth->resource);
+    if (const auto& stencil = pass.stencil)
+        add(stencil->marks ? Mode::Write : Mode::Read, stencil->resource);
+    for (const std::string& name : pass.writes)
+        add(Mode::Write, name);
+    for (const std::string& name : pass.updates)
+        add(Mode::Update, name);
+    for (const std::string& name : pass.reads)
+        add(Mode::Read, name);
+    return all;
+}
+
+}  // namespace relevo::render

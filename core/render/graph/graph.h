@@ -1,0 +1,143 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/pixel_format.h"
+
+/// The frame graph: which textures and buffers a frame needs, and which passes read and write them,
+/// declared as data. plan() of plan.h derives the order of the passes, the passes that nobody
+/// needs, the memory that textures share, and barriers. Nothing here calls OpenGL.
+/// @source  the idea is that of Filament's FrameGraph and of Frostbite's (Y. O'Donnell, GDC 2017)
+namespace relevo::render {
+
+enum class ResourceKind { Texture2D, Texture2DArray, Texture3D, Buffer };
+
+/// How long the contents of a resource are needed, and who makes it.
+enum class Lifetime {
+    Frame,    ///< from its first writer to its last reader; may share memory with another one
+    Kept,     ///< from frame to frame; its memory is its own
+    Provided  ///< made by a pass's own code or by the caller: the graph allocates nothing
+};
+
+/// Sides of a texture: a share of the frame's, or fixed.
+struct ResourceSize {
+    double share = 1;           ///< of the frame's width and height; 0: fixed
+    int width = 1, height = 1;  ///< [px], of a fixed size
+    int depth = 1;              ///< layers of an array, or depth of a 3-D texture
+    std::size_t bytes = 0;      ///< of a buffer
+    bool operator==(const ResourceSize&) const = default;
+};
+
+struct Resource {
+    std::string name;  ///< also the name of the sampler that reads it in GLSL
+    ResourceKind kind = ResourceKind::Texture2D;
+    PixelFormat format = PixelFormat::RGBA8;
+    ResourceSize size{};
+    Lifetime lifetime = Lifetime::Frame;
+    bool linear = false;  ///< sampled with linear filtering instead of nearest
+    /// Read by the caller after the frame: the passes that write it are always executed.
+    bool output = false;
+};
+
+/// Which pixels a draw reaches, by the stored depth. Depth is reversed: 0 is the far end.
+enum class DepthTest {
+    Nearer,    ///< where it is nearer than what is stored
+    Covered,   ///< of a full-screen pass: where something was drawn
+    Uncovered  ///< of a full-screen pass: where nothing was
+};
+
+/// A colour target of a pass.
+struct Colour {
+    std::string resource;
+    std::optional<std::array<float, 4>> clear{};  ///< before the pass
+    bool over = false;  ///< keeps what an earlier pass has written where it draws nothing
+};
+
+/// The depth target of a pass.
+struct Depth {
+    std::string resource;  ///< may be a version: "depth@geometry"
+    DepthTest test = DepthTest::Nearer;
+    bool writes = false;
+    std::optional<float> clear{};  ///< before the pass; requires `writes`
+};
+
+/// The stencil target of a pass.
+struct Stencil {
+    std::string resource;
+    bool marks = false;  ///< sets 1 where the program draws, and no colour; else draws only there
+};
+
+enum class PassKind {
+    Fullscreen,  ///< one triangle over all targets
+    Geometry,    ///< its body draws, with the program and the targets bound
+    Compute,     ///< its body dispatches, with the program bound
+    Host         ///< its body does what it likes with the resources that it declares
+};
+
+/// When a pass is executed. What others than `Frame` write must be Kept or Provided.
+enum class When {
+    Frame,       ///< in every frame
+    Sun,         ///< when the sun has moved
+    Parameters,  ///< when one of Pass::parameters has another value
+    Dem          ///< once for each ground
+};
+
+struct PassContext;  // render/pass_context.h
+
+/// A step of a frame.
+///
+/// A pass that makes the whole contents of a resource writes it; there is at most one. A pass that
+/// draws over them updates it. Several updates of one resource need an order by `after`. A pass
+/// reads what the last update leaves, or, as "depth@geometry", what the pass `geometry` leaves, or,
+/// as "history@before", what the frame before has left.
+struct Pass {
+    std::string name;
+    PassKind kind = PassKind::Fullscreen;
+    When when = When::Frame;
+    std::vector<std::string> parameters{};  ///< addresses, for When::Parameters
+    std::string program{};                  ///< name of a program; empty: none
+    std::string program_at_night{};         ///< takes its place while it is night; empty: none does
+    std::vector<std::string> reads{};       ///< also what the program's samplers name
+    std::vector<Colour> colours{};          ///< in the order of the program's outputs
+    std::optional<Depth> depth{};
+    std::optional<Stencil> stencil{};
+    std::vector<std::string> writes{};   ///< other than targets: buffers, images, provided textures
+    std::vector<std::string> updates{};  ///< likewise, of what others have written
+    std::vector<std::string> after{};    ///< names of passes, those that do not exist included
+    bool clips_voids = false;            ///< GL_CLIP_DISTANCE0, where the DEM has voids
+    std::function<void(PassContext&)> body{};
+};
+
+struct FrameGraph {
+    std::vector<Resource> resources;
+    std::vector<Pass> passes;
+
+    /// Null where there is none.
+    const Resource* find(std::string_view resource) const;
+};
+
+/// A resource as a pass names it: "depth@geometry" is version `geometry` of `depth`.
+struct Version {
+    std::string resource;
+    std::string pass;  ///< empty: the last one; "before": of the frame before
+    bool operator==(const Version&) const = default;
+    static Version of(std::string_view text);
+    bool is_before() const { return pass == "before"; }
+};
+
+/// What a pass does to a resource.
+struct Access {
+    enum class Mode { Read, Write, Update } mode;
+    Version version;
+    bool operator==(const Access&) const = default;
+};
+
+/// Every access of a pass, targets included.
+std::vector<Access> accesses(const Pass& pass);
+
+}  // namespace relevo::render

@@ -1,0 +1,104 @@
+#include "render/graph_targets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace relevo::render {
+namespace {
+
+gl::TextureKind kind_of(ResourceKind kind) {
+    switch (kind) {
+        case ResourceKind::Texture2DArray:
+            return gl::TextureKind::D2Array;
+        case ResourceKind::Texture3D:
+            return gl::TextureKind::D3;
+        default:
+            return gl::TextureKind::D2;
+    }
+}
+
+gl::Extent extent_of(const ResourceSize& size, int width_px, int height_px) {
+    if (size.share <= 0) return {size.width, size.height, size.depth};
+    const auto side = [&](int whole) {
+        return std::max(1, static_cast<int>(std::ceil(size.share * whole)));
+    };
+    return {side(width_px), side(height_px), size.depth};
+}
+
+}  // namespace
+
+GraphTargets::GraphTargets(const FrameGraph& graph, const Plan& plan, int width_px, int height_px)
+    : textures_(plan.memory.size()), buffers_(plan.memory.size()) {
+    for (std::size_t m = 0; m < plan.memory.size(); ++m) {
+        std::string label;
+        for (const int r : plan.memory[m].resources) {
+            const std::string& name = graph.resources[static_cast<std::size_t>(r)].name;
+            label += (label.empty() ? "" : ", ") + name;
+            names_.push_back({name, static_cast<int>(m)});
+        }
+        const Resource& first =
+            graph.resources[static_cast<std::size_t>(plan.memory[m].resources.front())];
+        if (first.kind == ResourceKind::Buffer) {
+            buffers_[m] = gl::Buffer(first.size.bytes, label);
+            continue;
+        }
+        textures_[m] = gl::Texture(kind_of(first.kind), first.format,
+                                   extent_of(first.size, width_px, height_px), 1, label);
+        // A stencil is never sampled.
+        if (first.format != gl::Format::Stencil8)
+            textures_[m].set_sampling(first.linear ? gl::Filter::Linear : gl::Filter::Nearest,
+                                      gl::Wrap::Clamp);
+    }
+    for (const Plan::Step& step : plan.steps)
+        framebuffers_.push_back(
+            make_framebuffer(graph.passes[static_cast<std::size_t>(step.pass)]));
+}
+
+gl::Framebuffer GraphTargets::make_framebuffer(const Pass& pass) {
+    std::vector<const gl::Texture*> colours;
+    for (const Colour& colour : pass.colours)
+        colours.push_back(texture(colour.resource));
+    const gl::Texture* const depth = pass.depth
+                                         ? texture(Version::of(pass.depth->resource).resource)
+                                     : pass.stencil ? texture(pass.stencil->resource)
+                                                    : nullptr;
+    if (colours.empty() && !depth) return {};
+    return gl::Framebuffer(colours, depth, pass.name);
+}
+
+int GraphTargets::memory_of(std::string_view resource) const {
+    const auto found = std::ranges::find(names_, resource, &Named::name);
+    return found == names_.end() ? -1 : found->memory;
+}
+
+const gl::Texture* GraphTargets::texture(std::string_view resource) const {
+    const int memory = memory_of(resource);
+    if (memory < 0) return nullptr;
+    const gl::Texture& found = textures_[static_cast<std::size_t>(memory)];
+    return found.name() != 0 ? &found : nullptr;
+}
+
+gl::Texture* GraphTargets::texture(std::string_view resource) {
+    return const_cast<gl::Texture*>(std::as_const(*this).texture(resource));
+}
+
+const gl::Buffer* GraphTargets::buffer(std::string_view resource) const {
+    const int memory = memory_of(resource);
+    if (memory < 0) return nullptr;
+    const gl::Buffer& found = buffers_[static_cast<std::size_t>(memory)];
+    return found.name() != 0 ? &found : nullptr;
+}
+
+const gl::Framebuffer* GraphTargets::framebuffer(std::size_t step) const {
+    const gl::Framebuffer& found = framebuffers_[step];
+    return found.name() != 0 ? &found : nullptr;
+}
+
+void GraphTargets::poison(const FrameGraph& graph, const Plan::Step& step) {
+    for (const int r : step.begins)
+        if (gl::Texture* const begun = texture(graph.resources[static_cast<std::size_t>(r)].name))
+            begun->fill_with_ones();
+}
+
+}  // namespace relevo::render

@@ -1,0 +1,91 @@
+#include "render/readback.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <glm/vec4.hpp>
+
+#include "render/frame_block.h"
+
+namespace relevo::render {
+namespace {
+
+std::size_t texels_of(const gl::Texture& texture) {
+    const gl::Extent extent = texture.extent();
+    return static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(extent.height);
+}
+
+template <typename Texel>
+std::vector<Texel> read_all(const gl::Texture& texture) {
+    std::vector<Texel> texels(texels_of(texture));
+    texture.read(0, std::as_writable_bytes(std::span(texels)));
+    return texels;
+}
+
+}  // namespace
+
+int count_not_numbers(std::span<const std::uint8_t> rgba) {
+    int count = 0;
+    for (std::size_t alpha = 3; alpha < rgba.size(); alpha += 4)
+        count += rgba[alpha] != 255;
+    return count;
+}
+
+image::Image8 read_picture(const gl::Texture& picture, int* not_numbers) {
+    std::vector<std::uint8_t> texels(4 * texels_of(picture));
+    picture.read(0, std::as_writable_bytes(std::span(texels)));
+    if (not_numbers) *not_numbers = count_not_numbers(texels);
+    return image::from_device(picture.extent().width, picture.extent().height, texels);
+}
+
+image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* not_numbers) {
+    const int width = radiance.extent().width, height = radiance.extent().height;
+    std::vector<float> texels(4 * texels_of(radiance));
+    radiance.read_floats(texels);
+    if (not_numbers) {
+        *not_numbers = 0;
+        for (std::size_t alpha = 3; alpha < texels.size(); alpha += 4)
+            *not_numbers += texels[alpha] != 1;
+    }
+    const auto scale = static_cast<float>(1 / exposure);
+    image::ImageF result(width, height, 3);
+    for (int y = 0; y < height; ++y) {
+        const float* from = texels.data() + static_cast<std::size_t>(height - 1 - y) *
+                                                static_cast<std::size_t>(width) * 4;
+        float* to = result.row(y);
+        for (int x = 0; x < width; ++x, from += 4, to += 3)
+            std::transform(from, from + 3, to, [&](float value) { return value * scale; });
+    }
+    return result;
+}
+
+std::vector<float> read_depths(const gl::Texture& depth) {
+    std::vector<float> depths_m = read_all<float>(depth);
+    const auto near_m = static_cast<float>(kNear_m);
+    for (float& value : depths_m)
+        value = near_m / value;
+    return depths_m;
+}
+
+std::vector<SunSeen> read_sun_seen(const gl::Texture& sun_seen, const gl::Texture& gbuffer,
+                                   const gl::Texture& depth) {
+    const auto seen = read_all<glm::vec4>(sun_seen);
+    const auto what = read_all<glm::uvec4>(gbuffer);
+    const std::vector<float> depths_m = read_depths(depth);
+    std::vector<SunSeen> result;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const glm::vec4& v = seen[i];
+        // Walls of a block are drawn over ground behind them.
+        const float ground_m = std::bit_cast<float>(what[i].w);
+        if (v.w == 0 || depths_m[i] < 0.999F * ground_m) continue;
+        result.push_back({.post = {v.x, v.y},
+                          .share = v.z,
+                          .pixel_posts = std::abs(double{v.w}),
+                          .faces = v.w > 0,
+                          .moved = v.z < 0});
+    }
+    return result;
+}
+
+}  // namespace relevo::render
