@@ -7,24 +7,10 @@
 //! is cut because a corner of it has no height.
 
 //@ include lib/finite.glsl
-//@ include lib/ground.glsl
+//@ include lib/tile.glsl
 
-layout(location = 0) in vec4 ends;  // xy, zw: two corners, in vertices of the tile
-layout(location = 1) in vec4 third;  // xy: the third one, x below 0 on the rim; z: 1 the edge's other end; w: 1 down
-layout(location = 2) in vec4 net_0;  // the rest as in terrain.vert.glsl
-layout(location = 3) in vec4 net_u;
-layout(location = 4) in vec4 net_uu;
-layout(location = 5) in vec4 net_v;
-layout(location = 6) in vec4 net_uv;
-layout(location = 7) in vec4 net_uuv;
-layout(location = 8) in vec4 net_vv;
-layout(location = 9) in vec4 net_uvv;
-layout(location = 10) in vec4 net_uuvv;
-layout(location = 11) in vec4 up_0;
-layout(location = 12) in vec4 up_u;
-layout(location = 13) in vec4 up_v;
-
-uniform sampler2DArray height_pages;
+layout(location = 13) in vec4 ends;  // xy, zw: two corners, in vertices of the tile
+layout(location = 14) in vec4 third;  // xy: the third one, x below 0 on the rim; z: 1 the edge's other end; w: 1 down
 
 out vec3 side_position_m;
 out float side_height_m;
@@ -39,33 +25,15 @@ struct SideCorner {
     float coverage;
 };
 
-vec3 placed(in vec2 at, in float height) {
-    vec3 up = up_0.xyz + at.x * up_u.xyz + at.y * up_v.xyz;
-    vec3 row = net_0.xyz + at.x * (net_u.xyz + at.x * net_uu.xyz);
-    vec3 row_v = net_v.xyz + at.x * (net_uv.xyz + at.x * net_uuv.xyz);
-    vec3 row_vv = net_vv.xyz + at.x * (net_uvv.xyz + at.x * net_uuvv.xyz);
-    return row + at.y * (row_v + at.y * row_vv) + height * frame.height_range.z * up;
-}
-
 SideCorner corner(in vec2 grid) {
-    vec2 limit = vec2(net_0.w, net_u.w);
-    ivec3 texel = ivec3(clamp(grid, vec2(0.0), ceil(limit)) + 1.0, net_uu.w);
-    vec4 levels = texelFetch(height_pages, texel, 0);
+    vec4 levels = texelFetch(height_pages, net_texel(grid), 0);
+    vec2 vertex = min(grid, net_quads());
     SideCorner c;
-    c.at = min(grid, limit) / limit;
-    float morph = clamp((length(placed(c.at, levels.r)) - net_vv.w) * net_uvv.w, 0.0, 1.0);
-    vec2 height = mix(levels.rg, levels.ba, morph);
+    c.at = net_place(vertex);
+    vec2 height = morphed(levels, net_morph(length(placed(c.at, levels.r))));
     c.height_m = height.r;
     c.coverage = height.g;
-    VertexFrame v;
-    v.up = up_0.xyz + c.at.x * up_u.xyz + c.at.y * up_v.xyz;
-    v.height_m = c.height_m;
-    v.height_unit = height_unit_of(c.height_m);
-    v.position_m = placed(c.at, c.height_m);
-    v.ground_m = ground_at(v.position_m, v.up, c.height_m);
-    v.distance_m = length(v.position_m);
-    v.drawn_height_m = c.height_m * frame.height_range.z;
-    v.post = vec2(net_v.w, net_uv.w) + clamp(grid, vec2(0.0), limit - 0.01) * net_uuv.w;
+    VertexFrame v = net_vertex(vertex, c.height_m);
     c.position_m = v.position_m;
     hook_displace(v, v.position_m);
     c.position_m = finite(vec4(v.position_m, 0.0)) == 0.0 ? c.position_m : v.position_m;
@@ -172,5 +140,5 @@ void main() {
     side_position_m += kOverlap * (placed(end.at, end.height_m) - placed(back, end.height_m));
     side_depth = third.w;
     side_outwards = outwards(other ? ends.zw : ends.xy, end.at, third.x >= 0.0);
-    gl_Position = nothing ? vec4(0.0, 0.0, 0.0, 1.0) : frame.view_projection * vec4(side_position_m, 1.0);
+    gl_Position = nothing ? vec4(0.0, 0.0, 0.0, 1.0) : clipped(side_position_m);
 }

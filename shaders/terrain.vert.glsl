@@ -1,27 +1,12 @@
 //! provides  one grid of 65 x 65 vertices, placed on the round Earth and displaced by the elevation
-//! reads     a tile's net: position and vertical as polynomials over the tile [m, relative to the eye]
+//! reads     a tile's net and height page (lib/tile.glsl)
 //! writes    column and row of the post, height [m]; clip distance 0 cuts holes out half way between a
 //!           post that has a height and one that has none
-//! source    morphing after F. Strugar, J. Graphics, GPU and Game Tools 14(4), 2009: render/lod.h
 
 //@ include lib/finite.glsl
-//@ include lib/ground.glsl
+//@ include lib/tile.glsl
 
 layout(location = 0) in vec2 grid;  // 0..64, and a little beyond for the skirt
-layout(location = 1) in vec4 net_0;  // w: quads of the tile that lie on the DEM, x
-layout(location = 2) in vec4 net_u;  // w: and y
-layout(location = 3) in vec4 net_uu;  // w: layer in the height pages
-layout(location = 4) in vec4 net_v;  // w: column of the tile's first post
-layout(location = 5) in vec4 net_uv;  // w: and row
-layout(location = 6) in vec4 net_uuv;  // w: posts from vertex to vertex
-layout(location = 7) in vec4 net_vv;  // w: distance from the eye where morphing starts [m]
-layout(location = 8) in vec4 net_uvv;  // w: morphing there a metre, 1 being all of it [1/m]
-layout(location = 9) in vec4 net_uuvv;
-layout(location = 10) in vec4 up_0;
-layout(location = 11) in vec4 up_u;
-layout(location = 12) in vec4 up_v;
-
-uniform sampler2DArray height_pages;  // r: height [m]; g: 1 on posts, 0 on holes; ba: the same of the coarser level
 
 const float kSkirt_px = 2.0;  // how far the skirt hangs down in the picture
 
@@ -30,44 +15,25 @@ out float height_m;
 out float height_from_eye_m;  // of the DEM's heights: near the eye small, and so exact
 out vec3 vertex_normal;
 
-/// Where a point of the tile lies, relative to the eye [m].
-/// @param at  0..1 over the tile's part of the DEM
-vec3 placed(in vec2 at, in float height) {
-    vec3 up = up_0.xyz + at.x * up_u.xyz + at.y * up_v.xyz;
-    vec3 row = net_0.xyz + at.x * (net_u.xyz + at.x * net_uu.xyz);
-    vec3 row_v = net_v.xyz + at.x * (net_uv.xyz + at.x * net_uuv.xyz);
-    vec3 row_vv = net_vv.xyz + at.x * (net_uvv.xyz + at.x * net_uuvv.xyz);
-    return row + at.y * (row_v + at.y * row_vv) + height * frame.height_range.z * up;
-}
-
 void main() {
-    vec2 limit = vec2(net_0.w, net_u.w);
-    ivec3 texel = ivec3(clamp(grid, vec2(0.0), ceil(limit)) + 1.0, net_uu.w);
+    vec2 limit = net_quads();
+    ivec3 texel = net_texel(grid);
     vec2 vertex = min(grid, limit + max(grid - 64.0, 0.0));
-    vec2 at = vertex / limit;
+    vec2 at = net_place(vertex);
     vec4 levels = texelFetch(height_pages, texel, 0);
 #ifdef TERRAIN_DEPTH
     const float morph = 0.0;  // an orthographic view sees a tile at one level
 #else
     float distance_m = length(placed(at, levels.r));
-    float morph = clamp((distance_m - net_vv.w) * net_uvv.w, 0.0, 1.0);
+    float morph = net_morph(distance_m);
 #endif
-    vec2 height = mix(levels.rg, levels.ba, morph);
+    vec2 height = morphed(levels, morph);
     bool skirt = grid != clamp(grid, 0.0, 64.0);
 #ifndef TERRAIN_DEPTH
     height.r -= skirt ? kSkirt_px * length(frame.pixel_ray_dx.xyz) * distance_m : 0.0;
 #endif
 
-    VertexFrame v;
-    v.up = up_0.xyz + at.x * up_u.xyz + at.y * up_v.xyz;
-    v.height_m = height.r;
-    v.height_unit = height_unit_of(height.r);
-    v.position_m = placed(at, height.r);
-    v.ground_m = ground_at(v.position_m, v.up, height.r);
-    v.distance_m = length(v.position_m);
-    v.drawn_height_m = height.r * frame.height_range.z;
-    // Short of the last post, so that it lies in a page as all others do.
-    v.post = vec2(net_v.w, net_uv.w) + clamp(vertex, vec2(0.0), limit - 0.01) * net_uuv.w;
+    VertexFrame v = net_vertex(vertex, height.r);
     vec3 in_place = v.position_m;
     hook_displace(v, v.position_m);
 #ifdef DISPLACED
@@ -105,6 +71,6 @@ void main() {
 #ifdef HEIGHT_STEPS
     height_from_eye_m = height.r - frame.eye_m.w / frame.height_range.z;
 #endif
-    gl_Position = frame.view_projection * vec4(v.position_m, 1.0);
+    gl_Position = clipped(v.position_m);
     gl_ClipDistance[0] = height.g - 0.5;
 }

@@ -432,8 +432,8 @@ void Terrain::draw_sides(const TileSelection& selection, const glm::dvec3& origi
         side_indices_ = gl::Buffer(2 * index_bytes.size(), "terrain sides indices");
         side_instances_ = gl::Buffer(2 * instance_bytes.size(), "terrain sides' tiles");
         side_array_.emplace();
-        side_array_->attributes(0, side_vertices_, 0, Sides::kVectors, 4, false);
-        side_array_->attributes(1, side_instances_, Sides::kVectors, kInstanceVectors, 4, true);
+        side_array_->attributes(0, side_vertices_, 1 + kInstanceVectors, Sides::kVectors, 4, false);
+        side_array_->attributes(1, side_instances_, 1, kInstanceVectors, 4, true);
         side_array_->indices(side_indices_);
     }
     side_vertices_.write(vertex_bytes);

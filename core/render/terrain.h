@@ -164,7 +164,7 @@ class Terrain {
     /// @param only  pages that are read; null: all that are there
     void write_page_table(const std::vector<TileKey>* only);
     std::vector<std::byte> make_normals(const TileKey& key) const;
-    static constexpr int kInstanceVectors = 12;  // inputs net_0 ... up_v of the vertex programs
+    static constexpr int kInstanceVectors = 12;  // inputs 1 to 12: net_0 ... up_v of lib/tile.glsl
     using Instance = std::array<glm::vec4, kInstanceVectors>;
     Instance instance_of(const TileSelection::Tile& tile, const glm::dvec3& origin_m);
 
