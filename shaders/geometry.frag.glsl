@@ -37,9 +37,11 @@ void main() {
 #ifdef HEIGHT_STEPS
     height_steps_out = height_steps();
 #endif
-    // A sliver that the near plane has cut to nothing has no coordinates in llvmpipe; its neighbours
-    // cover the pixel.
+#ifdef NAN_SLIVERS
+    // A sliver that the near plane has cut to nothing has NaN for its inputs in llvmpipe; its neighbours
+    // cover the pixel. On GPUs a discard costs the early depth test.
     if (isnan(height_m)) discard;
+#endif
     uint height = floatBitsToUint(height_m);
 #ifdef DISPLACED
     const uint no_number = 0x7fc00000u;

@@ -148,6 +148,7 @@ class Declaration {
                                      .fragment_main = "geometry.frag.glsl",
                                      .shaded_by = "terrain.frag.glsl"};
         ground_defines(recipe);
+        if (facts_.nan_slivers) recipe.defines.push_back({"NAN_SLIVERS", ""});
         Pass pass{.name = "geometry",
                   .kind = PassKind::Geometry,
                   .program = program("geometry", recipe, is_outside_word(), kOutsideWord),

@@ -63,10 +63,10 @@ std::string units_text(const ProgramText& program, int max_texture_units) {
     return text;
 }
 
-StitchedFrames stitch(const EffectInputs& effects, int max_texture_units,
+StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
                       const RendererOptions& options) {
     shader::StitchInput input = effects.stitch;
-    input.max_texture_units = max_texture_units;
+    input.max_texture_units = info.max_texture_units;
     const shader::FolderTexts core(share_dir() / "shaders");
     const bool vertex_normals = input.values && input.values->find(kNormalAddress) &&
                                 input.values->value(kNormalAddress)[0] == 1;
@@ -79,13 +79,14 @@ StitchedFrames stitch(const EffectInputs& effects, int max_texture_units,
                           .draped = options.draped,
                           .shown = !options.radiance,
                           .antialias = options.antialias,
-                          .audited = options.audited};
+                          .audited = options.audited,
+                          .nan_slivers = info.device.software};
     for (const effect::NativeModule* const module : effects.modules)
         wanted.natives.push_back(module->id());
     StitchedFrames frames = stitch_frames(core, input, wanted);
     if (options.stitched) options.stitched(frames);
     for (const ProgramText& text : frames.programs)
-        log::debug(units_text(text, max_texture_units));
+        log::debug(units_text(text, info.max_texture_units));
     return frames;
 }
 
@@ -129,7 +130,7 @@ struct Renderer::Impl {
           // A software renderer pays for every tap of an anisotropic filter (four times the frame).
           anisotropy(c.info().device.software ? 1 : std::min(kAnisotropy, c.info().max_anisotropy)),
           own_cache(o.programs ? std::nullopt : std::optional<ProgramCache>(std::in_place)),
-          frames(stitch(effects, c.info().max_texture_units, o)),
+          frames(stitch(effects, c.info(), o)),
           programs(frames, o.programs ? *o.programs : *own_cache, effects.stitch.snippets),
           effect_textures(effects.textures, anisotropy),
           frame_block(sizeof(FrameBlock), "frame block"),
