@@ -190,20 +190,13 @@ struct NativeHost::Impl : effect::ModuleServices {
             refuse(fmt::format("render: {}: expected a file of the plugin's own folder but got {}",
                                module.folder().string(), name));
         const std::string file = path->string();
-        const std::string vertex =
-            "#version 450 core\n"
-            "void main() {\n"
-            "    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0,\n"
-            "                       gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);\n"
-            "}\n";
-        const std::string head =
-            fmt::format("#version 450 core\nlayout(location = 0) uniform vec4 values[{}];\n",
-                        RELEVO_MAX_VALUES);
         const std::string own = shader::unix_lines(read_text(*path, "render"));
+        const NativeProgramText text = native_program_text(own);
         gl::Program::Failure failure;
-        auto program = gl::Program::build(vertex, head + own, path->filename().string(), failure);
+        auto program =
+            gl::Program::build(text.vertex, text.fragment, path->filename().string(), failure);
         if (!program) {
-            shader::LineMap lines(2);
+            shader::LineMap lines(2);  // of the head
             for (int line = 1; line <= 1 + std::ranges::count(own, '\n'); ++line)
                 lines.push_back({module.id(), file, line});
             refuse(fmt::format("{}: the driver refuses it\n{}", file,
@@ -397,6 +390,17 @@ struct NativeHost::Impl : effect::ModuleServices {
                                reason.empty() ? "no reason given" : reason, module.id()));
     }
 };
+
+NativeProgramText native_program_text(std::string_view own) {
+    return {
+        "#version 450 core\n"
+        "void main() {\n"
+        "    gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0,\n"
+        "                       gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);\n"
+        "}\n",
+        fmt::format("#version 450 core\nlayout(location = 0) uniform vec4 values[{}];\n{}",
+                    RELEVO_MAX_VALUES, own)};
+}
 
 NativeHost::NativeHost(const effect::NativeModule& module, gl::Context& context, UseDepth use_depth,
                        shader::ParamStore& values, int width_px, int height_px)

@@ -14,6 +14,12 @@
 
 namespace relevo::render {
 
+/// The GLSL of a program that a module makes of a fragment text of its own.
+struct NativeProgramText {
+    std::string vertex, fragment;
+};
+NativeProgramText native_program_text(std::string_view own);
+
 /// What a native module sees of the program: the services of relevo/plugin.h over one
 /// renderer, and the module's instance.
 class NativeHost {

@@ -1,47 +1,304 @@
+#include <algorithm>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/contains.h"
+#include "base/paths.h"
+#include "base/text.h"
 #include "cli/program.h"
+#include "effect/preset.h"
+#include "effect/registry.h"
+#include "effect/selection.h"
+#include "golden/reference_compiler.h"
+#include "render/native_host.h"
+#include "render/programs.h"
+#include "render/renderer.h"
 #include "support/support.h"
+
+// Mesa forgives what other drivers refuse; Khronos' own compiler forgives nothing. No device is
+// needed: programs are stitched here as a renderer would.
 
 namespace relevo::test {
 namespace {
 
-/// Mesa forgives what other drivers refuse; Khronos' own compiler forgives nothing. It links each
-/// program, too.
-class ReferenceCompiler : public testing::TestWithParam<std::vector<std::string>> {};
+using Ids = std::vector<std::string>;
 
-TEST_P(ReferenceCompiler, TakesEveryProgram) {
-    const std::filesystem::path dir = scratch_dir("reference_compiler");
-    const std::filesystem::path dump = dir / "shaders";
-    std::filesystem::remove_all(dump);
-    std::vector<std::string> arguments{
-        "-q",    "capture",     bundled_dem(),    "-o",         (dir / "a.png").string(), "--size",
-        "64x48", "--overwrite", "--dump-shaders", dump.string()};
-    arguments.insert(arguments.end(), GetParam().begin(), GetParam().end());
-    const Result taken = relevo(arguments);
-    ASSERT_EQ(taken.status, 0) << taken.err;
-    int programs = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(dump)) {
-        const std::string fragment = entry.path().string();
-        const std::size_t stage = fragment.find(".frag.glsl");
-        if (stage == std::string::npos) continue;
-        const Result compiled =
-            run(RELEVO_GLSLANG, {"-l", fragment.substr(0, stage) + ".vert.glsl", fragment});
-        EXPECT_EQ(compiled.status, 0) << compiled.out;
-        ++programs;
+/// With any native effect there is the program "depth".
+const std::vector<std::string> kNatives{"native"};
+
+/// What makes the text of a program another one, but for effects and their values.
+const std::map<std::string, render::ProgramOptions> kOptions = {
+    {"picture", {.shown = true, .natives = kNatives}},
+    {"picture of a software device", {.shown = true, .nan_slivers = true, .natives = kNatives}},
+    {"radiance", {.natives = kNatives}},
+    {"radiance and overlay", {.draped = true, .natives = kNatives}},
+    {"overlay", {.draped = true, .shown = true, .natives = kNatives}},
+    {"audit", {.shown = true, .audited = true, .natives = kNatives}},
+    {"audit of radiance and overlay", {.draped = true, .audited = true}},
+    {"vertex normals", {.vertex_normals = true, .shown = true, .natives = kNatives}},
+    {"radiance, vertex normals", {.vertex_normals = true}},
+};
+
+/// Programs without those of equal text.
+class Programs {
+  public:
+    struct Program {
+        std::string name;  ///< of the first with this text, with what it is drawn for
+        std::string vertex, fragment;
+    };
+
+    void add(Program program) {
+        std::string key = program.vertex + '\0' + program.fragment;
+        programs_.emplace(std::move(key), std::move(program));
     }
-    EXPECT_GE(programs, 5);  // geometry, terrain, background, edges, antialias
+    /// All programs that a selection is drawn with.
+    void add(const effect::Selection& selection, const shader::ParamStore& values,
+             const std::string& what, const std::string& with,
+             const render::ProgramOptions& options) {
+        shader::StitchInput input;
+        input.snippets = selection.snippets();
+        input.capabilities = selection.capabilities;
+        input.values = &values;
+        input.max_texture_units = 32;
+        input.same_textures = same_textures(selection);
+        for (render::ProgramText& text : render::stitch_frames(core_, input, options).programs)
+            add({fmt::format("{} of {}, {}", text.name, what, with), text.stitched.vertex.text,
+                 text.stitched.fragment.text});
+    }
+
+    bool has(const std::string& vertex, const std::string& fragment) const {
+        return programs_.contains(vertex + '\0' + fragment);
+    }
+    std::vector<Program> all() const {
+        std::vector<Program> result;
+        for (const auto& [key, program] : programs_)
+            result.push_back(program);
+        return result;
+    }
+
+  private:
+    static std::map<std::string, std::string> same_textures(const effect::Selection& selection) {
+        std::map<std::string, std::string> same;
+        std::vector<const effect::TextureSpec*> known;
+        for (const effect::Effect* effect : selection.effects) {
+            for (const effect::TextureSpec& spec : effect->manifest.textures) {
+                const auto first = std::ranges::find_if(
+                    known, [&](const auto* other) { return other->same_texels(spec); });
+                if (first == known.end())
+                    known.push_back(&spec);
+                else
+                    same.emplace(spec.resource, (*first)->resource);
+            }
+        }
+        return same;
+    }
+
+    shader::FolderTexts core_{share_dir() / "shaders"};
+    std::map<std::string, Program> programs_;
+};
+
+/// Every effect of the plugins' folder, and every selection of them whose programs are tried.
+class Shipped {
+  public:
+    const effect::Registry registry = effect::Registry::load_installed();
+
+    shader::ParamStore values() const {
+        std::vector<shader::Param> params = registry.params();
+        for (const shader::Param& param : render::core_params())
+            params.push_back(param);
+        shader::ParamStore store;
+        store.declare(params, registry.texts());
+        return store;
+    }
+
+    /// None, each alone with what it requires, all that may be on at once, and those but one.
+    std::map<std::string, effect::Switches> selections() const {
+        std::map<std::string, effect::Switches> result{{"core", {.only = Ids{}}}};
+        for (const effect::Effect& effect : registry.effects()) {
+            result.emplace(effect.id() + " alone", effect::Switches{.only = Ids{effect.id()}});
+            for (const Ids& ids : everything()) {
+                result.emplace(fmt::format("{}", fmt::join(ids, ",")),
+                               effect::Switches{.only = ids});
+                if (!contains(ids, effect.id())) continue;
+                effect::Switches but{.only = ids, .disable = {effect.id()}};
+                std::erase(*but.only, effect.id());
+                result.emplace(fmt::format("all but {}", effect.id()), but);
+            }
+        }
+        return result;
+    }
+
+    /// As many effects as may be on at once, in every way: with each the others that no word of it
+    /// excludes.
+    std::set<Ids> everything() const {
+        std::set<Ids> result;
+        for (const effect::Effect& first : registry.effects()) {
+            Ids ids{first.id()};
+            std::vector<std::string> taken = first.manifest.exclusive;
+            for (const effect::Effect& effect : registry.effects()) {
+                const std::vector<std::string>& words = effect.manifest.exclusive;
+                if (contains(ids, effect.id()) ||
+                    std::ranges::any_of(words, [&](const auto& w) { return contains(taken, w); }))
+                    continue;
+                ids.push_back(effect.id());
+                taken.insert(taken.end(), words.begin(), words.end());
+            }
+            std::ranges::sort(ids);
+            result.insert(ids);
+        }
+        return result;
+    }
+};
+
+/// What the reference compiler does not take, each text once.
+std::string refusals(const std::vector<Programs::Program>& programs) {
+    std::string refused;
+    for (const Programs::Program& program : programs) {
+        const std::string why = reference_compile(program.vertex, program.fragment).refused;
+        if (!why.empty()) refused += fmt::format("{}:\n{}", program.name, why);
+    }
+    return refused;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Effects, ReferenceCompiler,
-    testing::Values(std::vector<std::string>{"--only", ""},
-                    std::vector<std::string>{"--enable", "wet"},
-                    std::vector<std::string>{"--preset", "paper"},
-                    std::vector<std::string>{"--enable", "vsm", "--set", "vsm.penumbra=true"},
-                    std::vector<std::string>{"--time", "2026-06-21T23:50-04:00"}));
+TEST(ReferenceCompiler, RefusesWhatIsNoGlsl) {
+    const std::string head = "#version 450 core\n";
+    const std::string vertex =
+        head + "out vec2 at;\nvoid main() { at = vec2(0); gl_Position = vec4(0); }\n";
+    const auto refused = [&](const std::string& fragment) {
+        return reference_compile(vertex, head + "layout(location = 0) out vec4 light;\n" + fragment)
+            .refused;
+    };
+    EXPECT_EQ(refused("in vec2 at;\nvoid main() { light = at.xyxy; }\n"), "");
+    const std::string compiled = refused("void main() { light = vec3(1); }\n");
+    EXPECT_NE(compiled.find("cannot convert"), std::string::npos) << compiled;
+    const std::string linked = refused("in vec3 at;\nvoid main() { light = at.xyzz; }\n");
+    EXPECT_NE(linked.find("Types must match"), std::string::npos) << linked;
+}
+
+TEST(ReferenceCompiler, TakesTheProgramsOfEverySelection) {
+    const Shipped shipped;
+    const shader::ParamStore values = shipped.values();
+    Programs programs;
+    for (const auto& [what, switches] : shipped.selections()) {
+        const effect::Selection selection = effect::select(shipped.registry, {}, switches);
+        for (const auto& [with, options] : kOptions)
+            if (switches.disable.empty() || with == "picture")
+                programs.add(selection, values, what, with, options);
+    }
+    EXPECT_GE(programs.all().size(), 20 * shipped.registry.effects().size());
+    EXPECT_EQ(refusals(programs.all()), "");
+}
+
+/// What is stitched here is what a renderer links.
+TEST(ReferenceCompiler, SeesTheProgramsOfACapture) {
+    const Shipped shipped;
+    const Ids ids = *shipped.everything().begin();
+    Programs programs;
+    programs.add(effect::select(shipped.registry, {}, {.only = ids}), shipped.values(), "all", "",
+                 {.shown = true, .nan_slivers = true});
+    const std::filesystem::path dir = scratch_dir(), dump = dir / "shaders";
+    const Result taken =
+        relevo({"-q", "capture", bundled_dem(), "-o", (dir / "a.png").string(), "--size", "64x48",
+                "--dump-shaders", dump.string(), "--only", fmt::format("{}", fmt::join(ids, ","))});
+    ASSERT_EQ(taken.status, 0) << taken.err;
+    int compared = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(dump)) {
+        const std::string file = entry.path().string();
+        const std::size_t stage = file.find(".frag.glsl");
+        if (stage == std::string::npos) continue;
+        ++compared;
+        EXPECT_TRUE(programs.has(read_text(file.substr(0, stage) + ".vert.glsl", "test"),
+                                 read_text(file, "test")))
+            << file;
+    }
+    EXPECT_GE(compared, 5);  // geometry, terrain, background, edges, antialias
+}
+
+/// Values that are constants in the text decide what a compiler sees of it.
+TEST(ReferenceCompiler, TakesEveryValueOfStaticParameters) {
+    const Shipped shipped;
+    Programs programs;
+    int tried = 0;
+    for (const shader::Param& param : shipped.registry.params()) {
+        if (!param.is_static) continue;
+        const effect::Selection selection = effect::select(
+            shipped.registry, {}, {.only = Ids{param.address.substr(0, param.address.find('.'))}});
+        ASSERT_TRUE(param.type == shader::ParamType::Bool || !param.words.empty()) << param.address;
+        for (std::size_t i = 0; i < std::max<std::size_t>(param.words.size(), 2); ++i, ++tried) {
+            shader::ParamStore values = shipped.values();
+            values.set(param.address, shader::ParamValue{static_cast<double>(i)});
+            programs.add(selection, values, fmt::format("{} = {}", param.address, i), "picture",
+                         {.shown = true});
+        }
+    }
+    EXPECT_GE(tried, 2);
+    EXPECT_EQ(refusals(programs.all()), "");
+}
+
+TEST(ReferenceCompiler, TakesTheProgramsOfNativeModules) {
+    const Shipped shipped;
+    Programs programs;
+    for (const effect::Effect& effect : shipped.registry.effects()) {
+        if (effect.manifest.module.empty()) continue;
+        for (const auto& entry : std::filesystem::directory_iterator(effect.manifest.folder)) {
+            const std::filesystem::path& file = entry.path();
+            if (!file.string().ends_with(".glsl") || contains(effect.manifest.glsl, file)) continue;
+            const render::NativeProgramText text =
+                render::native_program_text(read_text(file, "test"));
+            programs.add({file.string(), text.vertex, text.fragment});
+        }
+    }
+    if (programs.all().empty()) GTEST_SKIP() << "no plugin with a native module is there";
+    EXPECT_EQ(refusals(programs.all()), "");
+}
+
+/// What a vertex is placed by must not be fused or reordered in one program and not in another:
+/// walls meet the ground to the bit.
+TEST(ReferenceCompiler, SeesThatVerticesOfTheGroundAndItsWallsAreInvariant) {
+    constexpr std::uint32_t kInvariant = 18, kNoContraction = 42;  // of SPIR-V
+    const Shipped shipped;
+    const shader::ParamStore values = shipped.values();
+    Programs programs;
+    for (const Ids& ids : shipped.everything())
+        programs.add(effect::select(shipped.registry, {}, {.only = ids}), values, "all", "picture",
+                     {.shown = true, .natives = kNatives});
+    std::set<std::string> seen;
+    for (const Programs::Program& program : programs.all()) {
+        const std::string name = program.name.substr(0, program.name.find(' '));
+        if (name != "geometry" && name != "geometry_outside" && name != "depth" && name != "side")
+            continue;
+        seen.insert(name);
+        const ReferenceProgram compiled = reference_compile(program.vertex, program.fragment);
+        EXPECT_EQ(count_decorations(compiled.vertex, kInvariant), 1) << name;
+        // Products and sums of placed(), and of the matrix.
+        EXPECT_GE(count_decorations(compiled.vertex, kNoContraction), 24) << name;
+    }
+    EXPECT_TRUE(seen.contains("geometry") && seen.contains("depth"));
+}
+
+/// A discard costs a GPU the early depth test.
+TEST(ReferenceCompiler, SeesADiscardInTheGeometryOfSoftwareDevicesAlone) {
+    const Shipped shipped;
+    const shader::ParamStore values = shipped.values();
+    constexpr std::uint32_t kKill = 252;  // of SPIR-V
+    for (const bool software : {false, true}) {
+        Programs programs;
+        for (const Ids& ids : shipped.everything())
+            programs.add(effect::select(shipped.registry, {}, {.only = ids}), values, "all", "",
+                         {.shown = true, .nan_slivers = software});
+        for (const Programs::Program& program : programs.all()) {
+            if (!program.name.starts_with("geometry")) continue;
+            const ReferenceProgram compiled = reference_compile(program.vertex, program.fragment);
+            EXPECT_EQ(count_operations(compiled.fragment, kKill), software) << program.name;
+        }
+    }
+}
 
 }  // namespace
 }  // namespace relevo::test

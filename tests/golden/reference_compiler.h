@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace relevo::test {
+
+/// What Khronos' reference compiler makes of a program. No device is needed.
+struct ReferenceProgram {
+    std::string refused;                          ///< why, a message a line; empty: it is taken
+    std::vector<std::uint32_t> vertex, fragment;  ///< SPIR-V for OpenGL
+};
+
+/// How often SPIR-V has an operation, or a decoration, by its number there.
+int count_operations(const std::vector<std::uint32_t>& code, std::uint32_t operation);
+int count_decorations(const std::vector<std::uint32_t>& code, std::uint32_t decoration);
+
+/// Compiles and links as OpenGL's GLSL, then again to SPIR-V for OpenGL 4.5, which is validated.
+/// Warnings count as refusals.
+ReferenceProgram reference_compile(std::string_view vertex, std::string_view fragment);
+
+}  // namespace relevo::test
