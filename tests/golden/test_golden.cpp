@@ -1,5 +1,6 @@
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -41,51 +42,90 @@ std::vector<Scene> read_scenes() {
     return scenes;
 }
 
-class Golden : public testing::TestWithParam<Scene> {};
+class Golden : public testing::TestWithParam<Scene> {
+  protected:
+    void SetUp() override {
+        for (const std::string& plugin : GetParam().plugins)
+            if (!std::filesystem::exists(source_dir() / "plugins" / plugin))
+                GTEST_SKIP() << "the plugin " << plugin << " is not there";
+    }
+
+    /// Takes the scene's picture. @returns the device's name
+    std::string take(const std::vector<std::string>& environment = {}) const {
+        const Scene& scene = GetParam();
+        const std::filesystem::path timings = taken_.parent_path() / "timings.json";
+        std::vector<std::string> arguments{
+            "-q",       "capture",    bundled_dem(),    "--device",
+            "software", "-o",         taken_.string(),  "--size",
+            "240x160",  "--timings",  timings.string(), "--pixel-error",
+            "2",        "--overwrite"};
+        arguments.push_back("--only");
+        arguments.push_back(fmt::format("{}", fmt::join(scene.plugins, ",")));
+        arguments.insert(arguments.end(), scene.arguments.begin(), scene.arguments.end());
+        const Result run = relevo(arguments, environment);
+        EXPECT_EQ(run.status, 0) << "goldens are taken on the software device: " << run.err;
+        return run.status == 0 ? nlohmann::json::parse(read_text(timings, "test"))["device"] : "";
+    }
+
+    void expect_golden() const {
+        const image::Image8 expected = image::read(golden_), found = image::read(taken_);
+        ASSERT_EQ(found.width, expected.width);
+        ASSERT_EQ(found.height, expected.height);
+        std::size_t off = 0;
+        int worst = 0;
+        for (std::size_t i = 0; i < found.values.size(); ++i) {
+            const int difference = std::abs(found.values[i] - expected.values[i]);
+            off += difference > 1;
+            worst = std::max(worst, difference);
+        }
+        const double share = static_cast<double>(off) / static_cast<double>(found.values.size());
+        EXPECT_LE(share, 0.0002) << taken_ << " against " << golden_;
+        EXPECT_LE(worst, 3) << taken_ << " against " << golden_;
+    }
+
+    const std::filesystem::path golden_ = golden_dir() / (GetParam().name + ".png");
+    const std::filesystem::path taken_ = scratch_dir() / "taken.png";
+};
 
 /// With RELEVO_WRITE_GOLDENS=1 in the environment the pictures are written instead of compared, and
 /// the tests count as skipped.
 TEST_P(Golden, IsThePictureThatWasLookedAt) {
-    const Scene& scene = GetParam();
-    for (const std::string& plugin : scene.plugins)
-        if (!std::filesystem::exists(source_dir() / "plugins" / plugin))
-            GTEST_SKIP() << "the plugin " << plugin << " is not there";
-    const std::filesystem::path golden = golden_dir() / (scene.name + ".png");
-    const std::filesystem::path dir = scratch_dir();
-    const std::filesystem::path taken = dir / "taken.png", timings = dir / "timings.json";
-    std::vector<std::string> arguments{
-        "-q",     "capture", bundled_dem(), "--device",       "software",      "-o", taken.string(),
-        "--size", "240x160", "--timings",   timings.string(), "--pixel-error", "2",  "--overwrite"};
-    arguments.push_back("--only");
-    arguments.push_back(fmt::format("{}", fmt::join(scene.plugins, ",")));
-    arguments.insert(arguments.end(), scene.arguments.begin(), scene.arguments.end());
-    const Result run = relevo(arguments);
-    ASSERT_EQ(run.status, 0) << "goldens are taken on the software device: " << run.err;
-    const std::string device = nlohmann::json::parse(read_text(timings, "test"))["device"];
+    const std::string device = take();
     ASSERT_NE(device.find("llvmpipe"), std::string::npos)
         << "goldens are Mesa's llvmpipe's, but the software device is " << device;
     if (std::getenv("RELEVO_WRITE_GOLDENS")) {
         // Without its scene, which has paths of this machine.
-        std::filesystem::remove(golden);
-        image::write(golden, image::read(taken));
-        GTEST_SKIP() << "written, not compared: " << golden;
+        std::filesystem::remove(golden_);
+        image::write(golden_, image::read(taken_));
+        GTEST_SKIP() << "written, not compared: " << golden_;
     }
-    const image::Image8 expected = image::read(golden), found = image::read(taken);
-    ASSERT_EQ(found.width, expected.width);
-    ASSERT_EQ(found.height, expected.height);
-    std::size_t off = 0;
-    int worst = 0;
-    for (std::size_t i = 0; i < found.values.size(); ++i) {
-        const int difference = std::abs(found.values[i] - expected.values[i]);
-        off += difference > 1;
-        worst = std::max(worst, difference);
-    }
-    const double share = static_cast<double>(off) / static_cast<double>(found.values.size());
-    EXPECT_LE(share, 0.0002) << taken << " against " << golden;
-    EXPECT_LE(worst, 3) << taken << " against " << golden;
+    expect_golden();
+}
+
+/// The Vulkan driver that draws on the processor.
+std::optional<std::filesystem::path> lavapipe() {
+    std::error_code none;
+    for (const auto& entry : std::filesystem::directory_iterator("/usr/share/vulkan/icd.d", none))
+        if (entry.path().filename().string().starts_with("lvp_icd")) return entry.path();
+    return std::nullopt;
+}
+
+class GoldenOverVulkan : public Golden {};
+
+/// Mesa's zink makes SPIR-V of the programs and Vulkan's commands of the calls, so that compiler,
+/// synchronisation and state are others than llvmpipe's. What is undefined shows.
+TEST_P(GoldenOverVulkan, IsThePictureThatWasLookedAt) {
+    const auto driver = lavapipe();
+    if (!driver) GTEST_SKIP() << "no Vulkan driver on the processor (mesa-vulkan-drivers) is there";
+    const std::string device = take(
+        {"LIBGL_ALWAYS_SOFTWARE=1", "GALLIUM_DRIVER=zink", "VK_ICD_FILENAMES=" + driver->string()});
+    ASSERT_TRUE(device.starts_with("zink")) << device;
+    expect_golden();
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Golden, testing::ValuesIn(read_scenes()),
+                         [](const auto& scene) { return scene.param.name; });
+INSTANTIATE_TEST_SUITE_P(Scenes, GoldenOverVulkan, testing::ValuesIn(read_scenes()),
                          [](const auto& scene) { return scene.param.name; });
 
 }  // namespace
