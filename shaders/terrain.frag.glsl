@@ -40,11 +40,8 @@ vec3 unexaggerated(in vec3 step_m, in vec3 up) {
 
 /// East and north part of the normal at a post, as a level of the pyramid has it.
 vec2 slope_at(in vec2 post, in int level) {
-    uvec2 page = texelFetch(page_table, ivec2(post) >> (kNormalNodesLog2 + level), level).rg;
-    int shift = kNormalNodesLog2 + int(page.g);
-    vec2 first = vec2((ivec2(post) >> shift) << shift);
-    vec2 texel = (post - first) * exp2(-float(page.g)) + 1.5;
-    return textureLod(normal_pages, vec3(texel / kNormalPage_px, float(page.r)), 0.0).rg;
+    PagePlace at = page_place(post, level);
+    return textureLod(normal_pages, vec3((at.node + 1.5) / kNormalPage_px, float(at.layer)), 0.0).rg;
 }
 
 void main() {

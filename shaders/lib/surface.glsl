@@ -13,13 +13,11 @@ vec3 surface_point(in Surface s) {
     return s.position_m;
 #else
     vec2 post = uintBitsToFloat(texelFetch(gbuffer, ivec2(gl_FragCoord.xy), 0).xy);
-    uvec2 page = texelFetch(page_table, ivec2(post) >> kNormalNodesLog2, 0).rg;
-    int shift = kNormalNodesLog2 + int(page.g);
-    vec2 first = vec2((ivec2(post) >> shift) << shift);
-    vec2 node = (post - first) * exp2(-float(page.g)) + 1.0;
+    PagePlace at = page_place(post, 0);
+    vec2 node = at.node + 1.0;
     vec2 quad = floor(node);
     vec2 t = node - quad;
-    vec4 h = textureGather(surface_pages, vec3((quad + 1.0) / kNormalPage_px, float(page.r)));
+    vec4 h = textureGather(surface_pages, vec3((quad + 1.0) / kNormalPage_px, float(at.layer)));
     float before = h.w + t.x * (h.z - h.w) + t.y * (h.x - h.w);
     float behind = h.y + (1.0 - t.x) * (h.x - h.y) + (1.0 - t.y) * (h.z - h.y);
     float height = t.x + t.y <= 1.0 ? before : behind;

@@ -13,19 +13,17 @@ uniform sampler2DArray water_pages;  // r: side of the shore, one half on it; gb
 vec4 water_at(in vec2 post, in float pixel_posts) {
     int most = textureQueryLevels(page_table) - 1;
     int level = clamp(int(log2(max(pixel_posts, 1.0)) + 0.5), 0, most);
-    uvec2 page = texelFetch(page_table, ivec2(post) >> (kNormalNodesLog2 + level), level).rg;
-    if (page.r == 0xffffu) return vec4(0.0);
-    int shift = kNormalNodesLog2 + int(page.g);
-    vec2 first = vec2((ivec2(post) >> shift) << shift);
-    vec2 node = (post - first) * exp2(-float(page.g)) + 1.0;
+    PagePlace at = page_place(post, level);
+    if (at.layer == kNoPage) return vec4(0.0);
+    vec2 node = at.node + 1.0;
     vec2 quad = floor(node);
     vec2 t = node - quad;
-    vec4 side = textureGather(water_pages, vec3((quad + 1.0) / kNormalPage_px, float(page.r)), 0);
+    vec4 side = textureGather(water_pages, vec3((quad + 1.0) / kNormalPage_px, float(at.layer)), 0);
     vec2 along = mix(side.wx, side.zy, t.x);  // the row above and the one below
     vec2 slope = vec2(mix(side.z - side.w, side.y - side.x, t.y), along.y - along.x);
-    float wide = length(slope) * pixel_posts * exp2(-float(page.g));
+    float wide = length(slope) * pixel_posts * at.nodes_per_post;
     float share = (mix(along.x, along.y, t.y) - 0.5) / max(wide, 1e-4) + 0.5;
-    vec3 kind = textureLod(water_pages, vec3((node + 0.5) / kNormalPage_px, float(page.r)), 0.0).gba;
+    vec3 kind = textureLod(water_pages, vec3((node + 0.5) / kNormalPage_px, float(at.layer)), 0.0).gba;
     return vec4(clamp(share, 0.0, 1.0), kind);
 }
 
