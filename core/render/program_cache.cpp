@@ -11,15 +11,14 @@ std::shared_ptr<ProgramCache::Entry> ProgramCache::find(const ProgramText& text)
     return known->second;
 }
 
-std::shared_ptr<ProgramCache::Entry> ProgramCache::get(const ProgramText& text) {
-    if (auto known = find(text)) return known;
+std::shared_ptr<ProgramCache::Entry> ProgramCache::link(const ProgramText& text) {
     auto entry = std::make_shared<Entry>(Entry{link_program(text)});
     entry->used = ++uses_;
     ++links_;
     if (entries_.size() >= kMost)
         entries_.erase(std::ranges::min_element(
             entries_, {}, [](const auto& each) { return each.second->used; }));
-    entries_.emplace(text.hash, entry);
+    entries_.insert_or_assign(text.hash, entry);
     return entry;
 }
 

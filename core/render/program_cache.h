@@ -23,8 +23,8 @@ class ProgramCache {
 
     /// The program of a text; null where none has been linked.
     std::shared_ptr<Entry> find(const ProgramText& text);
-    /// Links it where find() would have none. @throws Error as link_program
-    std::shared_ptr<Entry> get(const ProgramText& text);
+    /// Links and keeps it. @throws Error as link_program
+    std::shared_ptr<Entry> link(const ProgramText& text);
 
     /// How many programs have been linked so far.
     int links() const { return links_; }

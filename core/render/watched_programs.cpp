@@ -28,7 +28,7 @@ ProgramCache::Entry& WatchedPrograms::entry(const std::string& name) {
     known = cache_.find(text(name));
     if (known) return *known;
     const DrawWatch::Turn turn(watch(), text(name), 0);
-    known = cache_.get(text(name));
+    known = cache_.link(text(name));
     return *known;
 }
 
