@@ -25,6 +25,7 @@ void main() {
     s.height_unit = height_unit_of(s.height_m);
     s.up = up_at(s.position_m);
     s.ground_m = ground_at(s.position_m, s.up, s.height_m);
+    s.anchored_m = ground_anchored_at(s.position_m, s.up, s.height_m);
     s.distance_m = length(s.position_m);
     vec3 across = cross(dFdx(s.position_m), dFdy(s.position_m));
     float area = length(across);

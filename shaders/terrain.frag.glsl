@@ -57,6 +57,7 @@ void main() {
     s.height_unit = height_unit_of(s.height_m);
     s.up = up_at(s.position_m);
     s.ground_m = ground_at(s.position_m, s.up, s.height_m);
+    s.anchored_m = ground_anchored_at(s.position_m, s.up, s.height_m);
     s.distance_m = length(s.position_m);
     vec3 east = east_at(s.up);
     vec3 north = cross(s.up, east);

@@ -53,6 +53,11 @@ glm::dmat4 projection_matrix(const scene::Camera& camera, int width_px, int heig
     return p;
 }
 
+glm::dvec2 eye_anchor(const glm::dvec2& eye_m) {
+    const double away_m = std::max(std::abs(eye_m.x), std::abs(eye_m.y));
+    return away_m < kEyeAnchorFrom_m ? glm::dvec2(0) : glm::round(eye_m / kEyeAnchor_m);
+}
+
 double sun_light_scale(double sine) {
     return sine / (std::abs(sine) + 0.1);
 }
@@ -91,6 +96,9 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
 
     const geo::Geodetic eye = ground.frame.to_geodetic(camera.eye_m);
     block.eye_m = glm::vec4(camera.eye_m, eye.height_m);
+
+    const glm::dvec2 over_ground(camera.eye_m), anchor = eye_anchor(over_ground);
+    block.eye_anchor = glm::vec4(anchor, over_ground - kEyeAnchor_m * anchor);
 
     // The normal of an ellipsoid at p is along D p, D = diag(1, 1, a^2/b^2) about the Earth's
     // centre; turned into the local frame, D stays a matrix and the centre becomes a constant.

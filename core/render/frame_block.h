@@ -106,6 +106,15 @@ bool is_outside(const Ground& ground, const glm::dvec3& eye_m, double exaggerati
 /// Nothing nearer is drawn; reversed depth, so that nothing is lost by a small one.
 inline constexpr double kNear_m = 0.5;
 
+/// Steps of FrameBlock::eye_anchor [m]: the Earth's radius has fewer than 4096 of them, and half a
+/// step in floats is exact to 0.06 mm (shaders/lib/repeats.glsl).
+inline constexpr double kEyeAnchor_m = 2048;
+/// Nearer to the DEM's centre the anchor is the centre: floats are exact to 0.5 mm there [m].
+inline constexpr double kEyeAnchorFrom_m = 8192;
+
+/// Whole steps from the DEM's centre to the anchor of an eye, east and north.
+glm::dvec2 eye_anchor(const glm::dvec2& eye_m);
+
 /// From positions relative to the eye to the picture's axes: right, up, forward.
 glm::dmat4 view_matrix(const scene::Camera& camera);
 

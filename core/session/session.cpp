@@ -97,6 +97,12 @@ struct Session::Impl {
     sun::Instant utc;
     sun::Position position;
     sun::Refraction air = sun::Refraction::none();
+    struct AirAsked {
+        std::string model;
+        geo::Geodetic place;
+        bool operator==(const AirAsked&) const = default;
+    };
+    std::optional<AirAsked> air_asked;  // what `air` was integrated for
     render::GroundToShow to_show;
     struct MovedPoints {
         render::Displacement by;
@@ -396,8 +402,10 @@ struct Session::Impl {
         utc = instant;
         const geo::Geodetic place = ground->frame.origin();
         position = sun::position(utc, place);
-        air =
-            refraction_at(scene.refraction, {place.lat_rad, place.lon_rad, ground->air_height_m()});
+        const AirAsked asked{scene.refraction,
+                             {place.lat_rad, place.lon_rad, ground->air_height_m()}};
+        if (air_asked != asked) air = refraction_at(asked.model, asked.place);
+        air_asked = asked;
         inputs.sun = render::make_sun_light(position, air, *ground, loaded->field.grid);
         if (air.bends())
             inputs.sun.air = [model = scene.refraction](const geo::Geodetic& at) {

@@ -6,6 +6,8 @@
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section 3.2, figure 3; relief is not the
 //!           paper's: noise after K. Perlin, Improving Noise, ACM Transactions on Graphics 21 (2002), 681
 
+//@ include lib/repeats.glsl
+
 uniform sampler2DArray bump_normals;
 
 uniform float bump_strength = 1.0; //@ range(0, 4) label("Strength") description("Factor on the slopes of the bumps")
@@ -27,8 +29,8 @@ vec3 bump_read(in Surface s, in int material) {
 /// Two numbers of -1..1 for a node of a grid.
 /// source: M. Jarzynski and M. Olano, Hash functions for GPU rendering, J. Computer Graphics Techniques 9(3),
 /// 2020, pcg2d
-vec2 bump_random(in ivec2 node) {
-    uvec2 v = uvec2(node) * 1664525u + 1013904223u;
+/// @param v  column and row * 1664525 + 1013904223
+vec2 bump_random(in uvec2 v) {
     v.x += v.y * 1664525u;
     v.y += v.x * 1664525u;
     v ^= v >> 16u;
@@ -40,11 +42,12 @@ vec2 bump_random(in ivec2 node) {
 
 /// Slopes of gradient noise whose cells have sides of 1, of mean 0 and variance 1 along either axis.
 /// source: Perlin 2002, with its quintic; the derivatives follow from it
-vec2 bump_noise_slope(in vec2 at) {
-    vec2 cell = floor(at), f = at - cell;
-    ivec2 node = ivec2(cell);
-    vec2 a = bump_random(node), b = bump_random(node + ivec2(1, 0)), c = bump_random(node + ivec2(0, 1)),
-         d = bump_random(node + ivec2(1, 1));
+/// @param node  the cell
+/// @param f     place in it
+vec2 bump_noise_slope(in ivec2 node, in vec2 f) {
+    uvec2 low = uvec2(node) * 1664525u + 1013904223u, high = low + 1664525u;  // of the node and of the next ones
+    vec2 a = bump_random(low), b = bump_random(uvec2(high.x, low.y)), c = bump_random(uvec2(low.x, high.y)),
+         d = bump_random(high);
     vec2 u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0), du = 30.0 * f * f * (f * (f - 2.0) + 1.0);
     float va = dot(a, f), vb = dot(b, f - vec2(1.0, 0.0)), vc = dot(c, f - vec2(0.0, 1.0)), vd = dot(d, f - 1.0);
     vec2 slope = a + u.x * (b - a) + u.y * (c - a) + u.x * u.y * (a - b - c + d) +
@@ -57,10 +60,10 @@ const mat2 bump_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
 
 /// Slopes of noise below the post spacing, of variance 1 along either axis from near; none where a post has
 /// fewer than 20 pixels, and all from 64 on.
-/// @param at_m         east and north from the DEM's centre [m]
+/// @param anchored_m   place, as of Surface [m]
 /// @param pixel_m      the longer side of a pixel on the ground [m]
 /// @param pixel_posts  a side of it in posts
-vec2 bump_relief_slope(in vec2 at_m, in float pixel_m, in float pixel_posts) {
+vec2 bump_relief_slope(in vec2 anchored_m, in float pixel_m, in float pixel_posts) {
     float near = 1.0 - smoothstep(1.0 / 64.0, 1.0 / 20.0, pixel_posts);
     vec2 sum = vec2(0.0);
     float size_m = min(0.5 / frame.normal_texels_per_m, bump_coarsest_m);
@@ -69,7 +72,9 @@ vec2 bump_relief_slope(in vec2 at_m, in float pixel_m, in float pixel_posts) {
         if (near == 0.0 || size_m < max(bump_finest_m, 2.0 * pixel_m)) break;
         float seen = 1.0 - smoothstep(0.2, 0.5, pixel_m / size_m);
         // Slopes of a turned noise are turned back.
-        sum += seen * (bump_noise_slope(turn * at_m / size_m) * turn);
+        vec2 within;
+        ivec2 cell = ground_cell(anchored_m, turn * (1.0 / size_m), within);
+        sum += seen * (bump_noise_slope(cell, within) * turn);
         size_m *= bump_octave;
         turn = bump_turn * turn;
     }
@@ -99,7 +104,7 @@ void bump_on_normal(inout Surface s) {
     float upright = clamp(dot(s.ground_normal, s.up), 0.1, 1.0);
     float steep = sqrt(1.0 - upright * upright) / upright;
     vec2 slope = bump_relief_strength(s, steep) * frame.height_range.z *
-                 bump_relief_slope(s.ground_m.xy, max(length(s.ground_dx_m), length(s.ground_dy_m)), s.pixel_posts);
+                 bump_relief_slope(s.anchored_m, max(length(s.ground_dx_m), length(s.ground_dy_m)), s.pixel_posts);
     ground -= slope.x * s.tangent + slope.y * s.bitangent;
 #endif
     s.normal = bump_normal(map, s.tangent, s.bitangent, ground);

@@ -5,6 +5,7 @@
 //! source    core/climate/cover.h has the climate's; what shape does to it is the README's
 
 //@ include lib/climate.glsl
+//@ include lib/repeats.glsl
 
 uniform sampler2DArray cover_albedo;
 uniform sampler2D cover_patches;
@@ -84,18 +85,23 @@ float cover_sunniness(in Surface s) {
 /// Turns by 37 degrees: patterns read both ways do not line up.
 const mat2 cover_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
 
-vec4 cover_patch(in vec2 at, in vec2 dx, in vec2 dy, in float size_m) {
-    float scale = 1.0 / size_m;
-    return textureGrad(cover_patches, at * scale, dx * scale, dy * scale) - vec4(0.5, 0.5, 0.0, 0.5);
+vec4 cover_patch(in vec2 at, in vec2 dx, in vec2 dy) {
+    return textureGrad(cover_patches, at, dx, dy) - vec4(0.5, 0.5, 0.0, 0.5);
+}
+
+/// @param per_m  from metres east and north to repeats
+vec4 cover_turned_patch(in Surface s, in mat2 per_m) {
+    return cover_patch(ground_repeats(s.anchored_m, per_m), per_m * s.ground_dx_m.xy, per_m * s.ground_dy_m.xy);
 }
 
 cover_Shape cover_shape(in Surface s, in float pixel_m) {
     cover_Shape shape;
     shape.steep = cover_steepness(s, pixel_m);
     shape.sunny = cover_sunniness(s);
-    vec2 at = s.ground_m.xy, dx = s.ground_dx_m.xy, dy = s.ground_dy_m.xy;
-    shape.small = cover_patch(at, dx, dy, 410.0);
-    shape.broad = cover_patch(cover_turn * at, cover_turn * dx, cover_turn * dy, 4700.0);
+    const float small_per_m = 1.0 / 410.0;
+    shape.small = cover_patch(ground_repeats(s.anchored_m, vec2(small_per_m)), small_per_m * s.ground_dx_m.xy,
+                              small_per_m * s.ground_dy_m.xy);
+    shape.broad = cover_turned_patch(s, cover_turn / 4700.0);
     // Near limits: from afar they are ragged by the ground's own shape.
     float near = mix(0.1, 1.0, 1.0 / (1.0 + pixel_m * pixel_m * 0.01));
     // From afar colour would spoil what light tells of slopes: there it follows height and climate.
@@ -154,7 +160,7 @@ vec3 cover_forest(in ClimateGround ground, in float growth) {
 float cover_crowns(in Surface s, in float pixel_m) {
     const float size_m = 96.0, seen_m = 4.0;
     if (pixel_m > seen_m) return 1.0;
-    vec4 crowns = cover_patch(cover_turn * s.ground_m.yx, cover_turn * s.ground_dx_m.yx, cover_turn * s.ground_dy_m.yx, size_m);
+    vec4 crowns = cover_turned_patch(s, mat2(cover_turn[1], cover_turn[0]) / size_m);  // east and north change places
     float light = 1.7 * crowns.a + 0.6 * (crowns.b - 0.3);
     return max(1.0 + light * (1.0 - smoothstep(0.2 * seen_m, seen_m, pixel_m)), 0.25);
 }
@@ -246,9 +252,10 @@ void cover_on_albedo(inout Surface s) {
     float sandy = (1.0 - smoothstep(0.4, 1.0, rain)) * (1.0 - shares.rock);
     cover_take(s, vec4(sandy, 1.0 - sandy - (1.0 - sandy) * shares.rock, shares.rock, 0.0) * (1.0 - covered) +
                       vec4(0.0, 0.0, 0.0, covered));
-    s.texture_at = s.ground_m.xy / cover_texture_m;
-    s.texture_dx = s.ground_dx_m.xy / cover_texture_m;
-    s.texture_dy = s.ground_dy_m.xy / cover_texture_m;
+    float per_m = 1.0 / cover_texture_m;
+    s.texture_at = ground_repeats(s.anchored_m, vec2(per_m));
+    s.texture_dx = s.ground_dx_m.xy * per_m;
+    s.texture_dy = s.ground_dy_m.xy * per_m;
     s.gloss = 0.5;
     if (pixel_m < cover_texture_m) {
         vec4 grain = cover_grain_of(s);

@@ -5,6 +5,8 @@
 //! source    Costa and Celes, Tecnicas simples para visualizacao foto-realista de terrenos em tempo real
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), section 3.1 and table 1
 
+//@ include lib/repeats.glsl
+
 uniform sampler2DArray layering_albedo;
 uniform sampler3D layering_noise;
 uniform sampler2D layering_patches;
@@ -116,11 +118,13 @@ const mat2 layering_turn = mat2(0.7986, 0.6018, -0.6018, 0.7986);
 
 /// Takes the visible repeats from a material: the same texture, turned and several times as large.
 /// @returns factor on its albedo
-/// @param dx, dy  change of `at` from pixel to pixel
-vec3 layering_unrepeated(in vec2 at, in vec2 dx, in vec2 dy, in int material) {
+/// @param per_m   repeats a metre of the texture itself
+/// @param dx, dy  change of its coordinates from pixel to pixel
+vec3 layering_unrepeated(in Surface s, in vec2 per_m, in vec2 dx, in vec2 dy, in int material) {
     const float larger = 0.23;
+    mat2 wide_per_m = larger * mat2(per_m.x * layering_turn[0], per_m.y * layering_turn[1]);
     vec3 mean = texelFetch(layering_albedo, ivec3(0, 0, material), layering_last_level).rgb;
-    vec3 wide = layering_read(layering_turn * at * larger, layering_turn * dx * larger,
+    vec3 wide = layering_read(ground_repeats(s.anchored_m, wide_per_m), layering_turn * dx * larger,
                               layering_turn * dy * larger, material).rgb;
     return 0.35 + 0.65 * wide / mean;
 }
@@ -155,17 +159,18 @@ void layering_on_albedo(inout Surface s) {
     if (layering_nature) {
         vec3 scale = 1.0 / layering_patch_m;
         vec2 gx = s.ground_dx_m.xy, gy = s.ground_dy_m.xy;
-        small = textureGrad(layering_patches, s.ground_m.xy * scale.x, gx * scale.x, gy * scale.x);
-        vec4 region = textureGrad(layering_regions, s.ground_m.yx * scale.z, gx.yx * scale.z, gy.yx * scale.z);
+        small = textureGrad(layering_patches, ground_repeats(s.anchored_m, scale.xx), gx * scale.x, gy * scale.x);
+        vec4 region = textureGrad(layering_regions, ground_repeats(s.anchored_m, scale.zz).yx, gx.yx * scale.z,
+                                  gy.yx * scale.z);
         // Regions push the broad patches about, so that those do not show as tiles from afar.
-        broad = textureGrad(layering_patches, layering_turn * s.ground_m.xy * scale.y + 2.4 * region.rg,
+        broad = textureGrad(layering_patches, ground_repeats(s.anchored_m, layering_turn * scale.y) + 2.4 * region.rg,
                             layering_turn * gx * scale.y, layering_turn * gy * scale.y);
         broad.rg += 0.6 * region.ra;
         // As strong as the volume's, which need not be read then.
         noise = 1.2 * (broad.r - 0.5) + 0.7 * (broad.a - 0.5) + 0.4 * (small.r - 0.5);
     } else {
-        noise = 2.0 * textureGrad(layering_noise, s.ground_m * noise_scale, s.ground_dx_m * noise_scale,
-                                  s.ground_dy_m * noise_scale).r - 1.0;
+        vec3 at = vec3(ground_repeats(s.anchored_m, noise_scale.xy), s.ground_m.z * noise_scale.z);
+        noise = 2.0 * textureGrad(layering_noise, at, s.ground_dx_m * noise_scale, s.ground_dy_m * noise_scale).r - 1.0;
     }
 
     // North or south, only how far from the equator counts.
@@ -187,11 +192,11 @@ void layering_on_albedo(inout Surface s) {
     s.material = ivec2(first, second);
     s.material_weight = vec2(most, next);
 
-    vec2 at = s.ground_m.xy * texture_scale.xy;
+    vec2 at = ground_repeats(s.anchored_m, texture_scale.xy);
     vec2 dx = s.ground_dx_m.xy * texture_scale.xy, dy = s.ground_dy_m.xy * texture_scale.xy;
     // The heavier material shows no repeats, which is enough. A loop, because a software renderer works
     // both sides of an "if": most ground has one material, and the second is read only near a limit.
-    vec3 factor = layering_nature ? layering_unrepeated(at, dx, dy, first) : vec3(1.0);
+    vec3 factor = layering_nature ? layering_unrepeated(s, texture_scale.xy, dx, dy, first) : vec3(1.0);
     float flatness = dot(s.ground_normal, s.up);
     vec3 albedo = vec3(0.0);
     float gloss = 0.0;

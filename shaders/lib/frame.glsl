@@ -45,4 +45,6 @@ layout(std140, binding = 0) uniform Frame {
     vec4 light_axes;          // xy: columns and rows of the DEM to a metre east, zw: north, at its centre
     vec4 light_map;           // x: 1 where these are so everywhere by the compass, 0 where they are by the frame's x, y
     vec4 sun_light_table[128];  // over the DEM, by the sine of the geometric elevation: as sun_light[0] (sun_light())
+    vec4 eye_anchor;          // a point near the eye, for lib/repeats.glsl; xy: east and north of the DEM's centre, in
+                              // whole steps of 2048 m; zw: from there to the eye [m]
 } frame;

@@ -18,6 +18,12 @@ vec3 ground_at(in vec3 position_m, in vec3 up, in float height_m) {
     return vec3(drawn_m - (frame.height_range.z - 1.0) * height_m * up.xy, height_m);
 }
 
+/// The same from the point of frame.eye_anchor, east and north: to 0.1 mm near the eye, wherever on the Earth [m].
+vec2 ground_anchored_at(in vec3 position_m, in vec3 up, in float height_m) {
+    vec2 drawn_m = position_m.xy + frame.eye_anchor.zw;
+    return drawn_m - (frame.height_range.z - 1.0) * height_m * up.xy;
+}
+
 float height_unit_of(in float height_m) {
     return clamp((height_m - frame.height_range.x) * frame.height_range.y, 0.0, 1.0);
 }

@@ -79,6 +79,7 @@ VertexFrame net_vertex(in vec2 vertex, in float height) {
     v.height_unit = height_unit_of(height);
     v.position_m = placed(at, height);
     v.ground_m = ground_at(v.position_m, v.up, height);
+    v.anchored_m = ground_anchored_at(v.position_m, v.up, height);
     v.distance_m = length(v.position_m);
     v.drawn_height_m = height * frame.height_range.z;
     // Short of the last post, so that it lies in a page as all others do.

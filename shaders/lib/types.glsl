@@ -14,6 +14,7 @@ struct VertexFrame {
     float distance_m;   // from the eye [m]; in `vertex` of the displaced position
     float drawn_height_m;  // above the DEM's zero, exaggerated; in `vertex` also displaced [m]
     vec2 post;             // column and row of the DEM
+    vec2 anchored_m;       // ground_m.xy from a point near the eye, exact there: for lib/repeats.glsl [m]
 };
 
 /// A visible point of the terrain.
@@ -36,7 +37,7 @@ struct Surface {
     float distance_m;         // from the eye [m]
     vec3 ground_dx_m;         // how ground_m changes from this pixel to the next one right ...
     vec3 ground_dy_m;         // ... and up [m/px], no longer at a slant than filters resolve: for textureGrad
-    vec2 texture_at;          // coordinates that the materials' textures are read at ...
+    vec2 texture_at;          // coordinates that the materials' textures are read at, but for whole numbers ...
     vec2 texture_dx;          // ... and their gradients, right
     vec2 texture_dy;          // ... and up
     float gloss;              // of the materials, 0..1: how much of their highlight this point has
@@ -45,4 +46,5 @@ struct Surface {
     float height_dy_m;        // ... and up [m/px], on the drawn surface
     vec2 post;                // column and row of the DEM, with fractions
     float pixel_posts;        // posts along a side of the pixel on the ground
+    vec2 anchored_m;          // ground_m.xy from a point near the eye, exact there: for lib/repeats.glsl [m]
 };
