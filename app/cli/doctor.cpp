@@ -15,7 +15,7 @@
 #include "dem/versions.h"
 #include "effect/registry.h"
 #include "gl/context.h"
-#include "render/programs.h"
+#include "render/renderer.h"
 #include "session/active_effects.h"
 
 namespace relevo::cli {
@@ -242,16 +242,12 @@ void print(const Findings& found) {
         line("advice", text);
 }
 
-/// Prints the graph of the frames that the effects draw which are on without a word.
+/// Prints the graph of frames with the effects that are on by default.
 void print_graph(const std::string& device) {
     const auto effects = session::ActiveEffects::of({}, /*aloud=*/false);
-    shader::StitchInput input = effects->inputs().stitch;
-    input.max_texture_units = gl::Context({.device = device}).info().max_texture_units;
-    render::ProgramOptions options{.shown = true};
-    for (const effect::NativeModule* const module : effects->inputs().modules)
-        options.natives.push_back(module->id());
-    fmt::print("{}", render::graph_text(render::stitch_frames(
-                         shader::FolderTexts(share_dir() / "shaders"), input, options)));
+    const gl::DeviceInfo info = gl::Context({.device = device}).info();
+    const auto frames = render::stitch(effects->inputs(), info, {.radiance = false});
+    fmt::print("{}", render::graph_text(frames));
 }
 
 void doctor(const std::string& wanted, bool as_json) {

@@ -16,7 +16,7 @@ class FolderWatch {
     FolderWatch& operator=(const FolderWatch&) = delete;
     ~FolderWatch();
 
-    /// Warns where the system does not let them be watched. Folders that do not exist are left out.
+    /// Warns if the system refuses to watch a folder. Folders that do not exist are ignored.
     /// @param endings  of names that matter: ".glsl"
     void watch(const std::vector<std::filesystem::path>& folders, std::vector<std::string> endings);
     /// Whether any such file has been written, has come or gone since the last call that said so;

@@ -116,11 +116,15 @@ class Declaration {
         add(Pass{.name = "footprint",
                  .kind = PassKind::Host,
                  .when = When::Dem,
-                 .writes = {"floor_ground"}});
+                 .writes = {"floor_ground"},
+                 .body = [](PassContext& frame) {
+                     frame.services.make_footprint(frame.ground.footprint);
+                 }});
         add(Pass{.name = "frame",
                  .kind = PassKind::Host,
                  .writes = {"frame"},
-                 .after = {"select", "light"}});
+                 .after = {"select", "light"},
+                 .body = [](PassContext& frame) { frame.services.upload_blocks(frame.block); }});
     }
 
     /// Each draws the ground's depth as often as it likes and may write parameters.
@@ -133,12 +137,14 @@ class Declaration {
         const std::string depth = program("depth", recipe);
         std::string before;
         for (const std::string& id : facts_.natives) {
-            add(Pass{.name = id,
-                     .kind = PassKind::Host,
-                     .program = depth,
-                     .reads = {"tiles"},
-                     .updates = {"parameters"},
-                     .after = {before}});
+            add(Pass{
+                .name = id,
+                .kind = PassKind::Host,
+                .program = depth,
+                .reads = {"tiles"},
+                .updates = {"parameters"},
+                .after = {before},
+                .body = [id](PassContext& frame) { frame.services.prepare_native(id, frame); }});
             before = id;
         }
     }
@@ -242,8 +248,13 @@ class Declaration {
     /// Two draws: the first marks the few pixels of silhouettes, the second smooths those over a
     /// copy. One draw over all pixels takes five times as long on a software renderer.
     void antialias() {
-        add(Pass{
-            .name = "copy", .kind = PassKind::Host, .reads = {"colour"}, .writes = {"picture"}});
+        add(Pass{.name = "copy",
+                 .kind = PassKind::Host,
+                 .reads = {"colour"},
+                 .writes = {"picture"},
+                 .body = [](PassContext& frame) {
+                     frame.texture("picture").copy_from(frame.texture("colour"));
+                 }});
         add(Pass{.name = "edges",
                  .program = program(
                      "edges", {.vertex_main = kFullscreen, .fragment_main = "edges.frag.glsl"}),

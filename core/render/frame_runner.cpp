@@ -51,53 +51,66 @@ FrameRunner::FrameRunner(gl::Context& context, const StitchedFrames& frames,
       provider_(std::move(provider)),
       values_(values) {}
 
+const FrameGraph& FrameRunner::graph_of(bool outside) const {
+    return outside ? *frames_.outside : frames_.within;
+}
+
 void FrameRunner::arrange(bool outside, int width_px, int height_px) {
+    Plan plan = render::plan(graph_of(outside));
+    GraphTargets targets(graph_of(outside), plan, width_px, height_px);
     outside_ = outside;
-    plan_ = render::plan(graph());
-    targets_ = GraphTargets(graph(), plan_, width_px, height_px);
-    executed_.clear();
+    plan_ = std::move(plan);
+    targets_ = std::move(targets);
+    forget_remade();
 }
 
-const FrameGraph& FrameRunner::graph() const {
-    return outside_ ? *frames_.outside : frames_.within;
+/// Passes that have written to memory of the graph have to write again: it is new.
+void FrameRunner::forget_remade() {
+    for (const Pass& pass : graph().passes)
+        for (const Access& access : accesses(pass))
+            if (access.mode != Access::Mode::Read &&
+                graph().find(access.version.resource)->lifetime != Lifetime::Provided)
+                executed_.erase(pass.name);
 }
 
-const gl::Texture& FrameRunner::texture(std::string_view resource) const {
+const gl::Texture& FrameRunner::texture(std::string_view resource) {
     const gl::Texture* const found = targets_.texture(resource);
     assert(found);
     return *found;
 }
 
-gl::Texture& FrameRunner::texture(std::string_view resource) {
-    return const_cast<gl::Texture&>(std::as_const(*this).texture(resource));
-}
-
-bool FrameRunner::is_due(const Pass& pass, const PassContext& frame) {
-    if (pass.when == When::Frame) return true;
-    Executed now{.ground = frame.terrain.serial()};
-    if (pass.when == When::Sun) now.sun = frame.inputs.sun.direction;
+FrameRunner::Inputs FrameRunner::inputs_of(const Pass& pass, const PassContext& frame) const {
+    Inputs inputs{.ground = frame.terrain.serial()};
+    if (pass.when == When::Sun) inputs.sun = frame.inputs.sun.direction;
     if (pass.when == When::Parameters)
         for (const std::string& address : pass.parameters)
-            now.values.push_back(values_.value(address));
-    const auto before = executed_.find(pass.name);
-    if (before != executed_.end() && before->second == now) return false;
-    executed_[pass.name] = now;
-    return true;
+            inputs.values.push_back(values_.value(address));
+    return inputs;
 }
 
 void FrameRunner::run(PassContext& frame, bool night, PassTimes* times) {
     std::optional<PassTimers> timers;
     if (times) timers.emplace(context_);
-    for (std::size_t i = 0; i < plan_.steps.size(); ++i) {
-        const Pass& pass = graph().passes[static_cast<std::size_t>(plan_.steps[i].pass)];
-        if (!is_due(pass, frame)) continue;
-        if (timers) timers->begin(pass.name, pass.kind == PassKind::Host);
-        if (plan_.steps[i].barrier) glMemoryBarrier(GL_ALL_BARRIER_BITS);
-        if (poisons_) targets_.poison(graph(), plan_.steps[i]);
-        const DebugGroup group(pass.name);
-        execute(i, frame, night);
-    }
+    for (std::size_t step = 0; step < plan_.steps.size(); ++step)
+        run_step(step, frame, night, timers ? &*timers : nullptr);
     if (timers) *times = timers->end();
+}
+
+void FrameRunner::run_step(std::size_t step, PassContext& frame, bool night, PassTimers* timers) {
+    const Plan::Step& planned = plan_.steps[step];
+    const Pass& pass = graph().passes[static_cast<std::size_t>(planned.pass)];
+    const bool rare = pass.when != When::Frame;
+    if (rare) {
+        const auto before = executed_.find(pass.name);
+        if (before != executed_.end() && before->second == inputs_of(pass, frame)) return;
+    }
+    if (timers) timers->begin(pass.name, pass.kind == PassKind::Host);
+    if (planned.barrier) glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    if (poisons_) targets_.poison(graph(), planned);
+    const DebugGroup group(pass.name);
+    frame.pass = &pass;
+    execute(step, frame, night);
+    if (rare) executed_[pass.name] = inputs_of(pass, frame);
 }
 
 void FrameRunner::execute(std::size_t step, PassContext& frame, bool night) {
@@ -121,38 +134,38 @@ void FrameRunner::execute(std::size_t step, PassContext& frame, bool night) {
 
 void FrameRunner::draw(const Pass& pass, const std::string& program, PassContext& frame) {
     const bool watched = programs_.needs_watch(program);
-    if (pass.kind == PassKind::Fullscreen && watched) {
-        draw_in_bands(program, frame);
-    } else if (pass.kind == PassKind::Fullscreen) {
-        no_inputs_.bind();
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-    } else if (watched) {
-        const double triangles = frame.tiles.triangles();
-        // Of a large frame the vertices come alone before, so that those that never end are found
-        // as soon as in a small one.
-        if (pixels(frame) > kMaxWatched_px) {
-            const Scissor corner(0, 0, 1, 1);
-            programs_.draw_watched(program, triangles, [&] { pass.body(frame); });
-        }
-        programs_.draw_watched(program, pixels(frame) + triangles, [&] { pass.body(frame); });
-    } else {
-        pass.body(frame);
-    }
+    if (pass.kind == PassKind::Fullscreen)
+        fill(program, frame);
+    else
+        draw_geometry(pass, program, frame);
     if (watched) programs_.set_proven(program);
 }
 
-/// For the same reason.
-void FrameRunner::draw_in_bands(const std::string& program, const PassContext& frame) {
-    const auto fill = [this] {
+void FrameRunner::draw_geometry(const Pass& pass, const std::string& program, PassContext& frame) {
+    const double triangles = frame.tiles.triangles();
+    const auto body = [&] { pass.body(frame); };
+    // Of a large frame the vertices come alone before, so that those that never end are found as
+    // soon as in a small one.
+    if (programs_.needs_watch(program) && pixels(frame) > kMaxWatched_px) {
+        const Scissor corner(0, 0, 1, 1);
+        programs_.draw(program, triangles, body);
+    }
+    programs_.draw(program, pixels(frame) + triangles, body);
+}
+
+/// Covers the targets, those of a large frame in bands while the program needs a watch: a pixel
+/// that never ends is found as soon as in a small frame.
+void FrameRunner::fill(const std::string& program, const PassContext& frame) {
+    const auto draw_all = [this] {
         no_inputs_.bind();
         glDrawArrays(GL_TRIANGLES, 0, 3);
     };
-    if (pixels(frame) <= kMaxWatched_px)
-        return programs_.draw_watched(program, pixels(frame), fill);
+    if (!programs_.needs_watch(program) || pixels(frame) <= kMaxWatched_px)
+        return programs_.draw(program, pixels(frame), draw_all);
     const int rows = std::max(1, static_cast<int>(kMaxWatched_px / frame.width_px));
     for (int y = 0; y < frame.height_px; y += rows) {
         const Scissor band(0, y, frame.width_px, rows);
-        programs_.draw_watched(program, kMaxWatched_px, fill);
+        programs_.draw(program, kMaxWatched_px, draw_all);
     }
 }
 

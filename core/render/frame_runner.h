@@ -29,13 +29,15 @@ class FrameRunner {
     FrameRunner(gl::Context& context, const StitchedFrames& frames, WatchedPrograms& programs,
                 Provider provider, const shader::ParamStore& values);
 
-    /// Frames are of this size and place of the eye from now on.
+    /// Sets the size of frames, and which graph they are drawn by. Where it throws, nothing has
+    /// changed. @throws Error (Failed) as GraphTargets
     void arrange(bool outside, int width_px, int height_px);
 
-    const FrameGraph& graph() const;
+    const FrameGraph& graph() const { return graph_of(outside_); }
     const Plan& plan() const { return plan_; }
-    const gl::Texture& texture(std::string_view resource) const;
-    gl::Texture& texture(std::string_view resource);
+    GraphTargets& targets() { return targets_; }
+    /// Of the last frame. @pre the graph has such a texture
+    const gl::Texture& texture(std::string_view resource);
 
     /// Draws a frame.
     /// @param night  passes with a program for nights take that
@@ -49,17 +51,21 @@ class FrameRunner {
     void set_poison(bool poison) { poisons_ = poison; }
 
   private:
-    /// What a pass that is not executed in every frame was executed for.
-    struct Executed {
+    const FrameGraph& graph_of(bool outside) const;
+    /// What a pass that is not executed in every frame depends on.
+    struct Inputs {
         std::uint64_t ground = 0;
         glm::dvec3 sun{0};
         std::vector<shader::ParamValue> values;
-        bool operator==(const Executed&) const = default;
+        bool operator==(const Inputs&) const = default;
     };
-    bool is_due(const Pass& pass, const PassContext& frame);
+    Inputs inputs_of(const Pass& pass, const PassContext& frame) const;
+    void forget_remade();
+    void run_step(std::size_t step, PassContext& frame, bool night, PassTimers* timers);
     void execute(std::size_t step, PassContext& frame, bool night);
     void draw(const Pass& pass, const std::string& program, PassContext& frame);
-    void draw_in_bands(const std::string& program, const PassContext& frame);
+    void draw_geometry(const Pass& pass, const std::string& program, PassContext& frame);
+    void fill(const std::string& program, const PassContext& frame);
 
     gl::Context& context_;
     const StitchedFrames& frames_;
@@ -69,7 +75,7 @@ class FrameRunner {
     bool outside_ = false, poisons_ = false;
     Plan plan_;
     GraphTargets targets_;
-    std::map<std::string, Executed> executed_;
+    std::map<std::string, Inputs> executed_;  // by pass: for what it was executed last
     gl::VertexArray no_inputs_;
 };
 

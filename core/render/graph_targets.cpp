@@ -1,8 +1,6 @@
 #include "render/graph_targets.h"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 namespace relevo::render {
 namespace {
@@ -19,11 +17,8 @@ gl::TextureKind kind_of(ResourceKind kind) {
 }
 
 gl::Extent extent_of(const ResourceSize& size, int width_px, int height_px) {
-    if (size.share <= 0) return {size.width, size.height, size.depth};
-    const auto side = [&](int whole) {
-        return std::max(1, static_cast<int>(std::ceil(size.share * whole)));
-    };
-    return {side(width_px), side(height_px), size.depth};
+    const auto [width, height] = size.sides_px(width_px, height_px);
+    return {width, height, size.depth};
 }
 
 }  // namespace
@@ -72,15 +67,11 @@ int GraphTargets::memory_of(std::string_view resource) const {
     return found == names_.end() ? -1 : found->memory;
 }
 
-const gl::Texture* GraphTargets::texture(std::string_view resource) const {
+gl::Texture* GraphTargets::texture(std::string_view resource) {
     const int memory = memory_of(resource);
     if (memory < 0) return nullptr;
-    const gl::Texture& found = textures_[static_cast<std::size_t>(memory)];
+    gl::Texture& found = textures_[static_cast<std::size_t>(memory)];
     return found.name() != 0 ? &found : nullptr;
-}
-
-gl::Texture* GraphTargets::texture(std::string_view resource) {
-    return const_cast<gl::Texture*>(std::as_const(*this).texture(resource));
 }
 
 const gl::Buffer* GraphTargets::buffer(std::string_view resource) const {

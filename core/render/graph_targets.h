@@ -18,10 +18,9 @@ class GraphTargets {
     /// @throws Error (Failed) if the device has no memory for it, or cannot draw to a combination
     GraphTargets(const FrameGraph& graph, const Plan& plan, int width_px, int height_px);
 
-    /// A texture of the graph's own; null for those that are provided, and for buffers.
-    const gl::Texture* texture(std::string_view resource) const;
+    /// A texture that the graph has allocated; null: there is none of that name.
     gl::Texture* texture(std::string_view resource);
-    /// Null likewise.
+    /// A buffer that the graph has allocated; null: there is none of that name.
     const gl::Buffer* buffer(std::string_view resource) const;
     /// What a step of the plan draws to; null if it draws to nothing.
     const gl::Framebuffer* framebuffer(std::size_t step) const;

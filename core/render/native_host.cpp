@@ -65,7 +65,7 @@ struct FrameState {
 struct NativeHost::Impl : effect::ModuleServices {
     const effect::NativeModule& module;
     gl::Context& context;
-    UseDepth use_depth;
+    DrawDepth draw_ground;
     shader::ParamStore& values;
     int width_px, height_px;
 
@@ -83,11 +83,11 @@ struct NativeHost::Impl : effect::ModuleServices {
     bool changed = true;
     void* instance = nullptr;
 
-    Impl(const effect::NativeModule& m, gl::Context& c, UseDepth d, shader::ParamStore& v,
+    Impl(const effect::NativeModule& m, gl::Context& c, DrawDepth d, shader::ParamStore& v,
          int width, int height)
         : module(m),
           context(c),
-          use_depth(std::move(d)),
+          draw_ground(std::move(d)),
           values(v),
           width_px(width),
           height_px(height),
@@ -313,8 +313,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         if (!drawn.terrain.has_holes())
             drawing.winds_counterclockwise = drawn.terrain.winds_counterclockwise();
         const DrawScope scope(framebuffer, drawing);
-        use_depth(drawn.terrain);
-        drawn.terrain.draw(tiles, origin_m);
+        draw_ground(drawn.terrain, [&] { drawn.terrain.draw(tiles, origin_m); });
         return tiles.finest_level();
     }
 
@@ -402,9 +401,10 @@ NativeProgramText native_program_text(std::string_view own) {
                     RELEVO_MAX_VALUES, own)};
 }
 
-NativeHost::NativeHost(const effect::NativeModule& module, gl::Context& context, UseDepth use_depth,
-                       shader::ParamStore& values, int width_px, int height_px)
-    : impl_(std::make_unique<Impl>(module, context, std::move(use_depth), values, width_px,
+NativeHost::NativeHost(const effect::NativeModule& module, gl::Context& context,
+                       DrawDepth draw_depth, shader::ParamStore& values, int width_px,
+                       int height_px)
+    : impl_(std::make_unique<Impl>(module, context, std::move(draw_depth), values, width_px,
                                    height_px)) {
     impl_->call("create()", "it cannot start",
                 [&] { return module.functions().create(impl_->tables.host(), &impl_->instance); });

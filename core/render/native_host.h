@@ -24,13 +24,14 @@ NativeProgramText native_program_text(std::string_view own);
 /// renderer, and the module's instance.
 class NativeHost {
   public:
-    /// Makes the program current that draws the terrain orthographically, with what it reads.
-    using UseDepth = std::function<void(const Terrain& terrain)>;
+    /// Calls `draw` with the program current that draws the terrain orthographically.
+    using DrawDepth =
+        std::function<void(const Terrain& terrain, const std::function<void()>& draw)>;
 
     /// Makes the instance. The module, the context and the values must outlive this.
     /// @param values  the renderer's own, whose host parameters the module writes
     /// @throws Error (Failed) `render: LIBRARY: reason` if the module cannot
-    NativeHost(const effect::NativeModule& module, gl::Context& context, UseDepth use_depth,
+    NativeHost(const effect::NativeModule& module, gl::Context& context, DrawDepth draw_depth,
                shader::ParamStore& values, int width_px, int height_px);
     NativeHost(NativeHost&&) noexcept;
     NativeHost& operator=(NativeHost&&) noexcept;

@@ -12,10 +12,6 @@ PassTimers::PassTimers(gl::Context& context)
     : context_(context), stamps_(!context.info().device.software) {}
 
 void PassTimers::begin(const std::string& pass, bool on_host) {
-    mark(pass, on_host);
-}
-
-void PassTimers::mark(const std::string& pass, bool on_host) {
     if (!stamps_) context_.finish();
     Query query;
     if (stamps_) {
@@ -28,7 +24,7 @@ void PassTimers::mark(const std::string& pass, bool on_host) {
 }
 
 PassTimes PassTimers::end() {
-    mark("", true);
+    begin("", /*on_host=*/true);
     PassTimes times;
     for (std::size_t i = 0; i + 1 < marks_.size(); ++i) {
         const Mark &from = marks_[i], &to = marks_[i + 1];

@@ -13,8 +13,8 @@ namespace relevo::render {
 /// Milliseconds of the passes of one frame, by their names, in their order.
 using PassTimes = std::vector<std::pair<std::string, double>>;
 
-/// Measures passes. On hardware by the device's time stamps, without waiting for it between passes;
-/// of a software renderer, whose time stamps leave out the work of vertices, by waiting.
+/// Measures passes: on hardware by the device's time stamps, which need no wait between passes. A
+/// software renderer is waited for after each pass, as its time stamps do not count vertex work.
 class PassTimers {
   public:
     explicit PassTimers(gl::Context& context);
@@ -34,7 +34,6 @@ class PassTimers {
         Clock::time_point at;
         Query stamp;
     };
-    void mark(const std::string& pass, bool on_host);
 
     gl::Context& context_;
     bool stamps_;

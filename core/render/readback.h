@@ -21,8 +21,8 @@ struct SunSeen {
     bool moved = false;      ///< an effect has moved the ground from where the DEM has it
 };
 
-/// How many pixels of RGBA8 have light or colour that is no number, or infinite, before it is
-/// clamped: they are not opaque.
+/// The number of RGBA8 pixels whose light or colour was NaN or infinite before it was clamped. The
+/// shaders mark them by an alpha below 1.
 int count_not_numbers(std::span<const std::uint8_t> rgba);
 
 /// RGB, rows from the top.

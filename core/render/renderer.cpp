@@ -63,6 +63,8 @@ std::string units_text(const ProgramText& program, int max_texture_units) {
     return text;
 }
 
+}  // namespace
+
 StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
                       const RendererOptions& options) {
     shader::StitchInput input = effects.stitch;
@@ -90,8 +92,6 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
     return frames;
 }
 
-}  // namespace
-
 std::vector<shader::Param> core_params() {
     shader::Param normal;
     normal.name = "terrain_normal";
@@ -104,7 +104,7 @@ std::vector<shader::Param> core_params() {
     return {normal};
 }
 
-struct Renderer::Impl {
+struct Renderer::Impl : FrameServices {
     gl::Context& context;
     RendererOptions options;
     double anisotropy;
@@ -116,7 +116,7 @@ struct Renderer::Impl {
     std::vector<effect::DisplaceSpec> displaces;
     shader::ParamStore values;  // as given; native modules write host parameters
     double exposure = 1;        // of the last frame
-    TileSelection tiles;        // likewise
+    TileSelection tiles;        // of the last frame
     GroundProbe probe;
     gl::Texture footprint;  // of the ground that was last seen from outside
     std::vector<NativeHost> natives;
@@ -147,21 +147,18 @@ struct Renderer::Impl {
             const std::vector<std::byte> params = shader::pack(layout(), values);
             if (!params.empty()) params_block = gl::Buffer(params, "parameters");
         }
-        add_bodies(frames.within);
-        if (frames.outside) add_bodies(*frames.outside);
         runner.set_poison(options.poison);
-        arrange();
+        runner.arrange(outside, options.width_px, options.height_px);
         link();
         for (const effect::NativeModule* module : effects.modules)
             natives.emplace_back(
-                *module, context, [this](const Terrain& terrain) { runner.use("depth", terrain); },
+                *module, context,
+                [this](const Terrain& terrain, const auto& draw) { draw_depth(terrain, draw); },
                 values, options.width_px, options.height_px);
     }
 
     bool shows_block() const { return frames.outside.has_value(); }
     const shader::BlockLayout& layout() const { return frames.programs.front().stitched.params; }
-
-    void arrange() { runner.arrange(outside, options.width_px, options.height_px); }
 
     /// What the first frame is drawn with, so that a driver refuses it now.
     void link() {
@@ -172,48 +169,49 @@ struct Renderer::Impl {
     }
 
     void move(bool is_outside) {
-        if (outside == (is_outside && shows_block())) return;
-        outside = !outside;
-        arrange();
+        const bool wanted = is_outside && shows_block();
+        if (outside == wanted) return;
+        runner.arrange(wanted, options.width_px, options.height_px);
+        outside = wanted;
     }
 
-    /// Of the passes that work with what this renderer has beside the terrain.
-    void add_bodies(FrameGraph& graph) {
-        for (Pass& pass : graph.passes) {
-            if (pass.name == "frame")
-                pass.body = [this](PassContext& frame) { bind_blocks(frame.block); };
-            if (pass.name == "footprint")
-                pass.body = [this](PassContext& frame) {
-                    footprint = footprint_texture(frame.ground.footprint);
-                };
-            if (pass.name == "copy")
-                pass.body = [this](PassContext&) {
-                    runner.texture("picture").copy_from(runner.texture("colour"));
-                };
-            if (pass.program == "depth")
-                pass.body = [this, id = pass.name](PassContext& frame) {
-                    for (NativeHost& native : natives)
-                        if (native.id() == id) prepare_native(native, frame);
-                };
-        }
+    void upload_blocks(const FrameBlock& block) override {
+        frame_block.write(std::as_bytes(std::span(&block, 1)));
+        frame_block.bind_uniform(kFrameBinding);
+        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
     }
 
-    void prepare_native(NativeHost& native, PassContext& frame) {
+    void make_footprint(const Footprint& of) override { footprint = footprint_texture(of); }
+
+    void prepare_native(const std::string& id, PassContext& frame) override {
         if (frame.inputs.keep_native && native_is_made) return;
+        NativeHost& native = *std::ranges::find(natives, id, &NativeHost::id);
         const auto prepare = [&] {
             native.prepare(frame.terrain, frame.ground, frame.inputs, frame.block, frame.tiles);
         };
-        if (programs.needs_watch("depth")) {
-            // Twice its patience at least: a module that hangs by itself is named by its own
-            // deadline, not by this one.
-            constexpr double kMapParts = 4e6;
-            programs.draw_watched("depth", std::max(pixels(), kMapParts), prepare);
-        } else {
+        // The first time also for what the module draws with programs of its own.
+        if (native_is_made)
             prepare();
-        }
+        else
+            programs.draw_watched("depth", depth_parts(), prepare);
         if (native.take_changes() && params_block.size() > 0)
             params_block.write(shader::pack(layout(), values));
         frame_block.bind_uniform(kFrameBinding);
+    }
+
+    /// For a native effect, which is under a watch already in the first frame.
+    void draw_depth(const Terrain& terrain, const std::function<void()>& draw) {
+        runner.use("depth", terrain);
+        if (!native_is_made) return draw();
+        programs.draw("depth", depth_parts(), draw);
+        programs.set_proven("depth");
+    }
+
+    /// Twice the patience of a native effect at least: a module that hangs by itself is named by
+    /// its own deadline, not by that of the draw.
+    double depth_parts() const {
+        constexpr double kMapParts = 4e6;
+        return std::max(pixels(), kMapParts);
     }
 
     double pixels() const { return double{1} * options.width_px * options.height_px; }
@@ -230,9 +228,7 @@ struct Renderer::Impl {
         return nullptr;
     }
 
-    bool reads(std::string_view resource) const {
-        return runner.plan().reads(runner.graph(), resource);
-    }
+    bool reads(std::string_view resource) const { return runner.plan().reads(resource); }
 
     /// Of a frame; fills in what effects displace.
     FrameBlock prepare(Terrain& terrain, const Ground& ground, FrameInputs& inputs) {
@@ -255,12 +251,6 @@ struct Renderer::Impl {
                        1.0F / static_cast<float>(posts.rows())};
     }
 
-    void bind_blocks(const FrameBlock& block) {
-        frame_block.write(std::as_bytes(std::span(&block, 1)));
-        frame_block.bind_uniform(kFrameBinding);
-        if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
-    }
-
     const std::string& geometry_program() const {
         return std::ranges::find(runner.graph().passes, "geometry", &Pass::name)->program;
     }
@@ -271,15 +261,12 @@ struct Renderer::Impl {
         probe.aim(inputs, ground, block);
         const TileSelection below = terrain.select_below(
             inputs.camera, options.width_px, options.height_px, inputs.exaggeration, inputs.afresh);
-        bind_blocks(block);
+        upload_blocks(block);
         const std::string& program = geometry_program();
         runner.use(program, terrain);
         return probe.height_m(terrain.has_holes(), [&] {
-            const auto draw = [&] { terrain.draw(below, inputs.camera.eye_m); };
-            if (programs.needs_watch(program))
-                programs.draw_watched(program, below.triangles(), draw);
-            else
-                draw();
+            programs.draw(program, below.triangles(),
+                          [&] { terrain.draw(below, inputs.camera.eye_m); });
         });
     }
 
@@ -287,9 +274,16 @@ struct Renderer::Impl {
               PassTimes* times) {
         move(is_outside(ground, inputs.camera.eye_m, inputs.exaggeration));
         describe(terrain, inputs, block);
-        PassContext frame{
-            terrain,           ground,         inputs,       block, tiles, options.width_px,
-            options.height_px, runner.graph(), runner.plan()};
+        PassContext frame{.terrain = terrain,
+                          .ground = ground,
+                          .inputs = inputs,
+                          .block = block,
+                          .tiles = tiles,
+                          .width_px = options.width_px,
+                          .height_px = options.height_px,
+                          .plan = runner.plan(),
+                          .targets = runner.targets(),
+                          .services = *this};
         const bool night = block.eye_sun.w < radians(kNight_deg);
         runner.run(frame, night, times);
         native_is_made = true;
@@ -350,9 +344,9 @@ void Renderer::set_values(const shader::ParamStore& values) {
 void Renderer::resize(int width_px, int height_px) {
     if (width_px == impl_->options.width_px && height_px == impl_->options.height_px) return;
     check_size(impl_->context, width_px, height_px);
+    impl_->runner.arrange(impl_->outside, width_px, height_px);
     impl_->options.width_px = width_px;
     impl_->options.height_px = height_px;
-    impl_->arrange();
     for (NativeHost& native : impl_->natives)
         native.resize(width_px, height_px);
 }
@@ -385,6 +379,10 @@ bool Renderer::shows_block() const {
 
 const shader::ParamStore& Renderer::values() const {
     return impl_->values;
+}
+
+bool Renderer::is_watched() const {
+    return impl_->programs.is_watching();
 }
 
 int Renderer::triangles() const {

@@ -56,6 +56,11 @@ struct EffectInputs {
 /// Core's own parameters, beside those of plugins: `terrain.normal`, fragment or vertex.
 std::vector<shader::Param> core_params();
 
+/// Stitches the programs that a Renderer with these effects and options draws with.
+/// @throws Error (BadInput) for a plugin's mistake, in its file and line; (Failed) for core's
+StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& device,
+                      const RendererOptions& options);
+
 /// Draws frames with one selection of effects.
 ///
 /// core_passes.h declares the passes of a frame.
@@ -108,6 +113,9 @@ class Renderer {
     /// Of all parameters, as the last frame was drawn.
     const shader::ParamStore& values() const;
     int triangles() const;  ///< of terrain in the last frame
+    /// Whether some program has not been drawn with yet. Its first draw is under a watch and waits
+    /// for the device.
+    bool is_watched() const;
     /// The last frame as RGB, rows from the top.
     /// @param not_numbers  filled, if not null, with count_not_numbers()
     image::Image8 read_picture(int* not_numbers = nullptr) const;

@@ -40,17 +40,32 @@ bool WatchedPrograms::needs_watch(const std::string& name) {
     return !entry(name).proven;
 }
 
+void WatchedPrograms::draw(const std::string& name, double parts,
+                           const std::function<void()>& body) {
+    if (needs_watch(name))
+        draw_watched(name, parts, body);
+    else
+        body();
+}
+
 void WatchedPrograms::draw_watched(const std::string& name, double parts,
-                                   const std::function<void()>& draw) {
-    const DrawWatch::Turn turn(watch(), text(name), parts);
-    draw();
-    glFinish();
+                                   const std::function<void()>& body) {
+    {
+        const DrawWatch::Turn turn(watch(), text(name), parts);
+        body();
+        glFinish();
+    }
+    end_watch();
 }
 
 void WatchedPrograms::set_proven(const std::string& name) {
     entry(name).proven = true;
+    end_watch();
+}
+
+void WatchedPrograms::end_watch() {
     const bool all = std::ranges::all_of(
-        linked_, [](const auto& each) { return !each.second || each.second->proven; });
+        linked_, [](const auto& each) { return each.second && each.second->proven; });
     if (all) watch_.reset();
 }
 

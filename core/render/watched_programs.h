@@ -25,15 +25,20 @@ class WatchedPrograms {
     /// Whether no draw with a program has ended yet.
     bool needs_watch(const std::string& name);
 
-    /// Draws under a watch, and waits for the device.
+    /// Draws with a program, under a watch while it needs one.
     /// @param parts  pixels and triangles
-    void draw_watched(const std::string& name, double parts, const std::function<void()>& draw);
+    void draw(const std::string& name, double parts, const std::function<void()>& body);
+    /// Draws under a watch in any case, and waits for the device.
+    void draw_watched(const std::string& name, double parts, const std::function<void()>& body);
     /// From now on a program needs no watch.
     void set_proven(const std::string& name);
+    /// Whether some program has been linked and needs a watch.
+    bool is_watching() const { return watch_.has_value(); }
 
   private:
     ProgramCache::Entry& entry(const std::string& name);
     DrawWatch& watch();
+    void end_watch();
 
     const StitchedFrames& texts_;
     ProgramCache& cache_;

@@ -467,6 +467,17 @@ TEST(DoctorVerb, NamesTheDeviceAndWhy) {
         << text.out;
 }
 
+TEST(DoctorVerb, PrintsTheGraphOfAFrame) {
+    const Result run = relevo({"doctor", "--graph"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_TRUE(run.out.starts_with("digraph \"frame\" {\n")) << run.out;
+    EXPECT_NE(run.out.find("\n}\ndigraph \"frame from outside\" {\n"), std::string::npos);
+    EXPECT_NE(run.out.find("  \"pass geometry\" -> \"depth\";\n"), std::string::npos);
+    const Result both = relevo({"doctor", "--graph", "--json"});
+    EXPECT_EQ(both.status, 2);
+    EXPECT_EQ(both.err, "relevo: error: --json excludes --graph; see relevo doctor --help\n");
+}
+
 TEST(DoctorVerb, AsksForTheDeviceThatIsWanted) {
     const Result run = relevo({"doctor", "--json", "--device", "software"});
     ASSERT_EQ(run.status, 0) << run.err;

@@ -207,6 +207,7 @@ TEST(ReferenceCompiler, SeesTheProgramsOfACapture) {
         relevo({"-q", "capture", bundled_dem(), "-o", (dir / "a.png").string(), "--size", "64x48",
                 "--dump-shaders", dump.string(), "--only", fmt::format("{}", fmt::join(ids, ","))});
     ASSERT_EQ(taken.status, 0) << taken.err;
+    EXPECT_TRUE(read_text(dump / "frame.dot", "test").starts_with("digraph \"frame\" {\n"));
     int compared = 0;
     for (const auto& entry : std::filesystem::directory_iterator(dump)) {
         const std::string file = entry.path().string();

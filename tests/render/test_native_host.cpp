@@ -47,9 +47,9 @@ class NativeHostTest : public testing::Test {
         manifest_.folder = folder_;
     }
 
-    /// Draws a frame in which the module does that.
+    /// Draws frames in which the module does that.
     /// @returns the error that ends it
-    std::string draw(const Act& act, const std::string& glsl = "") {
+    std::string draw(const Act& act, const std::string& glsl = "", int frames = 1) {
         const effect::NativeModule module = effect::NativeModule::load(manifest_, {});
         void* library = dlopen(module.library().c_str(), RTLD_NOW | RTLD_NOLOAD);
         *static_cast<relevo_status (**)(const relevo_host*)>(dlsym(library, "puppet_prepare")) =
@@ -78,7 +78,9 @@ class NativeHostTest : public testing::Test {
                                sun::Refraction::standard(place), ground, dem.grid);
             inputs.camera = scene::orbit_camera({180, 40, 1}, points_to_show(dem, ground, 1),
                                                 radians(40), 64.0 / 48);
-            renderer.render_frame(terrain, ground, inputs);
+            for (int i = 0; i < frames; ++i)
+                renderer.render_frame(terrain, ground, inputs);
+            is_watched_ = renderer.is_watched();
         });
         dlclose(library);
         return error;
@@ -91,6 +93,7 @@ class NativeHostTest : public testing::Test {
 
     std::filesystem::path folder_ = test::scratch_dir("native_host") / "puppet";
     effect::Manifest manifest_;
+    bool is_watched_ = false;  ///< after the last frame
 };
 
 relevo_texture_info texture_info(int format, int side, int levels = 1) {
@@ -220,6 +223,31 @@ TEST_F(NativeHostTest, ATextureOfAnotherKindThanItsSamplerIsAnError) {
     EXPECT_EQ(error,
               "exit 1: render: puppet: sampler2DArray puppet_map: expected a texture of that kind "
               "but the module makes puppet.map one of sampler2D");
+}
+
+TEST_F(NativeHostTest, OnlyFirstDrawsAreUnderAWatch) {
+    // Of a module whose first draw comes in its second frame, such as shadows at sunrise.
+    int frame = 0, drawn = 0;
+    const Act from_the_second_on = [&](const relevo_host* host) {
+        if (frame++ == 0) return RELEVO_OK;
+        const auto& textures = service<relevo_texture_1>(host, "relevo.texture");
+        const auto& terrain = service<relevo_terrain_1>(host, "relevo.terrain");
+        const relevo_texture_info info = texture_info(RELEVO_FORMAT_DEPTH32F, 64);
+        relevo_texture texture = 0;
+        textures.create(textures.self, &info, &texture);
+        relevo_box box{};
+        box.size = sizeof box;
+        box.right[0] = box.up[1] = box.towards[2] = 1;
+        terrain.bounds(terrain.self, &box);
+        drawn += terrain.draw_depth(terrain.self, &box, 10, texture, nullptr) == RELEVO_OK;
+        return RELEVO_OK;
+    };
+    EXPECT_EQ(draw(from_the_second_on, "", 1), "no error");
+    EXPECT_TRUE(is_watched_);
+    frame = 0;
+    EXPECT_EQ(draw(from_the_second_on, "", 2), "no error");
+    EXPECT_FALSE(is_watched_);
+    EXPECT_EQ(drawn, 1);
 }
 
 TEST_F(NativeHostTest, AFailedDepthPassLeavesTheStateAsItWas) {

@@ -47,8 +47,8 @@ struct Shadows {
 /// one plane sun would be off by more than 0.05 degrees anywhere, be it for the curvature, the
 /// convergence of meridians, terrestrial refraction, or lines of sight that the map shows as bent,
 /// the DEM is divided into tiles with a sun each, which the ground outside of a tile shades all the
-/// same. Where shade is short, a tile leaves out how terrestrial refraction bends rays: 0.02
-/// degrees at most. Refraction of the sun is that of the air at a post's own height: where it
+/// same. Tiles of short shadows ignore how terrestrial refraction bends rays, an error of up to
+/// 0.02 degrees. Refraction of the sun is that of the air at a post's own height: where it
 /// differs over the DEM, there are two sweeps, for the lowest and the highest post, and the shadow
 /// over a post lies between them by its height. Beyond the DEM lies a smooth Earth as high as its
 /// edge there, as in TerrainHorizon. Holes neither shade nor are lit.

@@ -1,8 +1,17 @@
 #include "render/graph/graph.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace relevo::render {
+
+std::array<int, 2> ResourceSize::sides_px(int frame_width_px, int frame_height_px) const {
+    if (share <= 0) return {width, height};
+    const auto side = [&](int whole) {
+        return std::max(1, static_cast<int>(std::ceil(share * whole)));
+    };
+    return {side(frame_width_px), side(frame_height_px)};
+}
 
 const Resource* FrameGraph::find(std::string_view resource) const {
     const auto found = std::ranges::find(resources, resource, &Resource::name);

@@ -24,13 +24,16 @@ enum class Lifetime {
     Provided  ///< made by a pass's own code or by the caller: the graph allocates nothing
 };
 
-/// Sides of a texture: a share of the frame's, or fixed.
+/// Size of a texture or a buffer. The sides of a texture are a share of the frame's, or fixed.
 struct ResourceSize {
     double share = 1;           ///< of the frame's width and height; 0: fixed
     int width = 1, height = 1;  ///< [px], of a fixed size
     int depth = 1;              ///< layers of an array, or depth of a 3-D texture
     std::size_t bytes = 0;      ///< of a buffer
     bool operator==(const ResourceSize&) const = default;
+
+    /// The sides in a frame of a size, rounded up and at least 1 [px].
+    std::array<int, 2> sides_px(int frame_width_px, int frame_height_px) const;
 };
 
 struct Resource {
@@ -106,10 +109,12 @@ struct Pass {
     std::vector<Colour> colours{};          ///< in the order of the program's outputs
     std::optional<Depth> depth{};
     std::optional<Stencil> stencil{};
-    std::vector<std::string> writes{};   ///< other than targets: buffers, images, provided textures
-    std::vector<std::string> updates{};  ///< likewise, of what others have written
-    std::vector<std::string> after{};    ///< names of passes, those that do not exist included
-    bool clips_voids = false;            ///< GL_CLIP_DISTANCE0, where the DEM has voids
+    /// Made anew other than as targets: buffers, images, provided textures.
+    std::vector<std::string> writes{};
+    /// Changed other than as targets, after another pass has written them.
+    std::vector<std::string> updates{};
+    std::vector<std::string> after{};  ///< names of passes, those that do not exist included
+    bool clips_voids = false;          ///< GL_CLIP_DISTANCE0, where the DEM has voids
     std::function<void(PassContext&)> body{};
 };
 

@@ -33,13 +33,19 @@ class Planner {
         const std::vector<int> order = sorted();
         find_live();
         for (const int pass : order)
-            if (live_.contains(pass)) plan_.steps.push_back({.pass = pass});
+            if (live_.contains(pass)) add_step(pass);
         share_memory();
         find_barriers();
         return std::move(plan_);
     }
 
   private:
+    void add_step(int pass) {
+        plan_.steps.push_back({.pass = pass});
+        for (const Access& access : accesses_[static_cast<std::size_t>(pass)])
+            if (access.mode == Mode::Read) plan_.read.insert(access.version.resource);
+    }
+
     const Pass& pass(int index) const { return graph_.passes[static_cast<std::size_t>(index)]; }
     const Resource& resource(int index) const {
         return graph_.resources[static_cast<std::size_t>(index)];
@@ -309,21 +315,6 @@ class Planner {
 
 Plan plan(const FrameGraph& graph) {
     return Planner(graph).run();
-}
-
-bool Plan::reads(const FrameGraph& graph, std::string_view resource) const {
-    return std::ranges::any_of(steps, [&](const Step& step) {
-        return std::ranges::any_of(
-            accesses(graph.passes[static_cast<std::size_t>(step.pass)]), [&](const Access& access) {
-                return access.mode == Mode::Read && access.version.resource == resource;
-            });
-    });
-}
-
-bool Plan::executes(const FrameGraph& graph, std::string_view pass) const {
-    return std::ranges::any_of(steps, [&](const Step& step) {
-        return graph.passes[static_cast<std::size_t>(step.pass)].name == pass;
-    });
 }
 
 }  // namespace relevo::render

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <functional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "render/graph/graph.h"
@@ -23,10 +26,9 @@ struct Plan {
     std::vector<Memory> memory;
     std::vector<int> memory_of;  ///< of each resource: index in `memory`; -1: none is allocated
 
-    /// Whether any step reads a resource, and so needs it.
-    bool reads(const FrameGraph& graph, std::string_view resource) const;
-    /// Whether a pass is executed at all.
-    bool executes(const FrameGraph& graph, std::string_view pass) const;
+    /// Names of the resources that some step reads.
+    std::set<std::string, std::less<>> read;
+    bool reads(std::string_view resource) const { return read.contains(resource); }
 };
 
 /// Derives the plan of a graph. Passes without an order between them keep that of the declaration.
