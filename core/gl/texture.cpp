@@ -266,10 +266,9 @@ void Texture::make_mipmaps() {
     glGenerateTextureMipmap(name());
 }
 
-void Texture::fill_with_ones() {
-    const std::vector<std::byte> ones(static_cast<std::size_t>(layout_of(format_).bytes()),
-                                      std::byte{0xff});
-    glClearTexImage(name(), 0, channels(format_), number_type(format_), ones.data());
+void Texture::fill(std::byte value) {
+    const std::vector<std::byte> texel(static_cast<std::size_t>(layout_of(format_).bytes()), value);
+    glClearTexImage(name(), 0, channels(format_), number_type(format_), texel.data());
 }
 
 void Texture::bind(unsigned unit) const {

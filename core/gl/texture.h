@@ -50,8 +50,8 @@ class Texture {
     /// Copies level 0 of a texture of the same format and size.
     void copy_from(const Texture& other);
     void make_mipmaps();
-    /// Sets all bits of level 0: NaN in formats of floats.
-    void fill_with_ones();
+    /// Sets every byte of level 0. 0xff is NaN in formats of floats.
+    void fill(std::byte value);
     void bind(unsigned unit) const;
 
     TextureKind kind() const { return kind_; }

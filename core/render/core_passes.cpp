@@ -38,12 +38,12 @@ class Declaration {
   public:
     explicit Declaration(const FrameFacts& facts)
         : facts_(facts),
-          end_(facts.antialias ? "colour" : "picture"),
-          light_(facts.radiance ? "radiance" : end_) {
+          tone_mapped_(facts.antialias ? "colour" : "picture"),
+          shaded_(facts.radiance ? "radiance" : tone_mapped_) {
         if (!facts.radiance)
-            ends_.push_back({"SHOWN", ""});
+            end_defines_.push_back({"SHOWN", ""});
         else if (facts.overlays)
-            ends_.push_back({"DISPLAY_OVERLAY", ""});
+            end_defines_.push_back({"DISPLAY_OVERLAY", ""});
     }
 
     CoreFrame run() {
@@ -64,11 +64,12 @@ class Declaration {
     void add(Resource resource) { frame_.graph.resources.push_back(std::move(resource)); }
     void provided(const char* name) { add(Resource{.name = name, .lifetime = Lifetime::Provided}); }
 
-    /// @returns its name
-    std::string program(const char* name, shader::ProgramRecipe recipe, bool wants = false,
-                        const char* word = "") {
-        const std::string full = wants ? std::string(name) + "_" + word : name;
-        frame_.programs.push_back({full, std::move(recipe), wants ? word : ""});
+    /// @param word  a capability that it has beside those of the effects; null: none
+    /// @returns its name, which ends in the word
+    std::string program(const char* name, shader::ProgramRecipe recipe,
+                        const char* word = nullptr) {
+        const std::string full = word ? std::string(name) + "_" + word : name;
+        frame_.programs.push_back({full, std::move(recipe), word ? word : ""});
         return full;
     }
 
@@ -93,7 +94,7 @@ class Declaration {
             add(Resource{.name = "sun_seen", .format = RGBA32F, .linear = true, .output = true});
         if (facts_.antialias) {
             add(Resource{.name = "colour", .format = RGBA8, .linear = true});
-            add(Resource{.name = "edges", .format = Stencil8});
+            add(Resource{.name = "edge_marks", .format = Stencil8});
         }
         add(Resource{.name = "picture", .format = RGBA8, .linear = true, .output = true});
     }
@@ -135,7 +136,7 @@ class Declaration {
                                      .defines = {{"TERRAIN_DEPTH", ""}}};
         if (facts_.displaced) recipe.defines.push_back({"DISPLACED", ""});
         const std::string depth = program("depth", recipe);
-        std::string before;
+        std::vector<std::string> before;
         for (const std::string& id : facts_.natives) {
             add(Pass{
                 .name = id,
@@ -143,9 +144,9 @@ class Declaration {
                 .program = depth,
                 .reads = {"tiles"},
                 .updates = {"parameters"},
-                .after = {before},
+                .after = before,
                 .body = [id](PassContext& frame) { frame.services.prepare_native(id, frame); }});
-            before = id;
+            before = {id};
         }
     }
 
@@ -157,7 +158,7 @@ class Declaration {
         if (facts_.nan_slivers) recipe.defines.push_back({"NAN_SLIVERS", ""});
         Pass pass{.name = "geometry",
                   .kind = PassKind::Geometry,
-                  .program = program("geometry", recipe, is_outside_word(), kOutsideWord),
+                  .program = program("geometry", recipe, outside_word()),
                   .reads = {"tiles"},
                   .colours = {{"gbuffer"}},
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true, /*clear=*/0.0F},
@@ -182,7 +183,9 @@ class Declaration {
         recipe.defines.push_back({kHeightStepsDefine, std::to_string(1 + facts_.varying_targets)});
     }
 
-    bool is_outside_word() const { return facts_.outside && facts_.wants_outside; }
+    const char* outside_word() const {
+        return facts_.outside && facts_.wants_outside ? kOutsideWord : nullptr;
+    }
     bool has_overlay() const { return facts_.radiance && facts_.overlays; }
 
     /// Shades what the geometry pass has drawn.
@@ -192,11 +195,11 @@ class Declaration {
                                      .geometry_of = kTerrain};
         ground_defines(recipe);
         if (facts_.draped) recipe.defines.push_back({"DRAPED", ""});
-        recipe.defines.insert(recipe.defines.end(), ends_.begin(), ends_.end());
+        recipe.defines.insert(recipe.defines.end(), end_defines_.begin(), end_defines_.end());
         if (facts_.audited) recipe.defines.push_back({kAuditedDefine, has_overlay() ? "2" : "1"});
         Pass pass{.name = "terrain",
-                  .program = program("terrain", recipe, is_outside_word(), kOutsideWord),
-                  .colours = {{light_}},
+                  .program = program("terrain", recipe, outside_word()),
+                  .colours = {{shaded_}},
                   .depth = Depth{"depth@geometry", DepthTest::Covered}};
         if (has_overlay()) pass.colours.push_back({"overlay", kNothing});
         if (facts_.audited) pass.colours.push_back({"sun_seen", kNothing});
@@ -209,14 +212,14 @@ class Declaration {
                   .kind = PassKind::Geometry,
                   .program = program("side", {.vertex_main = "side.vert.glsl",
                                               .fragment_main = "side.frag.glsl",
-                                              .defines = ends_}),
+                                              .defines = end_defines_}),
                   .reads = {"tiles"},
-                  .colours = {{.resource = light_, .over = true}},
+                  .colours = {{.resource = shaded_, .updates = true}},
                   .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true},
                   .body = [](PassContext& frame) {
                       frame.terrain.draw_sides(frame.tiles, frame.inputs.camera.eye_m);
                   }};
-        if (has_overlay()) pass.colours.push_back({.resource = "overlay", .over = true});
+        if (has_overlay()) pass.colours.push_back({.resource = "overlay", .updates = true});
         add(std::move(pass));
     }
 
@@ -225,24 +228,24 @@ class Declaration {
         const char* const name = facts_.outside ? "backdrop" : "background";
         const shader::ProgramRecipe recipe{.vertex_main = kFullscreen,
                                            .fragment_main = std::string(name) + ".frag.glsl",
-                                           .defines = ends_};
+                                           .defines = end_defines_};
         Pass pass{.name = "background",
                   .program = program(name, recipe),
-                  .colours = {{.resource = light_, .over = true}},
+                  .colours = {{.resource = shaded_, .updates = true}},
                   .depth = Depth{"depth", DepthTest::Uncovered},
-                  .after = {"side"}};
+                  .after = {"side"}};  // which there is from outside alone
         if (!facts_.outside && facts_.wants_night)
-            pass.program_at_night = program(name, recipe, true, kNightWord);
+            pass.program_at_night = program(name, recipe, kNightWord);
         add(std::move(pass));
     }
 
-    /// Tone mapping of the stored radiance.
+    /// Tone mapping of stored radiance. Without it the shading programs do that.
     void post() {
         add(Pass{.name = "post",
                  .program = program("post", {.vertex_main = kFullscreen,
                                              .fragment_main = "post.frag.glsl",
-                                             .defines = ends_}),
-                 .colours = {{end_}}});
+                                             .defines = end_defines_}),
+                 .colours = {{tone_mapped_}}});
     }
 
     /// Two draws: the first marks the few pixels of silhouettes, the second smooths those over a
@@ -258,18 +261,18 @@ class Declaration {
         add(Pass{.name = "edges",
                  .program = program(
                      "edges", {.vertex_main = kFullscreen, .fragment_main = "edges.frag.glsl"}),
-                 .stencil = Stencil{"edges", /*marks=*/true}});
+                 .stencil = Stencil{"edge_marks", /*marks=*/true}});
         add(Pass{.name = "antialias",
                  .program = program("antialias", {.vertex_main = kFullscreen,
                                                   .fragment_main = "antialias.frag.glsl"}),
-                 .colours = {{.resource = "picture", .over = true}},
-                 .stencil = Stencil{"edges"}});
+                 .colours = {{.resource = "picture", .updates = true}},
+                 .stencil = Stencil{"edge_marks"}});
     }
 
     const FrameFacts& facts_;
-    std::string end_;    // resource of the tone-mapped colours
-    std::string light_;  // what the shading passes draw into
-    std::vector<shader::Define> ends_;
+    std::string tone_mapped_;  // resource of the tone-mapped colours
+    std::string shaded_;       // what the shading passes draw into: that, or radiance
+    std::vector<shader::Define> end_defines_;  // of the shading programs
     CoreFrame frame_;
 };
 

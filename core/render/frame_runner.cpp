@@ -36,8 +36,8 @@ struct DebugGroup {
     ~DebugGroup() { glPopDebugGroup(); }
 };
 
-double pixels(const PassContext& frame) {
-    return double{1} * frame.width_px * frame.height_px;
+double pixels(const gl::Framebuffer& target) {
+    return double{1} * target.extent().width * target.extent().height;
 }
 
 }  // namespace
@@ -91,6 +91,7 @@ FrameRunner::Inputs FrameRunner::inputs_of(const Pass& pass, const PassContext& 
 void FrameRunner::run(PassContext& frame, bool night, PassTimes* times) {
     std::optional<PassTimers> timers;
     if (times) timers.emplace(context_);
+    changed_.clear();
     for (std::size_t step = 0; step < plan_.steps.size(); ++step)
         run_step(step, frame, night, timers ? &*timers : nullptr);
     if (timers) *times = timers->end();
@@ -100,17 +101,25 @@ void FrameRunner::run_step(std::size_t step, PassContext& frame, bool night, Pas
     const Plan::Step& planned = plan_.steps[step];
     const Pass& pass = graph().passes[static_cast<std::size_t>(planned.pass)];
     const bool rare = pass.when != When::Frame;
-    if (rare) {
-        const auto before = executed_.find(pass.name);
-        if (before != executed_.end() && before->second == inputs_of(pass, frame)) return;
-    }
+    if (rare && !is_due(pass, frame)) return;
     if (timers) timers->begin(pass.name, pass.kind == PassKind::Host);
     if (planned.barrier) glMemoryBarrier(GL_ALL_BARRIER_BITS);
     if (poisons_) targets_.poison(graph(), planned);
     const DebugGroup group(pass.name);
     frame.pass = &pass;
     execute(step, frame, night);
-    if (rare) executed_[pass.name] = inputs_of(pass, frame);
+    if (!rare) return;
+    executed_[pass.name] = inputs_of(pass, frame);
+    for (const Access& access : accesses(pass))
+        if (access.mode != Access::Mode::Read) changed_.insert(access.version.resource);
+}
+
+bool FrameRunner::is_due(const Pass& pass, const PassContext& frame) const {
+    const auto before = executed_.find(pass.name);
+    if (before == executed_.end() || before->second != inputs_of(pass, frame)) return true;
+    return std::ranges::any_of(accesses(pass), [&](const Access& access) {
+        return changed_.contains(access.version.resource);
+    });
 }
 
 void FrameRunner::execute(std::size_t step, PassContext& frame, bool night) {
@@ -129,42 +138,45 @@ void FrameRunner::execute(std::size_t step, PassContext& frame, bool night) {
     const DrawScope scope(*target, {.depth = pass.depth,
                                     .stencil = pass.stencil,
                                     .clips_voids = pass.clips_voids && frame.terrain.has_holes()});
-    draw(pass, program, frame);
+    draw(pass, program, *target, frame);
 }
 
-void FrameRunner::draw(const Pass& pass, const std::string& program, PassContext& frame) {
+void FrameRunner::draw(const Pass& pass, const std::string& program, const gl::Framebuffer& target,
+                       PassContext& frame) {
     const bool watched = programs_.needs_watch(program);
     if (pass.kind == PassKind::Fullscreen)
-        fill(program, frame);
+        fill(program, target);
     else
-        draw_geometry(pass, program, frame);
+        draw_geometry(pass, program, target, frame);
     if (watched) programs_.set_proven(program);
 }
 
-void FrameRunner::draw_geometry(const Pass& pass, const std::string& program, PassContext& frame) {
+void FrameRunner::draw_geometry(const Pass& pass, const std::string& program,
+                                const gl::Framebuffer& target, PassContext& frame) {
     const double triangles = frame.tiles.triangles();
     const auto body = [&] { pass.body(frame); };
     // Of a large frame the vertices come alone before, so that those that never end are found as
     // soon as in a small one.
-    if (programs_.needs_watch(program) && pixels(frame) > kMaxWatched_px) {
+    if (programs_.needs_watch(program) && pixels(target) > kMaxWatched_px) {
         const Scissor corner(0, 0, 1, 1);
         programs_.draw(program, triangles, body);
     }
-    programs_.draw(program, pixels(frame) + triangles, body);
+    programs_.draw(program, pixels(target) + triangles, body);
 }
 
 /// Covers the targets, those of a large frame in bands while the program needs a watch: a pixel
 /// that never ends is found as soon as in a small frame.
-void FrameRunner::fill(const std::string& program, const PassContext& frame) {
+void FrameRunner::fill(const std::string& program, const gl::Framebuffer& target) {
     const auto draw_all = [this] {
         no_inputs_.bind();
         glDrawArrays(GL_TRIANGLES, 0, 3);
     };
-    if (!programs_.needs_watch(program) || pixels(frame) <= kMaxWatched_px)
-        return programs_.draw(program, pixels(frame), draw_all);
-    const int rows = std::max(1, static_cast<int>(kMaxWatched_px / frame.width_px));
-    for (int y = 0; y < frame.height_px; y += rows) {
-        const Scissor band(0, y, frame.width_px, rows);
+    if (!programs_.needs_watch(program) || pixels(target) <= kMaxWatched_px)
+        return programs_.draw(program, pixels(target), draw_all);
+    const auto [width, height, layers] = target.extent();
+    const int rows = std::max(1, static_cast<int>(kMaxWatched_px / width));
+    for (int y = 0; y < height; y += rows) {
+        const Scissor band(0, y, width, rows);
         programs_.draw(program, kMaxWatched_px, draw_all);
     }
 }

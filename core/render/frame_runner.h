@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -59,13 +60,16 @@ class FrameRunner {
         std::vector<shader::ParamValue> values;
         bool operator==(const Inputs&) const = default;
     };
+    bool is_due(const Pass& pass, const PassContext& frame) const;
     Inputs inputs_of(const Pass& pass, const PassContext& frame) const;
     void forget_remade();
     void run_step(std::size_t step, PassContext& frame, bool night, PassTimers* timers);
     void execute(std::size_t step, PassContext& frame, bool night);
-    void draw(const Pass& pass, const std::string& program, PassContext& frame);
-    void draw_geometry(const Pass& pass, const std::string& program, PassContext& frame);
-    void fill(const std::string& program, const PassContext& frame);
+    void draw(const Pass& pass, const std::string& program, const gl::Framebuffer& target,
+              PassContext& frame);
+    void draw_geometry(const Pass& pass, const std::string& program, const gl::Framebuffer& target,
+                       PassContext& frame);
+    void fill(const std::string& program, const gl::Framebuffer& target);
 
     gl::Context& context_;
     const StitchedFrames& frames_;
@@ -76,6 +80,7 @@ class FrameRunner {
     Plan plan_;
     GraphTargets targets_;
     std::map<std::string, Inputs> executed_;  // by pass: for what it was executed last
+    std::set<std::string> changed_;  // by passes of this frame that are not executed in every one
     gl::VertexArray no_inputs_;
 };
 

@@ -35,7 +35,7 @@ GraphTargets::GraphTargets(const FrameGraph& graph, const Plan& plan, int width_
         const Resource& first =
             graph.resources[static_cast<std::size_t>(plan.memory[m].resources.front())];
         if (first.kind == ResourceKind::Buffer) {
-            buffers_[m] = gl::Buffer(first.size.bytes, label);
+            buffers_[m] = gl::Buffer(std::vector<std::byte>(first.size.bytes), label);
             continue;
         }
         textures_[m] = gl::Texture(kind_of(first.kind), first.format,
@@ -44,6 +44,7 @@ GraphTargets::GraphTargets(const FrameGraph& graph, const Plan& plan, int width_
         if (first.format != gl::Format::Stencil8)
             textures_[m].set_sampling(first.linear ? gl::Filter::Linear : gl::Filter::Nearest,
                                       gl::Wrap::Clamp);
+        if (first.lifetime == Lifetime::Kept) textures_[m].fill(std::byte{0});
     }
     for (const Plan::Step& step : plan.steps)
         framebuffers_.push_back(
@@ -89,7 +90,7 @@ const gl::Framebuffer* GraphTargets::framebuffer(std::size_t step) const {
 void GraphTargets::poison(const FrameGraph& graph, const Plan::Step& step) {
     for (const int r : step.begins)
         if (gl::Texture* const begun = texture(graph.resources[static_cast<std::size_t>(r)].name))
-            begun->fill_with_ones();
+            begun->fill(std::byte{0xff});
 }
 
 }  // namespace relevo::render

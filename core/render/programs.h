@@ -14,10 +14,7 @@ namespace relevo::render {
 
 /// One of the programs of a frame as text.
 struct ProgramText {
-    /// "geometry", "terrain", "background", "background_night" (if an effect wants `night`), "post"
-    /// (not if shown), "edges", "antialias"; where effects show the DEM from outside as a block:
-    /// "side", "backdrop", and if an effect wants `outside` "geometry_outside", "terrain_outside"
-    std::string name;
+    std::string name;  ///< as core_frame() has it: "terrain", "background_night"
     shader::Stitched stitched;
     std::string hash;  ///< SHA-256 of the text of both stages
 

@@ -111,6 +111,31 @@ TEST_F(FrameRunnerTest, ExecutesAPassWhenWhatItDependsOnHasChanged) {
               (Counts{{"frame", 6}, {"sun", 4}, {"parameters", 4}, {"dem", 3}, {"outside", 2}}));
 }
 
+TEST_F(FrameRunnerTest, ARarePassFollowsTheOneThatItReads) {
+    add(When::Sun, kept("light", 1));
+    add(When::Dem, kept("blurred", 1));
+    frames.within.passes[1].reads = {"light"};
+    runner.arrange(false, 60, 41);
+    draw();
+    inputs.sun.direction = {0, 1, 0};
+    draw();
+    draw();
+    EXPECT_EQ(executed["light"], 2);
+    EXPECT_EQ(executed["blurred"], 2);
+}
+
+TEST_F(FrameRunnerTest, WhatIsKeptIsNothingAtFirst) {
+    add(When::Frame, {.name = "kept",
+                      .format = PixelFormat::RGBA32F,
+                      .lifetime = Lifetime::Kept,
+                      .output = true});
+    runner.arrange(false, 60, 41);
+    std::vector<float> texels(60 * 41 * 4, 1);
+    body = [&](PassContext& frame) { frame.texture("kept").read_floats(texels); };
+    draw();
+    EXPECT_EQ(texels, std::vector<float>(texels.size(), 0));
+}
+
 TEST_F(FrameRunnerTest, APassThatFailsIsExecutedAgain) {
     add(When::Dem, kept("dem", 1));
     runner.arrange(false, 60, 41);

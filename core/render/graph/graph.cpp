@@ -32,7 +32,7 @@ std::vector<Access> accesses(const Pass& pass) {
         if (std::ranges::find(all, access) == all.end()) all.push_back(access);
     };
     for (const Colour& colour : pass.colours)
-        add(colour.over ? Mode::Update : Mode::Write, colour.resource);
+        add(colour.updates ? Mode::Update : Mode::Write, colour.resource);
     if (const auto& depth = pass.depth)
         add(!depth->writes ? Mode::Read
             : depth->clear ? Mode::Write

@@ -19,8 +19,9 @@ enum class ResourceKind { Texture2D, Texture2DArray, Texture3D, Buffer };
 
 /// How long the contents of a resource are needed, and who makes it.
 enum class Lifetime {
-    Frame,    ///< from its first writer to its last reader; may share memory with another one
-    Kept,     ///< from frame to frame; its memory is its own
+    Frame,    ///< from its writer to its last reader, or to the next frame if it is an output;
+              ///< may share memory with another one
+    Kept,     ///< from frame to frame; 0 at first and when frames get another size
     Provided  ///< made by a pass's own code or by the caller: the graph allocates nothing
 };
 
@@ -43,22 +44,24 @@ struct Resource {
     ResourceSize size{};
     Lifetime lifetime = Lifetime::Frame;
     bool linear = false;  ///< sampled with linear filtering instead of nearest
-    /// Read by the caller after the frame: the passes that write it are always executed.
+    /// Read by the caller after the frame: the passes that write it are executed. Of other passes
+    /// only those are that one of these needs. A pass with an effect outside the frame writes a
+    /// Provided output.
     bool output = false;
 };
 
 /// Which pixels a draw reaches, by the stored depth. Depth is reversed: 0 is the far end.
 enum class DepthTest {
     Nearer,    ///< where it is nearer than what is stored
-    Covered,   ///< of a full-screen pass: where something was drawn
-    Uncovered  ///< of a full-screen pass: where nothing was
+    Covered,   ///< of a full-screen pass: where the stored depth is not 0
+    Uncovered  ///< of a full-screen pass: where it is 0
 };
 
 /// A colour target of a pass.
 struct Colour {
     std::string resource;
     std::optional<std::array<float, 4>> clear{};  ///< before the pass
-    bool over = false;  ///< keeps what an earlier pass has written where it draws nothing
+    bool updates = false;  ///< needs what an earlier pass has written; else that is undefined
 };
 
 /// The depth target of a pass.
@@ -72,17 +75,20 @@ struct Depth {
 /// The stencil target of a pass.
 struct Stencil {
     std::string resource;
-    bool marks = false;  ///< sets 1 where the program draws, and no colour; else draws only there
+    /// Clears the stencil and sets 1 where the program draws, without colours; else draws only
+    /// where it is 1.
+    bool marks = false;
 };
 
 enum class PassKind {
     Fullscreen,  ///< one triangle over all targets
     Geometry,    ///< its body draws, with the program and the targets bound
-    Compute,     ///< its body dispatches, with the program bound
+    Compute,     ///< its body dispatches, with the program bound; only after these are barriers
     Host         ///< its body does what it likes with the resources that it declares
 };
 
-/// When a pass is executed. What others than `Frame` write must be Kept or Provided.
+/// When a pass is executed. A pass that is not executed in every frame may use Kept and Provided
+/// resources only. It is also executed when such a pass has changed what it reads.
 enum class When {
     Frame,       ///< in every frame
     Sun,         ///< when the sun has moved
@@ -94,10 +100,10 @@ struct PassContext;  // render/pass_context.h
 
 /// A step of a frame.
 ///
-/// A pass that makes the whole contents of a resource writes it; there is at most one. A pass that
-/// draws over them updates it. Several updates of one resource need an order by `after`. A pass
-/// reads what the last update leaves, or, as "depth@geometry", what the pass `geometry` leaves, or,
-/// as "history@before", what the frame before has left.
+/// A pass writes a resource if it needs nothing of what that held before; at most one pass does. It
+/// updates a resource if it draws over what another has written; several updates of one resource
+/// need an order by `after`. A pass reads what the last update leaves, or, as "depth@geometry",
+/// what the pass `geometry` leaves, or, as "history@before", what the frame before has left.
 struct Pass {
     std::string name;
     PassKind kind = PassKind::Fullscreen;
@@ -109,13 +115,13 @@ struct Pass {
     std::vector<Colour> colours{};          ///< in the order of the program's outputs
     std::optional<Depth> depth{};
     std::optional<Stencil> stencil{};
-    /// Made anew other than as targets: buffers, images, provided textures.
+    /// Written, but not as targets: buffers, images, provided textures.
     std::vector<std::string> writes{};
-    /// Changed other than as targets, after another pass has written them.
+    /// Updated, but not as targets.
     std::vector<std::string> updates{};
-    std::vector<std::string> after{};  ///< names of passes, those that do not exist included
-    bool clips_voids = false;          ///< GL_CLIP_DISTANCE0, where the DEM has voids
-    std::function<void(PassContext&)> body{};
+    std::vector<std::string> after{};          ///< names of passes; a name of none is ignored
+    bool clips_voids = false;                  ///< GL_CLIP_DISTANCE0, where the DEM has voids
+    std::function<void(PassContext&)> body{};  ///< of all kinds but Fullscreen
 };
 
 struct FrameGraph {

@@ -71,9 +71,29 @@ class Planner {
         return known->second;
     }
 
+    /// What would have no effect, or an undefined one.
+    static void check_kind(const Pass& of) {
+        const auto refuse_if = [&](bool wrong, std::string_view what) {
+            if (wrong) refuse(fmt::format("pass {} {}", of.name, what));
+        };
+        const bool fullscreen = of.kind == PassKind::Fullscreen;
+        refuse_if(of.name == "before" || of.name.find('@') != std::string::npos,
+                  "has a name that means a version");
+        refuse_if(fullscreen && of.body, "is full-screen and has a body");
+        refuse_if(!fullscreen && !of.body, "has no body");
+        refuse_if(of.kind != PassKind::Host && of.program.empty(), "has no program");
+        refuse_if(of.depth && of.stencil, "has both a depth and a stencil");
+        refuse_if(of.depth && of.depth->clear && !of.depth->writes, "clears a depth that it reads");
+        for (const Colour& colour : of.colours) {
+            refuse_if(colour.updates && colour.clear, "clears what it updates");
+            refuse_if(!Version::of(colour.resource).pass.empty(), "draws into a version");
+        }
+    }
+
     /// What a pass says by itself.
     void check(int index) {
         const Pass& of = pass(index);
+        check_kind(of);
         accesses_.push_back(accesses(of));
         std::map<int, Mode> modes;
         for (const Access& access : accesses_.back()) {

@@ -15,7 +15,7 @@ struct Plan {
     struct Step {
         int pass = 0;             ///< index in FrameGraph::passes
         bool barrier = false;     ///< an earlier step wrote by a compute shader what this one uses
-        std::vector<int> begins;  ///< resources of Lifetime::Frame whose contents begin here
+        std::vector<int> begins;  ///< resources of Lifetime::Frame that no earlier step uses
     };
     std::vector<Step> steps;
 
@@ -32,10 +32,11 @@ struct Plan {
 };
 
 /// Derives the plan of a graph. Passes without an order between them keep that of the declaration.
-/// @throws Error (Failed) `render: graph: ...` for two names alike, a resource or version that does
-///         not exist, a read before any write, two writers, updates without an order, a pass that
-///         reads what it draws into, a rare pass that writes or reads what lasts for a frame only,
-///         and a cycle
+/// @throws Error (Failed) `render: graph: ...` for two passes or resources of one name, a resource
+/// or
+///         version that does not exist, a read before any write, two writers, updates without an
+///         order, a pass that reads what it draws into, a pass that is not executed in every frame
+///         and uses what lasts for one, a pass that contradicts its kind, and a cycle
 Plan plan(const FrameGraph& graph);
 
 /// A graph and its plan in Graphviz's language: passes as boxes in their order, resources as
