@@ -15,6 +15,7 @@ struct Switches {
     std::optional<std::vector<std::string>> only;  ///< these and nothing else
     std::vector<std::string> enable;
     std::vector<std::string> disable;
+    bool operator==(const Switches&) const = default;
 };
 
 /// A value for a parameter.

@@ -48,6 +48,7 @@ std::vector<std::filesystem::path> plugin_folders(const std::filesystem::path& p
 Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
                         const std::filesystem::path& data_dir) {
     Registry registry;
+    registry.search_paths_ = search_paths;
     for (const std::filesystem::path& path : search_paths) {
         for (const std::filesystem::path& folder : plugin_folders(path)) {
             std::string id = name_of(folder);

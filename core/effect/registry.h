@@ -31,6 +31,8 @@ class Registry {
 
     const std::vector<Effect>& effects() const { return effects_; }  ///< by id
     const std::vector<BrokenEffect>& broken() const { return broken_; }
+    /// Where plugins were looked for.
+    const std::vector<std::filesystem::path>& search_paths() const { return search_paths_; }
 
     const Effect* find(std::string_view id) const;  ///< or null
     bool is_broken(std::string_view id) const;      ///< there, but could not be loaded
@@ -42,6 +44,7 @@ class Registry {
   private:
     std::vector<Effect> effects_;
     std::vector<BrokenEffect> broken_;
+    std::vector<std::filesystem::path> search_paths_;
 };
 
 }  // namespace relevo::effect

@@ -92,11 +92,12 @@ void check_alike(const TextureSpec& spec, const std::vector<image::TextureData>&
 }  // namespace
 
 LoadedTexture load_texture(const TextureSpec& spec) {
-    LoadedTexture texture{spec, {}};
+    LoadedTexture texture{.spec = spec};
     for (const std::filesystem::path& file : spec.files) {
         texture.layers.push_back(file.extension() == ".ktx2" ? image::read_ktx(file)
                                                              : decode(file, spec));
         check_kind(file, spec, texture.layers.back());
+        texture.stamps.add(file);
     }
     check_alike(spec, texture.layers);
     return texture;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/file_stamps.h"
 #include "effect/manifest.h"
 #include "image/ktx.h"
 
@@ -12,6 +13,7 @@ struct LoadedTexture {
     TextureSpec spec;
     /// One; of an array, its layers in order. All have the same format, sides and levels.
     std::vector<image::TextureData> layers;
+    FileStamps stamps;  ///< of its files, as they were read
 
     /// Whether the files bring the mipmaps that the manifest asks for.
     bool has_mipmaps() const { return spec.mipmaps && layers.front().levels() > 1; }

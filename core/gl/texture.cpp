@@ -186,6 +186,10 @@ Texture::Texture(TextureKind kind, Format format, Extent extent, int levels, std
     check_storage(kind, format, extent, levels_, label);
 }
 
+void Texture::set_label(std::string_view label) {
+    gl::set_label(GL_TEXTURE, name(), label);
+}
+
 void Texture::write(int level, Extent offset, Extent extent, std::span<const std::byte> texels) {
     assert(texels.size() == static_cast<std::size_t>(layout_of(format_).bytes()) *
                                 static_cast<std::size_t>(extent.width) *

@@ -21,6 +21,7 @@ enum class Filter { Nearest, Linear, Mipmap };
 /// Width, height, and layers or depth [px].
 struct Extent {
     int width = 1, height = 1, depth = 1;
+    bool operator==(const Extent&) const = default;
 };
 
 /// Rows [row, row + rows) of one layer.
@@ -53,6 +54,8 @@ class Texture {
     /// Sets every byte of level 0. 0xff is NaN in formats of floats.
     void fill(std::byte value);
     void bind(unsigned unit) const;
+    /// Names it in debuggers and messages of the driver.
+    void set_label(std::string_view label);
 
     TextureKind kind() const { return kind_; }
     Format format() const { return format_; }

@@ -43,15 +43,26 @@ gl::Texture make(const effect::LoadedTexture& from, double anisotropy) {
 
 }  // namespace
 
+std::shared_ptr<const gl::Texture> EffectTextureCache::find_or_make(
+    const effect::LoadedTexture& from, double anisotropy) {
+    std::erase_if(known_, [](const Known& known) { return known.texture.expired(); });
+    for (const Known& known : known_)
+        if (known.spec.same_texels(from.spec) && known.files == from.stamps && from.stamps.hold())
+            return known.texture.lock();
+    auto texture = std::make_shared<const gl::Texture>(make(from, anisotropy));
+    known_.push_back({from.spec, from.stamps, texture});
+    return texture;
+}
+
 EffectTextures::EffectTextures(const std::vector<const effect::LoadedTexture*>& textures,
-                               double anisotropy) {
+                               double anisotropy, EffectTextureCache& cache) {
     for (const effect::LoadedTexture* texture : textures)
-        textures_.emplace(texture->spec.resource, make(*texture, anisotropy));
+        textures_.emplace(texture->spec.resource, cache.find_or_make(*texture, anisotropy));
 }
 
 const gl::Texture* EffectTextures::find(const std::string& resource) const {
     const auto found = textures_.find(resource);
-    return found == textures_.end() ? nullptr : &found->second;
+    return found == textures_.end() ? nullptr : found->second.get();
 }
 
 }  // namespace relevo::render

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,20 +10,37 @@
 
 namespace relevo::render {
 
-/// The textures of all enabled effects, on the device. They get mipmaps where the manifest says so
-/// and the files have none.
+/// Textures of effects on the device, by the files that they were read from. Keeps those in use.
+class EffectTextureCache {
+  public:
+    /// The texture, with mipmaps where the manifest says so and the files have none.
+    /// @pre  effect::check_limits() of this device
+    /// @throws Error (Failed) where the device has no memory for it
+    std::shared_ptr<const gl::Texture> find_or_make(const effect::LoadedTexture& from,
+                                                    double anisotropy);
+
+  private:
+    struct Known {
+        effect::TextureSpec spec;
+        FileStamps files;
+        std::weak_ptr<const gl::Texture> texture;
+    };
+    std::vector<Known> known_;
+};
+
+/// The textures of all enabled effects, on the device.
 class EffectTextures {
   public:
     EffectTextures() = default;
-    /// @pre  effect::check_limits() of this device
-    /// @throws Error (Failed) where the device has no memory for them
-    EffectTextures(const std::vector<const effect::LoadedTexture*>& textures, double anisotropy);
+    /// @throws Error as EffectTextureCache
+    EffectTextures(const std::vector<const effect::LoadedTexture*>& textures, double anisotropy,
+                   EffectTextureCache& cache);
 
     /// Null if no effect asked for it.
     const gl::Texture* find(const std::string& resource) const;
 
   private:
-    std::map<std::string, gl::Texture> textures_;
+    std::map<std::string, std::shared_ptr<const gl::Texture>> textures_;
 };
 
 }  // namespace relevo::render

@@ -43,11 +43,12 @@ double pixels(const gl::Framebuffer& target) {
 }  // namespace
 
 FrameRunner::FrameRunner(gl::Context& context, const StitchedFrames& frames,
-                         WatchedPrograms& programs, Provider provider,
+                         WatchedPrograms& programs, TexturePool& pool, Provider provider,
                          const shader::ParamStore& values)
     : context_(context),
       frames_(frames),
       programs_(programs),
+      pool_(pool),
       provider_(std::move(provider)),
       values_(values) {}
 
@@ -57,11 +58,18 @@ const FrameGraph& FrameRunner::graph_of(bool outside) const {
 
 void FrameRunner::arrange(bool outside, int width_px, int height_px) {
     Plan plan = render::plan(graph_of(outside));
-    GraphTargets targets(graph_of(outside), plan, width_px, height_px);
+    GraphTargets targets(graph_of(outside), plan, width_px, height_px, pool_);
     outside_ = outside;
     plan_ = std::move(plan);
     targets_ = std::move(targets);
+    is_arranged_ = true;
     forget_remade();
+    pool_.trim();
+}
+
+void FrameRunner::release() {
+    targets_ = {};
+    is_arranged_ = false;
 }
 
 /// Passes that have written to memory of the graph have to write again: it is new.

@@ -28,11 +28,15 @@ class FrameRunner {
 
     /// @param frames  whose passes have their bodies; must outlive this, as must the rest
     FrameRunner(gl::Context& context, const StitchedFrames& frames, WatchedPrograms& programs,
-                Provider provider, const shader::ParamStore& values);
+                TexturePool& pool, Provider provider, const shader::ParamStore& values);
 
     /// Sets the size of frames, and which graph they are drawn by. Where it throws, nothing has
     /// changed. @throws Error (Failed) as GraphTargets
     void arrange(bool outside, int width_px, int height_px);
+    /// Returns the memory of frames to the pool, with the last frame. Call arrange() before the
+    /// next one.
+    void release();
+    bool is_arranged() const { return is_arranged_; }
 
     const FrameGraph& graph() const { return graph_of(outside_); }
     const Plan& plan() const { return plan_; }
@@ -74,9 +78,10 @@ class FrameRunner {
     gl::Context& context_;
     const StitchedFrames& frames_;
     WatchedPrograms& programs_;
+    TexturePool& pool_;
     Provider provider_;
     const shader::ParamStore& values_;
-    bool outside_ = false, poisons_ = false;
+    bool outside_ = false, poisons_ = false, is_arranged_ = false;
     Plan plan_;
     GraphTargets targets_;
     std::map<std::string, Inputs> executed_;  // by pass: for what it was executed last

@@ -23,7 +23,8 @@ gl::Extent extent_of(const ResourceSize& size, int width_px, int height_px) {
 
 }  // namespace
 
-GraphTargets::GraphTargets(const FrameGraph& graph, const Plan& plan, int width_px, int height_px)
+GraphTargets::GraphTargets(const FrameGraph& graph, const Plan& plan, int width_px, int height_px,
+                           TexturePool& pool)
     : textures_(plan.memory.size()), buffers_(plan.memory.size()) {
     for (std::size_t m = 0; m < plan.memory.size(); ++m) {
         std::string label;
@@ -38,13 +39,13 @@ GraphTargets::GraphTargets(const FrameGraph& graph, const Plan& plan, int width_
             buffers_[m] = gl::Buffer(std::vector<std::byte>(first.size.bytes), label);
             continue;
         }
-        textures_[m] = gl::Texture(kind_of(first.kind), first.format,
-                                   extent_of(first.size, width_px, height_px), 1, label);
+        textures_[m] = pool.take(kind_of(first.kind), first.format,
+                                 extent_of(first.size, width_px, height_px), label);
         // A stencil is never sampled.
         if (first.format != gl::Format::Stencil8)
-            textures_[m].set_sampling(first.linear ? gl::Filter::Linear : gl::Filter::Nearest,
-                                      gl::Wrap::Clamp);
-        if (first.lifetime == Lifetime::Kept) textures_[m].fill(std::byte{0});
+            textures_[m]->set_sampling(first.linear ? gl::Filter::Linear : gl::Filter::Nearest,
+                                       gl::Wrap::Clamp);
+        if (first.lifetime == Lifetime::Kept) textures_[m]->fill(std::byte{0});
     }
     for (const Plan::Step& step : plan.steps)
         framebuffers_.push_back(
@@ -70,9 +71,7 @@ int GraphTargets::memory_of(std::string_view resource) const {
 
 gl::Texture* GraphTargets::texture(std::string_view resource) {
     const int memory = memory_of(resource);
-    if (memory < 0) return nullptr;
-    gl::Texture& found = textures_[static_cast<std::size_t>(memory)];
-    return found.name() != 0 ? &found : nullptr;
+    return memory < 0 ? nullptr : textures_[static_cast<std::size_t>(memory)].get();
 }
 
 const gl::Buffer* GraphTargets::buffer(std::string_view resource) const {

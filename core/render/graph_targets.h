@@ -8,6 +8,7 @@
 #include "gl/framebuffer.h"
 #include "gl/texture.h"
 #include "render/graph/plan.h"
+#include "render/texture_pool.h"
 
 namespace relevo::render {
 
@@ -16,7 +17,9 @@ class GraphTargets {
   public:
     GraphTargets() = default;
     /// @throws Error (Failed) if the device has no memory for it, or cannot draw to a combination
-    GraphTargets(const FrameGraph& graph, const Plan& plan, int width_px, int height_px);
+    /// @param pool  that textures come from; must outlive this
+    GraphTargets(const FrameGraph& graph, const Plan& plan, int width_px, int height_px,
+                 TexturePool& pool);
 
     /// A texture that the graph has allocated; null: there is none of that name.
     gl::Texture* texture(std::string_view resource);
@@ -38,7 +41,7 @@ class GraphTargets {
     gl::Framebuffer make_framebuffer(const Pass& pass);
 
     std::vector<Named> names_;
-    std::vector<gl::Texture> textures_;
+    std::vector<TexturePool::Lease> textures_;
     std::vector<gl::Buffer> buffers_;
     std::vector<gl::Framebuffer> framebuffers_;
 };

@@ -108,7 +108,8 @@ struct Renderer::Impl : FrameServices {
     gl::Context& context;
     RendererOptions options;
     double anisotropy;
-    std::optional<ProgramCache> own_cache;  // where none is given
+    std::optional<SharedResources> own;  // where none are given
+    SharedResources& shared;
     StitchedFrames frames;
     WatchedPrograms programs;
     EffectTextures effect_textures;
@@ -120,8 +121,9 @@ struct Renderer::Impl : FrameServices {
     GroundProbe probe;
     gl::Texture footprint;  // of the ground that was last seen from outside
     std::vector<NativeHost> natives;
-    bool native_is_made = false;  // by a frame before
-    bool outside;                 // of the DEM, and that makes a difference
+    bool native_is_made = false;     // by a frame before
+    bool native_is_current = false;  // by the last frame that this or another renderer drew
+    bool outside;                    // of the DEM, and that makes a difference
     FrameRunner runner;
 
     Impl(gl::Context& c, const EffectInputs& effects, const RendererOptions& o)
@@ -129,15 +131,16 @@ struct Renderer::Impl : FrameServices {
           options(o),
           // A software renderer pays for every tap of an anisotropic filter (four times the frame).
           anisotropy(c.info().device.software ? 1 : std::min(kAnisotropy, c.info().max_anisotropy)),
-          own_cache(o.programs ? std::nullopt : std::optional<ProgramCache>(std::in_place)),
+          own(o.shared ? std::nullopt : std::optional<SharedResources>(std::in_place)),
+          shared(o.shared ? *o.shared : *own),
           frames(stitch(effects, c.info(), o)),
-          programs(frames, o.programs ? *o.programs : *own_cache, effects.stitch.snippets),
-          effect_textures(effects.textures, anisotropy),
+          programs(frames, shared.programs, effects.stitch.snippets),
+          effect_textures(effects.textures, anisotropy, shared.textures),
           frame_block(sizeof(FrameBlock), "frame block"),
           displaces(effects.displaces),
           outside(o.outside && shows_block()),
           runner(
-              c, frames, programs,
+              c, frames, programs, shared.targets,
               [this](const shader::TextureUnit& unit, const Terrain& terrain) {
                   return find_texture(unit, terrain);
               },
@@ -170,7 +173,7 @@ struct Renderer::Impl : FrameServices {
 
     void move(bool is_outside) {
         const bool wanted = is_outside && shows_block();
-        if (outside == wanted) return;
+        if (outside == wanted && runner.is_arranged()) return;
         runner.arrange(wanted, options.width_px, options.height_px);
         outside = wanted;
     }
@@ -184,7 +187,7 @@ struct Renderer::Impl : FrameServices {
     void make_footprint(const Footprint& of) override { footprint = footprint_texture(of); }
 
     void prepare_native(const std::string& id, PassContext& frame) override {
-        if (frame.inputs.keep_native && native_is_made) return;
+        if (frame.inputs.keep_native && native_is_current) return;
         NativeHost& native = *std::ranges::find(natives, id, &NativeHost::id);
         const auto prepare = [&] {
             native.prepare(frame.terrain, frame.ground, frame.inputs, frame.block, frame.tiles);
@@ -286,7 +289,7 @@ struct Renderer::Impl : FrameServices {
                           .services = *this};
         const bool night = block.eye_sun.w < radians(kNight_deg);
         runner.run(frame, night, times);
-        native_is_made = true;
+        native_is_made = native_is_current = true;
         context.check_errors();
     }
 };
@@ -339,6 +342,11 @@ void Renderer::set_values(const shader::ParamStore& values) {
     }
     if (impl_->params_block.size() > 0)
         impl_->params_block.write(shader::pack(impl_->layout(), impl_->values));
+}
+
+void Renderer::release_targets() {
+    impl_->runner.release();
+    impl_->native_is_current = false;
 }
 
 void Renderer::resize(int width_px, int height_px) {

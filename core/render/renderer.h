@@ -14,8 +14,8 @@
 #include "render/effect_textures.h"
 #include "render/frame_block.h"
 #include "render/pass_timers.h"
-#include "render/program_cache.h"
 #include "render/readback.h"
+#include "render/shared_resources.h"
 #include "render/terrain.h"
 #include "shader/param_store.h"
 
@@ -35,8 +35,8 @@ struct RendererOptions {
     bool outside = false;
     /// Keep what the ground's program makes of the sun's light, for read_sun_seen().
     bool audited = false;
-    /// Linked programs of the context that renderers share; null: it has its own.
-    ProgramCache* programs = nullptr;
+    /// What renderers of the context share; null: it has its own.
+    SharedResources* shared = nullptr;
     /// Memory of the graph is filled with NaN where a resource begins: a test's.
     bool poison = false;
     /// Called with the programs' texts before a driver sees them, if there is one.
@@ -93,6 +93,9 @@ class Renderer {
     /// Frames have these sides from the next one on.
     /// @throws Error (BadInput) for a picture that the device cannot draw at once
     void resize(int width_px, int height_px);
+    /// Gives the memory of its frames to renderers that share it. The last frame is gone; the next
+    /// one takes memory again.
+    void release_targets();
     /// The last frame on the device, RGBA8, rows from below.
     const gl::Texture& picture() const;
 

@@ -26,10 +26,16 @@ InstalledEffects::InstalledEffects(const scene::Effects& effects)
           {effects.plugin_path.begin(), effects.plugin_path.end()})) {
     for (const std::string& preset : effects.presets)
         presets.push_back(effect::load_preset(preset));
+    values = defaults();
+}
+
+shader::ParamStore InstalledEffects::defaults() const {
     std::vector<shader::Param> params = registry.params();
     for (const shader::Param& param : render::core_params())
         params.push_back(param);
-    values.declare(params, registry.texts());
+    shader::ParamStore store;
+    store.declare(params, registry.texts());
+    return store;
 }
 
 void ActiveEffects::fit(const gl::DeviceInfo& device, bool aloud) {
@@ -103,24 +109,64 @@ render::EffectInputs ActiveEffects::inputs() const {
     return inputs;
 }
 
-void ActiveEffects::add_inputs(FilesInUse& files) const {
+void ActiveEffects::visit_files(
+    const std::function<void(const std::filesystem::path&, const std::string&)>& visit) const {
     for (const effect::Preset& preset : presets)
-        files.add_input(preset.file, "the preset");
+        visit(preset.file, "the preset");
     for (const effect::Effect& effect : registry.effects()) {
         const effect::Manifest& manifest = effect.manifest;
         const std::string what = fmt::format("a file of the plugin {},", effect.id());
-        files.add_input(manifest.file, what);
+        visit(manifest.file, what);
         for (const std::filesystem::path& glsl : manifest.glsl)
-            files.add_input(glsl, what);
+            visit(glsl, what);
         for (const effect::TextureSpec& texture : manifest.textures)
             for (const std::filesystem::path& file : texture.files)
-                files.add_input(file, what);
+                visit(file, what);
     }
     for (const shader::TextParam* text : values.texts())
         if (const std::string file = values.text(text->address); text->is_file && !file.empty())
-            files.add_input(file, fmt::format("the file {},", text->address));
+            visit(file, fmt::format("the file {},", text->address));
     for (const effect::NativeModule& module : loaded.modules)
-        files.add_input(module.library(), fmt::format("the module of the plugin {},", module.id()));
+        visit(module.library(), fmt::format("the module of the plugin {},", module.id()));
+}
+
+void ActiveEffects::add_inputs(FilesInUse& files) const {
+    visit_files([&](const std::filesystem::path& path, const std::string& what) {
+        files.add_input(path, what);
+    });
+}
+
+std::vector<std::filesystem::path> ActiveEffects::files_and_folders() const {
+    std::vector<std::filesystem::path> all(registry.search_paths());
+    visit_files(
+        [&](const std::filesystem::path& path, const std::string&) { all.push_back(path); });
+    for (const effect::Effect& effect : registry.effects())
+        all.push_back(effect.manifest.file.parent_path());
+    // Of a broken plugin it is not known which file is at fault.
+    for (const effect::BrokenEffect& broken : registry.broken()) {
+        all.push_back(broken.folder);
+        std::error_code ignored;
+        for (const auto& file : std::filesystem::directory_iterator(broken.folder, ignored))
+            all.push_back(file.path());
+    }
+    return all;
+}
+
+std::optional<shader::ParamStore> ActiveEffects::values_with(
+    const std::vector<effect::Setting>& settings, bool aloud) {
+    shader::ParamStore changed = defaults();
+    std::vector<std::string> said =
+        effect::apply_settings(changed, registry, loaded.selection, presets, settings);
+    for (const shader::Param* param : changed.params())
+        if (param->is_static && changed.value(param->address) != values.value(param->address))
+            return std::nullopt;
+    for (const shader::TextParam* text : changed.texts())
+        if (changed.text(text->address) != values.text(text->address)) return std::nullopt;
+    if (aloud)
+        for (const std::string& notice : said)
+            if (!contains(notices, notice)) log::info(notice);
+    notices = std::move(said);
+    return changed;
 }
 
 namespace {
@@ -161,7 +207,7 @@ std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, 
     active->switches = effects.switches;
     active->loaded = effect::select_and_load(active->registry, active->presets, active->switches,
                                              active->values, {}, {}, ground);
-    const std::vector<std::string> notices =
+    active->notices =
         effect::apply_settings(active->values, active->registry, active->loaded.selection,
                                active->presets, effects.settings);
     if (!aloud) return active;
@@ -170,7 +216,7 @@ std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, 
         if (!contains(disable, broken.id))
             log::warning(fmt::format("{}; --disable {} silences this", broken.error, broken.id));
     say(active->loaded.selection);
-    for (const std::string& notice : notices)
+    for (const std::string& notice : active->notices)
         log::info(notice);
     return active;
 }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,15 +25,24 @@ struct InstalledEffects {
     /// Reads the plugins and presets that a scene names; values are those of the plugins.
     /// @throws Error (BadInput) as effect::Registry and effect::load_preset
     explicit InstalledEffects(const scene::Effects& effects);
+
+    /// All parameters there are, with their defaults.
+    shader::ParamStore defaults() const;
 };
 
 /// Those that are on as well, with what they load, and the values that a scene gives.
 struct ActiveEffects : InstalledEffects {
     effect::Switches switches;
     effect::GroundWords ground;
-    effect::LoadedSelection loaded;  // points into registry
+    effect::LoadedSelection loaded;    // points into registry
+    std::vector<std::string> notices;  ///< of the settings
 
     using InstalledEffects::InstalledEffects;
+
+    /// Visits the files that it was read from.
+    /// @param visit  called with the path and what the file is: "the preset"
+    void visit_files(
+        const std::function<void(const std::filesystem::path&, const std::string&)>& visit) const;
 
     /// Loads the plugins and switches them.
     /// @param aloud  says with log what is not as asked
@@ -51,10 +63,18 @@ struct ActiveEffects : InstalledEffects {
     /// Switches off, with a warning, what brings larger textures than a device takes.
     /// @throws Error (BadInput) for what was asked for by name
     void fit(const gl::DeviceInfo& device, bool aloud = true);
+    /// The values of parameters with other settings, if those need neither another program nor
+    /// another module; else none.
+    /// @param aloud  logs notices that were not logged before
+    /// @throws Error (BadInput) as effect::apply_settings
+    std::optional<shader::ParamStore> values_with(const std::vector<effect::Setting>& settings,
+                                                  bool aloud);
     /// For a renderer; valid as long as this is.
     render::EffectInputs inputs() const;
     /// Adds presets, and the files of all plugins. @throws Error as FilesInUse::add_input
     void add_inputs(FilesInUse& files) const;
+    /// All files that it was read from, and the folders in which plugins were looked for.
+    std::vector<std::filesystem::path> files_and_folders() const;
 };
 
 /// The same with these effects on, whatever was asked of them.

@@ -7,25 +7,20 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "base/error.h"
 #include "base/log.h"
 #include "base/parallel_for.h"
 #include "dem/files_of.h"
-#include "geo/format.h"
-#include "render/ground.h"
-#include "scene/moment.h"
 #include "session/active_effects.h"
 #include "session/climate_words.h"
 #include "session/colour_legends.h"
+#include "session/drawn_effects.h"
 #include "session/not_numbers.h"
 #include "session/overlay.h"
+#include "session/scene_state.h"
 #include "session/stamps.h"
 #include "session/standing.h"
 #include "session/words.h"
-#include "sun/celestial.h"
-#include "sun/position.h"
 #include "sun/zone_of_place.h"
 
 namespace relevo::session {
@@ -35,13 +30,6 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point began) {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
-}
-
-/// Where the climate is told of: the DEM's middle, at the middle of its heights above the sea.
-geo::Geodetic middle_of(const render::Ground& ground) {
-    geo::Geodetic middle = ground.frame.origin();
-    middle.height_m = middle_height_m(ground.lowest_m, ground.highest_m);
-    return middle;
 }
 
 std::shared_ptr<const LoadedDem> load(const scene::Scene& scene, bool may_stand_in) {
@@ -68,24 +56,17 @@ Picture side_by_side(const Picture& left, const Picture& right, Value line) {
 
 }  // namespace
 
-/// What draws a scene: some effects, and of a comparison the rest of them.
-struct Session::DrawnEffects {
-    std::unique_ptr<ActiveEffects> effects, others;
-    std::unique_ptr<render::Renderer> renderer, without;  // refer to these
-};
-
 struct Session::Impl {
-    scene::Scene scene;
     Options options;
+    SceneState state;
     StageTimes stages;
 
     // In the order in which each needs those above.
     std::optional<gl::Context> context;
-    render::ProgramCache programs;
-    std::shared_ptr<const LoadedDem> loaded;
+    render::SharedResources shared;
     render::SkyAhead sky_ahead;  // of the first ground
-    DrawnEffects drawn;
-    std::optional<render::Ground> ground;
+    RecentEffects recent;
+    std::optional<DrawnEffects> drawn;
     std::optional<render::Terrain> terrain;
 
     std::shared_ptr<const render::Drape> drape;
@@ -93,30 +74,9 @@ struct Session::Impl {
     std::optional<OverlayTime> overlay_time;
     std::vector<std::string> stamp_notes;
 
-    scene::Effects as_given;  ///< the scene's, as they were given
-    sun::Instant utc;
-    sun::Position position;
-    sun::Refraction air = sun::Refraction::none();
-    struct AirAsked {
-        std::string model;
-        geo::Geodetic place;
-        bool operator==(const AirAsked&) const = default;
-    };
-    std::optional<AirAsked> air_asked;  // what `air` was integrated for
-    render::GroundToShow to_show;
-    struct MovedPoints {
-        render::Displacement by;
-        std::vector<glm::dvec3> points;
-    };
-    std::optional<MovedPoints> moved;  // of `to_show`
-    std::optional<scene::DefaultDay> day;
-    std::optional<scene::Framing> framing;  // of the last view that left an angle open
-    std::string moment_reason;
-    render::FrameInputs inputs;
-    std::optional<double> keep_above_m;  ///< as look() has it
-
     Impl(scene::Scene given, Options o, FilesInUse& files)
-        : scene(std::move(given)), options(std::move(o)) {
+        : options(std::move(o)), state(std::move(given)) {
+        const scene::Scene& scene = state.scene;
         if (scene.overlay) {
             add_files(*scene.overlay, files);
             overlay_time = time_of(*scene.overlay);
@@ -128,408 +88,241 @@ struct Session::Impl {
         auto loading = std::async(std::launch::async | std::launch::deferred,
                                   [this] { return options.dem ? options.dem : load_own(); });
         open_device(files);
-        loaded = loading.get();
+        const std::shared_ptr<const LoadedDem> loaded = loading.get();
         dem::add_all(scene.dems, files);
         // Which effects are on may depend on the ground.
-        take_ground(drawn);
+        drawn->take_ground(loaded->ground_words(scene.holes));
         const auto began = Clock::now();
-        compile(drawn);
+        compile(*drawn, loaded.get());
         stages.emplace_back("compile", milliseconds_since(began));
         stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
         if (timed && !time) time = parse_over(scene.moment, *loaded->source, loaded->field);
-        upload();
-        check_eye_height(scene.view, loaded->field.about.path);
+        upload(loaded);
         look(scene.view);
         warn_of_eye();
-        set_moment(time ? time->utc : default_moment());
+        state.set_time(time ? time->utc : state.default_time());
     }
 
     /// Events over the ground are looked for in all of it.
     std::shared_ptr<const LoadedDem> load_own() const {
-        const bool timed = !scene.moment.time.empty();
-        return load(scene, options.may_stand_in && !(timed && needs_dem(scene.moment)));
-    }
-
-    /// Of the camera as it is.
-    sun::Instant default_moment() {
-        const scene::DefaultMoment moment = day->moment(scene::side_of_deg(inputs.camera));
-        moment_reason = moment.reason();
-        return moment.utc;
-    }
-
-    DrawnEffects load_effects(const scene::Effects& asked) const {
-        DrawnEffects result;
-        const bool compared = !options.compared.empty();
-        result.effects = ActiveEffects::of(compared ? with(asked, options.compared) : asked,
-                                           /*aloud=*/true, ground_words());
-        // They are those of the scene's sun, and the overlay is of another's.
-        if (overlay_time)
-            for (const std::string& id : result.effects->switch_off_unasked("shadow"))
-                if (!drawn.effects)
-                    log::info(fmt::format(
-                        "{} is off, because the overlay shows the sun's light of its own time; "
-                        "--enable {} draws them too",
-                        id, id));
-        if (compared)
-            result.others =
-                ActiveEffects::of(session::without(asked, options.compared, *result.effects),
-                                  /*aloud=*/false, ground_words());
-        return result;
-    }
-
-    effect::GroundWords ground_words() const {
-        if (!loaded) return std::nullopt;
-        return loaded->ground_words(scene.holes);
-    }
-
-    void take_ground(DrawnEffects& drawing) const {
-        drawing.effects->take_ground(ground_words(), scene.effects);
-        if (drawing.others) drawing.others->take_ground(ground_words(), scene.effects, false);
+        const bool timed = !state.scene.moment.time.empty();
+        return load(state.scene, options.may_stand_in && !(timed && needs_dem(state.scene.moment)));
     }
 
     void open_device(FilesInUse& files) {
         const auto began = Clock::now();
-        drawn = load_effects(scene.effects);
-        drawn.effects->add_inputs(files);
-        take_effects(scene.effects);
+        drawn = DrawnEffects::load(request(state.scene.effects), /*aloud=*/true);
+        drawn->effects().add_inputs(files);
+        take_effects();
         context.emplace(options.context
                             ? options.context()
                             : gl::Context(gl::ContextOptions{.device = options.device}));
-        fit(drawn);
+        drawn->fit(context->info());
         stages.emplace_back("device", milliseconds_since(began));
     }
 
-    /// Says in the scene which effects there are.
-    void take_effects(const scene::Effects& given) {
-        as_given = given;
-        scene.effects = given;
-        scene.effects.settings =
-            effect::with_absolute_files(std::move(scene.effects.settings), drawn.effects->values);
+    EffectsRequest request(const scene::Effects& effects) const {
+        EffectsRequest request{.effects = effects, .compared = options.compared};
+        if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
+        request.draped = is_draped();
+        request.overlay_has_time = overlay_time.has_value();
+        return request;
     }
 
-    void fit(DrawnEffects& drawing) const {
-        drawing.effects->fit(context->info());
-        if (drawing.others) drawing.others->fit(context->info(), /*aloud=*/false);
+    bool is_draped() const { return drape || (state.scene.overlay && !terrain); }
+
+    /// Says in the scene which effects are drawn.
+    void take_effects() {
+        state.scene.effects = drawn->request().effects;
+        state.scene.effects.settings = effect::with_absolute_files(
+            std::move(state.scene.effects.settings), drawn->effects().values);
     }
 
     render::RendererOptions renderer_options() {
-        return {.width_px = scene.width_px,
-                .height_px = scene.height_px,
+        return {.width_px = state.scene.width_px,
+                .height_px = state.scene.height_px,
                 .radiance = options.radiance,
-                .draped = drape || (scene.overlay && !terrain),
-                .outside = !scene.view.eye,
+                .draped = is_draped(),
+                .outside = !state.scene.view.eye,
                 .audited = options.audited,
-                .programs = &programs};
+                .shared = &shared};
     }
 
-    void compile(DrawnEffects& drawing) {
-        render::RendererOptions with_texts = renderer_options();
-        with_texts.stitched = [this](const render::StitchedFrames& frames) {
-            if (options.stitched) options.stitched(frames);
-            look_ahead(frames.programs);
-        };
-        drawing.renderer =
-            std::make_unique<render::Renderer>(*context, drawing.effects->inputs(), with_texts);
-        if (drawing.others)
-            drawing.without = std::make_unique<render::Renderer>(*context, drawing.others->inputs(),
-                                                                 renderer_options());
+    /// @param first_dem  that no terrain has been made of yet; else null
+    void compile(DrawnEffects& effects, const LoadedDem* first_dem = nullptr) {
+        effects.compile(*context, [&] {
+            render::RendererOptions with_texts = renderer_options();
+            with_texts.stitched = [this, first_dem](const render::StitchedFrames& frames) {
+                if (options.stitched) options.stitched(frames);
+                if (first_dem) look_ahead(*first_dem, frames.programs);
+            };
+            return with_texts;
+        });
     }
 
     /// While the driver compiles the first programs, other processors find what these will read.
-    void look_ahead(const std::vector<render::ProgramText>& texts) {
-        if (terrain || sky_ahead.valid()) return;
+    void look_ahead(const LoadedDem& dem, const std::vector<render::ProgramText>& texts) {
         const auto reads_sky = [](const render::ProgramText& text) {
             return std::ranges::any_of(text.stitched.textures, [](const auto& unit) {
                 return unit.resource == "light_sky";
             });
         };
-        if (thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
-            sky_ahead = render::find_sky_ahead(loaded->to_draw(), scene.exaggeration);
+        if (!sky_ahead.valid() && thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
+            sky_ahead = render::find_sky_ahead(dem.to_draw(), state.scene.exaggeration);
     }
 
     void set_effects(const scene::Effects& asked) {
         context->make_current();
-        DrawnEffects fresh = load_effects(asked);
-        fit(fresh);
+        switch_to(request(asked));
+        take_effects();
+        look(state.scene.view);  // what effects displace may be in sight
+    }
+
+    /// Draws a request from now on: with the effects that are drawn, with some that were, or with
+    /// some that are read now.
+    void switch_to(const EffectsRequest& wanted) {
+        if (drawn->take(wanted)) return;
+        if (std::optional<DrawnEffects> known = recent.take(wanted)) {
+            recent.keep(std::move(*drawn));
+            drawn = std::move(known);
+            drawn->resize(state.scene.width_px, state.scene.height_px);
+            return;
+        }
+        DrawnEffects fresh = DrawnEffects::load(wanted, /*aloud=*/false);
+        fresh.fit(context->info());
         compile(fresh);
         // A driver may refuse a program at its first draw.
-        fresh.renderer->render_frame(*terrain, *ground, inputs);
-        if (fresh.without) fresh.without->render_frame(*terrain, *ground, inputs);
-        std::swap(drawn, fresh);
-        take_effects(asked);
-        look(scene.view);  // what effects displace may be in sight
-    }
-
-    /// The values in which two scenes with the same effects differ, where they may be set as they
-    /// are; nothing where the difference is more than that.
-    std::optional<std::vector<effect::Setting>> changed_values(const scene::Effects& next) const {
-        const auto same_switches = [](const effect::Switches& a, const effect::Switches& b) {
-            return a.only == b.only && a.enable == b.enable && a.disable == b.disable;
-        };
-        if (!same_switches(as_given.switches, next.switches) || as_given.presets != next.presets ||
-            as_given.plugin_path != next.plugin_path ||
-            as_given.settings.size() != next.settings.size())
-            return std::nullopt;
-        std::vector<effect::Setting> changed;
-        for (std::size_t i = 0; i < next.settings.size(); ++i) {
-            const effect::Setting &before = as_given.settings[i], &after = next.settings[i];
-            if (before.address != after.address) return std::nullopt;
-            if (before.text == after.text && before.folder == after.folder) continue;
-            const shader::Param* const param = drawn.effects->values.find(after.address);
-            if (!param || param->is_static || param->is_host) return std::nullopt;
-            changed.push_back(after);
-        }
-        return changed;
-    }
-
-    void set_value(const std::string& address, const std::string& value) {
-        for (const auto& [active, renderer] :
-             {std::pair(drawn.effects.get(), drawn.renderer.get()),
-              std::pair(drawn.others.get(), drawn.without.get())}) {
-            if (!active) continue;
-            const shader::Param* const param = active->values.find(address);
-            if (param && param->is_static)
-                bad_input(fmt::format(
-                    "session: {}: a static parameter: another value needs another shader",
-                    address));
-            active->values.set(address, value);
-            renderer->set_values(active->values);
-        }
-        for (scene::Effects* effects : {&as_given, &scene.effects}) {
-            scene::Effects change;
-            change.settings = {{address, value}};
-            *effects = scene::merge(std::move(*effects), change);
-        }
+        if (fresh.is_watched()) fresh.render(*terrain, state.ground(), state.inputs);
+        recent.keep(std::exchange(*drawn, std::move(fresh)));
+        shared.targets.trim();  // each has had its own
     }
 
     void resize(int width_px, int height_px) {
-        scene.width_px = width_px;
-        scene.height_px = height_px;
-        drawn.renderer->resize(width_px, height_px);
-        if (drawn.without) drawn.without->resize(width_px, height_px);
+        state.scene.width_px = width_px;
+        state.scene.height_px = height_px;
+        drawn->resize(width_px, height_px);
     }
 
-    void show(const scene::Scene& next, sun::Instant instant) {
+    void show(const scene::Scene& next, sun::Instant utc) {
         context->make_current();
-        inputs.afresh = true;
-        if (const auto values = changed_values(next.effects)) {
-            for (const effect::Setting& value : *values)
-                set_value(value.address, value.text);
-            take_effects(next.effects);  // in the order that they were given in
-        } else {
-            set_effects(next.effects);
+        state.inputs.afresh = true;
+        if (const EffectsRequest wanted = request(next.effects); wanted != drawn->request()) {
+            switch_to(wanted);
+            take_effects();
         }
         resize(next.width_px, next.height_px);
+        scene::Scene& scene = state.scene;
         scene.exposure_ev = next.exposure_ev;
         scene.refraction = next.refraction;
         const bool other_shape = next.exaggeration != scene.exaggeration;
         scene.exaggeration = next.exaggeration;
         if (next.pixel_error != scene.pixel_error) {
             scene.pixel_error = next.pixel_error;
-            upload();
+            upload(state.dem());
         } else {
-            take_shape(other_shape);
+            state.take_shape(other_shape);
         }
         scene.stamps = next.stamps;
         scene.moment = next.moment;
-        set_moment(instant);
-        check_eye_height(next.view, loaded->field.about.path);
+        state.set_time(utc);
         look(next.view);
         warn_of_eye();
     }
 
-    void upload() {
+    void upload(const std::shared_ptr<const LoadedDem>& dem) {
         const auto began = Clock::now();
-        ground = ground_of(*loaded);
+        terrain.reset();  // refers to the DEM before
+        state.take_dem(dem);
         terrain.emplace(
-            loaded->to_draw(), ground->frame,
+            dem->to_draw(), state.ground().frame,
             render::TerrainOptions{
-                .pixel_error = scene.pixel_error,
+                .pixel_error = state.scene.pixel_error,
                 .max_array_layers = context->info().max_array_layers,
-                .pyramid = loaded->pyramid ? &*loaded->pyramid : nullptr,
-                .water = &loaded->drawn.water,
-                .filled = loaded->drawn.is_filled.empty() ? nullptr : &loaded->drawn.is_filled,
+                .pyramid = dem->pyramid ? &*dem->pyramid : nullptr,
+                .water = &dem->drawn.water,
+                .filled = dem->drawn.is_filled.empty() ? nullptr : &dem->drawn.is_filled,
                 .sky = std::exchange(sky_ahead, {})},
-            loaded->source.get());
-        if (scene.overlay) {
-            overlay = read_overlay(*scene.overlay, terrain->grid());
+            dem->source.get());
+        if (state.scene.overlay) {
+            overlay = read_overlay(*state.scene.overlay, terrain->grid());
             drape = overlay->drape;
-            terrain->drape(drape);
         }
+        terrain->drape(drape);
         stages.emplace_back("upload", milliseconds_since(began));
-        take_shape(/*other=*/true);
+        state.take_shape(/*other=*/true);
     }
 
-    void take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given) {
+    void take(const std::shared_ptr<const LoadedDem>& dem, const scene::Scene& given) {
         context->make_current();
-        const bool others = loaded->ground_words(scene.holes) != dem->ground_words(scene.holes);
-        terrain.reset();  // refers to the one before
-        loaded = std::move(dem);
-        upload();
-        if (!scene.overlay) terrain->drape(drape);
+        upload(dem);
         look(given.view);
-        set_moment(given.moment.time.empty() ? default_moment() : utc);
-        if (others) set_effects(scene::Effects(as_given));
-    }
-
-    /// @param other  the ground is exaggerated otherwise than before
-    void take_shape(bool other) {
-        inputs.exaggeration = scene.exaggeration;
-        inputs.exposure_ev = scene.exposure_ev;
-        if (other) {
-            to_show = render::ground_to_show(loaded->field, *ground, scene.exaggeration);
-            moved.reset();
-        }
-        day.emplace(ground->frame.origin(), ground->block_m <= 0);
+        state.set_time(given.moment.time.empty() ? state.default_time() : state.utc());
+        const scene::Effects effects = drawn->request().effects;
+        if (request(effects).ground != drawn->request().ground) set_effects(effects);
     }
 
     void lay(std::shared_ptr<const render::Drape> wanted) {
-        const bool other_program = bool(drape) != bool(wanted);
+        context->make_current();
         std::swap(drape, wanted);
-        context->make_current();
-        if (other_program) {
-            try {
-                compile(drawn);
-            } catch (...) {
-                std::swap(drape, wanted);
-                throw;
-            }
-        }
         terrain->drape(drape);
-    }
-
-    void set_moment(sun::Instant instant) {
-        utc = instant;
-        const geo::Geodetic place = ground->frame.origin();
-        position = sun::position(utc, place);
-        const AirAsked asked{scene.refraction,
-                             {place.lat_rad, place.lon_rad, ground->air_height_m()}};
-        if (air_asked != asked) air = refraction_at(asked.model, asked.place);
-        air_asked = asked;
-        inputs.sun = render::make_sun_light(position, air, *ground, loaded->field.grid);
-        if (air.bends())
-            inputs.sun.air = [model = scene.refraction](const geo::Geodetic& at) {
-                return refraction_at(model, at);
-            };
-        inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
-        inputs.unix_s = static_cast<double>(utc.unix_us()) * 1e-6;
-    }
-
-    /// An orbit's open angles are filled in, so that the scene says which they are.
-    void look(scene::View view) {
-        if (!view.eye && (!view.orbit.azimuth_deg || !view.orbit.elevation_deg)) {
-            framing = scene::frame_ground(view.orbit, to_show.net, *day);
-            view.orbit = framing->orbit;
+        try {
+            const EffectsRequest with_drape = request(drawn->request().effects);
+            if (with_drape != drawn->request()) switch_to(with_drape);
+        } catch (...) {
+            std::swap(drape, wanted);
+            terrain->drape(drape);
+            throw;
         }
-        inputs.camera = standing(view, drawn_ground(), keep_above_m);
-        scene.view = view;
     }
 
-    DrawnGround drawn_ground() {
-        const auto camera_of = [this](const scene::View& view) {
-            return scene::make_camera(
-                view, heights_to_aim_at(), ground->frame, view.eye ? scene::Outline() : outline(),
-                static_cast<double>(scene.width_px) / scene.height_px, scene.exaggeration);
-        };
-        return {ground->frame, scene.exaggeration,
-                [this](const scene::Camera& camera) { return drawn_height_m(camera); }, camera_of};
+    void look(const scene::View& view) {
+        check_eye_height(view, state.dem()->field.about.path);
+        state.look(view, shape());
     }
 
-    /// Height of the ground as it is drawn below a camera's eye, exaggerated; none where the eye is
-    /// above all ground.
+    DrawnShape shape() {
+        return {drawn->renderer().displacement(), drawn->renderer().shows_block(),
+                [this](const scene::Camera& camera) { return drawn_height_m(camera); }};
+    }
+
     std::optional<double> drawn_height_m(const scene::Camera& camera) {
+        const render::Ground& ground = state.ground();
         const auto [lowest_m, highest_m] =
-            drawn.renderer->displacement().range_m(ground->lowest_m, ground->highest_m);
-        const double eye_m = ground->frame.to_geodetic(camera.eye_m).height_m;
-        if (eye_m > highest_m * scene.exaggeration + scene::kClearance_m) return std::nullopt;
+            drawn->renderer().displacement().range_m(ground.lowest_m, ground.highest_m);
+        const double eye_m = ground.frame.to_geodetic(camera.eye_m).height_m;
+        if (eye_m > highest_m * state.scene.exaggeration + scene::kClearance_m) return std::nullopt;
         context->make_current();
-        render::FrameInputs frame = inputs;
+        render::FrameInputs frame = state.inputs;
         frame.camera = camera;
-        return drawn.renderer->drawn_height_m(*terrain, *ground, frame);
+        return drawn->renderer().drawn_height_m(*terrain, ground, frame);
     }
 
     /// Of a scene that is given; where a user moves the eye, they see where it is.
-    void warn_of_eye() {
-        const auto drawn_m = [this](const geo::Geodetic&) {
-            const std::optional<double> height_m = drawn_height_m(inputs.camera);
-            return height_m ? *height_m / scene.exaggeration : std::nan("");
-        };
-        scene::warn_of_eye_below_ground(scene.view, drawn_m, ground->frame, scene.exaggeration);
-    }
-
-    scene::GroundHeight heights_to_aim_at() const {
-        return session::heights_to_aim_at(loaded, drawn.renderer->displacement());
-    }
-
-    scene::Outline outline() {
-        scene::Outline outline{to_show.points, moved_points()};
-        if (drawn.renderer->shows_block()) {
-            const auto base = render::block_below(to_show.rim, *ground, scene.exaggeration);
-            outline.points.insert(outline.points.end(), base.begin(), base.end());
-        }
-        return outline;
-    }
-
-    /// The ground's points where effects move them to: the same for every camera.
-    const std::vector<glm::dvec3>& moved_points() {
-        const render::Displacement displacement = drawn.renderer->displacement();
-        if (!moved || moved->by != displacement)
-            moved = {displacement, render::points_moved_to(to_show.points, *ground,
-                                                           scene.exaggeration, displacement)};
-        return moved->points;
-    }
-
-    /// The eye where the sun that is told of is seen from, as `relevo sun position` has it; none
-    /// where it is the DEM's middle, also of eyes so high that no sun is told of there.
-    std::optional<geo::Geodetic> eye() const {
-        if (!scene.view.eye) return std::nullopt;
-        return session::told_eye(ground->frame, inputs.camera, scene.exaggeration);
-    }
-
-    /// What effects show that the DEM does not have, of ground as near as that below the eye.
-    std::vector<std::string> inventions() const {
-        std::vector<std::string> told;
-        const std::optional<geo::Geodetic> from = eye();
-        if (!from) return told;
-        const double ground_m = loaded->height_m(*from);
-        if (std::isnan(ground_m)) return told;
-        const glm::dvec2 spacing_m = terrain->grid().post_spacing_m();
-        const double pixel_rad = 2 * std::tan(inputs.camera.fov_y_rad / 2) / scene.height_px;
-        const double pixel_posts = (from->height_m - ground_m) * scene.exaggeration * pixel_rad /
-                                   std::sqrt(spacing_m.x * spacing_m.y);
-        for (const effect::Effect* const effect : drawn.effects->loaded.selection.effects) {
-            const auto& invents = effect->manifest.invents;
-            if (!invents || pixel_posts >= invents->pixel_posts) continue;
-            if (drawn.effects->values.value(invents->address)[0] > 0)
-                told.push_back(fmt::format("{}: {}; --set {}=0 removes it", effect->manifest.id,
-                                           invents->what, invents->address));
-        }
-        return told;
-    }
+    void warn_of_eye() { state.warn_of_eye(shape()); }
 
     void draw(render::Loading loading, render::PassTimes* times = nullptr) {
         context->make_current();
-        render::FrameInputs frame = inputs;
+        render::FrameInputs frame = state.inputs;
         frame.loading = loading;
-        drawn.renderer->render_frame(*terrain, *ground, frame, times);
-        if (drawn.without) drawn.without->render_frame(*terrain, *ground, frame);
+        drawn->render(*terrain, state.ground(), frame, times);
     }
 
     /// @throws Error where the last frame has light that is no number
     void check_numbers(int count, const ActiveEffects& shown) {
         if (count > 0)
-            refuse_not_numbers({scene.effects, shown, *context, renderer_options(), *terrain,
-                                *ground, inputs, count});
+            refuse_not_numbers({state.scene.effects, shown, *context, renderer_options(), *terrain,
+                                state.ground(), state.inputs, count});
     }
 
     template <typename Read, typename Value>
     auto read(const Read& read_of, Value line) {
+        context->make_current();
         int not_numbers = 0, others_not_numbers = 0;
-        auto picture = read_of(*drawn.renderer, &not_numbers);
-        if (drawn.without)
-            picture = side_by_side(picture, read_of(*drawn.without, &others_not_numbers), line);
-        check_numbers(not_numbers, *drawn.effects);
-        if (drawn.without) check_numbers(others_not_numbers, *drawn.others);
+        auto picture = read_of(drawn->renderer(), &not_numbers);
+        if (const render::Renderer* const without = drawn->without())
+            picture = side_by_side(picture, read_of(*without, &others_not_numbers), line);
+        check_numbers(not_numbers, drawn->effects());
+        if (drawn->without()) check_numbers(others_not_numbers, drawn->others());
         return picture;
     }
 };
@@ -547,30 +340,30 @@ Session::~Session() {
 }
 
 const scene::Scene& Session::scene() const {
-    return impl_->scene;
+    return impl_->state.scene;
 }
 
 void Session::look(const scene::View& view, std::optional<double> keep_above_m) {
-    impl_->keep_above_m = keep_above_m;
+    impl_->state.keep_above_m = keep_above_m;
     impl_->look(view);
 }
 
 scene::GroundHeight Session::heights_to_aim_at() const {
-    return impl_->heights_to_aim_at();
+    return session::heights_to_aim_at(impl_->state.dem(), impl_->drawn->renderer().displacement());
 }
 
 void Session::set_moment(sun::Instant utc) {
-    impl_->set_moment(utc);
-    impl_->scene.moment.time = sun::exact_iso(utc);
-    impl_->scene.moment.date.clear();
+    impl_->state.set_time(utc);
+    impl_->state.scene.moment.time = sun::exact_iso(utc);
+    impl_->state.scene.moment.date.clear();
 }
 
 void Session::take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given) {
-    impl_->take(std::move(dem), given);
+    impl_->take(dem, given);
 }
 
 sun::Instant Session::moment() const {
-    return impl_->utc;
+    return impl_->state.utc();
 }
 
 void Session::set_effects(const scene::Effects& effects) {
@@ -578,14 +371,18 @@ void Session::set_effects(const scene::Effects& effects) {
 }
 
 const ActiveEffects& Session::effects() const {
-    return *impl_->drawn.effects;
+    return impl_->drawn->effects();
 }
 
 void Session::set(const std::string& address, const std::string& value) {
     impl_->context->make_current();
-    const render::Displacement before = impl_->drawn.renderer->displacement();
-    impl_->set_value(address, value);
-    if (impl_->drawn.renderer->displacement() != before) impl_->look(impl_->scene.view);
+    const render::Displacement before = impl_->drawn->renderer().displacement();
+    impl_->drawn->set(address, value);
+    scene::Effects change;
+    change.settings = {{address, value}};
+    scene::Effects& effects = impl_->state.scene.effects;
+    effects = scene::merge(std::move(effects), change);
+    if (impl_->drawn->renderer().displacement() != before) impl_->look(impl_->state.scene.view);
 }
 
 void Session::show(const scene::Scene& scene, sun::Instant utc) {
@@ -593,10 +390,11 @@ void Session::show(const scene::Scene& scene, sun::Instant utc) {
 }
 
 void Session::resize(int width_px, int height_px) {
-    if (width_px == impl_->scene.width_px && height_px == impl_->scene.height_px) return;
+    const scene::Scene& now = impl_->state.scene;
+    if (width_px == now.width_px && height_px == now.height_px) return;
     impl_->context->make_current();
     impl_->resize(width_px, height_px);
-    impl_->look(impl_->scene.view);
+    impl_->look(now.view);
 }
 
 void Session::draw(render::PassTimes* times) {
@@ -608,15 +406,16 @@ void Session::drape(std::shared_ptr<const render::Drape> drape) {
 }
 
 std::vector<chart::Legend> Session::colour_legends() const {
-    return session::colour_legends(effects(), {impl_->ground->lowest_m, impl_->ground->highest_m,
-                                               impl_->loaded->drawn.water.has_sea_floor});
+    const render::Ground& of = ground();
+    return session::colour_legends(
+        effects(), {of.lowest_m, of.highest_m, impl_->state.dem()->drawn.water.has_sea_floor});
 }
 
 std::vector<chart::Legend> Session::legends() const {
     std::vector<chart::Legend> all = colour_legends();
     if (impl_->overlay)
-        all.insert(all.begin(), dated_legend(*impl_->overlay, impl_->scene.moment.zone,
-                                             impl_->ground->frame.origin()));
+        all.insert(all.begin(),
+                   dated_legend(*impl_->overlay, scene().moment.zone, ground().frame.origin()));
     return all;
 }
 
@@ -633,7 +432,7 @@ const std::vector<std::string>& Session::stamp_notes() const {
 }
 
 void Session::keep_native(bool keep) {
-    impl_->inputs.keep_native = keep;
+    impl_->state.inputs.keep_native = keep;
 }
 
 bool Session::draw_what_is_there() {
@@ -647,12 +446,11 @@ bool Session::is_loading() const {
 
 void Session::draw_alone() {
     impl_->context->make_current();
-    impl_->drawn.renderer->render_frame(*impl_->terrain, *impl_->ground, impl_->inputs);
+    impl_->drawn->renderer().render_frame(*impl_->terrain, ground(), impl_->state.inputs);
     impl_->context->finish();
 }
 
 image::Image8 Session::picture() const {
-    impl_->context->make_current();
     image::Image8 picture = impl_->read(
         [](const render::Renderer& renderer, int* count) { return renderer.read_picture(count); },
         std::uint8_t{255});
@@ -661,14 +459,13 @@ image::Image8 Session::picture() const {
 }
 
 image::ImageF Session::radiance() const {
-    impl_->context->make_current();
     return impl_->read(
         [](const render::Renderer& renderer, int* count) { return renderer.read_radiance(count); },
         0.0f);
 }
 
 const gl::Texture& Session::texture() const {
-    return impl_->drawn.renderer->picture();
+    return impl_->drawn->renderer().picture();
 }
 
 bool Session::shows_ground() const {
@@ -679,80 +476,76 @@ bool Session::shows_ground() const {
 
 void Session::read_depths(std::vector<float>& depths_m) const {
     impl_->context->make_current();
-    impl_->drawn.renderer->read_depths(depths_m);
+    impl_->drawn->renderer().read_depths(depths_m);
 }
 
 std::vector<render::SunSeen> Session::read_sun_seen() const {
     impl_->context->make_current();
-    return impl_->drawn.renderer->read_sun_seen();
+    return impl_->drawn->renderer().read_sun_seen();
 }
 
 const render::SunLight& Session::sun_light() const {
-    return impl_->inputs.sun;
+    return impl_->state.inputs.sun;
 }
 
 const scene::Camera& Session::camera() const {
-    return impl_->inputs.camera;
+    return impl_->state.inputs.camera;
 }
 
 scene::Outline Session::outline() const {
-    return impl_->outline();
+    return impl_->state.outline(impl_->shape());
 }
 
 const std::shared_ptr<const LoadedDem>& Session::dem() const {
-    return impl_->loaded;
+    return impl_->state.dem();
 }
 
 const render::Ground& Session::ground() const {
-    return *impl_->ground;
+    return impl_->state.ground();
 }
 
 std::vector<std::string> Session::ground_notes() const {
     std::vector<std::string> notes;
-    const LoadedDem::Drawn& drawn = impl_->loaded->drawn;
+    const LoadedDem::Drawn& drawn = impl_->state.dem()->drawn;
     if (!drawn.holes_text.empty()) notes.push_back(drawn.holes_text);
     for (const std::string& assumption : drawn.water.assumptions)
         notes.push_back(assumption);
-    for (std::string& invention : impl_->inventions())
-        notes.push_back(std::move(invention));
+    for (std::string& detail :
+         impl_->state.synthetic_detail(effects(), impl_->terrain->grid().post_spacing_m()))
+        notes.push_back(std::move(detail));
     return notes;
 }
 
 std::string Session::place_text() const {
-    const std::optional<geo::Geodetic> eye = impl_->eye();
-    return eye ? geo::degrees_text(*eye) + " (the eye)"
-               : geo::degrees_text(impl_->ground->frame.origin());
+    return impl_->state.place_text();
 }
 
 std::string Session::clock_text() const {
-    return session::clock_text(impl_->utc, impl_->scene.moment.zone, impl_->ground->frame.origin());
+    return session::clock_text(moment(), scene().moment.zone, ground().frame.origin());
 }
 
 std::string Session::sun_text() const {
-    const std::optional<geo::Geodetic> eye = impl_->eye();
-    if (!eye) return session::sun_text(impl_->position, impl_->air);
-    return session::sun_text(sun::position(impl_->utc, *eye),
-                             refraction_at(impl_->scene.refraction, *eye));
+    return impl_->state.sun_text();
 }
 
 std::string Session::view_reason() const {
-    return impl_->framing ? impl_->framing->reason() : std::string();
+    return impl_->state.view_reason();
 }
 
 const std::string& Session::moment_reason() const {
-    return impl_->moment_reason;
+    return impl_->state.time_reason();
 }
 
 std::string Session::climate_text() const {
-    if (!impl_->drawn.renderer->reads_climate()) return {};
+    if (!impl_->drawn->renderer().reads_climate()) return {};
     impl_->context->make_current();
     const ClimateReport report =
-        climate_report(impl_->terrain->climate_map(), middle_of(*impl_->ground), impl_->utc);
+        climate_report(impl_->terrain->climate_map(), impl_->state.middle(), moment());
     return session::climate_text(report) + "; " + ground_text(report);
 }
 
 int Session::linked_programs() const {
-    return impl_->programs.links();
+    return impl_->shared.programs.links();
 }
 
 const StageTimes& Session::stages() const {
@@ -760,7 +553,7 @@ const StageTimes& Session::stages() const {
 }
 
 int Session::triangles() const {
-    return impl_->drawn.renderer->triangles();
+    return impl_->drawn->renderer().triangles();
 }
 
 const gl::DeviceInfo& Session::device() const {

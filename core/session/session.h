@@ -215,7 +215,6 @@ class Session {
     const gl::DeviceInfo& device() const;
 
   private:
-    struct DrawnEffects;
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -52,7 +52,8 @@ TEST(EffectTextures, RepeatOrEndAsTheManifestSays) {
         for (std::size_t i = 0; i < 16; ++i)
             texels.writable_level(0)[i] = std::byte(i % 4 < 2 ? 0 : 255);
         texture.layers.push_back(std::move(texels));
-        const EffectTextures textures({&texture}, 1);
+        EffectTextureCache cache;
+        const EffectTextures textures({&texture}, 1, cache);
         return red_beyond_the_edge(*textures.find("probe.sides"));
     };
     EXPECT_EQ(beyond(effect::TextureSpec::Wrap::Repeat), 0);

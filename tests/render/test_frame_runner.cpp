@@ -74,8 +74,10 @@ class FrameRunnerTest : public testing::Test {
     StitchedFrames frames;
     ProgramCache cache;
     WatchedPrograms programs{frames, cache, {}};
-    FrameRunner runner{context, frames, programs,
-                       [](const auto&, const Terrain&) { return nullptr; }, values};
+    TexturePool pool;
+    FrameRunner runner{
+        context, frames, programs, pool, [](const auto&, const Terrain&) { return nullptr; },
+        values};
     std::map<std::string, int> executed;
     std::function<void(PassContext&)> body;
 };

@@ -1,0 +1,151 @@
+#include "session/drawn_effects.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/log.h"
+
+namespace relevo::session {
+
+bool EffectsRequest::has_selection_of(const EffectsRequest& other) const {
+    return effects.switches == other.effects.switches && effects.presets == other.effects.presets &&
+           effects.plugin_path == other.effects.plugin_path && compared == other.compared &&
+           ground == other.ground && draped == other.draped &&
+           overlay_has_time == other.overlay_has_time;
+}
+
+bool EffectsRequest::operator==(const EffectsRequest& other) const {
+    const auto same = [](const effect::Setting& a, const effect::Setting& b) {
+        return a.address == b.address && a.text == b.text && a.folder == b.folder;
+    };
+    return has_selection_of(other) &&
+           std::ranges::equal(effects.settings, other.effects.settings, same);
+}
+
+DrawnEffects DrawnEffects::load(EffectsRequest request, bool aloud) {
+    DrawnEffects drawn;
+    drawn.request_ = std::move(request);
+    const EffectsRequest& asked = drawn.request_;
+    const bool compared = !asked.compared.empty();
+    drawn.effects_ =
+        ActiveEffects::of(compared ? with(asked.effects, asked.compared) : asked.effects,
+                          /*aloud=*/true, asked.ground);
+    if (asked.overlay_has_time)
+        for (const std::string& id : drawn.effects_->switch_off_unasked("shadow"))
+            if (aloud)
+                log::info(fmt::format(
+                    "{} is off, because the overlay shows the sun's light of its own time; "
+                    "--enable {} draws them too",
+                    id, id));
+    if (compared)
+        drawn.others_ =
+            ActiveEffects::of(session::without(asked.effects, asked.compared, *drawn.effects_),
+                              /*aloud=*/false, asked.ground);
+    drawn.stamp_files();
+    return drawn;
+}
+
+void DrawnEffects::stamp_files() {
+    for (const Half& half : halves())
+        for (const std::filesystem::path& path : half.effects.files_and_folders())
+            files_.add(path);
+}
+
+std::vector<DrawnEffects::Half> DrawnEffects::halves() const {
+    std::vector<Half> halves = {{*effects_, renderer_.get(), true}};
+    if (others_) halves.push_back({*others_, without_.get(), false});
+    return halves;
+}
+
+void DrawnEffects::take_ground(const effect::GroundWords& words) {
+    request_.ground = words;
+    for (const Half& half : halves())
+        half.effects.take_ground(words, request_.effects, half.aloud);
+}
+
+void DrawnEffects::fit(const gl::DeviceInfo& device) {
+    for (const Half& half : halves())
+        half.effects.fit(device, half.aloud);
+}
+
+void DrawnEffects::compile(gl::Context& context, const OptionsOf& options) {
+    renderer_ = std::make_unique<render::Renderer>(context, effects_->inputs(), options());
+    if (!others_) return;
+    render::RendererOptions of_others = options();
+    of_others.stitched = {};
+    without_ = std::make_unique<render::Renderer>(context, others_->inputs(), of_others);
+}
+
+bool DrawnEffects::take(const EffectsRequest& request) {
+    if (!request_.has_selection_of(request) || !files_.hold()) return false;
+    std::vector<shader::ParamStore> values;
+    for (const Half& half : halves()) {
+        auto changed = half.effects.values_with(request.effects.settings, half.aloud);
+        if (!changed) return false;
+        values.push_back(std::move(*changed));
+    }
+    std::size_t i = 0;
+    for (const Half& half : halves()) {
+        half.effects.values = std::move(values[i++]);
+        half.renderer->set_values(half.effects.values);
+    }
+    request_ = request;
+    return true;
+}
+
+void DrawnEffects::set(const std::string& address, const std::string& value) {
+    for (const Half& half : halves()) {
+        const shader::Param* const param = half.effects.values.find(address);
+        if (param && param->is_static)
+            bad_input(
+                fmt::format("session: {}: a static parameter: another value needs another "
+                            "shader",
+                            address));
+        half.effects.values.set(address, value);
+        half.renderer->set_values(half.effects.values);
+    }
+    scene::Effects change;
+    change.settings = {{address, value}};
+    request_.effects = scene::merge(std::move(request_.effects), change);
+}
+
+void DrawnEffects::resize(int width_px, int height_px) {
+    for (const Half& half : halves())
+        half.renderer->resize(width_px, height_px);
+}
+
+void DrawnEffects::render(render::Terrain& terrain, const render::Ground& ground,
+                          const render::FrameInputs& inputs, render::PassTimes* times) {
+    renderer_->render_frame(terrain, ground, inputs, times);
+    if (without_) without_->render_frame(terrain, ground, inputs);
+}
+
+bool DrawnEffects::is_watched() const {
+    return renderer_->is_watched() || (without_ && without_->is_watched());
+}
+
+void DrawnEffects::release_targets() {
+    for (const Half& half : halves())
+        half.renderer->release_targets();
+}
+
+std::optional<DrawnEffects> RecentEffects::take(const EffectsRequest& request) {
+    for (auto kept = kept_.begin(); kept != kept_.end(); ++kept) {
+        if (!kept->take(request)) continue;
+        std::optional<DrawnEffects> found = std::move(*kept);
+        kept_.erase(kept);
+        return found;
+    }
+    return std::nullopt;
+}
+
+void RecentEffects::keep(DrawnEffects drawn) {
+    drawn.release_targets();
+    kept_.push_front(std::move(drawn));
+    if (kept_.size() > kMost) kept_.pop_back();
+}
+
+}  // namespace relevo::session

@@ -1,0 +1,138 @@
+#include "session/scene_state.h"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geo/format.h"
+#include "session/active_effects.h"
+#include "session/climate_words.h"
+#include "session/stamps.h"
+#include "session/standing.h"
+#include "session/words.h"
+#include "sun/celestial.h"
+
+namespace relevo::session {
+
+void SceneState::take_dem(std::shared_ptr<const LoadedDem> dem) {
+    dem_ = std::move(dem);
+    ground_ = ground_of(*dem_);
+}
+
+void SceneState::take_shape(bool other) {
+    inputs.exaggeration = scene.exaggeration;
+    inputs.exposure_ev = scene.exposure_ev;
+    if (other) {
+        to_show_ = render::ground_to_show(dem_->field, *ground_, scene.exaggeration);
+        moved_.reset();
+    }
+    day_.emplace(ground_->frame.origin(), ground_->block_m <= 0);
+}
+
+void SceneState::set_time(sun::Instant utc) {
+    utc_ = utc;
+    const geo::Geodetic place = ground_->frame.origin();
+    position_ = sun::position(utc, place);
+    const Air asked{scene.refraction, {place.lat_rad, place.lon_rad, ground_->air_height_m()}};
+    if (air_of_ != asked) air_ = refraction_at(asked.model, asked.place);
+    air_of_ = asked;
+    inputs.sun = render::make_sun_light(position_, air_, *ground_, dem_->field.grid);
+    if (air_.bends())
+        inputs.sun.air = [model = scene.refraction](const geo::Geodetic& at) {
+            return refraction_at(model, at);
+        };
+    inputs.stars = sun::celestial_frame(sun::Epoch::at(utc), place);
+    inputs.unix_s = static_cast<double>(utc.unix_us()) * 1e-6;
+}
+
+sun::Instant SceneState::default_time() {
+    const scene::DefaultMoment chosen = day_->moment(scene::side_of_deg(inputs.camera));
+    time_reason_ = chosen.reason();
+    return chosen.utc;
+}
+
+void SceneState::look(scene::View view, const DrawnShape& shape) {
+    if (!view.eye && (!view.orbit.azimuth_deg || !view.orbit.elevation_deg)) {
+        framing_ = scene::frame_ground(view.orbit, to_show_.net, *day_);
+        view.orbit = framing_->orbit;
+    }
+    const auto camera_of = [&](const scene::View& of) {
+        return scene::make_camera(of, heights_to_aim_at(dem_, shape.displacement), ground_->frame,
+                                  of.eye ? scene::Outline() : outline(shape),
+                                  static_cast<double>(scene.width_px) / scene.height_px,
+                                  scene.exaggeration);
+    };
+    inputs.camera = standing(view, {ground_->frame, scene.exaggeration, shape.height_m, camera_of},
+                             keep_above_m);
+    scene.view = view;
+}
+
+void SceneState::warn_of_eye(const DrawnShape& shape) const {
+    const auto drawn_m = [&](const geo::Geodetic&) {
+        const std::optional<double> height_m = shape.height_m(inputs.camera);
+        return height_m ? *height_m / scene.exaggeration : std::nan("");
+    };
+    scene::warn_of_eye_below_ground(scene.view, drawn_m, ground_->frame, scene.exaggeration);
+}
+
+scene::Outline SceneState::outline(const DrawnShape& shape) {
+    scene::Outline outline{to_show_.points, moved_points(shape.displacement)};
+    if (shape.shows_block) {
+        const auto base = render::block_below(to_show_.rim, *ground_, scene.exaggeration);
+        outline.points.insert(outline.points.end(), base.begin(), base.end());
+    }
+    return outline;
+}
+
+const std::vector<glm::dvec3>& SceneState::moved_points(const render::Displacement& displacement) {
+    if (!moved_ || moved_->by != displacement)
+        moved_ = {displacement, render::points_moved_to(to_show_.points, *ground_,
+                                                        scene.exaggeration, displacement)};
+    return moved_->points;
+}
+
+std::optional<geo::Geodetic> SceneState::eye() const {
+    if (!scene.view.eye) return std::nullopt;
+    return told_eye(ground_->frame, inputs.camera, scene.exaggeration);
+}
+
+geo::Geodetic SceneState::middle() const {
+    geo::Geodetic middle = ground_->frame.origin();
+    middle.height_m = middle_height_m(ground_->lowest_m, ground_->highest_m);
+    return middle;
+}
+
+std::vector<std::string> SceneState::synthetic_detail(const ActiveEffects& effects,
+                                                      glm::dvec2 post_spacing_m) const {
+    std::vector<std::string> notes;
+    const std::optional<geo::Geodetic> from = eye();
+    if (!from) return notes;
+    const double ground_m = dem_->height_m(*from);
+    if (std::isnan(ground_m)) return notes;
+    const double pixel_rad = 2 * std::tan(inputs.camera.fov_y_rad / 2) / scene.height_px;
+    const double pixel_posts = (from->height_m - ground_m) * scene.exaggeration * pixel_rad /
+                               std::sqrt(post_spacing_m.x * post_spacing_m.y);
+    for (const effect::Effect* const effect : effects.loaded.selection.effects) {
+        const auto& invents = effect->manifest.invents;
+        if (!invents || pixel_posts >= invents->pixel_posts) continue;
+        if (effects.values.value(invents->address)[0] > 0)
+            notes.push_back(fmt::format("{}: {}; --set {}=0 removes it", effect->manifest.id,
+                                        invents->what, invents->address));
+    }
+    return notes;
+}
+
+std::string SceneState::place_text() const {
+    const std::optional<geo::Geodetic> from = eye();
+    return from ? geo::degrees_text(*from) + " (the eye)"
+                : geo::degrees_text(ground_->frame.origin());
+}
+
+std::string SceneState::sun_text() const {
+    const std::optional<geo::Geodetic> from = eye();
+    if (!from) return session::sun_text(position_, air_);
+    return session::sun_text(sun::position(utc_, *from), refraction_at(scene.refraction, *from));
+}
+
+}  // namespace relevo::session
