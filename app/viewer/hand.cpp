@@ -136,7 +136,7 @@ std::optional<glm::dvec3> Hand::ground_at(glm::vec2 at_px) const {
     const int y = static_cast<int>((1 - at_px.y / window_.size().y) *
                                    static_cast<float>(picture_->height_px));
     if (x < 0 || y < 0 || x >= picture_->width_px || y >= picture_->height_px) return std::nullopt;
-    const float depth_m = picture_->depths_m[static_cast<std::size_t>(y * picture_->width_px + x)];
+    const float depth_m = picture_->depth_m(x, y);
     if (std::isinf(depth_m)) return std::nullopt;
     const glm::dvec3 direction = ray(picture_->camera, in_view(at_px), aspect());
     return picture_->camera.eye_m + depth_m / dot(direction, picture_->camera.forward) * direction;

@@ -20,14 +20,20 @@ constexpr double kSame_s = 0.08;
 
 }  // namespace
 
-MainWindow::MainWindow(const scene::Scene& scene, std::string device)
-    : device_(std::move(device)), zone_(scene.moment.zone) {
+MainWindow::MainWindow(const scene::Scene& scene, const std::string& device)
+    : device_(device, presentation_of_environment()), zone_(scene.moment.zone) {
     state_.document.scene = scene;
     if (scene.overlay) state_.document.overlay = {OverlayKind::File, scene.overlay->opacity};
     Window::check_display();
     // The scene opens beside the window.
     scene_ = std::make_unique<SceneThread>(scene, device_, &Window::wake);
-    window_ = std::make_unique<Window>("Relevo");
+    try {
+        window_ = std::make_unique<Window>("Relevo");
+    } catch (...) {
+        device_.give_up();
+        throw;
+    }
+    device_.set_window(window_->context());
     hand_ = std::make_unique<Hand>(*window_, state_);
     point_work_ = std::make_unique<PointWork>(&Window::wake);
     overlay_work_ = std::make_unique<OverlayWork>(&Window::wake);

@@ -36,7 +36,8 @@ inline double seconds_since(Clock::time_point began) {
 /// The window's whole life: what hand, panels, files and threads have to do with each other.
 class MainWindow {
   public:
-    MainWindow(const scene::Scene& scene, std::string device);
+    /// @param device  as session::Options
+    MainWindow(const scene::Scene& scene, const std::string& device);
     void run();
 
   private:
@@ -193,7 +194,7 @@ class MainWindow {
 
     std::unique_ptr<Window> window_;  // ends after the threads that wake it
     Discard discard_;
-    std::string device_;
+    SceneDevice device_;
     std::string zone_;  // as --tz takes it
     Memory memory_ = Memory::of_user();
     Settings written_, styled_;

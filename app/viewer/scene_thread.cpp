@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <deque>
 #include <exception>
 #include <future>
 #include <map>
@@ -16,6 +17,7 @@
 
 #include "gl/texture.h"
 #include "session/active_effects.h"
+#include "viewer/frame_exchange.h"
 #include "viewer/navigation.h"
 
 namespace relevo::viewer {
@@ -33,6 +35,8 @@ constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
 constexpr auto kNewPages = std::chrono::seconds(2);
 /// At rest a picture with some pages takes the place of one with fewer so often, at most.
 constexpr auto kMorePages = std::chrono::milliseconds(400);
+/// A device that draws a frame is asked so often whether the thread is to end.
+constexpr auto kFrame = std::chrono::milliseconds(100);
 constexpr auto kLookAgain = std::chrono::milliseconds(10);
 /// Shadows are this old at most while the sun is dragged.
 constexpr auto kShadowsAge = std::chrono::milliseconds(350);
@@ -57,8 +61,10 @@ scene::Camera Opened::camera(const scene::View& view, double aspect,
 }
 
 struct SceneThread::Impl {
+    Impl(scene::Scene given, const SceneDevice& on) : scene(std::move(given)), device(on) {}
+
     scene::Scene scene;
-    std::string device;
+    SceneDevice device;
     std::shared_ptr<const session::LoadedDem> dem;
     std::function<void()> on_change;
 
@@ -69,7 +75,9 @@ struct SceneThread::Impl {
     std::optional<scene::Effects> effects;
     std::map<std::string, std::string> values;
     std::optional<std::shared_ptr<const render::Drape>> drape;  // none: as it is
-    std::shared_ptr<const Picture> picture;
+    /// That the window has not fetched: the newest finished one, and others that the device is
+    /// drawing.
+    std::deque<std::shared_ptr<const Picture>> pictures;
     std::optional<std::string> message;
     std::exception_ptr failure;
     std::shared_ptr<const Opened> opened;
@@ -80,8 +88,12 @@ struct SceneThread::Impl {
     bool reads_rest = false;    // where others stand in for all posts
     bool awaits_pages = false;  // of a picture at rest
     std::unique_ptr<session::Session> session;
+    std::optional<FrameExchange> exchange;  // where frames are shared with the window
+    std::uint64_t published = 0;
     glm::dvec3 shadows_eye_m{0};
     double ms_a_pixel = 0;
+    Clock::time_point frame_began;  // of the picture that was published last
+    double frame_px = 0;            // its pixels, until the device has finished it
     Clock::time_point shadows_at;
     bool shadows_lag = false;
     std::optional<Clock::time_point> new_pages_at;  // not all of them are there yet
@@ -103,7 +115,11 @@ struct SceneThread::Impl {
     void run() {
         try {
             session::Options options;
-            options.device = device;
+            options.context = [this] {
+                auto [context, shares] = device.open();
+                if (shares) exchange.emplace();
+                return std::move(context);
+            };
             options.may_stand_in = true;
             reads_rest = !dem;
             options.dem = std::move(dem);
@@ -119,6 +135,12 @@ struct SceneThread::Impl {
         }
         on_change();
         if (!failure) draw_until_end();
+        {
+            // Shared frames need a context to be destroyed in.
+            const std::lock_guard lock(mutex);
+            pictures.clear();
+            exchange.reset();
+        }
         session.reset();
     }
 
@@ -223,6 +245,9 @@ struct SceneThread::Impl {
             if (new_drape) attempt([&] { session->drape(*new_drape); });
             awaits_pages = false;
             if (!attempt([&] { sharp = draw(now, answers); })) sharp = true;
+            finish_pictures(/*all=*/sharp || awaits_pages);
+            if (frame_px > 0) ms_a_pixel = milliseconds_since(frame_began) / frame_px;
+            frame_px = 0;
             on_change();
             lock.lock();
         }
@@ -297,32 +322,70 @@ struct SceneThread::Impl {
 
     void publish(Clock::time_point began, std::uint64_t answers, bool sharp) {
         auto made = std::make_shared<Picture>();
-        const gl::Texture& texture = session->texture();
-        made->width_px = texture.extent().width;
-        made->height_px = texture.extent().height;
-        const auto pixels =
-            static_cast<std::size_t>(made->width_px) * static_cast<std::size_t>(made->height_px);
-        made->rgba.resize(4 * pixels);
-        texture.read(0, std::as_writable_bytes(std::span(made->rgba)));
-        session->read_depths(made->depths_m);
+        const gl::Extent extent = session->texture().extent();
+        made->width_px = extent.width;
+        made->height_px = extent.height;
+        if (exchange)
+            share(*made, extent);
+        else
+            copy(*made);
         made->camera = session->camera();
         made->aim_m = session->heights_to_aim_at();
         made->utc = session->moment();
         made->legends = session->colour_legends();
         made->sharp = sharp;
         made->answers = answers;
-        ms_a_pixel = milliseconds_since(began) / static_cast<double>(pixels);
+        made->number = ++published;
+        frame_began = began;
+        frame_px = double{1} * extent.width * extent.height;
         const std::lock_guard lock(mutex);
-        made->number = picture ? picture->number + 1 : 1;
-        picture = std::move(made);
+        pictures.push_back(std::move(made));
+    }
+
+    /// Leaves the frame on the device, where the window reads it.
+    void share(Picture& picture, gl::Extent extent) {
+        picture.shared = exchange->take(extent);
+        picture.shared->colour.copy_from(session->texture());
+        picture.shared->depth.copy_from(session->depth());
+        picture.shared->drawn = gl::Fence::insert();
+    }
+
+    void copy(Picture& picture) const {
+        picture.rgba.resize(4 * static_cast<std::size_t>(picture.width_px) *
+                            static_cast<std::size_t>(picture.height_px));
+        session->texture().read(0, std::as_writable_bytes(std::span(picture.rgba)));
+        session->read_depths(picture.depths_m);
+    }
+
+    /// Waits for the device to finish pictures, so that it is asked for no more than it draws, and
+    /// forgets those that a newer one replaces.
+    /// @param all  else but the last one
+    void finish_pictures(bool all) {
+        std::shared_ptr<const Picture> last;
+        {
+            const std::lock_guard lock(mutex);
+            const std::size_t unfinished = all || !exchange ? 0 : 1;
+            if (pictures.size() > unfinished) last = pictures.rbegin()[unfinished];
+        }
+        if (!last) return;
+        if (last->shared)
+            while (!last->shared->drawn.wait(kFrame) && !has_ended()) {
+            }
+        const std::lock_guard lock(mutex);
+        while (!pictures.empty() && pictures.front()->number < last->number)
+            pictures.pop_front();
+    }
+
+    bool has_ended() {
+        const std::lock_guard lock(mutex);
+        return ends;
     }
 };
 
-SceneThread::SceneThread(scene::Scene scene, std::string device, std::function<void()> on_change,
+SceneThread::SceneThread(scene::Scene scene, const SceneDevice& device,
+                         std::function<void()> on_change,
                          std::shared_ptr<const session::LoadedDem> dem)
-    : impl_(std::make_unique<Impl>()) {
-    impl_->scene = std::move(scene);
-    impl_->device = std::move(device);
+    : impl_(std::make_unique<Impl>(std::move(scene), device)) {
     impl_->on_change = std::move(on_change);
     impl_->dem = std::move(dem);
     impl_->thread = std::thread([this] { impl_->run(); });
@@ -385,7 +448,11 @@ std::uint64_t SceneThread::wants() const {
 
 std::shared_ptr<const Picture> SceneThread::newer_than(std::uint64_t number) const {
     const std::lock_guard lock(impl_->mutex);
-    return impl_->picture && impl_->picture->number > number ? impl_->picture : nullptr;
+    for (auto picture = impl_->pictures.rbegin(); picture != impl_->pictures.rend(); ++picture) {
+        if ((*picture)->number <= number) break;
+        if (!(*picture)->shared || (*picture)->shared->drawn.has_passed()) return *picture;
+    }
+    return nullptr;
 }
 
 std::optional<std::string> SceneThread::take_message() {

@@ -11,6 +11,8 @@
 #include "scene/scene.h"
 #include "session/session.h"
 #include "sun/time.h"
+#include "viewer/picture.h"
+#include "viewer/scene_device.h"
 
 /// The scene is drawn on a thread of its own, in a context of its own, so that the window never
 /// waits for it.
@@ -41,29 +43,14 @@ struct Opened {
     std::optional<chart::Legend> legend;  ///< of the scene's overlay
 };
 
-/// A frame as it was drawn, whatever has been asked for since.
-struct Picture {
-    std::uint64_t number = 0;
-    std::uint64_t answers = 0;  ///< the last of SceneThread::wants() that is in it
-    int width_px = 0, height_px = 0;
-    std::vector<std::uint8_t> rgba;  ///< rows from below
-    std::vector<float> depths_m;     ///< as session::Session::read_depths
-    scene::Camera camera;            ///< raised above the drawn ground where the eye wanted is not
-    scene::GroundHeight aim_m;       ///< Session::heights_to_aim_at()
-    sun::Instant utc;
-    std::vector<chart::Legend> legends;  ///< of what effects colour the ground by
-    /// In the window's size, with all its ground, from all posts, and with its sun's shadows.
-    bool sharp = false;
-};
-
 class SceneThread {
   public:
     /// Opens the scene and draws. Where the DEM takes long to read, first what stands in for it
     /// (session::LoadedDem::stands_in); all posts are then read beside, and take its place.
-    /// @param device    as session::Options
+    /// @param device    that it is drawn on
     /// @param on_change called on that thread whenever there is something to fetch
     /// @param dem       the scene's, where it has been read already; else it is read
-    SceneThread(scene::Scene scene, std::string device, std::function<void()> on_change,
+    SceneThread(scene::Scene scene, const SceneDevice& device, std::function<void()> on_change,
                 std::shared_ptr<const session::LoadedDem> dem = {});
     SceneThread(const SceneThread&) = delete;
     SceneThread& operator=(const SceneThread&) = delete;
@@ -94,7 +81,8 @@ class SceneThread {
     /// How often something was wanted.
     std::uint64_t wants() const;
 
-    /// The newest picture, if it is newer than `number`.
+    /// The newest picture that the device has finished, if it is newer than `number`. Called with
+    /// the window's context current where frames are shared.
     std::shared_ptr<const Picture> newer_than(std::uint64_t number) const;
     /// What went wrong since the last call, such as a shader that no driver takes.
     std::optional<std::string> take_message();

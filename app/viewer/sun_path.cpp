@@ -25,12 +25,31 @@ std::optional<ImVec2> at_window(const Picture& picture, glm::vec2 size_px,
     return ImVec2(px.x, px.y);
 }
 
-/// Whether there is sky at a place of the window.
-bool is_sky(const Picture& picture, glm::vec2 size_px, ImVec2 at) {
+/// The pixel at a place of the window; none outside.
+std::optional<glm::ivec2> pixel_at(const Picture& picture, glm::vec2 size_px, ImVec2 at) {
     const int x = static_cast<int>(at.x / size_px.x * static_cast<float>(picture.width_px));
     const int y = static_cast<int>((1 - at.y / size_px.y) * static_cast<float>(picture.height_px));
-    if (x < 0 || y < 0 || x >= picture.width_px || y >= picture.height_px) return true;
-    return std::isinf(picture.depths_m[static_cast<std::size_t>(y * picture.width_px + x)]);
+    if (x < 0 || y < 0 || x >= picture.width_px || y >= picture.height_px) return std::nullopt;
+    return glm::ivec2(x, y);
+}
+
+/// Whether there is sky at a place of the window.
+bool is_sky(const Picture& picture, glm::vec2 size_px, ImVec2 at) {
+    const auto pixel = pixel_at(picture, size_px, at);
+    return !pixel || std::isinf(picture.depth_m(pixel->x, pixel->y));
+}
+
+/// Reads the depths at all points of some days together.
+void fetch_depths(const std::vector<const SunDay*>& days, const Picture& picture,
+                  glm::vec2 size_px) {
+    std::vector<glm::ivec2> pixels;
+    for (const SunDay* const day : days)
+        for (const SunPoint& point : day->points)
+            if (point.elevation_deg >= kLowest_deg)
+                if (const auto at = at_window(picture, size_px, point.direction))
+                    if (const auto pixel = pixel_at(picture, size_px, *at))
+                        pixels.push_back(*pixel);
+    picture.fetch_depths(pixels);
 }
 
 }  // namespace
@@ -70,6 +89,10 @@ void draw_hours(const SunDay& day, const sun::Zone& zone, const Picture& picture
 }  // namespace
 
 void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px) {
+    std::vector<const SunDay*> days = {&state.day};
+    for (const SunDay& extreme : state.extremes)
+        days.push_back(&extreme);
+    fetch_depths(days, picture, size_px);
     for (const SunDay& extreme : state.extremes)
         draw_way(extreme, picture, size_px, IM_COL32(255, 255, 255, 90),
                  IM_COL32(255, 255, 255, 25), 1.5f);

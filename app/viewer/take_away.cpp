@@ -117,14 +117,15 @@ std::string sun_of(const Picture& picture, const scene::Scene& scene,
 
 std::string save_picture(const Picture& picture, const scene::Scene& scene, const Opened& opened,
                          const Coloured& coloured) {
-    if (const int pixels = render::count_not_numbers(picture.rgba); pixels > 0)
+    const std::vector<std::uint8_t> rgba = picture.read_rgba();
+    if (const int pixels = render::count_not_numbers(rgba); pixels > 0)
         failed(
             "picture: " + session::not_numbers_text(pixels, {picture.width_px, picture.height_px}) +
             "; relevo capture names the effect");
-    image::Image8 image = image::from_device(picture.width_px, picture.height_px, picture.rgba);
+    image::Image8 image = image::from_device(picture.width_px, picture.height_px, rgba);
     const geo::LocalFrame& frame = opened.ground.frame;
     session::Stamped stamped{scene, *opened.dem, frame, picture.camera};
-    if (session::needs_depths(scene.stamps)) stamped.depths_m = picture.depths_m;
+    if (session::needs_depths(scene.stamps)) stamped.depths_m = picture.read_depths_m();
     const std::optional<session::OverlayTime>& laid = coloured.overlay_time;
     if (scene.stamps.date)
         stamped.clock = laid ? session::clock_text(*laid, scene.moment.zone, frame.origin())

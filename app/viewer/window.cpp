@@ -99,19 +99,34 @@ void load_fonts(float text_px, const std::set<char32_t>& letters) {
 
 /// A picture on the display's device.
 struct Shown {
-    gl::Texture texture;
+    gl::Texture texture;                 // of its own, where it is copied
+    std::shared_ptr<SharedFrame> frame;  // else that of the scene
     std::optional<gl::Framebuffer> target;
 
     void take(const Picture& picture) {
-        const gl::Extent extent{picture.width_px, picture.height_px, 1};
-        if (!target || texture.extent().width != extent.width ||
-            texture.extent().height != extent.height) {
+        if (picture.shared) {
             target.reset();
+            frame = picture.shared;
+            frame->drawn.wait_on_device();
+            target.emplace(std::initializer_list<const gl::Texture*>{&frame->colour}, nullptr,
+                           "shown");
+            return;
+        }
+        const gl::Extent extent{picture.width_px, picture.height_px, 1};
+        if (!target || frame || texture.extent() != extent) {
+            target.reset();
+            frame.reset();
             texture =
                 gl::Texture(gl::TextureKind::D2, gl::Format::RGBA8, extent, 1, "scene's picture");
             target.emplace(std::initializer_list<const gl::Texture*>{&texture}, nullptr, "shown");
         }
         texture.write(0, {0, 0, 0}, extent, std::as_bytes(std::span(picture.rgba)));
+    }
+
+    /// Copies it to the window.
+    void draw(glm::ivec2 size_px, float share = 1) const {
+        target->copy_to_window(size_px.x, size_px.y, share);
+        if (frame) frame->shown = gl::Fence::insert();
     }
 };
 
@@ -145,7 +160,12 @@ struct Window::Impl {
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
         glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-        handle = glfwCreateWindow(kWidth, kHeight, title.c_str(), nullptr, nullptr);
+        // Some devices do not report that they were lost.
+        for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {
+            glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);
+            handle = glfwCreateWindow(kWidth, kHeight, title.c_str(), nullptr, nullptr);
+            if (handle) break;
+        }
         if (!handle) {
             const std::string why = last_error();
             glfwTerminate();
@@ -237,14 +257,17 @@ struct Window::Impl {
 
     void show(glm::ivec2 size) const {
         if (!shown.target) return;
-        shown.target->copy_to_window(size.x, size.y);
-        if (!before.target) return;
-        before.target->copy_to_window(size.x, size.y, line);
+        shown.draw(size);
+        if (before.target) before.draw(size, line);
     }
 };
 
 Window::Window(const std::string& title) : impl_(std::make_unique<Impl>(title)) {}
 Window::~Window() = default;
+
+const gl::Context& Window::context() const {
+    return *impl_->context;
+}
 
 void Window::check_display() {
     const auto is_set = [](const char* name) {

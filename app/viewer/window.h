@@ -8,6 +8,8 @@
 
 #include <glm/vec2.hpp>
 
+#include "gl/context.h"
+
 struct GLFWwindow;
 
 namespace relevo::viewer {
@@ -28,6 +30,9 @@ class Window {
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
     ~Window();
+
+    /// The context that it is drawn with, current on the thread that made the window.
+    const gl::Context& context() const;
 
     /// @throws Error (NoDevice) where nothing tells of a display
     static void check_display();

@@ -127,7 +127,8 @@ std::vector<Device> list_devices() {
 struct Context::Impl {
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLContext context = EGL_NO_CONTEXT;
-    std::function<void()> make_current;  // of others' contexts; then the two above are not there
+    std::function<void()> make_current;  // of others' contexts: they destroy it
+    bool reports_loss = false;           // of others' contexts
     DeviceInfo info;
     std::vector<std::string> errors;
 
@@ -157,21 +158,35 @@ struct Context::Impl {
             if (!eglChooseConfig(display, wanted, &config, 1, &count) || count == 0)
                 return "has no config for OpenGL";
         }
-        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                     4,
-                                     EGL_CONTEXT_MINOR_VERSION,
-                                     5,
-                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                     EGL_CONTEXT_OPENGL_DEBUG,
-                                     debug ? EGL_TRUE : EGL_FALSE,
-                                     EGL_NONE};
-        context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
+        std::string reason = create(config, EGL_NO_CONTEXT, debug);
+        if (reason.empty()) name(candidate.device);
+        return reason;
+    }
+
+    /// Makes a context without a surface, and makes it current. Empty on success, else what is
+    /// wrong with the device.
+    std::string create(EGLConfig config, EGLContext shared, bool debug) {
+        const auto attributes = [&](bool with_loss) {
+            std::vector<EGLint> list = {
+                EGL_CONTEXT_MAJOR_VERSION,       4,
+                EGL_CONTEXT_MINOR_VERSION,       5,
+                EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                EGL_CONTEXT_OPENGL_DEBUG,        debug ? EGL_TRUE : EGL_FALSE};
+            if (with_loss)
+                list.insert(list.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                         EGL_LOSE_CONTEXT_ON_RESET});
+            list.push_back(EGL_NONE);
+            return list;
+        };
+        // Contexts that share must agree on whether a loss of the device is reported.
+        if (shared == EGL_NO_CONTEXT || reports_loss)
+            context = eglCreateContext(display, config, shared, attributes(true).data());
+        if (context == EGL_NO_CONTEXT && (shared == EGL_NO_CONTEXT || !reports_loss))
+            context = eglCreateContext(display, config, shared, attributes(false).data());
         if (context == EGL_NO_CONTEXT)
             return fmt::format("has no OpenGL 4.5 core, {}", egl_error());
         if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
             return fmt::format("cannot be made current, {}", egl_error());
-        name(candidate.device);
         return {};
     }
 
@@ -187,7 +202,7 @@ struct Context::Impl {
     void close() {
         // Not eglTerminate: the display is the process's, and would go from under every other
         // context on it.
-        if (context == EGL_NO_CONTEXT) return;
+        if (context == EGL_NO_CONTEXT || make_current) return;
         if (eglGetCurrentContext() == context)
             eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
         eglDestroyContext(display, context);
@@ -323,9 +338,57 @@ Context Context::of_others(std::function<void()> make_current) {
         throw Error(ErrorCode::NoDevice,
                     fmt::format("gl: expected a window that draws with OpenGL 4.5 core but got {}",
                                 gl_string(GL_VERSION)));
+    impl->display = eglGetCurrentDisplay();
+    impl->context = eglGetCurrentContext();
+    GLint strategy = 0;
+    glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
+    impl->reports_loss = strategy == GL_LOSE_CONTEXT_ON_RESET;
     impl->name({.index = -1, .platform = "window", .description = "the window's"});
     impl->start(/*debug=*/false);
     return Context(std::move(impl));
+}
+
+Context Context::sharing(const Context& other) {
+    const Impl& from = *other.impl_;
+    auto impl = std::make_unique<Impl>();
+    impl->display = from.display;
+    impl->reports_loss = from.reports_loss;
+    std::string reason;
+    EGLint id = 0;
+    EGLConfig config = nullptr;
+    EGLint count = 0;
+    if (from.context == EGL_NO_CONTEXT ||
+        !eglQueryContext(from.display, from.context, EGL_CONFIG_ID, &id))
+        reason = "is not of EGL";
+    else if (!epoxy_has_egl_extension(from.display, "EGL_KHR_surfaceless_context"))
+        reason = "has no EGL_KHR_surfaceless_context";
+    else if (!eglBindAPI(EGL_OPENGL_API))
+        reason = "has no desktop OpenGL";
+    else {
+        const EGLint wanted[] = {EGL_CONFIG_ID, id, EGL_NONE};
+        if (!eglChooseConfig(from.display, wanted, &config, 1, &count) || count == 0)
+            config = EGL_NO_CONFIG_KHR;
+        reason = impl->create(config, from.context, /*debug=*/false);
+    }
+    if (!reason.empty())
+        throw Error(ErrorCode::NoDevice,
+                    fmt::format("gl: the window's display, {}, shares no context: it {}",
+                                from.info.renderer, reason));
+    impl->name(from.info.device);
+    impl->start(/*debug=*/false);
+    return Context(std::move(impl));
+}
+
+bool Context::is_on_device_of(const Context& other) const {
+    const auto device_of = [](EGLDisplay display) -> EGLAttrib {
+        EGLAttrib device = 0;
+        if (display == EGL_NO_DISPLAY || !client_extension("EGL_EXT_device_query") ||
+            !eglQueryDisplayAttribEXT(display, EGL_DEVICE_EXT, &device))
+            return 0;
+        return device;
+    };
+    const EGLAttrib device = device_of(impl_->display);
+    return device != 0 && device == device_of(other.impl_->display);
 }
 
 Context::Context(Context&&) noexcept = default;
@@ -337,6 +400,11 @@ const DeviceInfo& Context::info() const {
 }
 
 void Context::check_errors() {
+    if (glGetGraphicsResetStatus() != GL_NO_ERROR)
+        throw DeviceLost(
+            fmt::format("gl: {} was lost: its driver has reset it, after a fault or after a "
+                        "command that took too long",
+                        impl_->info.renderer));
     const GLenum error = glGetError();
     if (impl_->errors.empty() && error != GL_NO_ERROR) impl_->errors.push_back(error_name(error));
     if (impl_->errors.empty()) return;

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
+
 namespace relevo::gl {
 
 /// One way to get a GL context without a window.
@@ -49,6 +51,12 @@ struct DeviceInfo {
 /// That a software renderer draws as hardware would not do; empty where there was none.
 std::string fall_back_notice(std::span<const RefusedDevice> refused, const DeviceInfo& chosen);
 
+/// The driver has reset the device: all contexts and what was made in them are lost.
+class DeviceLost : public Error {
+  public:
+    explicit DeviceLost(const std::string& message) : Error(ErrorCode::NoDevice, message) {}
+};
+
 struct ContextOptions {
     /// "auto", the index of a device, "software", or a part of a renderer's name ("nvidia").
     std::string device = "auto";
@@ -73,6 +81,11 @@ class Context {
     /// @param make_current  makes it current on the calling thread
     /// @throws Error (NoDevice) where it has no OpenGL 4.5 core
     static Context of_others(std::function<void()> make_current);
+    /// A context of its own on the display of another one, which may be current on another thread:
+    /// textures, buffers and fences of each are the other's as well. Current on this thread.
+    /// @param other  must outlive it
+    /// @throws Error (NoDevice) where the device makes none
+    static Context sharing(const Context& other);
     Context(Context&&) noexcept;
     Context& operator=(Context&&) noexcept;
     ~Context();
@@ -83,9 +96,12 @@ class Context {
     /// @throws Error (Failed) where the device refuses
     void make_current();
 
+    /// Whether both are of one EGL device, so that they can share.
+    bool is_on_device_of(const Context& other) const;
+
     /// Throws what went wrong since the last call: what a debug context has collected, else the
     /// name of the first error.
-    /// @throws Error (Failed) `gl: message`
+    /// @throws DeviceLost; Error (Failed) `gl: message`
     void check_errors();
 
     /// Waits until the device has done everything asked so far.

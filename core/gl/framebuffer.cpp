@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "gl/buffer.h"
 #include "gl/errors.h"
 
 namespace relevo::gl {
@@ -81,6 +82,21 @@ void Framebuffer::clear_depth(float value) const {
 
 void Framebuffer::clear_stencil(int value) const {
     glClearNamedFramebufferiv(handle_.name(), GL_STENCIL, 0, &value);
+}
+
+std::vector<float> Framebuffer::read_depths(std::span<const glm::ivec2> pixels) const {
+    std::vector<float> depths(pixels.size());
+    if (pixels.empty()) return depths;
+    const Buffer buffer(depths.size() * sizeof(float), "depths of pixels");
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, handle_.name());
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer.name());
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        glReadPixels(pixels[i].x, pixels[i].y, 1, 1, GL_DEPTH_COMPONENT, GL_FLOAT,
+                     reinterpret_cast<void*>(i * sizeof(float)));
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    buffer.read(std::as_writable_bytes(std::span(depths)));
+    return depths;
 }
 
 void Framebuffer::copy_to_window(int width_px, int height_px, float share) const {

@@ -3,7 +3,9 @@
 #include <initializer_list>
 #include <span>
 #include <string_view>
+#include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 #include "gl/handle.h"
@@ -37,6 +39,9 @@ class Framebuffer {
     /// Copies its first colour to the window of the current context, rows from below, stretched.
     /// @param share  of the width, from the left, that is copied
     void copy_to_window(int width_px, int height_px, float share = 1) const;
+
+    /// Depths of single pixels, counted from below, with one wait for the device.
+    std::vector<float> read_depths(std::span<const glm::ivec2> pixels) const;
 
     Extent extent() const { return extent_; }
     unsigned name() const { return handle_.name(); }  ///< 0: there is none

@@ -60,11 +60,13 @@ image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* n
     return result;
 }
 
+float distance_m(float depth) {
+    return static_cast<float>(kNear_m) / depth;
+}
+
 std::vector<float> read_depths(const gl::Texture& depth) {
     std::vector<float> depths_m = read_all<float>(depth);
-    const auto near_m = static_cast<float>(kNear_m);
-    for (float& value : depths_m)
-        value = near_m / value;
+    std::ranges::transform(depths_m, depths_m.begin(), distance_m);
     return depths_m;
 }
 

@@ -30,6 +30,8 @@ int count_not_numbers(std::span<const std::uint8_t> rgba);
 image::Image8 read_picture(const gl::Texture& picture, int* not_numbers);
 /// Linear radiance, RGB, rows from the top. @param exposure  that it is stored with
 image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* not_numbers);
+/// The view depth [m] of a stored one.
+float distance_m(float depth);
 /// View depths [m], rows from below, infinity where there is sky.
 std::vector<float> read_depths(const gl::Texture& depth);
 /// Of the pixels that show ground.

@@ -363,8 +363,12 @@ const gl::Texture& Renderer::picture() const {
     return impl_->runner.texture("picture");
 }
 
+const gl::Texture& Renderer::depth() const {
+    return impl_->runner.texture("depth");
+}
+
 void Renderer::read_depths(std::vector<float>& depths_m) const {
-    depths_m = render::read_depths(impl_->runner.texture("depth"));
+    depths_m = render::read_depths(depth());
 }
 
 std::vector<SunSeen> Renderer::read_sun_seen() const {

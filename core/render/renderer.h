@@ -98,6 +98,8 @@ class Renderer {
     void release_targets();
     /// The last frame on the device, RGBA8, rows from below.
     const gl::Texture& picture() const;
+    /// Its depths on the device, Depth32F: distance_m() has metres.
+    const gl::Texture& depth() const;
 
     /// How far the last frame's ground is from the eye, along the direction it looks in [m]: row
     /// after row from below, infinity where there is sky.

@@ -468,6 +468,10 @@ const gl::Texture& Session::texture() const {
     return impl_->drawn->renderer().picture();
 }
 
+const gl::Texture& Session::depth() const {
+    return impl_->drawn->renderer().depth();
+}
+
 bool Session::shows_ground() const {
     std::vector<float> depths_m;
     read_depths(depths_m);

@@ -171,6 +171,8 @@ class Session {
     image::ImageF radiance() const;
     /// The picture on the device, RGBA with rows from below, until the next frame.
     const gl::Texture& texture() const;
+    /// As render::Renderer::depth().
+    const gl::Texture& depth() const;
     /// Whether ground of the DEM is in the last frame; of a comparison, in its left half's.
     bool shows_ground() const;
     /// As render::Renderer::read_depths().

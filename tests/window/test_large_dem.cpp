@@ -37,7 +37,7 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
     scene.dems = {dem.string()};
     scene.width_px = 320;
     scene.height_px = 200;
-    viewer::SceneThread thread(scene, "software", [] {});
+    viewer::SceneThread thread(scene, viewer::SceneDevice("software"), [] {});
     viewer::Wanted wanted;
     wanted.width_px = scene.width_px;
     wanted.height_px = scene.height_px;
@@ -90,7 +90,7 @@ TEST_F(Viewer, NoEyeIsUnderTheDrawnGround) {
     scene.exaggeration = 5;  // slopes of 45 degrees between posts of 80 m
     constexpr int kSide_px = 33, kSites = 40;
     constexpr double kEye_m = 2;
-    viewer::SceneThread thread(scene, "software", [] {});
+    viewer::SceneThread thread(scene, viewer::SceneDevice("software"), [] {});
     viewer::Wanted wanted;
     wanted.width_px = wanted.height_px = kSide_px;
     std::uint64_t number = 0;
@@ -194,7 +194,7 @@ TEST_F(Viewer, ALargeDemWhoseRestIsDamagedIsSaidAndTheOneBeforeComesBack) {
     {
         scene::Scene scene;
         scene.dems = {bad.string()};
-        viewer::SceneThread thread(scene, "software", [] {});
+        viewer::SceneThread thread(scene, viewer::SceneDevice("software"), [] {});
         thread.want({.width_px = 320, .height_px = 200});
         ASSERT_TRUE(wait([&] {
             thread.check();
