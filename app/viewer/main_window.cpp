@@ -161,7 +161,7 @@ void MainWindow::panels() {
     }
     if (picture_) {
         draw_sun_path(state_, *picture_, size());
-        draw_measured(state_.measured, state_.profile, *picture_, size());
+        draw_measurement(state_.measurement, *picture_, size());
         const float top = state_.settings.panels ? ImGui::GetFrameHeight() : 0;
         draw_scale_and_north(*picture_, state_.land, hand_->ground_at(0.5f * size()), size(), top);
         legend_.draw(legends(), size(), top, unit());

@@ -14,6 +14,7 @@
 #include "viewer/file_watch.h"
 #include "viewer/folder_watch.h"
 #include "viewer/hand.h"
+#include "viewer/history.h"
 #include "viewer/open_panel.h"
 #include "viewer/overlay_panel.h"
 #include "viewer/state.h"
@@ -110,14 +111,10 @@ class MainWindow {
     /// What can be done while nothing is open. @returns whether it is such
     bool of_program(Command command);
     void of_scene(Command command);
-    /// What the hand has done before is a step of its own.
-    void end_step();
     void move(Command command);
     void measure();
-    void follow_measure();
+    /// Restores a state of the history.
     void go_to(const Document& document);
-    /// Of a document only what its effects are.
-    static scene::Scene with_effects(const Document& document);
     void keep_view();
     void go_to_view(std::size_t i);
     void go_to_place(const std::string& text);

@@ -8,7 +8,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
-#include "viewer/take_away.h"
+#include "viewer/export.h"
 
 namespace relevo::viewer {
 namespace {
@@ -22,16 +22,16 @@ void MainWindow::take_hand(double passed_s) {
     hand_->act(passed_s, before_ != nullptr, std::exchange(input_is_new_, false));
     if (hand_->has_moved()) moved();
     const std::optional<glm::dvec3> clicked = hand_->take_click();
-    if (clicked && !std::exchange(state_.measuring, false)) choose_point(*clicked);
-    follow_measure();
+    Measurement& line = state_.measurement;
+    if (clicked && !std::exchange(line.follows_cursor, false)) choose_point(*clicked);
+    if (line.follows_cursor && state_.cursor) line.follow(state_.cursor->point_m, state_.land);
 }
 
 void MainWindow::choose_point(const glm::dvec3& point_m) {
     geo::Geodetic place = state_.land.frame->to_geodetic(point_m);
     place.height_m = state_.land.height_m(place);
     if (std::isnan(place.height_m)) return;
-    state_.measured = {point_m};
-    state_.profile.reset();
+    state_.measurement.start(point_m);
     state_.chosen = place;
     asked_point_.reset();
 }
@@ -81,7 +81,7 @@ bool MainWindow::of_program(Command command) {
                 give_up_opening();
                 return true;
             }
-            sheet_ = state_.measuring = false;
+            sheet_ = state_.measurement.follows_cursor = false;
             open_panel_.close();
             closes_menus_ = true;
             state_.message.clear();
@@ -126,7 +126,7 @@ void MainWindow::of_scene(Command command) {
             state_.playing = !state_.playing;
             return;
         case Command::Undo:
-            end_step();
+            history_.end_step(state_.document);
             history_.can_undo() ? go_to(history_.undo()) : tell("nothing to undo");
             return;
         case Command::Redo:
@@ -137,13 +137,9 @@ void MainWindow::of_scene(Command command) {
     }
 }
 
-void MainWindow::end_step() {
-    if (history_.differs(state_.document)) history_.add(state_.document);
-}
-
 void MainWindow::move(Command command) {
     constexpr double kHour_s = 3600, kDay_s = 86400;
-    end_step();
+    history_.end_step(state_.document);
     const auto by = [&](double seconds) { state_.set_utc(state_.document.utc + seconds); };
     if (command == Command::Earlier)
         by(-kHour_s / 2);
@@ -164,38 +160,16 @@ void MainWindow::move(Command command) {
 }
 
 void MainWindow::measure() {
-    if (!state_.cursor && !state_.measuring) return;
-    state_.measuring = !state_.measuring;
-    if (state_.measuring && state_.measured.empty()) state_.measured = {state_.cursor->point_m};
-    follow_measure();
-}
-
-void MainWindow::follow_measure() {
-    if (!state_.measuring || !state_.cursor) return;
-    const glm::dvec3 start_m = state_.measured.front();
-    if (state_.measured.size() == 2 && state_.measured[1] == state_.cursor->point_m) return;
-    state_.measured = {start_m, state_.cursor->point_m};
-    state_.profile = Profile::between(state_.land.frame->to_geodetic(start_m), state_.cursor->place,
-                                      state_.land);
+    Measurement& line = state_.measurement;
+    if (!state_.cursor && !line.follows_cursor) return;
+    line.follows_cursor = !line.follows_cursor;
+    if (line.follows_cursor && line.ends_m.empty()) line.start(state_.cursor->point_m);
 }
 
 void MainWindow::go_to(const Document& document) {
     hand_->rest();
-    const bool other_effects = scene::scene_text(with_effects(document), "") !=
-                               scene::scene_text(with_effects(state_.document), "");
-    state_.document = document;
-    state_.set_utc(document.utc);
-    if (other_effects) {
-        state_.set_effects(document.scene.effects);
-        state_.take_effects(/*is_step=*/false);
-    }
+    state_.restore(document);
     moved();
-}
-
-scene::Scene MainWindow::with_effects(const Document& document) {
-    scene::Scene scene;
-    scene.effects = document.scene.effects;
-    return scene;
 }
 
 void MainWindow::keep_view() {
@@ -214,7 +188,7 @@ void MainWindow::go_to_view(std::size_t i) {
         return;
     }
     const SavedView& view = state_.views[i];
-    end_step();
+    history_.end_step(state_.document);
     hand_->rest();
     state_.document.pose = pose_of(view, state_.land);
     state_.set_utc(view.utc);
@@ -228,7 +202,7 @@ void MainWindow::go_to_place(const std::string& text) {
     geo::Geodetic place = geo::parse_place(bare, "view").place;
     place.height_m = state_.land.height_m(place);
     if (std::isnan(place.height_m)) return tell("the DEM has no ground at " + printable(text));
-    end_step();
+    history_.end_step(state_.document);
     hand_->rest();
     geo::Geodetic drawn = place;
     drawn.height_m = state_.land.ground_under(state_.land.frame->to_local(place));
@@ -245,7 +219,7 @@ void MainWindow::go_to_place(const std::string& text) {
 
 void MainWindow::step_at_rest() {
     if (is_open() && seconds_since(moved_at_) > kStep_s && !hand_->is_busy() && !state_.playing)
-        end_step();
+        history_.end_step(state_.document);
 }
 
 }  // namespace relevo::viewer

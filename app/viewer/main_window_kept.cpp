@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "viewer/export.h"
 #include "viewer/main_window.h"
-#include "viewer/take_away.h"
 
 namespace relevo::viewer {
 namespace {

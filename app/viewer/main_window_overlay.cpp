@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "viewer/export.h"
 #include "viewer/main_window.h"
-#include "viewer/take_away.h"
 
 namespace relevo::viewer {
 namespace {

@@ -30,9 +30,7 @@ void MainWindow::open() {
     saves_when_whole_ = false;
     state_.chosen.reset();
     state_.point.reset();
-    state_.measured.clear();
-    state_.measuring = false;
-    state_.profile.reset();
+    state_.measurement = {};
     state_.cursor.reset();
     hand_->rest();
     hand_->see(nullptr);

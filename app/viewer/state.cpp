@@ -6,6 +6,15 @@
 #include "session/words.h"
 
 namespace relevo::viewer {
+namespace {
+
+std::string effects_text(const Document& document) {
+    scene::Scene scene;
+    scene.effects = document.scene.effects;
+    return scene::scene_text(scene, "");
+}
+
+}  // namespace
 
 void State::stand_on(const render::Ground& ground) {
     centre = ground.frame.origin();
@@ -36,6 +45,15 @@ void State::take_effects(bool is_step) {
     } catch (const Error& error) {
         message = error.what();
     }
+}
+
+void State::restore(const Document& restored) {
+    const bool changes_effects = effects_text(restored) != effects_text(document);
+    document = restored;
+    set_utc(restored.utc);
+    if (!changes_effects) return;
+    set_effects(restored.scene.effects);
+    take_effects(/*is_step=*/false);
 }
 
 }  // namespace relevo::viewer

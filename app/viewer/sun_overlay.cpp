@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "viewer/sun_model.h"
-#include "viewer/take_away.h"
+#include "viewer/export.h"
 
 namespace relevo::viewer {
 namespace {
