@@ -82,6 +82,9 @@ struct State {
 
     /// Places the observer of the sun at a DEM's centre, with the scene's refraction there.
     void stand_on(const render::Ground& ground);
+    /// Takes ground, heights and post spacing of the DEM that is open. `land` refers to `opened`.
+    /// @throws Error (BadInput) if its effects cannot be loaded or selected
+    void use_dem_of(const Opened& opened);
     /// Sets the time. Ignores dates outside 1900-2100.
     void set_utc(sun::Instant utc);
     /// Requests other effects or values, also of static parameters. take_effects() applies them
