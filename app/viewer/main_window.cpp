@@ -53,9 +53,9 @@ void MainWindow::run() {
         if (window_->take_input() || was_woken) pacing_.need_frames(3);
         const double passed_s = pacing_.begin_pass();
         poll_threads();
-        take_keys();
+        process_keys();
         if (is_open()) {
-            take_hand(std::min(passed_s, 0.1));
+            process_mouse(std::min(passed_s, 0.1));
             play(state_, std::min(passed_s, 0.5));
             want_view();  // early: the scene's thread draws while this one draws the panels
         }

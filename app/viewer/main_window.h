@@ -79,9 +79,9 @@ class MainWindow {
 
     // ---- keys and commands: main_window_commands.cpp
 
-    void take_hand(double passed_s);
+    void process_mouse(double passed_s);
     void choose_point(const glm::dvec3& point_m);
-    void take_keys();
+    void process_keys();
     /// Commands that need no open scene. @returns whether `command` is one
     bool run_program_command(Command command);
     void run_scene_command(Command command);
@@ -125,7 +125,7 @@ class MainWindow {
     std::optional<Wanted> wanted_;
     Clock::time_point checked_at_ = Clock::now();  // files
     bool sun_moved_ = false;                       // in the frame before
-    bool has_new_input_ = false;                   // ImGui has processed input since take_hand()
+    bool has_new_input_ = false;  // ImGui has processed input since process_mouse()
     bool shows_keys_ = false, closes_menus_ = false, takes_picture_ = false;
 };
 

@@ -12,7 +12,7 @@
 
 namespace relevo::viewer {
 
-void MainWindow::take_hand(double passed_s) {
+void MainWindow::process_mouse(double passed_s) {
     hand_->act(passed_s, comparison_->thread() != nullptr, std::exchange(has_new_input_, false));
     if (hand_->has_moved()) pacing_.moved();
     const std::optional<glm::dvec3> clicked = hand_->take_click();
@@ -25,7 +25,7 @@ void MainWindow::choose_point(const glm::dvec3& point_m) {
     if (point_->choose(point_m)) state_.measurement.start(point_m);
 }
 
-void MainWindow::take_keys() {
+void MainWindow::process_keys() {
     for (const KeyPress& press : window_->take_keys()) {
         pacing_.need_frames(3);
         if (const auto command = command_of(press))

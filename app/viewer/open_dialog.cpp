@@ -1,7 +1,10 @@
 #include "viewer/open_dialog.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <system_error>
 #include <utility>
 
@@ -9,7 +12,6 @@
 #include <imgui_stdlib.h>
 
 #include "base/text.h"
-#include "viewer/file_dialog.h"
 #include "viewer/settings.h"
 
 namespace relevo::viewer {
@@ -29,10 +31,46 @@ std::vector<std::string> folders_in(const fs::path& folder) {
     return names;
 }
 
+bool is_installed(const std::string& program) {
+    const char* const path = std::getenv("PATH");
+    std::error_code ignored;
+    return std::ranges::any_of(split(path ? path : "", ':'), [&](const std::string& folder) {
+        return fs::is_regular_file(fs::path(folder) / program, ignored);
+    });
+}
+
+std::vector<std::string> lines_of(const char* command) {
+    std::vector<std::string> lines;
+    std::FILE* const pipe = popen(command, "r");
+    if (!pipe) return lines;
+    std::string text;
+    std::array<char, 4096> piece{};
+    while (const std::size_t count = std::fread(piece.data(), 1, piece.size(), pipe))
+        text.append(piece.data(), count);
+    pclose(pipe);
+    for (const std::string& line : split(text, '\n'))
+        if (!line.empty()) lines.push_back(line);
+    return lines;
+}
+
+/// Opens the dialog of the desktop; its files, if any, come from another thread.
+/// @returns none: neither zenity nor kdialog is installed
+std::optional<std::future<std::vector<std::string>>> ask_desktop() {
+    const char* command = nullptr;
+    if (is_installed("zenity"))
+        command =
+            "zenity --file-selection --multiple --separator='\n' --title='Open a DEM' "
+            "2>/dev/null";
+    else if (is_installed("kdialog"))
+        command = "kdialog --getopenfilename . --multiple --separate-output 2>/dev/null";
+    if (!command) return std::nullopt;
+    return std::async(std::launch::async, [command] { return lines_of(command); });
+}
+
 }  // namespace
 
 void OpenDialog::open(const std::string& dem) {
-    if (!desktop_) desktop_ = ask_for_files();
+    if (!desktop_) desktop_ = ask_desktop();
     if (!desktop_) open_panel(dem);
 }
 
