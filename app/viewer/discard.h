@@ -10,8 +10,7 @@
 
 namespace relevo::viewer {
 
-/// Ends what is not wanted any more on threads of its own, so that nobody waits for the work that
-/// it has begun.
+/// Destroys objects on other threads, so that the caller does not wait for work in progress.
 class Discard {
   public:
     template <typename T>
@@ -22,12 +21,12 @@ class Discard {
         if (unwanted)
             ending_.push_back(std::async(std::launch::async, [one = std::move(unwanted)]() mutable {
                 one.reset();
-                // Else what threads have freed stays with the program: a DEM paged through after
-                // the other took 1.2 GiB in the end.
+                // Without it the process keeps the memory that threads have freed: 1.2 GiB after
+                // opening one DEM after the other.
                 malloc_trim(0);
             }));
     }
-    /// Waits. @returns whether all has ended by then
+    /// Waits up to `time`. @returns whether all objects are destroyed
     bool ends_within(std::chrono::milliseconds time) const {
         const auto until = std::chrono::steady_clock::now() + time;
         for (const std::future<void>& one : ending_)

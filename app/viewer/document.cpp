@@ -11,8 +11,6 @@
 namespace relevo::viewer {
 namespace {
 
-constexpr std::size_t kMaxStates = 500;
-
 bool is_of(const std::string& address, const std::string& of) {
     return address == of || address.starts_with(of + ".");
 }
@@ -150,29 +148,6 @@ Pose pose_of(const SavedView& view, const Land& land) {
             .heading_deg = view.heading_deg,
             .pitch_deg = view.pitch_deg,
             .fov_y_rad = view.fov_y_rad};
-}
-
-void History::add(const Document& document) {
-    if (!states_.empty()) states_.resize(at_ + 1);
-    states_.push_back(document);
-    if (states_.size() > kMaxStates) states_.erase(states_.begin());
-    at_ = states_.size() - 1;
-}
-
-bool History::differs(const Document& document) const {
-    if (states_.empty()) return true;
-    const Document& now = states_[at_];
-    return now.utc != document.utc || now.pose.eye_m != document.pose.eye_m ||
-           now.pose.heading_deg != document.pose.heading_deg ||
-           now.pose.pitch_deg != document.pose.pitch_deg;
-}
-
-const Document& History::undo() {
-    return states_[--at_];
-}
-
-const Document& History::redo() {
-    return states_[++at_];
 }
 
 std::unique_ptr<EffectsModel> EffectsModel::of(const scene::Effects& effects,

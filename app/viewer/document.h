@@ -13,15 +13,15 @@
 
 namespace relevo::viewer {
 
-/// What lies on the ground in true colours.
+/// The raster that colours the ground.
 enum class OverlayKind {
     None,
     File,     ///< the scene's
-    Day,      ///< sun hours of the shown day
-    Week,     ///< likewise from Monday to Sunday
-    Year,     ///< likewise
-    Mask,     ///< what the sun reaches at the shown moment
-    SkyView,  ///< how much of the sky is seen
+    Day,      ///< sun hours of the displayed day
+    Week,     ///< sun hours from Monday to Sunday
+    Year,     ///< sun hours of the year
+    Mask,     ///< sunlit or in shadow at the displayed time
+    SkyView,  ///< sky-view factor
 };
 
 struct OverlayChoice {
@@ -31,15 +31,15 @@ struct OverlayChoice {
     bool operator==(const OverlayChoice&) const = default;
 };
 
-/// Everything that a person sets in the viewer, and that undo brings back.
+/// Everything that the user sets and that undo restores.
 struct Document {
-    scene::Scene scene;  ///< DEMs, effects, exposure; place and time are the two below
+    scene::Scene scene;  ///< DEMs, effects, exposure; its view and time are not used
     Pose pose;
     sun::Instant utc;
-    sun::Zone zone;  ///< that dates and times are shown in
+    sun::Zone zone;  ///< of displayed dates and times
     OverlayChoice overlay;
 
-    /// The scene with the camera and the moment, as files and the command line have it.
+    /// The scene with this pose and time, for files and command lines.
     /// @param land  of the pose
     scene::Scene whole(const Land& land) const;
 };
@@ -47,44 +47,27 @@ struct Document {
 SavedView saved_view(const Document& document, const Land& land, std::string name);
 Pose pose_of(const SavedView& view, const Land& land);
 
-/// What was, step by step.
-class History {
-  public:
-    /// Remembers a state after it was changed; what had been undone is gone.
-    void add(const Document& document);
-    /// Whether camera or moment are not those of the state at hand.
-    bool differs(const Document& document) const;
-    bool can_undo() const { return at_ > 0; }
-    bool can_redo() const { return at_ + 1 < states_.size(); }
-    const Document& undo();  ///< the state before; only where can_undo()
-    const Document& redo();  ///< the state after; only where can_redo()
-
-  private:
-    std::vector<Document> states_;
-    std::size_t at_ = 0;
-};
-
-/// The effects there are and what is on, without a device: for panels.
+/// Installed effects and the selection of active ones, for panels. Needs no device.
 struct EffectsModel : session::InstalledEffects {
     effect::Selection selection;  ///< points into registry
 
     using InstalledEffects::InstalledEffects;
-    /// @param ground  what the DEM has; none: it may have all
-    /// @throws Error (BadInput) as those who load and select
+    /// @param ground  of the DEM; empty: unknown, no effect is excluded
+    /// @throws Error (BadInput) if effects cannot be loaded or selected
     static std::unique_ptr<EffectsModel> of(const scene::Effects& effects,
                                             const effect::GroundWords& ground = {});
 };
 
-/// The same with an effect on or off.
+/// A copy with an effect switched on or off.
 scene::Effects switched(scene::Effects effects, const std::string& id, bool on);
-/// The same with a value of a parameter in the place of the one before.
+/// A copy with a parameter set to `value`.
 scene::Effects with_value(scene::Effects effects, const std::string& address,
                           const std::string& value);
-/// The same with what effects themselves say in the place of values that were set.
-/// @param of  an effect's id, or the address of one of its parameters
+/// A copy with default values.
+/// @param of  an effect's id, or the address of one parameter
 scene::Effects without_values(scene::Effects effects, const std::string& of);
 
-/// The command line that takes a scene's picture, quoted for a POSIX shell.
+/// The command line that renders a scene to the file `output`, quoted for a POSIX shell.
 std::string capture_command(const scene::Scene& scene, const std::string& output);
 
 }  // namespace relevo::viewer

@@ -6,15 +6,16 @@
 
 namespace relevo::viewer {
 
-/// Tells when files are written: by their times, looked at now and then.
+/// Reports changes of files by polling their modification times.
 class FileWatch {
   public:
-    /// Files; those that are not there are waited for.
+    /// Sets the files. They need not exist yet.
     void watch(std::vector<std::filesystem::path> paths);
-    /// Whether any has changed since the last call that said so, come or gone; after a change it
-    /// waits until nothing has changed any more, so that a file is whole.
+    /// Whether a file was written, created or removed since the last call that returned true.
+    /// Returns true only once nothing has changed since the call before, so that files are
+    /// complete.
     bool changed();
-    /// Whether as many files are there as were at watch().
+    /// Whether as many files exist as at watch().
     bool all_there() const { return last_.size() >= first_count_; }
 
   private:

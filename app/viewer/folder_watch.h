@@ -7,8 +7,8 @@
 
 namespace relevo::viewer {
 
-/// Tells when files of some kinds are written in folders, or in those inside them, by what the
-/// system says of them (inotify). A folder is listed once, when it is new.
+/// Reports changes of files in folders and their subfolders by inotify. A folder is listed once,
+/// when it is new.
 class FolderWatch {
   public:
     FolderWatch() = default;
@@ -16,12 +16,10 @@ class FolderWatch {
     FolderWatch& operator=(const FolderWatch&) = delete;
     ~FolderWatch();
 
-    /// Warns if the system refuses to watch a folder. Folders that do not exist are ignored.
-    /// @param endings  of names that matter: ".glsl"
+    /// Warns if the system refuses to watch a folder. Ignores folders that do not exist.
+    /// @param endings  of file names: ".glsl"
     void watch(const std::vector<std::filesystem::path>& folders, std::vector<std::string> endings);
-    /// Whether any such file has been written, has come or gone since the last call that said so;
-    /// after a change it waits for a call before which nothing has changed any more, so that a
-    /// file is whole.
+    /// As FileWatch::changed().
     bool changed();
 
   private:

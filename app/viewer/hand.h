@@ -18,35 +18,35 @@ struct Whole {
     Pose home, above;
 };
 
-/// What mouse, wheel and held keys do to the camera, the sun and the line of a comparison.
+/// Moves the camera, the sun and a comparison's dividing line by mouse, wheel and held keys.
 class Hand {
   public:
     /// @param window, state  outlive this
     Hand(Window& window, State& state) : window_(window), state_(state) {}
 
-    /// From now on the ground is looked up in this picture.
+    /// Sets the displayed image, whose depths give the ground under the mouse; null: none.
     void see(std::shared_ptr<const Picture> picture) { picture_ = std::move(picture); }
-    /// Takes what has come since the last call.
-    /// @param comparing  there is a line that can be dragged
-    /// @param new_input  ImGui has taken clicks in since then
+    /// Processes the input since the last call.
+    /// @param comparing  there is a dividing line to drag
+    /// @param new_input  ImGui has processed clicks since then
     void act(double passed_s, bool comparing, bool new_input);
-    /// Moves that a key or a menu asks for. @returns whether it is one
-    /// @param whole  finds the whole DEM; called for moves that show it alone
+    /// Carries out a command that moves the camera. @returns false: `command` is another one
+    /// @param whole  called only for commands that show the whole DEM
     bool move(Command command, const std::function<Whole()>& whole);
-    /// Lets go, and lets nothing glide on.
+    /// Ends drags, glides and walking.
     void rest();
 
-    /// Whether something moves that no input is needed for.
+    /// Whether the camera moves without new input.
     bool is_moving() const { return glides() || keys_held_; }
-    /// Whether a drag, a glide or a held key goes on.
+    /// Whether a drag, a glide or a held key continues.
     bool is_busy() const { return dragging_ || is_moving(); }
     /// Whether the last act() moved the camera.
     bool has_moved() const { return has_moved_; }
     bool is_walking() const { return walking_; }
-    /// Ground that was clicked since the last call.
+    /// The ground that was clicked since the last call.
     std::optional<glm::dvec3> take_click() { return std::exchange(clicked_, std::nullopt); }
 
-    /// The ground of the picture that is shown.
+    /// The ground at a place of the displayed image.
     std::optional<glm::dvec3> ground_at(glm::vec2 at_px) const;
 
   private:
@@ -75,7 +75,7 @@ class Hand {
     std::optional<glm::dvec3> clicked_;
     glm::vec2 pressed_px_{0}, last_px_{0};
     glm::dvec3 held_{0}, zoom_at_{0};
-    double zoom_left_ = 0;  // natural logarithm of what is still to be zoomed
+    double zoom_left_ = 0;  // natural logarithm of the zoom factor to go
     glm::dvec2 glide_deg_a_s_{0};
     bool walking_ = false, keys_held_ = false, has_moved_ = false;
 };

@@ -10,12 +10,11 @@
 
 namespace relevo::viewer {
 
-/// Works out what was wanted last, on a thread of its own. An Answer says in `of` what Wanted it is
-/// an answer to.
+/// Computes an Answer to the latest Wanted on a thread of its own. Answer::of is its Wanted.
 template <typename Wanted, typename Answer>
 class LatestWork {
   public:
-    /// Whether an answer to one wish is worth showing while another is worked out.
+    /// True if a stale answer to `of` may be displayed while one to `now` is computed.
     using Serves = bool (*)(const Wanted& of, const Wanted& now);
 
     /// @param on_change  called on that thread whenever there is a new answer
@@ -35,7 +34,7 @@ class LatestWork {
         }
         changed_.notify_one();
     }
-    /// Nothing any more.
+    /// Drops the request and its answer.
     void forget() {
         {
             const std::lock_guard lock(mutex_);
@@ -45,21 +44,22 @@ class LatestWork {
         }
         changed_.notify_one();
     }
-    /// What there is of what was wanted last; null: nothing yet.
+    /// The latest answer, perhaps partial or stale; null: none yet.
     std::shared_ptr<const Answer> answer() const {
         const std::lock_guard lock(mutex_);
         return answer_;
     }
-    /// Whether all that was wanted is there.
+    /// Whether the answer to the latest request is complete.
     bool is_done() const {
         const std::lock_guard lock(mutex_);
         return is_done_;
     }
 
   protected:
-    /// Called on that thread with each wish, and with null where nothing is wanted any more.
+    /// Called on that thread with each request, and with null after forget().
     virtual void work_out(const Wanted* wanted) = 0;
-    /// Waits for the step in work. A destructor calls it before what work_out() uses is gone.
+    /// Waits for the current step. Destructors call it before they destroy members that work_out()
+    /// uses.
     void end() {
         {
             const std::lock_guard lock(mutex_);
@@ -70,17 +70,17 @@ class LatestWork {
     }
     void tell_of_change() const { on_change_(); }
 
-    /// Whether something else is wanted by now.
+    /// Whether there is another request by now.
     bool is_given_up() const {
         const std::lock_guard lock(mutex_);
         return ends_ || is_new_;
     }
-    /// Whether an answer to this is not even worth showing meanwhile.
+    /// Whether an answer to this request may not even be displayed as a stale one.
     bool is_of_no_use(const Wanted& of) const {
         const std::lock_guard lock(mutex_);
         return ends_ || is_useless(of);
     }
-    /// @param done  it is all that was wanted
+    /// @param done  the answer is complete
     void publish(std::shared_ptr<const Answer> answer, bool done) {
         {
             const std::lock_guard lock(mutex_);
@@ -116,7 +116,7 @@ class LatestWork {
     std::optional<Wanted> wanted_;
     std::shared_ptr<const Answer> answer_;
     bool is_new_ = false, ends_ = false, is_done_ = true;
-    std::thread thread_;  // last: it uses what stands above
+    std::thread thread_;  // last: it uses the members above
 };
 
 }  // namespace relevo::viewer

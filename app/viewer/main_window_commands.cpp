@@ -8,55 +8,44 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
-#include "viewer/take_away.h"
+#include "viewer/export.h"
 
 namespace relevo::viewer {
-namespace {
 
-/// What comes after so long is another step of undo.
-constexpr double kStep_s = 0.5;
-
-}  // namespace
-
-void MainWindow::take_hand(double passed_s) {
-    hand_->act(passed_s, before_ != nullptr, std::exchange(input_is_new_, false));
-    if (hand_->has_moved()) moved();
+void MainWindow::process_mouse(double passed_s) {
+    hand_->act(passed_s, comparison_->thread() != nullptr, std::exchange(has_new_input_, false));
+    if (hand_->has_moved()) pacing_.moved();
     const std::optional<glm::dvec3> clicked = hand_->take_click();
-    if (clicked && !std::exchange(state_.measuring, false)) choose_point(*clicked);
-    follow_measure();
+    Measurement& line = state_.measurement;
+    if (clicked && !std::exchange(line.follows_cursor, false)) choose_point(*clicked);
+    if (line.follows_cursor && state_.cursor) line.follow(state_.cursor->point_m, state_.land);
 }
 
 void MainWindow::choose_point(const glm::dvec3& point_m) {
-    geo::Geodetic place = state_.land.frame->to_geodetic(point_m);
-    place.height_m = state_.land.height_m(place);
-    if (std::isnan(place.height_m)) return;
-    state_.measured = {point_m};
-    state_.profile.reset();
-    state_.chosen = place;
-    asked_point_.reset();
+    if (point_->choose(point_m)) state_.measurement.start(point_m);
 }
 
-void MainWindow::keys() {
+void MainWindow::process_keys() {
     for (const KeyPress& press : window_->take_keys()) {
-        busy_frames_ = 3;
+        pacing_.need_frames(3);
         if (const auto command = command_of(press))
             state_.commands.push_back(*command);
         else if (!press.control && press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9)
             state_.view_to_go_to = static_cast<std::size_t>(press.key - GLFW_KEY_1);
     }
     for (const Command command : std::exchange(state_.commands, {}))
-        if (!of_program(command) && is_open()) of_scene(command);
+        if (!run_program_command(command) && is_open()) run_scene_command(command);
     if (state_.view_to_go_to && is_open()) go_to_view(*state_.view_to_go_to);
     state_.view_to_go_to.reset();
     const std::string place = std::exchange(state_.place_to_go_to, {});
-    if (!place.empty() && is_open()) say_or_fail([&] { go_to_place(place); });
+    if (!place.empty() && is_open()) messages_.try_to([&] { go_to_place(place); });
     if (std::exchange(state_.views_changed, false)) remember_views();
 }
 
-bool MainWindow::of_program(Command command) {
+bool MainWindow::run_program_command(Command command) {
     switch (command) {
         case Command::Open:
-            ask_for_dem();
+            open_dialog_.open(opening_->requested_file());
             return true;
         case Command::NextFile:
             open_neighbour(1);
@@ -74,76 +63,90 @@ bool MainWindow::of_program(Command command) {
             state_.settings.charts = !state_.settings.charts;
             return true;
         case Command::Keys:
-            sheet_ = !sheet_;
+            shows_keys_ = !shows_keys_;
             return true;
         case Command::CloseKeys:
-            if (!is_open() && !has_failed_ && !has_gone_back_ && last_good_) {
-                give_up_opening();
-                return true;
-            }
-            sheet_ = state_.measuring = false;
-            open_panel_.close();
-            closes_menus_ = true;
-            state_.message.clear();
+            close_dialogs();
             return true;
         default:
             return false;
     }
 }
 
-void MainWindow::of_scene(Command command) {
+void MainWindow::run_scene_command(Command command) {
     switch (command) {
         case Command::ReadAgain:
-            return read_again();
+            return reload_effects();
         case Command::TakePicture:
             return take_picture();
         case Command::CopyCommand:
             return copy_command();
         case Command::SaveScene:
-            return say_or_fail([&] { done(save_scene(whole()) + overlay_note()); });
+            return messages_.try_to(
+                [&] { messages_.report(save_scene(whole_scene()) + overlay_->missing_note()); });
         case Command::SaveJob:
-            return say_or_fail([&] {
-                done(save_job(whole(), state_.day, state_.document.zone) + overlay_note());
+            return messages_.try_to([&] {
+                messages_.report(save_job(whole_scene(), state_.day, state_.document.zone) +
+                                 overlay_->missing_note());
             });
         case Command::SaveView:
-            return keep_view();
+            return save_view();
         case Command::Measure:
             return measure();
         case Command::Compare:
             state_.compare_is_wanted = !state_.compare_is_wanted;
             return;
-        case Command::Overlay: {
-            OverlayKind& kind = state_.document.overlay.kind;
-            kind = kind == OverlayKind::Day ? OverlayKind::None : OverlayKind::Day;
-            state_.step = true;
-            return;
-        }
+        case Command::Overlay:
+            return toggle_overlay();
         case Command::SaveOverlay:
-            return save_overlay();
+            return overlay_->start_export();
         case Command::GiveUpSaving:
-            return give_up_saving();
+            return overlay_->cancel_export();
         case Command::Play:
             state_.playing = !state_.playing;
             return;
         case Command::Undo:
-            end_step();
-            history_.can_undo() ? go_to(history_.undo()) : tell("nothing to undo");
-            return;
+            history_.end_step(state_.document);
+            return history_.can_undo() ? restore(history_.undo())
+                                       : messages_.note("nothing to undo");
         case Command::Redo:
-            history_.can_redo() ? go_to(history_.redo()) : tell("nothing to redo");
-            return;
+            return history_.can_redo() ? restore(history_.redo())
+                                       : messages_.note("nothing to redo");
         default:
             move(command);
     }
 }
 
-void MainWindow::end_step() {
-    if (history_.differs(state_.document)) history_.add(state_.document);
+void MainWindow::close_dialogs() {
+    if (opening_->can_cancel()) {
+        opening_->cancel();
+        begin_scene();
+        return;
+    }
+    shows_keys_ = state_.measurement.follows_cursor = false;
+    open_dialog_.close();
+    closes_menus_ = true;
+    state_.message.clear();
+}
+
+void MainWindow::open_neighbour(int step) {
+    const std::string& file = opening_->requested_file();
+    if (file.empty()) return;
+    if (const std::string next = neighbour_in_folder(file, step); !next.empty())
+        state_.files_to_open = {next};
+    else
+        messages_.show("no other DEM in this folder");
+}
+
+void MainWindow::toggle_overlay() {
+    OverlayKind& kind = state_.document.overlay.kind;
+    kind = kind == OverlayKind::Day ? OverlayKind::None : OverlayKind::Day;
+    state_.step = true;
 }
 
 void MainWindow::move(Command command) {
     constexpr double kHour_s = 3600, kDay_s = 86400;
-    end_step();
+    history_.end_step(state_.document);
     const auto by = [&](double seconds) { state_.set_utc(state_.document.utc + seconds); };
     if (command == Command::Earlier)
         by(-kHour_s / 2);
@@ -156,96 +159,112 @@ void MainWindow::move(Command command) {
     else if (!hand_->move(command, [this] { return whole_views(); }))
         return;
     if (command == Command::Walk)
-        tell(hand_->is_walking()
-                 ? "walking at eye height: W A S D, faster with Shift; G flies again"
-                 : "flying: W A S D, Q down and E up, faster with Shift");
-    moved();
+        messages_.note(hand_->is_walking()
+                           ? "walking at eye height: W A S D, faster with Shift; G flies again"
+                           : "flying: W A S D, Q down and E up, faster with Shift");
+    pacing_.moved();
     state_.step = true;
 }
 
 void MainWindow::measure() {
-    if (!state_.cursor && !state_.measuring) return;
-    state_.measuring = !state_.measuring;
-    if (state_.measuring && state_.measured.empty()) state_.measured = {state_.cursor->point_m};
-    follow_measure();
+    Measurement& line = state_.measurement;
+    if (!state_.cursor && !line.follows_cursor) return;
+    line.follows_cursor = !line.follows_cursor;
+    if (line.follows_cursor && line.ends_m.empty()) line.start(state_.cursor->point_m);
 }
 
-void MainWindow::follow_measure() {
-    if (!state_.measuring || !state_.cursor) return;
-    const glm::dvec3 start_m = state_.measured.front();
-    if (state_.measured.size() == 2 && state_.measured[1] == state_.cursor->point_m) return;
-    state_.measured = {start_m, state_.cursor->point_m};
-    state_.profile = Profile::between(state_.land.frame->to_geodetic(start_m), state_.cursor->place,
-                                      state_.land);
-}
-
-void MainWindow::go_to(const Document& document) {
+void MainWindow::restore(const Document& document) {
     hand_->rest();
-    const bool other_effects = scene::scene_text(with_effects(document), "") !=
-                               scene::scene_text(with_effects(state_.document), "");
-    state_.document = document;
-    state_.set_utc(document.utc);
-    if (other_effects) {
-        state_.set_effects(document.scene.effects);
-        state_.take_effects(/*is_step=*/false);
-    }
-    moved();
+    state_.restore(document);
+    pacing_.moved();
 }
 
-scene::Scene MainWindow::with_effects(const Document& document) {
-    scene::Scene scene;
-    scene.effects = document.scene.effects;
-    return scene;
+Whole MainWindow::whole_views() const {
+    scene::View above;
+    above.orbit = {.azimuth_deg = 180, .elevation_deg = 90};
+    above.fov_y_rad = state_.document.pose.fov_y_rad;
+    Whole whole{pose_in(opening_->home_view()), pose_in(above)};
+    // The vertical at the camera differs from that at the DEM's centre.
+    whole.above = from_above(whole.above, state_.land, whole.above.eye_m, 0);
+    return whole;
 }
 
-void MainWindow::keep_view() {
+void MainWindow::save_view() {
     const SavedView view =
         saved_view(state_.document, state_.land, fmt::format("View {}", state_.views.size() + 1));
     state_.views.push_back(view);
-    tell(state_.views.size() < 10
-             ? fmt::format("saved as {}; key {} goes to it", view.name, state_.views.size())
-             : fmt::format("saved as {}, in the menu View", view.name));
+    messages_.note(
+        state_.views.size() < 10
+            ? fmt::format("saved as {}; key {} goes to it", view.name, state_.views.size())
+            : fmt::format("saved as {}, in the menu View", view.name));
     remember_views();
+}
+
+void MainWindow::remember_views() {
+    if (is_open())
+        messages_.try_to([&] {
+            memory_.write_views(absolute_names(opening_->opened()->scene.dems), state_.views);
+        });
 }
 
 void MainWindow::go_to_view(std::size_t i) {
     if (i >= state_.views.size()) {
-        tell(fmt::format("this DEM has no saved view {}; B saves one", i + 1));
+        messages_.note(fmt::format("this DEM has no saved view {}; B saves one", i + 1));
         return;
     }
     const SavedView& view = state_.views[i];
-    end_step();
+    history_.end_step(state_.document);
     hand_->rest();
     state_.document.pose = pose_of(view, state_.land);
     state_.set_utc(view.utc);
-    moved();
+    pacing_.moved();
     state_.step = true;
 }
 
 void MainWindow::go_to_place(const std::string& text) {
-    std::string bare = text;  // maps write a space after the comma
+    std::string bare = text;  // maps add a space after the comma
     std::erase(bare, ' ');
     geo::Geodetic place = geo::parse_place(bare, "view").place;
     place.height_m = state_.land.height_m(place);
-    if (std::isnan(place.height_m)) return tell("the DEM has no ground at " + printable(text));
-    end_step();
+    if (std::isnan(place.height_m))
+        return messages_.note("the DEM has no ground at " + printable(text));
+    history_.end_step(state_.document);
     hand_->rest();
     geo::Geodetic drawn = place;
     drawn.height_m = state_.land.ground_under(state_.land.frame->to_local(place));
     const glm::dvec3 point_m = state_.land.frame->to_local(drawn);
-    // Near enough for single posts to be seen.
+    // At this many post spacings single posts are visible.
     constexpr double kPosts = 150;
     Pose& pose = state_.document.pose;
     pose = look_at(pose, state_.land, point_m,
                    std::min(distance(pose.eye_m, point_m), kPosts * state_.spacing_m));
     choose_point(point_m);
-    moved();
+    pacing_.moved();
     state_.step = true;
 }
 
-void MainWindow::step_at_rest() {
-    if (is_open() && seconds_since(moved_at_) > kStep_s && !hand_->is_busy() && !state_.playing)
-        end_step();
+scene::Scene MainWindow::whole_scene() const {
+    scene::Scene scene = viewer::whole_scene(state_.document, state_.land, window_->size_px());
+    overlay_->add_to(scene);
+    return scene;
+}
+
+void MainWindow::copy_command() {
+    window_->copy(capture_command(whole_scene(), free_picture_name()));
+    messages_.note("the command for this picture is on the clipboard" + overlay_->missing_note());
+}
+
+void MainWindow::take_picture() {
+    takes_picture_ = !is_image_complete();
+    if (takes_picture_) return;
+    pacing_.need_frames(2);  // for the message
+    messages_.try_to([&] {
+        std::string note = overlay_->missing_note();
+        if (!note.empty()) note = "; its scene is" + note.substr(1);
+        messages_.report(save_picture(*picture_, whole_scene(), *opening_->opened(),
+                                      overlay_->coloured(*picture_)) +
+                         note);
+    });
 }
 
 }  // namespace relevo::viewer

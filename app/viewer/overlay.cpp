@@ -19,7 +19,7 @@ namespace {
 constexpr ImU32 kLine = IM_COL32(255, 80, 60, 255);
 constexpr ImU32 kInk = IM_COL32(255, 255, 255, 235), kShade = IM_COL32(0, 0, 0, 150);
 
-/// 1, 2 or 5 times a power of ten, no larger.
+/// The largest 1, 2 or 5 times a power of ten up to `length`.
 double round_length(double length) {
     const double power = std::pow(10, std::floor(std::log10(length)));
     for (const double digit : {5.0, 2.0})
@@ -35,8 +35,8 @@ std::string length_text(double length_m) {
                          : fmt::format("{:.3g} cm", 100 * length_m);
 }
 
-/// Heights from left to right as they lie from the line's first end to its second, with what is
-/// under the cursor.
+/// Heights from the line's first end on the left to its second on the right. The tooltip has the
+/// height under the cursor.
 void plot_profile(const Profile& profile, float low_m, float high_m) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 extent{ImGui::GetContentRegionAvail().x, 5 * ImGui::GetFontSize()};
@@ -66,7 +66,7 @@ void plot_profile(const Profile& profile, float low_m, float high_m) {
     ImGui::SetTooltip("after %s: %.1f m", there.c_str(), profile.heights_m[i]);
 }
 
-/// "440.6 m", or that there is none.
+/// "440.6 m" or "no height".
 std::string height_text(float height_m) {
     return std::isnan(height_m) ? "no height" : fmt::format("{:.1f} m", height_m);
 }
@@ -99,12 +99,24 @@ Profile Profile::between(const geo::Geodetic& from, const geo::Geodetic& to, con
     return profile;
 }
 
-void draw_measured(const std::vector<glm::dvec3>& points, const std::optional<Profile>& profile,
-                   const Picture& picture, glm::vec2 size_px) {
+void Measurement::start(const glm::dvec3& point_m) {
+    ends_m = {point_m};
+    profile.reset();
+}
+
+void Measurement::follow(const glm::dvec3& point_m, const Land& land) {
+    if (ends_m.size() == 2 && ends_m[1] == point_m) return;
+    ends_m = {ends_m.front(), point_m};
+    profile = Profile::between(land.frame->to_geodetic(ends_m[0]), land.frame->to_geodetic(point_m),
+                               land);
+}
+
+void draw_measurement(const Measurement& measurement, const Picture& picture, glm::vec2 size_px) {
+    const std::optional<Profile>& profile = measurement.profile;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const double aspect = static_cast<double>(size_px.x) / size_px.y;
     std::optional<ImVec2> before;
-    for (const glm::dvec3& point : points) {
+    for (const glm::dvec3& point : measurement.ends_m) {
         const auto at = in_picture(picture.camera, point, aspect);
         if (!at) return;
         const glm::vec2 in_px = in_window(*at, size_px);

@@ -10,24 +10,34 @@
 #include "viewer/navigation.h"
 #include "viewer/scene_thread.h"
 
-/// What is drawn over the picture.
+/// Drawings over the image: measured line, scale, north arrow, sheet of keys.
 namespace relevo::viewer {
 
-/// The ground along a geodesic.
+/// The terrain profile along a geodesic.
 struct Profile {
-    std::vector<float> heights_m;  ///< at even steps from end to end, NaN at holes
-    double level_m = 0;            ///< along the ellipsoid
-    double azimuth_rad = 0;        ///< of the way, where it begins, from true north
-    double surface_m = 0;          ///< over the ground, up and down, holes left out
-    double up_m = 0, down_m = 0;   ///< together
+    std::vector<float> heights_m;  ///< at equal steps from end to end; NaN in voids
+    double level_m = 0;            ///< length along the ellipsoid
+    double azimuth_rad = 0;        ///< at the start, from true north
+    double surface_m = 0;          ///< length along the ground without voids
+    double up_m = 0, down_m = 0;   ///< total ascent and descent
     bool has_holes = false;
 
     static Profile between(const geo::Geodetic& from, const geo::Geodetic& to, const Land& land);
 };
 
-/// @param points  of the ground, at most two
-void draw_measured(const std::vector<glm::dvec3>& points, const std::optional<Profile>& profile,
-                   const Picture& picture, glm::vec2 size_px);
+/// A measured line on the ground. Its second end follows the cursor until the user sets it.
+struct Measurement {
+    std::vector<glm::dvec3> ends_m;  ///< in the local frame, at most two
+    std::optional<Profile> profile;  ///< of a line with two ends
+    bool follows_cursor = false;
+
+    /// Replaces the line with its first end.
+    void start(const glm::dvec3& point_m);
+    /// Moves the second end.
+    void follow(const glm::dvec3& point_m, const Land& land);
+};
+
+void draw_measurement(const Measurement& measurement, const Picture& picture, glm::vec2 size_px);
 void profile_panel(const Profile& profile);
 
 /// "2.9 degrees, facing S".
@@ -35,12 +45,12 @@ void profile_panel(const Profile& profile);
 /// @param aspect_deg  downhill, from true north; NaN on level ground
 std::string slope_text(double slope_deg, double aspect_deg);
 
-/// What is on which side of a comparison's line.
+/// Labels for both sides of a comparison's dividing line.
 /// @param line_px  from the left edge
 void draw_sides(float line_px, float top_px);
 
-/// @param middle_m  ground in the picture's middle; without it there is no scale
-/// @param top_px    that something else has at the upper edge
+/// @param middle_m  ground at the centre of the image; none: no scale bar
+/// @param top_px    height of the menu
 void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
                           float top_px);

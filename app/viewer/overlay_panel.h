@@ -5,12 +5,12 @@
 
 namespace relevo::viewer {
 
-/// What colours on the ground mean, at the right edge, under the north arrow.
+/// Draws the legends at the right edge, under the north arrow.
 class LegendPicture {
   public:
     /// @param size_px    of the window
-    /// @param top_px     that is taken by a menu
-    /// @param px_a_unit  of the drawing, whose letters are about 12 units high
+    /// @param top_px     height of the menu
+    /// @param px_a_unit  pixels per unit of the legends, whose text is about 12 units high
     void draw(const std::vector<chart::Legend>& legends, glm::vec2 size_px, float top_px,
               double px_a_unit);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kPanel_px = 360, kBeside_px = 10;
 
-void take_away_panel(State& state) {
+void export_panel(State& state) {
     const auto button = [&](const char* name, Command command) {
         if (ImGui::Button(name)) state.commands.push_back(command);
     };
@@ -23,7 +23,7 @@ void take_away_panel(State& state) {
     button("Save scene", Command::SaveScene);
 }
 
-/// What is below it does not move while a point is worked out, nor from one point to the next.
+/// Keeps the height of the text of one point for the next, so that panels below do not move.
 void roomy_point_panel(State& state) {
     const float top = ImGui::GetCursorPosY();
     point_panel(state);
@@ -32,7 +32,7 @@ void roomy_point_panel(State& state) {
     ImGui::SetCursorPosY(top + std::max(state.point_room_px, used));
 }
 
-/// A panel that was moved out of the window comes back as far as to be got hold of.
+/// Moves a panel back into the window far enough for the user to drag it.
 void keep_in_reach(glm::vec2 size_px) {
     const ImVec2 at = ImGui::GetWindowPos(), extent = ImGui::GetWindowSize();
     const float reach = 5 * ImGui::GetFrameHeight();
@@ -59,9 +59,10 @@ void side_panel(State& state, glm::vec2 size_px, double px_a_unit) {
     if (ImGui::CollapsingHeader("Sun", kOpen)) sun_panel(state);
     if (ImGui::CollapsingHeader("Overlay", kOpen)) overlay_panel(state);
     if (ImGui::CollapsingHeader("Point", kOpen)) roomy_point_panel(state);
-    if (state.profile && ImGui::CollapsingHeader("Profile", kOpen)) profile_panel(*state.profile);
+    const std::optional<Profile>& profile = state.measurement.profile;
+    if (profile && ImGui::CollapsingHeader("Profile", kOpen)) profile_panel(*profile);
     if (ImGui::CollapsingHeader("Effects", kOpen)) effects_panel(state);
-    if (ImGui::CollapsingHeader("Export", kOpen)) take_away_panel(state);
+    if (ImGui::CollapsingHeader("Export", kOpen)) export_panel(state);
     ImGui::End();
 }
 

@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/log.h"
 #include "gl/texture.h"
 #include "session/active_effects.h"
 #include "viewer/frame_exchange.h"
@@ -118,6 +119,8 @@ struct SceneThread::Impl {
             options.context = [this] {
                 auto [context, shares] = device.open();
                 if (shares) exchange.emplace();
+                log::debug(shares ? "view: frames stay on the device"
+                                  : "view: frames are copied to the window's device");
                 return std::move(context);
             };
             options.may_stand_in = true;
@@ -233,18 +236,20 @@ struct SceneThread::Impl {
                 try {
                     take(std::move(new_posts), now.insets);
                 } catch (...) {
-                    lock.lock();
-                    failure = std::current_exception();
-                    lock.unlock();
-                    on_change();
+                    fail();
                     return;
                 }
             }
             // Where something fails the last good picture stays until something changes.
-            attempt([&] { change(new_effects, new_values); });
-            if (new_drape) attempt([&] { session->drape(*new_drape); });
-            awaits_pages = false;
-            if (!attempt([&] { sharp = draw(now, answers); })) sharp = true;
+            try {
+                attempt([&] { change(new_effects, new_values); });
+                if (new_drape) attempt([&] { session->drape(*new_drape); });
+                awaits_pages = false;
+                if (!attempt([&] { sharp = draw(now, answers); })) sharp = true;
+            } catch (const gl::DeviceLost&) {
+                fail();
+                return;
+            }
             finish_pictures(/*all=*/sharp || awaits_pages);
             if (frame_px > 0) ms_a_pixel = milliseconds_since(frame_began) / frame_px;
             frame_px = 0;
@@ -253,12 +258,24 @@ struct SceneThread::Impl {
         }
     }
 
+    /// Ends with the exception that is being handled.
+    void fail() {
+        {
+            const std::lock_guard lock(mutex);
+            failure = std::current_exception();
+        }
+        on_change();
+    }
+
     /// @returns whether it worked; if not, there is a message
+    /// @throws gl::DeviceLost
     template <typename Do>
     bool attempt(const Do& act) {
         try {
             act();
             return true;
+        } catch (const gl::DeviceLost&) {
+            throw;
         } catch (const std::exception& error) {
             say(text_of(error));
             return false;

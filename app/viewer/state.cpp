@@ -1,17 +1,42 @@
 #include "viewer/state.h"
 
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
 #include "session/words.h"
 
 namespace relevo::viewer {
+namespace {
+
+std::string effects_text(const Document& document) {
+    scene::Scene scene;
+    scene.effects = document.scene.effects;
+    return scene::scene_text(scene, "");
+}
+
+}  // namespace
 
 void State::stand_on(const render::Ground& ground) {
     centre = ground.frame.origin();
     air = session::refraction_at(document.scene.refraction,
                                  {centre.lat_rad, centre.lon_rad, ground.air_height_m()});
     day = {};
+}
+
+void State::use_dem_of(const Opened& opened) {
+    const session::LoadedDem& dem = *opened.dem;
+    land.frame = &opened.ground.frame;
+    land.exaggeration = opened.scene.exaggeration;
+    land.height_m = [dem = opened.dem](const geo::Geodetic& at) { return dem->height_m(at); };
+    land.aim_m = opened.aim_m;
+    stands_in = dem.stands_in;
+    const dem::Grid& grid = stands_in ? dem.source->grid() : dem.field.grid;
+    const glm::dvec2 sides_m = grid.post_spacing_m();
+    spacing_m = std::sqrt(sides_m.x * sides_m.y);
+    stand_on(opened.ground);
+    ground_words = dem.ground_words(opened.scene.holes);
+    effects = EffectsModel::of(document.scene.effects, ground_words);
 }
 
 void State::set_utc(sun::Instant utc) {
@@ -36,6 +61,15 @@ void State::take_effects(bool is_step) {
     } catch (const Error& error) {
         message = error.what();
     }
+}
+
+void State::restore(const Document& restored) {
+    const bool changes_effects = effects_text(restored) != effects_text(document);
+    document = restored;
+    set_utc(restored.utc);
+    if (!changes_effects) return;
+    set_effects(restored.scene.effects);
+    take_effects(/*is_step=*/false);
 }
 
 }  // namespace relevo::viewer

@@ -17,14 +17,14 @@
 #include "viewer/sun_model.h"
 #include "viewer/sun_overlay.h"
 
-/// What panels show and change.
+/// The data that panels show and change.
 namespace relevo::viewer {
 
 /// The ground under the cursor.
 struct Cursor {
     glm::dvec3 point_m{0};  ///< in the local frame
-    geo::Geodetic place;    ///< height as the DEM has it; NaN in holes and on the sides of a block
-    double slope_deg = std::numeric_limits<double>::quiet_NaN();  ///< NaN beside holes, too
+    geo::Geodetic place;    ///< height of the DEM; NaN in voids and on the sides of a block
+    double slope_deg = std::numeric_limits<double>::quiet_NaN();  ///< NaN next to voids, too
     /// Downhill, from true north; NaN where level.
     double aspect_deg = std::numeric_limits<double>::quiet_NaN();
 };
@@ -33,95 +33,98 @@ struct State {
     Document document;
     Land land;
     geo::Geodetic centre;                           ///< of the DEM
-    sun::Refraction air = sun::Refraction::none();  ///< over it
+    sun::Refraction air = sun::Refraction::none();  ///< at the DEM's centre
     std::unique_ptr<EffectsModel> effects;
-    effect::GroundWords ground_words;  ///< what the DEM has; none: it is not known yet
-    bool stands_in = false;            ///< not all of its posts have been read
+    effect::GroundWords ground_words;  ///< of the DEM; empty: not known yet
+    bool stands_in = false;            ///< a coarse DEM stands in until all posts are read
     SunDay day;
     std::vector<SunDay> extremes;  ///< the solstices of its year
 
     bool playing = false;
     double hours_a_second = 1;
-    std::string search, place;       ///< as they are being written
-    bool compare_is_wanted = false;  ///< with the effects as they are when it is
+    std::string search, place;       ///< text in input fields
+    bool compare_is_wanted = false;  ///< with the effects at the time it starts
 
     Settings settings;
-    std::vector<RecentDem> recent;  ///< DEMs that were opened
+    std::vector<RecentDem> recent;  ///< DEMs, latest first
     std::vector<SavedView> views;   ///< of this DEM
-    double spacing_m = 1;           ///< of its posts, about
+    double spacing_m = 1;           ///< mean post spacing
 
     std::optional<Cursor> cursor;
-    std::optional<geo::Geodetic> chosen;      ///< that was clicked
-    std::shared_ptr<const PointLight> point;  ///< what is known of it; null: nothing yet
-    bool point_in_work = false;               ///< there is more to come
-    std::vector<glm::dvec3> measured;         ///< ends of a measured line, up to two
-    bool measuring = false;                   ///< its second end follows the cursor
-    std::optional<Profile> profile;           ///< of that line
+    std::optional<geo::Geodetic> chosen;      ///< the clicked point
+    std::shared_ptr<const PointLight> point;  ///< its sunlight; null: not computed yet
+    bool point_in_work = false;               ///< `point` is incomplete
+    Measurement measurement;
 
-    std::shared_ptr<const OverlayShown> overlay;  ///< that lies on the ground; null: none
-    std::optional<double> overlay_progress;       ///< of what is worked out for it
-    std::optional<double> saving_progress;        ///< of a raster that is being written
-    std::string saved_overlay;                    ///< the file that has it; empty: none yet
+    std::shared_ptr<const OverlayShown> overlay;  ///< on the ground; null: none
+    std::optional<double> overlay_progress;       ///< of its computation, 0 to 1
+    std::optional<double> saving_progress;        ///< of an overlay's export, 0 to 1
+    std::string saved_overlay;                    ///< the file of an exported overlay; empty: none
 
-    std::string message;  ///< the last thing that went wrong, or was done
+    std::string message;  ///< the last error or note
 
-    // What panels have done in this frame.
+    // Requests of the panels in this frame.
     std::vector<Command> commands;
     std::vector<std::string> files_to_open;
     std::optional<RecentDem> recent_to_open;
     std::optional<std::size_t> view_to_go_to;  ///< of views
     std::string place_to_go_to;                ///< "47.4395, 11.8935"; empty: none
     bool views_changed = false;
-    /// Where the side panel lies, from left to right [px]; none: not drawn yet.
+    /// Left and right edge of the side panel [px]; none: not drawn yet.
     std::optional<glm::vec2> side_panel_px;
-    float point_room_px = 0;  ///< that the point's lines have had
-    glm::ivec2 chart_px{0};   ///< that drawings of the point have room in; 0: none is shown
-    bool sun_moves = false;   ///< a widget of the sun is held
-    bool step = false;        ///< a change is done, for undo
+    float point_room_px = 0;  ///< height of the point's text
+    glm::ivec2 chart_px{0};   ///< size of the point's charts; 0: hidden
+    bool sun_moves = false;   ///< the user drags a widget of the sun
+    bool step = false;        ///< a change is complete: a step of undo
     std::optional<scene::Effects> asked_effects;
-    std::optional<scene::Effects> new_effects;  ///< for the thread that draws
+    std::optional<scene::Effects> new_effects;  ///< for the scene's thread
     std::vector<std::pair<std::string, std::string>> new_values;
 
-    /// The sun is seen from a DEM's middle from now on, through the air that the scene has there.
+    /// Places the observer of the sun at a DEM's centre, with the scene's refraction there.
     void stand_on(const render::Ground& ground);
-    /// Moves the sun. Dates outside 1900-2100 leave it where it is.
+    /// Takes ground, heights and post spacing of the DEM that is open. `land` refers to `opened`.
+    /// @throws Error (BadInput) if its effects cannot be loaded or selected
+    void use_dem_of(const Opened& opened);
+    /// Sets the time. Ignores dates outside 1900-2100.
     void set_utc(sun::Instant utc);
-    /// Other switches or values, of parameters that need another program too. Panels go on with the
-    /// effects that they show; take_effects() follows.
+    /// Requests other effects or values, also of static parameters. take_effects() applies them
+    /// after the panels are drawn.
     void set_effects(scene::Effects changed) { asked_effects = std::move(changed); }
-    /// Makes what was asked for the document's. @param is_step  for undo
+    /// Makes the requested effects those of the document. @param is_step  for undo
     void take_effects(bool is_step);
+    /// Replaces the document with a state of its history.
+    void restore(const Document& restored);
 };
 
 void sun_panel(State& state);
-/// "azimuth 114.27°, height 65.13°": where the sun is seen from the DEM's middle.
+/// "azimuth 114.27°, height 65.13°": the sun's position at the DEM's centre.
 std::string sun_figures(const State& state);
 
 void effects_panel(State& state);
 void menu_bar(State& state);
-/// Those that are about the scene, one below the other.
-/// @param size_px    of the window; likewise below
-/// @param px_a_unit  of what is made for usual letters; likewise
+/// The panels of the scene, in one column.
+/// @param size_px    of the window
+/// @param px_a_unit  pixels per unit of a layout for the default text size
 void side_panel(State& state, glm::vec2 size_px, double px_a_unit);
-/// What it covers where it stands at a side of the window; none where it covers most of it.
+/// The part of the window that it covers at a side; none if it covers more than half.
 scene::Insets side_panel_insets(const State& state, glm::vec2 size_px, double px_a_unit);
 /// The ground under the cursor, at the lower edge.
 void status_line(const State& state, bool is_drawing);
 /// While no scene is open.
-/// @param can_give_up  there was another one before
+/// @param can_give_up  another scene was open before
 void waiting_text(const State& state, bool has_failed, bool can_give_up);
-/// State::message, at the upper edge, also where there are no panels.
+/// State::message, at the upper edge, also if panels are hidden.
 void message_box(State& state, glm::vec2 size_px, double px_a_unit);
 void point_panel(State& state);
 void overlay_panel(State& state);
-/// "sun hours 5.43 h": what lies on the ground there; empty: nothing that is known.
+/// "sun hours 5.43 h": the overlay's value at a place; empty: unknown.
 std::string overlay_words(const OverlayShown& overlay, const geo::Geodetic& place);
 
-/// The sun's way of the day over the picture, with its hours; what the ground hides is faint.
-/// @param picture  that is shown, in whose pixels the ground is looked up
+/// The sun path of the day with its hours; parts behind the ground are faint.
+/// @param picture  the displayed image; its depths give the ground
 /// @param size_px  of the window
 void draw_sun_path(const State& state, const Picture& picture, glm::vec2 size_px);
-/// The moment whose sun is nearest to a place in the window; none where no part of the way is near.
+/// The time whose sun is nearest to a place in the window; none if the sun path is not near.
 std::optional<sun::Instant> moment_at(const State& state, const Picture& picture, glm::vec2 size_px,
                                       glm::vec2 at_px);
 

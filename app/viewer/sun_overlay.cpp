@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "viewer/export.h"
 #include "viewer/sun_model.h"
-#include "viewer/take_away.h"
 
 namespace relevo::viewer {
 namespace {

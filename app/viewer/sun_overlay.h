@@ -16,55 +16,55 @@
 #include "viewer/document.h"
 #include "viewer/latest_work.h"
 
-/// Figures of the sun that lie on the ground, worked out while one looks.
+/// Sun rasters as overlays, computed in the background.
 namespace relevo::viewer {
 
-/// What is to lie on the ground.
+/// A requested overlay.
 struct OverlayWanted {
     std::shared_ptr<const session::LoadedDem> dem;
     std::vector<std::string> dems;  ///< its files
-    dem::LoadOptions options;       ///< how they are read
+    dem::LoadOptions options;       ///< options of reading them
     session::SunRasterWanted raster;
     std::optional<scene::Overlay> file;  ///< instead of `raster`
     std::string title;                   ///< of the legend
     double opacity = 1;
 };
 
-/// The figures of a choice for the shown moment.
+/// The raster of an overlay kind for the displayed time.
 /// @param utc, zone  as Document
 session::SunRasterWanted raster_of(OverlayKind kind, sun::Instant utc, const sun::Zone& zone,
                                    const std::string& refraction);
 /// "Sun hours, 21 Dec 2026".
 std::string title_of(OverlayKind kind, const session::SunRasterWanted& raster);
-/// Whether the figures are of one DEM and the same.
+/// Whether both request the same values of the same DEM. Opacity may differ.
 bool same_figures(const OverlayWanted& a, const OverlayWanted& b);
 
-/// What lies on the ground.
+/// A displayed overlay.
 struct OverlayShown {
     OverlayWanted of;
-    session::Overlay overlay;                          ///< without colours where there is an error
+    session::Overlay overlay;                          ///< without colours if there is an error
     std::shared_ptr<const session::SunRaster> raster;  ///< null: of a file
     std::optional<dem::Grid> grid;                     ///< of the raster's values
-    double every = 1;                                  ///< posts from one figure to the next
-    std::string error;                                 ///< why there is none
+    double every = 1;                                  ///< posts between values
+    std::string error;                                 ///< why there is no overlay
 
-    /// Whether each post of the DEM has its figure.
+    /// Whether every post of the DEM has a value.
     bool is_whole() const { return raster && every == 1; }
-    /// Of the nearest post that has one; NaN in holes, beyond the DEM, and of files.
+    /// The value of the nearest post; NaN in voids, outside the DEM, and for overlays of files.
     double value_at(const geo::Geodetic& place) const;
 };
 
-/// Works it out on a thread of its own: first for some posts, then for all, or for as many as the
-/// window has in memory. What was begun for other figures is given up.
-/// An answer stays until there are other figures of the same DEM.
+/// Computes overlays on a thread of its own: first from some posts, then from all that are in
+/// memory. Cancels the computation for an older request. A stale answer stays until there is a new
+/// one for the same DEM.
 class OverlayWork : public LatestWork<OverlayWanted, OverlayShown> {
   public:
-    /// @param on_change  called on that thread whenever there is more to be had
+    /// @param on_change  called on that thread after each answer
     explicit OverlayWork(std::function<void()> on_change);
-    /// Waits until the work in hand is given up, which takes some milliseconds.
+    /// Waits some milliseconds until the computation is cancelled.
     ~OverlayWork() override;
 
-    /// How much of it has been done, 0 to 1.
+    /// From 0 to 1.
     double progress() const { return progress_; }
 
   private:
@@ -82,22 +82,22 @@ class OverlayWork : public LatestWork<OverlayWanted, OverlayShown> {
     std::chrono::steady_clock::time_point told_at_;
 };
 
-/// Writes what `relevo sun` writes, of every post, into the working folder under a free name.
+/// Writes the raster of all posts, as `relevo sun` does, to the working folder under a free name.
 class OverlaySave {
   public:
-    /// @param whole      the figures of all posts; null: they are worked out part by part
+    /// @param whole      the raster of all posts; null: it is computed in parts
     /// @param on_change  called on its thread, also at the end
     OverlaySave(OverlayWanted wanted, std::shared_ptr<const session::SunRaster> whole,
                 std::function<void()> on_change);
     OverlaySave(const OverlaySave&) = delete;
     OverlaySave& operator=(const OverlaySave&) = delete;
-    /// Gives up; no part of the file is left.
+    /// Cancels. Leaves no partial file.
     ~OverlaySave();
 
     const OverlayWanted& wanted() const { return wanted_; }
     bool is_done() const { return is_done_; }
     double progress() const { return progress_; }
-    /// The file's name, once it is done. @throws Error why there is none
+    /// The file's name. Requires is_done(). @throws Error why there is no file
     std::string result() const;
 
   private:

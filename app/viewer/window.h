@@ -69,7 +69,7 @@ class Window {
     /// The line's place, as a share of the window's width.
     float line() const;
     void set_line(float share);
-    /// Draws the picture, and over it what `panels` draws with ImGui.
+    /// Draws the picture, and over it what `panels` draws with ImGui. @throws gl::DeviceLost
     void draw(const std::function<void()>& panels);
 
     std::vector<KeyPress> take_keys();

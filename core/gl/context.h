@@ -99,6 +99,8 @@ class Context {
     /// Whether both are of one EGL device, so that they can share.
     bool is_on_device_of(const Context& other) const;
 
+    /// @throws DeviceLost where the driver says so
+    void check_lost();
     /// Throws what went wrong since the last call: what a debug context has collected, else the
     /// name of the first error.
     /// @throws DeviceLost; Error (Failed) `gl: message`

@@ -20,15 +20,16 @@
 #include "sun/seasons.h"
 #include "support/support.h"
 #include "viewer/document.h"
+#include "viewer/export.h"
 #include "viewer/file_watch.h"
 #include "viewer/folder_watch.h"
 #include "viewer/fonts.h"
+#include "viewer/history.h"
 #include "viewer/navigation.h"
 #include "viewer/point_light.h"
 #include "viewer/settings.h"
 #include "viewer/state.h"
 #include "viewer/sun_model.h"
-#include "viewer/take_away.h"
 #include "window/display.h"
 
 namespace relevo::viewer {

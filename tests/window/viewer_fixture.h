@@ -41,11 +41,12 @@ class Viewer : public testing::Test {
   protected:
     /// Starts the program, which remembers nothing outside of the test's folder.
     void start(const std::vector<std::string>& arguments) {
-        program_.emplace(display_, test::build_dir() / "bin/relevo", arguments,
-                         std::vector<std::string>{
-                             "XDG_CONFIG_HOME=" + (folder_ / "config").string(),
-                             "XDG_STATE_HOME=" + (folder_ / "state").string(),
-                             "PATH=" + (folder_ / "bin").string() + ":" + std::getenv("PATH")},
+        std::vector<std::string> environment{
+            "XDG_CONFIG_HOME=" + (folder_ / "config").string(),
+            "XDG_STATE_HOME=" + (folder_ / "state").string(),
+            "PATH=" + (folder_ / "bin").string() + ":" + std::getenv("PATH")};
+        environment.insert(environment.end(), environment_.begin(), environment_.end());
+        program_.emplace(display_, test::build_dir() / "bin/relevo", arguments, environment,
                          folder_);
     }
     /// Opens the window in a folder of its own, without panels over the picture.
@@ -141,6 +142,7 @@ class Viewer : public testing::Test {
 
     const std::filesystem::path folder_ = test::scratch_dir("viewer");
     const std::filesystem::path plugins_ = folder_ / "plugins";
+    std::vector<std::string> environment_;  // of the program: "NAME=value"
     const std::string dem_ = (test::source_dir() / "data/dem/jacksboro.tif").string();
     test::Display display_{1280, 800};
     std::optional<test::WindowedProgram> program_;

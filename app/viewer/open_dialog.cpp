@@ -1,6 +1,10 @@
-#include "viewer/open_panel.h"
+#include "viewer/open_dialog.h"
 
 #include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <system_error>
 #include <utility>
 
@@ -27,9 +31,59 @@ std::vector<std::string> folders_in(const fs::path& folder) {
     return names;
 }
 
+bool is_installed(const std::string& program) {
+    const char* const path = std::getenv("PATH");
+    std::error_code ignored;
+    return std::ranges::any_of(split(path ? path : "", ':'), [&](const std::string& folder) {
+        return fs::is_regular_file(fs::path(folder) / program, ignored);
+    });
+}
+
+std::vector<std::string> lines_of(const char* command) {
+    std::vector<std::string> lines;
+    std::FILE* const pipe = popen(command, "r");
+    if (!pipe) return lines;
+    std::string text;
+    std::array<char, 4096> piece{};
+    while (const std::size_t count = std::fread(piece.data(), 1, piece.size(), pipe))
+        text.append(piece.data(), count);
+    pclose(pipe);
+    for (const std::string& line : split(text, '\n'))
+        if (!line.empty()) lines.push_back(line);
+    return lines;
+}
+
+/// Opens the dialog of the desktop; its files, if any, come from another thread.
+/// @returns none: neither zenity nor kdialog is installed
+std::optional<std::future<std::vector<std::string>>> ask_desktop() {
+    const char* command = nullptr;
+    if (is_installed("zenity"))
+        command =
+            "zenity --file-selection --multiple --separator='\n' --title='Open a DEM' "
+            "2>/dev/null";
+    else if (is_installed("kdialog"))
+        command = "kdialog --getopenfilename . --multiple --separate-output 2>/dev/null";
+    if (!command) return std::nullopt;
+    return std::async(std::launch::async, [command] { return lines_of(command); });
+}
+
 }  // namespace
 
-void OpenPanel::open(const std::string& dem) {
+void OpenDialog::open(const std::string& dem) {
+    if (!desktop_) desktop_ = ask_desktop();
+    if (!desktop_) open_panel(dem);
+}
+
+std::vector<std::string> OpenDialog::take() {
+    std::vector<std::string> files = std::exchange(chosen_, {});
+    if (!desktop_ || desktop_->wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+        return files;
+    std::vector<std::string> from_desktop = desktop_->get();
+    desktop_.reset();
+    return files.empty() ? from_desktop : files;
+}
+
+void OpenDialog::open_panel(const std::string& dem) {
     std::error_code ignored;
     const fs::path file = dem.empty() ? fs::path() : fs::path(absolute_names({dem}).front());
     const bool is_file = fs::is_regular_file(file, ignored);
@@ -37,30 +91,30 @@ void OpenPanel::open(const std::string& dem) {
     is_open_ = true;
 }
 
-void OpenPanel::go_to(const fs::path& folder) {
+void OpenDialog::go_to(const fs::path& folder) {
     folder_ = folder.lexically_normal();
     if (!folder_.has_filename() && folder_.has_relative_path()) folder_ = folder_.parent_path();
     folders_ = folders_in(folder_);
     dems_ = dems_in(folder_);
     name_ = folder_.string();
     if (!name_.ends_with('/')) name_ += '/';
-    is_written_to_ = true;
+    takes_focus_ = true;
     ++visits_;
 }
 
-void OpenPanel::choose(const fs::path& file) {
-    chosen_ = file.string();
+void OpenDialog::choose(const fs::path& file) {
+    chosen_ = {file.string()};
     is_open_ = false;
 }
 
-void OpenPanel::enter() {
+void OpenDialog::enter() {
     if (name_.empty()) return;
     std::error_code ignored;
-    const fs::path named = folder_ / name_;  // or what is absolute
+    const fs::path named = folder_ / name_;  // the name may be absolute
     fs::is_directory(named, ignored) ? go_to(named) : choose(named);
 }
 
-void OpenPanel::list() {
+void OpenDialog::list() {
     if (ImGui::Selectable("..")) return go_to(folder_.parent_path());
     for (const std::string& name : folders_)
         if (ImGui::Selectable((printable(name) + "/").c_str())) return go_to(folder_ / name);
@@ -69,7 +123,7 @@ void OpenPanel::list() {
     if (dems_.empty()) ImGui::TextDisabled("no DEM in this folder");
 }
 
-void OpenPanel::draw(glm::vec2 size_px) {
+void OpenDialog::draw(glm::vec2 size_px) {
     if (!is_open_) return;
     const float line = ImGui::GetFrameHeight();
     ImGui::SetNextWindowPos({size_px.x / 2, size_px.y / 2}, ImGuiCond_Appearing, {0.5f, 0.5f});
@@ -77,7 +131,7 @@ void OpenPanel::draw(glm::vec2 size_px) {
         {std::min(size_px.x - 20, 26 * line), std::min(size_px.y - 20, 20 * line)},
         ImGuiCond_Appearing);
     if (ImGui::Begin("Open a DEM", &is_open_, ImGuiWindowFlags_NoCollapse)) {
-        if (std::exchange(is_written_to_, false)) ImGui::SetKeyboardFocusHere();
+        if (std::exchange(takes_focus_, false)) ImGui::SetKeyboardFocusHere();
         ImGui::SetNextItemWidth(-4 * line);
         ImGui::PushID(visits_);
         const bool is_done =

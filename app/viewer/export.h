@@ -13,37 +13,38 @@
 #include "viewer/scene_thread.h"
 #include "viewer/sun_model.h"
 
-/// What is taken out of the window into files and the clipboard.
+/// Exports from the window to files.
 namespace relevo::viewer {
 
-/// The document as `relevo capture` takes it from any folder.
+/// The document as `relevo capture` reads it from any working folder.
 scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 size_px);
 
-/// Writes to a name in the working folder that no file has, such as relevo-1.png. @returns it
-/// @param write  which finishes the file
+/// Writes a file to the working folder under a free name such as relevo-1.png.
+/// @param write  finishes the file
+/// @returns the name
 std::string write_under_free_name(const std::string& ending,
                                   const std::function<void(OutputFile&)>& write);
 
-/// A name for a picture that the working folder does not have: "picture.png", "picture-2.png" ...
+/// A free name for a picture in the working folder: "picture.png", "picture-2.png" ...
 std::string free_picture_name();
-/// Writes the scene into the working folder under a name that is free. @returns what to tell of it
-/// @throws Error as OutputFile; likewise below
+/// Writes the scene to the working folder under a free name.
+/// @returns the message for the user
+/// @throws Error as OutputFile
 std::string save_scene(const scene::Scene& scene);
-/// Likewise a job of the scene at every hour of a day, from sunrise to sunset where the sun rises
-/// and sets on it.
+/// Writes a job that renders the scene at every hour of a day: from sunrise to sunset if the day
+/// has both. Returns and throws as save_scene().
 std::string save_job(const scene::Scene& scene, const SunDay& day, const sun::Zone& zone);
 
-/// What colours of a picture mean, and the time of the sun that they show where it is not the
-/// scene's.
+/// The legends of a picture, and the time of its overlay if it is not the scene's.
 struct Coloured {
     std::vector<chart::Legend> legends;
     std::optional<session::OverlayTime> overlay_time;
 };
 
-/// Saves a picture with the scene's stamps and the command that takes it.
+/// Writes a picture with the scene's stamps. Its metadata have the command that renders it.
 /// @param scene   of the picture, with an eye
 /// @param opened  its DEM
-/// @returns as save_job()
+/// Returns and throws as save_scene(); also throws Error if a pixel is not a number.
 std::string save_picture(const Picture& picture, const scene::Scene& scene, const Opened& opened,
                          const Coloured& coloured);
 

@@ -1,4 +1,4 @@
-#include "viewer/take_away.h"
+#include "viewer/export.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -19,6 +19,7 @@
 #include "viewer/settings.h"
 
 namespace relevo::viewer {
+
 std::string write_under_free_name(const std::string& ending,
                                   const std::function<void(OutputFile&)>& write) {
     for (int n = 1;; ++n) {
@@ -49,7 +50,7 @@ std::string free_picture_name() {
 
 namespace {
 
-/// @returns its name
+/// @returns the file's name
 std::string save_json(const std::string& text) {
     return write_under_free_name("json", [&](OutputFile& file) {
         file.write(text);
@@ -69,8 +70,8 @@ scene::Scene whole_scene(const Document& document, const Land& land, glm::ivec2 
 
 namespace {
 
-/// What a command that reads a file of this scene needs besides: Relevo uses plugin folders and
-/// names on the net only where the command line allows them.
+/// The option that a command for this scene's file needs: Relevo uses plugin folders and remote
+/// files only if the command line allows them.
 std::string trust_option(const scene::Scene& scene) {
     const bool asks_net = std::ranges::any_of(scene.dems, dem::is_remote) ||
                           (scene.overlay && dem::is_remote(scene.overlay->file));
@@ -126,12 +127,14 @@ std::string save_picture(const Picture& picture, const scene::Scene& scene, cons
     const geo::LocalFrame& frame = opened.ground.frame;
     session::Stamped stamped{scene, *opened.dem, frame, picture.camera};
     if (session::needs_depths(scene.stamps)) stamped.depths_m = picture.read_depths_m();
-    const std::optional<session::OverlayTime>& laid = coloured.overlay_time;
+    const std::optional<session::OverlayTime>& overlay_time = coloured.overlay_time;
     if (scene.stamps.date)
-        stamped.clock = laid ? session::clock_text(*laid, scene.moment.zone, frame.origin())
-                             : session::clock_text(picture.utc, scene.moment.zone, frame.origin());
+        stamped.clock = overlay_time
+                            ? session::clock_text(*overlay_time, scene.moment.zone, frame.origin())
+                            : session::clock_text(picture.utc, scene.moment.zone, frame.origin());
     if (scene.stamps.sun)
-        stamped.sun = laid ? session::sun_text(*laid) : sun_of(picture, scene, opened.ground);
+        stamped.sun =
+            overlay_time ? session::sun_text(*overlay_time) : sun_of(picture, scene, opened.ground);
     const std::vector<std::string> notes =
         session::add_stamps(std::move(stamped), coloured.legends, image);
     const image::Metadata metadata{{"Software", "Relevo"},
@@ -141,10 +144,10 @@ std::string save_picture(const Picture& picture, const scene::Scene& scene, cons
         image::write(file, image, metadata);
         file.finish();
     });
-    std::string told = name + ": picture saved";
+    std::string message = name + ": picture saved";
     for (const std::string& note : notes)
-        told += "; " + note;
-    return told;
+        message += "; " + note;
+    return message;
 }
 
 }  // namespace relevo::viewer

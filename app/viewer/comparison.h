@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "viewer/discard.h"
+#include "viewer/messages.h"
+#include "viewer/scene_thread.h"
+#include "viewer/window.h"
+
+namespace relevo::viewer {
+
+/// A second image of the scene, with earlier effects, on the left of the window's dividing line.
+class Comparison {
+  public:
+    Comparison(const SceneDevice& device, Window& window, Messages& messages, Discard& discard);
+
+    /// @param opened   of `scene`; its DEM is not read again
+    /// @param overlay  colours on the ground; null: none
+    void start(const scene::Scene& scene, const Opened& opened, const Wanted& wanted,
+               std::shared_ptr<const render::Drape> overlay);
+    void stop();
+    /// The scene's thread; null: there is no comparison.
+    SceneThread* thread() const { return thread_.get(); }
+    /// Passes a new image to the window. Stops if the scene cannot be drawn.
+    /// @returns whether there was a new image
+    bool poll();
+
+  private:
+    SceneDevice device_;
+    Window& window_;
+    Messages& messages_;
+    Discard& discard_;
+    std::unique_ptr<SceneThread> thread_;
+    std::shared_ptr<const Picture> image_;
+};
+
+}  // namespace relevo::viewer

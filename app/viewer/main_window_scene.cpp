@@ -1,0 +1,229 @@
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "sun/zone_of_place.h"
+#include "viewer/main_window.h"
+
+namespace relevo::viewer {
+namespace {
+
+/// The instant at which clocks of the zone `to` show what clocks of `from` show at `utc`.
+sun::Instant same_local_time(sun::Instant utc, const sun::Zone& from, const sun::Zone& to) {
+    return from.name() == to.name() ? utc : to.resolve(from.local(utc).wall).utc;
+}
+
+bool same(const Wanted& a, const Wanted& b) {
+    return a.keep_above_m == b.keep_above_m && a.utc == b.utc && a.width_px == b.width_px &&
+           a.height_px == b.height_px && a.moving == b.moving && a.sun_moving == b.sun_moving &&
+           a.view->heading_deg == b.view->heading_deg && a.view->pitch_deg == b.view->pitch_deg &&
+           a.view->fov_y_rad == b.view->fov_y_rad &&
+           a.view->eye->place.lat_rad == b.view->eye->place.lat_rad &&
+           a.view->eye->place.lon_rad == b.view->eye->place.lon_rad &&
+           a.view->eye->place.height_m == b.view->eye->place.height_m;
+}
+
+}  // namespace
+
+void MainWindow::open_requested_files() {
+    std::vector<std::string> files = window_->take_dropped_files();
+    if (std::vector<std::string> chosen = open_dialog_.take(); !chosen.empty())
+        files = std::move(chosen);
+    if (!state_.files_to_open.empty()) files = std::exchange(state_.files_to_open, {});
+    const std::optional<RecentDem> recent = std::exchange(state_.recent_to_open, std::nullopt);
+    if (recent) files = recent->files;
+    if (files.empty() || !opening_->has_last_good()) return;
+    // Options of the last DEM do not apply, except for the window's limit of memory.
+    scene::Scene scene = state_.document.scene;
+    const std::int64_t max_posts = scene.dem.max_posts;
+    scene.dems = std::move(files);
+    scene.view = {};
+    scene.overlay.reset();
+    scene.dem = recent ? recent->options : dem::LoadOptions();
+    scene.dem.max_posts = max_posts;
+    if (recent) scene.holes = recent->holes;
+    state_.document.overlay = {};
+    state_.message.clear();
+    opening_->open(std::move(scene));
+    begin_scene();
+}
+
+void MainWindow::reload_effects() {
+    state_.set_effects(state_.document.scene.effects);
+    state_.take_effects(/*is_step=*/false);
+    pacing_.need_frames(3);
+}
+
+void MainWindow::reload_dem() {
+    scene::Scene scene = state_.document.scene;
+    if (is_open()) scene.view = view_of(state_.document.pose, state_.land);
+    messages_.note("the DEM changed and was reloaded");
+    opening_->reload(std::move(scene));
+    begin_scene();
+}
+
+void MainWindow::begin_scene() {
+    state_.document.scene = opening_->scene();
+    point_->clear();
+    overlay_->clear();
+    state_.measurement = {};
+    state_.cursor.reset();
+    hand_->rest();
+    hand_->see(nullptr);
+    picture_ = nullptr;
+    wanted_.reset();
+    history_ = {};  // its poses are relative to the last DEM
+    stop_comparison();
+    pacing_.need_frames(3);
+    Wanted wanted;
+    wanted.width_px = window_->size_px().x;
+    wanted.height_px = window_->size_px().y;
+    wanted.insets = panel_insets();
+    opening_->thread().want(wanted);
+}
+
+void MainWindow::want_view() {
+    if (state_.sun_moves) pacing_.moved();
+    pacing_.update_rest();
+    const Wanted wanted = wanted_now();
+    if (!(wanted_ && same(*wanted_, wanted))) {
+        opening_->thread().want(wanted);
+        if (SceneThread* const compared = comparison_->thread()) compared->want(wanted);
+    }
+    wanted_ = wanted;
+}
+
+Wanted MainWindow::wanted_now() const {
+    const glm::ivec2 size = window_->size_px();
+    Wanted wanted;
+    wanted.view = view_of(state_.document.pose, state_.land);
+    wanted.keep_above_m = hand_->is_walking() ? kWalk_m : kClearance_m;
+    wanted.utc = state_.document.utc;
+    wanted.width_px = size.x;
+    wanted.height_px = size.y;
+    wanted.moving = !pacing_.is_at_rest();
+    wanted.sun_moving = wanted.moving && (state_.sun_moves || sun_moved_);
+    return wanted;
+}
+
+void MainWindow::poll_threads() {
+    if (opening_->has_failed() || !poll_opening()) return;
+    poll_images();
+    if (auto message = opening_->thread().take_message()) {
+        messages_.show(std::move(*message));
+        pacing_.need_frames(2);
+    }
+    if (point_->poll()) pacing_.need_frames(2);
+    if (is_open() && overlay_->poll_export()) pacing_.need_frames(3);
+}
+
+bool MainWindow::poll_opening() {
+    // State::land refers to this one until it refers to the next.
+    const std::shared_ptr<const Opened> before = opening_->opened();
+    const bool is_first = !opening_->has_last_good();
+    switch (opening_->poll()) {
+        case Opening::Event::None:
+            return true;
+        case Opening::Event::Opened:
+            start_scene(is_first);
+            return true;
+        case Opening::Event::Completed:
+            complete_scene(*before);
+            return true;
+        case Opening::Event::WentBack:
+            begin_scene();
+            return false;
+        case Opening::Event::Failed:
+            pacing_.need_frames(3);
+            return false;
+    }
+    return false;
+}
+
+void MainWindow::poll_images() {
+    if (const auto newer = opening_->thread().newer_than(picture_ ? picture_->number : 0)) {
+        picture_ = newer;
+        raise_eye();
+        hand_->see(picture_);
+        window_->take(*newer);
+        pacing_.new_image();
+    }
+    const bool compares = comparison_->thread() != nullptr;
+    if (comparison_->poll()) pacing_.new_image();
+    if (compares && !comparison_->thread()) state_.compare_is_wanted = false;
+}
+
+void MainWindow::stop_comparison() {
+    comparison_->stop();
+    state_.compare_is_wanted = false;
+}
+
+void MainWindow::start_scene(bool is_first) {
+    const Opened& opened = *opening_->opened();
+    const scene::Scene& scene = opened.scene;
+    use_dem();
+    Document& document = state_.document;
+    if (opened.legend) {  // until overlay_ has read the file
+        auto shown = std::make_shared<OverlayShown>();
+        shown->overlay.legend = *opened.legend;
+        state_.overlay = std::move(shown);
+    }
+    const sun::Zone zone_before = document.zone;
+    document.zone = sun::choose_zone(zone_, state_.centre).zone;
+    document.pose = pose_in(scene.view);
+    state_.set_utc(is_first ? opened.utc
+                            : same_local_time(document.utc, zone_before, document.zone));
+    history_.add(document);
+    window_->set_title(fmt::format("{} - Relevo", scene.dems.front()));
+    const std::vector<std::string> names = absolute_names(scene.dems);
+    state_.views = memory_.views(names);
+    try_or_log([&] { memory_.add_recent({names, scene.dem, scene.holes}); });
+    state_.recent = memory_.recent();
+}
+
+void MainWindow::complete_scene(const Opened& before) {
+    const Opened& opened = *opening_->opened();
+    Document& document = state_.document;
+    const bool is_unchanged = !history_.can_undo() && !history_.differs(document);
+    use_dem();
+    if (is_unchanged) {
+        document.pose = pose_in(opened.scene.view);
+        if (document.utc == before.utc) document.utc = opened.utc;
+        history_ = {};
+        history_.add(document);
+    }
+    state_.set_utc(document.utc);
+    point_->invalidate();
+    if (SceneThread* const compared = comparison_->thread()) compared->want_dem(opened.dem);
+}
+
+void MainWindow::use_dem() {
+    messages_.try_to([&] { state_.use_dem_of(*opening_->opened()); });
+    pacing_.need_frames(3);
+}
+
+void MainWindow::raise_eye() {
+    if (!is_open()) return;
+    state_.land.aim_m = picture_->aim_m;
+    constexpr double kSame_m = 0.005;
+    Pose& pose = state_.document.pose;
+    if (is_image_of_now() && distance(pose.eye_m, picture_->camera.eye_m) > kSame_m)
+        pose.eye_m = picture_->camera.eye_m;
+}
+
+bool MainWindow::is_image_of_now() const {
+    return picture_ && picture_->answers == opening_->thread().wants() && wanted_ &&
+           same(*wanted_, wanted_now());
+}
+
+bool MainWindow::is_image_complete() const {
+    return is_image_of_now() && picture_->sharp && overlay_->is_complete();
+}
+
+Pose MainWindow::pose_in(const scene::View& view) const {
+    const double aspect = static_cast<double>(size().x) / size().y;
+    return pose_of(opening_->opened()->camera(view, aspect, panel_insets()), state_.land);
+}
+
+}  // namespace relevo::viewer

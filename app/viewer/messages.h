@@ -1,0 +1,53 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "base/log.h"
+
+namespace relevo::viewer {
+
+/// Calls `act`. Logs an Error that it throws.
+template <typename Act>
+void try_or_log(const Act& act) {
+    try {
+        act();
+    } catch (const Error& error) {
+        log::warning(error.what());
+    }
+}
+
+/// The message at the window's upper edge. Notes expire; other messages stay until the user closes
+/// them.
+class Messages {
+  public:
+    /// @param shown  the text that panels draw; outlives this
+    explicit Messages(std::string& shown) : shown_(shown) {}
+
+    void show(std::string text) { shown_ = std::move(text); }
+    /// Shows a text for some seconds.
+    void note(std::string text);
+    /// Shows a text for some seconds and logs it.
+    void report(std::string text);
+    /// Calls `act`. Shows and logs an Error that it throws.
+    template <typename Act>
+    void try_to(const Act& act) {
+        try {
+            act();
+        } catch (const Error& error) {
+            show(error.what());
+            log::warning(error.what());
+        }
+    }
+    /// Removes an expired note. @returns whether the shown text changed
+    bool expire();
+
+  private:
+    std::string& shown_;
+    std::string note_;
+    std::chrono::steady_clock::time_point noted_at_;
+};
+
+}  // namespace relevo::viewer

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viewer/discard.h"
+#include "viewer/export.h"
+#include "viewer/messages.h"
+#include "viewer/state.h"
+#include "viewer/sun_overlay.h"
+
+namespace relevo::viewer {
+
+/// Keeps State::overlay the raster that the document asks for, and exports it.
+class OverlayController {
+  public:
+    /// @param state, messages, discard  outlive this
+    OverlayController(State& state, Messages& messages, Discard& discard);
+
+    /// Removes the overlay before another DEM is opened. A running export continues.
+    void clear();
+    /// Requests the overlay that the document asks for and passes new results to the scene's
+    /// thread.
+    /// @returns whether anything changed that panels show
+    bool update(const Opened& opened, SceneThread& thread);
+    /// Whether State::overlay is what the document asks for, from all posts.
+    bool is_complete() const;
+
+    /// Writes the overlay to a file, as soon as it is complete if the whole DEM is in memory.
+    void start_export();
+    void cancel_export();
+    /// Reports a finished export. @returns whether there was one
+    bool poll_export();
+
+    /// Adds the overlay to a scene for export if a file has it.
+    void add_to(scene::Scene& scene) const;
+    /// The part of a message that reports an exported scene without its overlay; else empty.
+    std::string missing_note() const;
+    /// The legends of an image with the overlay on it.
+    Coloured coloured(const Picture& image) const;
+
+  private:
+    struct ExportedOverlay {
+        OverlayWanted of;
+        std::string file;        ///< absolute
+        std::string shown_name;  ///< for panels
+    };
+
+    bool waits_for_posts() const;
+    /// Whether the document asks for an overlay that can be computed now.
+    bool is_wanted() const;
+    bool is_displayed() const;
+    OverlayWanted wanted(const Opened& opened) const;
+    bool request(const Opened& opened);
+    /// Null: there is no file of the requested overlay.
+    const ExportedOverlay* exported() const;
+
+    State& state_;
+    Messages& messages_;
+    Discard& discard_;
+    OverlayWork work_;
+    std::optional<OverlayWanted> requested_;
+    std::unique_ptr<OverlaySave> export_;
+    bool exports_when_complete_ = false;
+    std::vector<ExportedOverlay> exported_;
+};
+
+}  // namespace relevo::viewer
