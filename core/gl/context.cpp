@@ -128,7 +128,7 @@ struct Context::Impl {
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLContext context = EGL_NO_CONTEXT;
     std::function<void()> make_current;  // of others' contexts: they destroy it
-    bool reports_loss = false;           // of others' contexts
+    bool reports_loss = false;
     DeviceInfo info;
     std::vector<std::string> errors;
 
@@ -179,10 +179,13 @@ struct Context::Impl {
             return list;
         };
         // Contexts that share must agree on whether a loss of the device is reported.
-        if (shared == EGL_NO_CONTEXT || reports_loss)
-            context = eglCreateContext(display, config, shared, attributes(true).data());
-        if (context == EGL_NO_CONTEXT && (shared == EGL_NO_CONTEXT || !reports_loss))
+        const bool alone = shared == EGL_NO_CONTEXT;
+        if (alone) reports_loss = true;
+        context = eglCreateContext(display, config, shared, attributes(reports_loss).data());
+        if (context == EGL_NO_CONTEXT && alone) {
+            reports_loss = false;
             context = eglCreateContext(display, config, shared, attributes(false).data());
+        }
         if (context == EGL_NO_CONTEXT)
             return fmt::format("has no OpenGL 4.5 core, {}", egl_error());
         if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))

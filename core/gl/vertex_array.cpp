@@ -16,10 +16,16 @@ VertexArray::VertexArray() {
 
 void VertexArray::attributes(int binding, const Buffer& buffer, int first_location, int count,
                              int components, bool per_instance) {
+    attributes(binding, first_location, count, components, per_instance);
+    feed(binding, {buffer.name(), 0, buffer.size()},
+         count * components * static_cast<int>(sizeof(float)));
+}
+
+void VertexArray::attributes(int binding, int first_location, int count, int components,
+                             bool per_instance) {
     const GLuint name = handle_.name();
     const auto slot = static_cast<GLuint>(binding);
     const int bytes = components * static_cast<int>(sizeof(float));
-    glVertexArrayVertexBuffer(name, slot, buffer.name(), 0, count * bytes);
     glVertexArrayBindingDivisor(name, slot, per_instance ? 1 : 0);
     for (int i = 0; i < count; ++i) {
         const auto location = static_cast<GLuint>(first_location + i);
@@ -30,8 +36,22 @@ void VertexArray::attributes(int binding, const Buffer& buffer, int first_locati
     }
 }
 
+void VertexArray::feed(int binding, const RingBuffer::Place& place, int stride) const {
+    glVertexArrayVertexBuffer(handle_.name(), static_cast<GLuint>(binding), place.buffer,
+                              static_cast<GLintptr>(place.offset), stride);
+}
+
 void VertexArray::indices(const Buffer& buffer) {
     glVertexArrayElementBuffer(handle_.name(), buffer.name());
+}
+
+void VertexArray::draw(const RingBuffer::Place& draws) const {
+    static_assert(sizeof(Draw) == 5 * sizeof(std::uint32_t));
+    glBindVertexArray(handle_.name());
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draws.buffer);
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT,
+                                reinterpret_cast<const void*>(draws.offset),
+                                static_cast<GLsizei>(draws.size / sizeof(Draw)), 0);
 }
 
 void VertexArray::bind() const {

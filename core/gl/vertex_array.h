@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "gl/buffer.h"
 #include "gl/handle.h"
+#include "gl/ring_buffer.h"
 
 namespace relevo::gl {
 
@@ -16,7 +18,20 @@ class VertexArray {
     /// inputs interleaved. @param per_instance  one step an instance instead of one a vertex
     void attributes(int binding, const Buffer& buffer, int first_location, int count,
                     int components, bool per_instance);
+    /// The same from memory that feed() names.
+    void attributes(int binding, int first_location, int count, int components, bool per_instance);
+    /// @param stride  from one vertex or instance to the next [bytes]
+    void feed(int binding, const RingBuffer::Place& place, int stride) const;
     void indices(const Buffer& buffer);  ///< 16-bit
+
+    /// One draw of triangles, as glDrawElementsIndirect has it.
+    struct Draw {
+        std::uint32_t indices = 0, instances = 1, first_index = 0;
+        std::int32_t first_vertex = 0;
+        std::uint32_t first_instance = 0;
+    };
+    /// Draws all with one command. @param draws  written to a ring with an alignment of 4
+    void draw(const RingBuffer::Place& draws) const;
     void bind() const;
 
   private:

@@ -113,7 +113,9 @@ struct Renderer::Impl : FrameServices {
     StitchedFrames frames;
     WatchedPrograms programs;
     EffectTextures effect_textures;
-    gl::Buffer frame_block, params_block;
+    gl::RingBuffer blocks{"frame blocks"};
+    gl::RingBuffer::Place frame_block;  // of the last upload
+    gl::Buffer params_block;
     std::vector<effect::DisplaceSpec> displaces;
     shader::ParamStore values;  // as given; native modules write host parameters
     double exposure = 1;        // of the last frame
@@ -136,7 +138,6 @@ struct Renderer::Impl : FrameServices {
           frames(stitch(effects, c.info(), o)),
           programs(frames, shared.programs, effects.stitch.snippets),
           effect_textures(effects.textures, anisotropy, shared.textures),
-          frame_block(sizeof(FrameBlock), "frame block"),
           displaces(effects.displaces),
           outside(o.outside && shows_block()),
           runner(
@@ -179,7 +180,8 @@ struct Renderer::Impl : FrameServices {
     }
 
     void upload_blocks(const FrameBlock& block) override {
-        frame_block.write(std::as_bytes(std::span(&block, 1)));
+        frame_block =
+            blocks.write(std::as_bytes(std::span(&block, 1)), gl::RingBuffer::uniform_alignment());
         frame_block.bind_uniform(kFrameBinding);
         if (params_block.size() > 0) params_block.bind_uniform(kParamsBinding);
     }

@@ -78,8 +78,6 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       drawn_m_(&heightfield.height_m),
       drawn_grid_(&heightfield.grid),
       reduction_(finer ? heightfield.reduction : 1),
-      grid_vertices_(gl::Buffer::of<float>(tile_grid_vertices(), "terrain grid")),
-      grid_indices_(gl::Buffer::of<std::uint16_t>(tile_grid_indices(), "terrain grid indices")),
       sides_(pyramid_) {
     options_.sky = {};  // the light has it
     const glm::dvec2 spacing_m = grid_.post_spacing_m();
@@ -102,10 +100,6 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
     page_table_ =
         gl::Texture(gl::TextureKind::D2, gl::Format::RG16UI, {across, across, 1}, 0, "page table");
     page_table_.set_sampling(gl::Filter::Nearest, gl::Wrap::Clamp);
-
-    vertex_array_.emplace();
-    vertex_array_->attributes(0, grid_vertices_, 0, 1, 2, false);
-    vertex_array_->indices(grid_indices_);
 }
 
 void Terrain::displace(const Displacement& displacement) {
@@ -380,8 +374,8 @@ void Terrain::write_page_table(const std::vector<TileKey>* only) {
     }
 }
 
-Terrain::Instance Terrain::instance_of(const TileSelection::Tile& tile,
-                                       const glm::dvec3& origin_m) {
+TileMesh::Instance Terrain::instance_of(const TileSelection::Tile& tile,
+                                        const glm::dvec3& origin_m) {
     const auto with = [](const glm::dvec3& v, double w) { return glm::vec4(glm::vec3(v), w); };
     const TileKey& key = tile.draw.key;
     const PatchNet& net = tree_.net(key);
@@ -404,86 +398,21 @@ Terrain::Instance Terrain::instance_of(const TileSelection::Tile& tile,
             with(net.vertical[2], 0)};
 }
 
-void Terrain::draw_sides(const TileSelection& selection, const glm::dvec3& origin_m) {
-    std::vector<Instance> instances;
-    std::vector<glm::vec4> vertices;
-    std::vector<std::uint16_t> indices;
-    struct Batch {
-        std::size_t first_index, indices;
-        int first_vertex;
-    };
-    std::vector<Batch> batches;  // an instance each
-    for (const TileSelection::Tile& tile : selection.tiles_) {
-        const auto first_vertex = static_cast<int>(vertices.size()) / Sides::kVectors;
-        const std::size_t first = indices.size();
-        sides_.add(tile.draw.key, tile.draw.quadrants, vertices, indices);
-        if (indices.size() == first) continue;
-        batches.push_back({first, indices.size() - first, first_vertex});
-        instances.push_back(instance_of(tile, origin_m));
-    }
-    if (batches.empty()) return;
-    const auto vertex_bytes = std::as_bytes(std::span(vertices));
-    const auto index_bytes = std::as_bytes(std::span(indices));
-    const auto instance_bytes = std::as_bytes(std::span(instances));
-    if (!side_array_ || side_vertices_.size() < vertex_bytes.size() ||
-        side_indices_.size() < index_bytes.size() ||
-        side_instances_.size() < instance_bytes.size()) {
-        side_vertices_ = gl::Buffer(2 * vertex_bytes.size(), "terrain sides");
-        side_indices_ = gl::Buffer(2 * index_bytes.size(), "terrain sides indices");
-        side_instances_ = gl::Buffer(2 * instance_bytes.size(), "terrain sides' tiles");
-        side_array_.emplace();
-        side_array_->attributes(0, side_vertices_, 1 + kInstanceVectors, Sides::kVectors, 4, false);
-        side_array_->attributes(1, side_instances_, 1, kInstanceVectors, 4, true);
-        side_array_->indices(side_indices_);
-    }
-    side_vertices_.write(vertex_bytes);
-    side_indices_.write(index_bytes);
-    side_instances_.write(instance_bytes);
-    side_array_->bind();
-    for (std::size_t i = 0; i < batches.size(); ++i)
-        glDrawElementsInstancedBaseVertexBaseInstance(
-            GL_TRIANGLES, static_cast<GLsizei>(batches[i].indices), GL_UNSIGNED_SHORT,
-            reinterpret_cast<const void*>(sizeof(std::uint16_t) * batches[i].first_index), 1,
-            batches[i].first_vertex, static_cast<GLuint>(i));
+std::vector<TileMesh::Tile> Terrain::tiles_of(const TileSelection& selection,
+                                              const glm::dvec3& origin_m) {
+    std::vector<TileMesh::Tile> tiles;
+    tiles.reserve(selection.tiles_.size());
+    for (const TileSelection::Tile& tile : selection.tiles_)
+        tiles.push_back({tile.draw.key, tile.draw.quadrants, instance_of(tile, origin_m)});
+    return tiles;
 }
 
 void Terrain::draw(const TileSelection& selection, const glm::dvec3& origin_m) {
-    if (selection.tiles_.empty()) return;
-    // Whole tiles first, then each quadrant of those that are drawn in part.
-    std::vector<Instance> instances;
-    struct Batch {
-        int quadrant;  // -1: all
-        unsigned first, count;
-    };
-    std::vector<Batch> batches;
-    for (int quadrant = -1; quadrant < 4; ++quadrant) {
-        const auto first = static_cast<unsigned>(instances.size());
-        for (const TileSelection::Tile& tile : selection.tiles_) {
-            const bool whole = tile.draw.quadrants == 0xf;
-            if (whole != (quadrant < 0)) continue;
-            if (quadrant >= 0 && !(tile.draw.quadrants >> quadrant & 1)) continue;
-            instances.push_back(instance_of(tile, origin_m));
-        }
-        const auto count = static_cast<unsigned>(instances.size()) - first;
-        if (count > 0) batches.push_back({quadrant, first, count});
-    }
-    const auto bytes = std::as_bytes(std::span(instances));
-    if (instances_.size() < bytes.size()) {
-        instances_ = gl::Buffer(2 * bytes.size(), "terrain tiles");
-        vertex_array_->attributes(1, instances_, 1, kInstanceVectors, 4, true);
-    }
-    instances_.write(bytes);
-    vertex_array_->bind();
-    for (const Batch& batch : batches) {
-        const int indices = batch.quadrant < 0 ? 4 * kQuadrantIndices : kQuadrantIndices;
-        const std::size_t offset = batch.quadrant < 0
-                                       ? 0
-                                       : sizeof(std::uint16_t) * kQuadrantIndices *
-                                             static_cast<std::size_t>(batch.quadrant);
-        glDrawElementsInstancedBaseInstance(GL_TRIANGLES, indices, GL_UNSIGNED_SHORT,
-                                            reinterpret_cast<const void*>(offset),
-                                            static_cast<GLsizei>(batch.count), batch.first);
-    }
+    mesh_.draw(tiles_of(selection, origin_m));
+}
+
+void Terrain::draw_sides(const TileSelection& selection, const glm::dvec3& origin_m) {
+    mesh_.draw_sides(tiles_of(selection, origin_m), sides_);
 }
 
 }  // namespace relevo::render

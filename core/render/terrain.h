@@ -24,6 +24,7 @@
 #include "render/lod.h"
 #include "render/page_cache.h"
 #include "render/sides.h"
+#include "render/tile_mesh.h"
 #include "render/water_field.h"
 
 namespace relevo::render {
@@ -164,9 +165,9 @@ class Terrain {
     /// @param only  pages that are read; null: all that are there
     void write_page_table(const std::vector<TileKey>* only);
     std::vector<std::byte> make_normals(const TileKey& key) const;
-    static constexpr int kInstanceVectors = 12;  // inputs 1 to 12: net_0 ... up_v of lib/tile.glsl
-    using Instance = std::array<glm::vec4, kInstanceVectors>;
-    Instance instance_of(const TileSelection::Tile& tile, const glm::dvec3& origin_m);
+    TileMesh::Instance instance_of(const TileSelection::Tile& tile, const glm::dvec3& origin_m);
+    std::vector<TileMesh::Tile> tiles_of(const TileSelection& selection,
+                                         const glm::dvec3& origin_m);
 
     std::uint64_t serial_;
     TerrainOptions options_;
@@ -193,11 +194,8 @@ class Terrain {
     bool table_is_narrowed_ = false;  ///< to the pages of a picture that was drawn afresh
     bool complete_ = true;
     gl::Texture page_table_;
-    gl::Buffer grid_vertices_, grid_indices_, instances_;
-    std::optional<gl::VertexArray> vertex_array_;
+    TileMesh mesh_;
     Sides sides_;
-    gl::Buffer side_vertices_, side_indices_, side_instances_;
-    std::optional<gl::VertexArray> side_array_;
     // Last: threads make their pages from what stands above.
     PageCache heights_;  // of tiles
     PageCache surface_;  // of the picture: normals, and what else it reads by place

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <numeric>
+#include <set>
+#include <thread>
 #include <type_traits>
 
 #include <epoxy/gl.h>
@@ -10,6 +13,7 @@
 #include "gl/context.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
+#include "gl/ring_buffer.h"
 #include "gl/texture.h"
 #include "gl/vertex_array.h"
 #include "support/support.h"
@@ -46,6 +50,58 @@ TEST_F(GlObjects, BuffersKeepTheirBytes) {
     std::array<float, 3> back{};
     buffer.read(std::as_writable_bytes(std::span(back)));
     EXPECT_EQ(back, (std::array{1.0f, 5.0f, 3.0f}));
+}
+
+TEST_F(GlObjects, RingsKeepTheLastWritesAndReuseTheirMemory) {
+    RingBuffer ring("ring");
+    const std::size_t alignment = RingBuffer::uniform_alignment();
+    std::vector<std::pair<RingBuffer::Place, std::vector<int>>> last;
+    std::set<std::size_t> offsets;
+    std::set<unsigned> buffers;
+    for (int i = 0; i < 9000; ++i) {
+        // Of many sizes; one is larger than a part of the ring.
+        const std::size_t count = i == 1000 ? 9000 : 1 + static_cast<std::size_t>(i % 137);
+        std::vector<int> numbers(count, i);
+        const RingBuffer::Place place =
+            ring.write(std::as_bytes(std::span(numbers)), i % 2 == 0 ? alignment : sizeof(int));
+        EXPECT_EQ(place.offset % (i % 2 == 0 ? alignment : sizeof(int)), 0U);
+        if (!buffers.insert(place.buffer).second && last.size() >= 8) last.erase(last.begin());
+        std::erase_if(last, [&](const auto& each) { return each.first.buffer != place.buffer; });
+        last.emplace_back(place, std::move(numbers));
+        offsets.insert(place.offset);
+        for (const auto& [at, written] : last) {
+            std::vector<int> back(written.size());
+            glGetNamedBufferSubData(at.buffer, static_cast<GLintptr>(at.offset),
+                                    static_cast<GLsizeiptr>(at.size), back.data());
+            ASSERT_EQ(back, written) << i;
+        }
+    }
+    EXPECT_GT(buffers.size(), 1U);
+    EXPECT_LT(offsets.size(), 7000U);  // it has gone round
+}
+
+TEST_F(GlObjects, FencesPassWhenTheDeviceHasFinished) {
+    EXPECT_TRUE(Fence().has_passed());
+    const Fence fence = Fence::insert();
+    fence.wait_on_device();
+    EXPECT_TRUE(fence.wait(std::chrono::seconds(10)));
+    EXPECT_TRUE(fence.has_passed());
+}
+
+TEST_F(GlObjects, ContextsThatShareHaveEachOthersTextures) {
+    Texture texture(TextureKind::D2, Format::RG32F, {1, 1, 1}, 1, "shared");
+    const std::array<float, 2> texel{-12.5f, 4807.0f};
+    texture.write(0, {0, 0, 0}, {1, 1, 1}, std::as_bytes(std::span(texel)));
+    const Fence written = Fence::insert();
+    std::thread([&] {
+        const Context other = Context::sharing(context_);
+        EXPECT_EQ(other.info().renderer, context_.info().renderer);
+        EXPECT_TRUE(other.is_on_device_of(context_));
+        written.wait_on_device();
+        std::array<float, 2> back{};
+        texture.read(0, std::as_writable_bytes(std::span(back)));
+        EXPECT_EQ(back, texel);
+    }).join();
 }
 
 TEST_F(GlObjects, TexturesKeepTheirTexels) {
