@@ -5,10 +5,12 @@
 #include <string_view>
 #include <vector>
 
-namespace relevo::effect {
-
-struct Json;
+namespace relevo::json {
 class ObjectReader;
+struct Value;
+}  // namespace relevo::json
+
+namespace relevo::effect {
 
 /// Which effects are to be on, by their ids.
 struct Switches {
@@ -43,11 +45,11 @@ Setting parse_setting(std::string_view text);
 /// none if it is missing.
 /// @param folder  of the file
 /// @throws Error (BadInput) for a value that no parameter can have
-std::vector<Setting> read_settings(ObjectReader& object, const std::string& key,
+std::vector<Setting> read_settings(json::ObjectReader& object, const std::string& key,
                                    const std::string& folder);
 
 /// A value of a file as it would stand on the command line; nothing where no parameter can have it.
-std::optional<std::string> value_text(const Json& value);
+std::optional<std::string> value_text(const json::Value& value);
 
 /// Whether load_preset() takes it for a path.
 bool is_preset_file(const std::string& name_or_path);

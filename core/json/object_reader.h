@@ -1,39 +1,14 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
-/// JSON files that people write: values that know their line, and objects that refuse what they do
-/// not know.
-namespace relevo::effect {
+#include "json/value.h"
 
-struct Json {
-    enum class Kind { Null, Bool, Number, String, Array, Object };
-    Kind kind = Kind::Null;
-    bool boolean = false;
-    double number = 0;
-    std::string text;
-    std::vector<Json> items;                            ///< of an array
-    std::vector<std::pair<std::string, Json>> members;  ///< of an object, in the file's order
-    int line = 0;                                       ///< of a member: its key's
-};
-
-/// What a value is, for messages: `"text"`, `12`, `a list`, `an object`.
-std::string describe(const Json& value);
-
-/// Longer files are not written by people [bytes].
-inline constexpr std::size_t kMaxJsonBytes = std::size_t{1} << 20;
-
-/// @param who   as messages begin: "effect::load"
-/// @param file  as messages name it
-/// @throws Error (BadInput) `who: file:line: ...` for a mistake in the syntax, bytes that
-///         are no UTF-8, a key given twice, and a text of more than kMaxJsonBytes
-Json parse_json(std::string_view who, std::string_view file, std::string_view text);
+namespace relevo::json {
 
 /// Takes the members of an object one by one; what is left over is an error.
 class ObjectReader {
@@ -41,14 +16,14 @@ class ObjectReader {
     /// @param path  where the object stands in the file: "" at the top, "textures.noise" inside
     /// @throws Error (BadInput) if it is no object
     ObjectReader(std::string_view who, std::string_view file, std::string_view path,
-                 const Json& value);
+                 const Value& value);
 
     /// The member, or null. A key taken is a key known.
-    const Json* take(const std::string& key);
+    const Value* take(const std::string& key);
     /// Whether the member is there, which does not take it.
     bool has(std::string_view key) const;
     /// @throws Error (BadInput) if the member is missing
-    const Json& need(const std::string& key);
+    const Value& need(const std::string& key);
 
     std::string string(const std::string& key, std::optional<std::string> otherwise = {});
     bool boolean(const std::string& key, bool otherwise);
@@ -73,8 +48,8 @@ class ObjectReader {
     std::string who_;
     std::string file_;
     std::string path_;
-    const Json& object_;
+    const Value& object_;
     std::vector<std::string> known_;
 };
 
-}  // namespace relevo::effect
+}  // namespace relevo::json
