@@ -18,7 +18,7 @@ constexpr std::string_view kWho = "plugin";
 constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
-// Words of core's command line, parameters and timings, and what its shaders' globals begin with.
+// Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
 constexpr std::array<std::string_view, 48> kReserved = {
     "all",   "antialias", "backdrop", "background", "camera",  "climate",  "colour", "copy",
     "core",  "data",      "depth",    "drape",      "east",    "edges",    "floor",  "footprint",
@@ -45,7 +45,7 @@ bool is_id(std::string_view text) {
            std::ranges::all_of(text, [](char c) { return is_lower(c) || is_digit(c); });
 }
 
-/// A word, which becomes a part of a GLSL name.
+/// A word, which becomes part of a GLSL name.
 bool is_word(std::string_view text) {
     return !text.empty() && is_lower(text[0]) && text.back() != '_' &&
            text.find("__") == std::string_view::npos &&
@@ -67,7 +67,7 @@ std::vector<std::string> words(json::ObjectReader& object, const std::string& ke
     return result;
 }
 
-/// @param folder  the plugin's, or the program's data, where links may lead elsewhere
+/// @param folder  the plugin's, or the program's data folder, which may have links
 std::filesystem::path own_file(const json::ObjectReader& object, int line, const std::string& key,
                                const std::filesystem::path& folder, const std::string& name,
                                bool shared = false) {
@@ -168,9 +168,9 @@ class ManifestReader {
             manifest_.glsl.push_back(own_file(object, line, "glsl", manifest_.folder, name));
     }
 
-    /// Reads an object of names and values of one kind.
+    /// Reads an object whose members have one kind.
     /// @param what  the kind, for messages
-    /// @param read  takes name and value
+    /// @param read  is called with name and value
     template <typename Read>
     void named(json::ObjectReader& object, const std::string& key, std::string_view what,
                const Read& read) {

@@ -63,7 +63,7 @@ Setting parse_setting(std::string_view text) {
     if (equals == std::string_view::npos || dot == std::string_view::npos || dot == 0 ||
         dot > equals)
         bad_usage(fmt::format(
-            "--set: expected PLUGIN.PARAMETER=VALUE without blanks but got \"{}\"", text));
+            "--set: expected PLUGIN.PARAMETER=VALUE without spaces but got \"{}\"", text));
     return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1)), 0};
 }
 

@@ -55,7 +55,7 @@ std::string ObjectReader::string(const std::string& key, std::optional<std::stri
     if (!value) return *otherwise;
     if (value->kind != Value::Kind::String || value->text.empty())
         fail(value->line, key, fmt::format("expected a text but got {}", describe(*value)));
-    // A terminal would obey them.
+    // A terminal would execute them.
     if (value->text != printable(value->text))
         fail(value->line, key,
              fmt::format("expected a text without control characters but got \"{}\"",

@@ -10,17 +10,17 @@
 
 namespace relevo::json {
 
-/// Takes the members of an object one by one; what is left over is an error.
+/// Reads the members of an object. Members that are not read are an error.
 class ObjectReader {
   public:
-    /// @param path  where the object stands in the file: "" at the top, "textures.noise" inside
+    /// @param path  of the object in the file: "" at the top, "textures.noise" inside
     /// @throws Error (BadInput) if it is no object
     ObjectReader(std::string_view who, std::string_view file, std::string_view path,
                  const Value& value);
 
-    /// The member, or null. A key taken is a key known.
+    /// The member, or null. The key is known from now on.
     const Value* take(const std::string& key);
-    /// Whether the member is there, which does not take it.
+    /// Whether there is such a member. Does not read it.
     bool has(std::string_view key) const;
     /// @throws Error (BadInput) if the member is missing
     const Value& need(const std::string& key);
@@ -35,13 +35,13 @@ class ObjectReader {
     std::size_t choice(const std::string& key, const std::vector<std::string>& words,
                        std::optional<std::size_t> otherwise = {});
 
-    /// @throws Error (BadInput) for the first member that nobody took, with the nearest known key
+    /// @throws Error (BadInput) for the first member that was not read, with the nearest known key
     void finish() const;
 
     /// Throws `Error(BadInput, "who: file:line: path.key: message")`.
     [[noreturn]] void fail(int line, std::string_view key, std::string_view message) const;
     int line() const { return object_.line; }
-    /// The line of a member, of the object if there is none.
+    /// The line of a member, or of the object if there is no such member.
     int line_of(std::string_view key) const;
 
   private:

@@ -66,7 +66,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
             text.remove_prefix(name + 2);
         if (const std::size_t column = text.find("column "); column != std::string_view::npos)
             text.remove_prefix(std::min(text.size(), text.find(": ", column) + 2));
-        // It quotes the file, whatever its bytes are.
+        // It quotes the file, which may have any bytes.
         bad_input(fmt::format("{}: {}:{}: {}", who_, file_, line_, printable(text)));
     }
 
@@ -79,7 +79,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     }
 
     bool open(Value::Kind kind) {
-        // Deeper files are not written by people, and every level costs stack when read.
+        // People do not write deeper files, and every level needs stack.
         constexpr std::size_t kMaxDepth = 64;
         if (stack_.size() >= kMaxDepth)
             bad_input(fmt::format("{}: {}:{}: nested deeper than {} levels", who_, file_, line_,
@@ -141,7 +141,7 @@ std::string describe(const Value& value) {
 }
 
 Value parse(std::string_view who, std::string_view file, std::string_view text) {
-    // A file of another kind, a DEM for example, has no syntax to be wrong in.
+    // A syntax error in a file of another kind, for example a DEM, would not help.
     std::string_view begin = text.substr(0, 512);
     if (begin.starts_with("\xef\xbb\xbf")) begin.remove_prefix(3);
     begin = trimmed(begin);

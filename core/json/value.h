@@ -21,16 +21,16 @@ struct Value {
     int line = 0;                                        ///< of a member: its key's
 };
 
-/// What a value is, for messages: `"text"`, `12`, `a list`, `an object`.
+/// A value for messages: `"text"`, `12`, `a list`, `an object`.
 std::string describe(const Value& value);
 
-/// Longer files are not written by people [bytes].
+/// Limit of a file, longer than people write [bytes].
 inline constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 
-/// @param who   as messages begin: "effect::load"
-/// @param file  as messages name it
-/// @throws Error (BadInput) `who: file:line: ...` for a mistake in the syntax, bytes that
-///         are no UTF-8, a key given twice, and a text of more than kMaxBytes
+/// @param who   begins messages: "scene"
+/// @param file  its name for messages
+/// @throws Error (BadInput) `who: file:line: ...` for a syntax error, bytes that are not UTF-8, a
+///         duplicate key, and a text of more than kMaxBytes
 Value parse(std::string_view who, std::string_view file, std::string_view text);
 
 }  // namespace relevo::json

@@ -37,7 +37,7 @@ void end_lifted(SourceCursor& cursor, std::size_t first, std::size_t name) {
     const bool alone = (first == 0 || cursor.end_line(first - 1) < line) &&
                        (cursor.at_end() || cursor.token(cursor.at).line > line);
     if (!alone)
-        cursor.fail(line, fmt::format("{}: uniforms and varyings stand alone, one a line",
+        cursor.fail(line, fmt::format("{}: expected one uniform or varying, alone on its line",
                                       cursor.str(name)));
     cursor.check_unconditional(line, cursor.str(name));
 }
@@ -51,9 +51,8 @@ void add_sampler(SourceCursor& cursor, std::string_view type, std::size_t name) 
         for (const AnnotationWord& word : parse_annotation(*annotation, file, line)) {
             if (word.name != "from" || word.arguments.size() != 1 ||
                 word.arguments[0].find('.') == std::string::npos)
-                cursor.fail(line, fmt::format("{}: a sampler has no annotation but "
-                                              "from(name.word), for a texture that another "
-                                              "plugin makes",
+                cursor.fail(line, fmt::format("{}: a sampler's only annotation is from(name.word), "
+                                              "for a texture of another plugin",
                                               sampler.name));
             sampler.resource = word.arguments[0];
         }
@@ -86,7 +85,7 @@ void read_uniform(SourceCursor& cursor, std::size_t first, std::size_t type, std
                                       "vec3 or vec4, or a sampler, but got {}",
                                       name_text, type_name));
     if (!cursor.is(after_name, "="))
-        cursor.fail(line, fmt::format("{}: a parameter has a default; expected = behind it but got "
+        cursor.fail(line, fmt::format("{}: a parameter has a default; expected = after it but got "
                                       "{}",
                                       name_text, cursor.written(after_name)));
     const std::string_view initial = cursor.between(after_name, cursor.at - 1);
@@ -108,7 +107,7 @@ void read_varying(SourceCursor& cursor, std::size_t first, std::size_t type, std
     for (const std::string_view word : {"flat", "smooth", "noperspective"})
         if (qualifiers.count(word) > 0) varying.interpolation = word;
     if (!cursor.is(cursor.at, ";"))
-        cursor.fail(line, fmt::format("{}: expected ; behind the varying but got {}", varying.name,
+        cursor.fail(line, fmt::format("{}: expected ; after the varying but got {}", varying.name,
                                       cursor.written(cursor.at)));
     end_lifted(cursor, first, name);
     const bool is_array = cursor.is(type + 1, "[");
@@ -138,7 +137,7 @@ void read_ramp(SourceCursor& cursor, std::size_t first, std::size_t name, std::s
         ++equals;
     if (cursor.str(first) != "const" || cursor.str(first + 1) != "vec3" || names != 1 ||
         equals == cursor.at)
-        cursor.fail(line, fmt::format("{}: an annotation behind a variable is for a ramp of "
+        cursor.fail(line, fmt::format("{}: an annotation after a variable is for a ramp of "
                                       "colours, const vec3 {}[N] = vec3[](...);",
                                       name_text, name_text));
     cursor.source.ramps.push_back(parse_ramp(cursor.source.owner, name_text,

@@ -37,9 +37,9 @@ class Parser : SourceCursor {
     }
 
   private:
-    // ---- top-level pieces
+    // ---- items
 
-    /// Only conditions may stand inside a piece, whose directives nobody else looks at.
+    /// Directives inside an item are not evaluated: only conditionals are allowed there.
     void check_directives_inside(std::size_t first, Item::Kind kind,
                                  const std::vector<std::string>& names) const {
         for (std::size_t i = first; i < at; ++i) {
@@ -88,14 +88,14 @@ class Parser : SourceCursor {
             fail(line, fmt::format("#{} is core's: every program is plain GLSL 4.50 core", name));
         if (name == "line") fail(line, "#line would lose the file's own line numbers; remove it");
         if (!contains(kDirectives, name))
-            fail(line, fmt::format("#{} is not for here; there are #define, #undef and #if", name));
+            fail(line, fmt::format("#{} is not supported; use #define, #undef or #if", name));
         if (name == "define" || name == "undef") {
             if (words.size() < 2 || words[1].kind != TokenKind::Word)
                 fail(line, fmt::format("#{} without a name", name));
             const std::string macro(source.str(words[1]));
             check_name(first, macro);
             if (macro.find("__") != std::string::npos)
-                fail(line, fmt::format("{}: GLSL keeps names with __ to itself", macro));
+                fail(line, fmt::format("{}: names with __ are reserved for GLSL", macro));
             add(name == "define" ? Item::Kind::Macro : Item::Kind::Undef, first, {macro}, line);
             return;
         }
@@ -122,7 +122,7 @@ class Parser : SourceCursor {
                                            "varyings, constants, structs and functions",
                                            qualifier));
             if (has("in"))
-                fail(line, "a varying is declared once, for both sides, with out instead of in");
+                fail(line, "a varying is declared once, for both stages, with out instead of in");
         } else if (has("layout") || has("invariant") || has("buffer") || has("shared")) {
             skip_declaration();
             add(Item::Kind::Interface, first, {}, line);
@@ -172,7 +172,7 @@ class Parser : SourceCursor {
         std::vector<std::string> names = {std::string(str(name))};
         at = after_brackets(at + 1);
         if (is_word(at) && token(at).line > end_line(at - 1))
-            fail(token(at - 1).line, fmt::format("expected ; behind the struct {}", names[0]));
+            fail(token(at - 1).line, fmt::format("expected ; after the struct {}", names[0]));
         if (is_word(at)) {
             const std::size_t variable = at++;
             declarators(variable, names);
@@ -181,7 +181,7 @@ class Parser : SourceCursor {
         add(Item::Kind::Declaration, first, std::move(names), token(name).line);
     }
 
-    /// Reads from behind the first name up to the semicolon.
+    /// Reads from the token after the first name up to the semicolon.
     void declarators(std::size_t name, std::vector<std::string>& names) {
         while (true) {
             check_name(name, str(name));
@@ -189,18 +189,18 @@ class Parser : SourceCursor {
             while (!at_end() && !is(at, ",") && !is(at, ";")) {
                 if (token(at).kind == TokenKind::Directive)
                     fail(token(at).line,
-                         fmt::format("expected ; behind {} but got a directive", names.back()));
-                // No expression has a word right behind another operand, nor a body behind a ).
+                         fmt::format("expected ; after {} but got a directive", names.back()));
+                // In an expression no word follows an operand, and no body follows a `)`.
                 const bool operand = is_word(at - 1) || token(at - 1).kind == TokenKind::Number ||
                                      is(at - 1, ")") || is(at - 1, "}");
                 if (operand && (is_word(at) || is(at, "{")))
                     fail(token(at - 1).line,
-                         fmt::format("expected ; behind {} but got {}", names.back(), str(at)));
+                         fmt::format("expected ; after {} but got {}", names.back(), str(at)));
                 at = is(at, "(") || is(at, "[") || is(at, "{") ? after_brackets(at) : at + 1;
             }
             if (!is(at, ",")) return;
             name = at + 1;
-            if (!is_word(name)) fail(token(at).line, "expected a name behind the comma");
+            if (!is_word(name)) fail(token(at).line, "expected a name after the comma");
             at = name + 1;
         }
     }
@@ -224,7 +224,7 @@ class Parser : SourceCursor {
             return;
         }
         if (!is(at, "{"))
-            fail(line, fmt::format("expected {{ or ; behind the head of {} but got {}", text,
+            fail(line, fmt::format("expected {{ or ; after the head of {} but got {}", text,
                                    written(at)));
         at = after_brackets(at);
         add(Item::Kind::Function, first, {text}, line);

@@ -67,8 +67,8 @@ void SourceCursor::check_name(std::size_t i, std::string_view name) const {
 
 void SourceCursor::check_unconditional(int line, std::string_view what) const {
     if (!conditional_lines.empty())
-        fail(line, fmt::format("{} stands under the #if of line {}; what a plugin has must not "
-                               "depend on what else is on, so move the #if into a function",
+        fail(line, fmt::format("{} is under the #if of line {}; a plugin's declarations must not "
+                               "depend on other effects; move the #if into a function",
                                what, conditional_lines.back()));
 }
 
@@ -131,9 +131,9 @@ void SourceCursor::check_annotations() const {
     for (std::size_t i = 0; i < comments_.size(); ++i) {
         const std::string_view text = text_of(source.text, comments_[i]);
         if (text.substr(0, 3) == "//@" && !used_[i])
-            fail(comments_[i].line, fmt::format("{} has nothing to say here; it stands behind "
-                                                "a uniform, or is {}",
-                                                text, kIncludeForm));
+            fail(comments_[i].line,
+                 fmt::format("{} is misplaced; expected it after a uniform, or {}", text,
+                             kIncludeForm));
     }
 }
 
