@@ -10,7 +10,7 @@
 namespace relevo {
 namespace {
 
-// A signal's handler gets no object: what it may need is here.
+// For the signal handler, which gets no argument.
 
 using Messages = std::array<std::string, kFatalSignals.size()>;
 
@@ -65,7 +65,7 @@ void remove(const Messages* messages) {
 struct FatalSignalGuard::Impl {
     Messages messages;
     const Messages* outer = nullptr;
-    /// A stack of its own: what ran out may be the other one.
+    /// For the handler: the thread's own stack may be exhausted.
     std::array<std::byte, 64 * 1024> stack;
     stack_t old_stack{};
 };

@@ -20,20 +20,19 @@ inline constexpr std::array kFatalSignals{
     FatalSignal{SIGFPE, "an arithmetic error"},   FatalSignal{SIGTRAP, "a trap"},
     FatalSignal{SIGSYS, "a bad system call"}};
 
-/// Whose fatal signals a guard speaks for.
+/// The threads whose fatal signals a guard handles.
 enum class SignalsOf {
-    ThisThread,            ///< that of the thread that made it alone: code that runs on no other
-    ThreadsWithoutAGuard,  ///< those of threads without a guard, too: a driver has its own threads
+    ThisThread,            ///< only the thread that created the guard
+    ThreadsWithoutAGuard,  ///< also threads without a guard: a driver has its own threads
 };
 
-/// While this lives, code runs that is not ours (a driver's, a plugin's), and a fatal signal ends
-/// the program by end_program() with a message of this. A signal of the thread that made it is
-/// taken for its own, also where the stack has run out; one of a thread without a guard for that
-/// of the newest guard that speaks for such threads. Guards of a thread nest; threads may have
-/// theirs at once.
+/// While this lives, code runs that is not ours (a driver's, a plugin's). A fatal signal calls
+/// end_program() with this guard's message. A thread's signal belongs to its innermost guard, also
+/// after a stack overflow. A signal of a thread without a guard belongs to the newest guard for
+/// ThreadsWithoutAGuard. Guards of a thread nest. Several threads may have guards.
 class FatalSignalGuard {
   public:
-    /// @param message  of how the code ended, a name of kFatalSignals; called for each at once
+    /// @param message  of an ending, a name of kFatalSignals; called for all of them here
     explicit FatalSignalGuard(const std::function<std::string(const char* ending)>& message,
                               SignalsOf whose = SignalsOf::ThreadsWithoutAGuard);
     ~FatalSignalGuard();

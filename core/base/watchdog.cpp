@@ -45,7 +45,7 @@ std::chrono::milliseconds patience() {
 }
 
 void end_program(const char* message) noexcept {
-    // Of two that end it at once, the second only waits.
+    // If two threads end the program at once, the second waits.
     static std::atomic_flag ending;
     while (ending.test_and_set())
         ::pause();
@@ -53,7 +53,7 @@ void end_program(const char* message) noexcept {
     write_all(message);
     write_all("\n");
     remove_partial_files();
-    // Past everything that exit() and _exit() do: threads may hang, and memory may be damaged.
+    // Not exit() or _exit(): threads may hang, and memory may be corrupt.
     while (true)
         syscall(SYS_exit_group, static_cast<int>(ErrorCode::Failed));
 }

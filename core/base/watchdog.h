@@ -10,14 +10,14 @@
 namespace relevo {
 
 /// How long code of a plugin may take before the program ends: `$RELEVO_PATIENCE_S`, 20 s without.
-/// @throws Error (Usage) where that is no number of seconds from 0.1 to 100000
+/// @throws Error (Usage) if the variable is no number from 0.1 to 100000
 std::chrono::milliseconds patience();
 
 /// Writes `relevo: error: message` to standard error and ends the program with status 1, without
-/// waiting for anything and with no file written. May be called in a signal's handler.
+/// waiting for anything. Removes unfinished files. May be called in a signal's handler.
 [[noreturn]] void end_program(const char* message) noexcept;
 
-/// Ends the program where something takes too long that nothing else can stop.
+/// Ends the program if code that nothing else can stop takes too long.
 class Watchdog {
   public:
     Watchdog();
@@ -28,7 +28,7 @@ class Watchdog {
     /// Unless stop() follows within the limit, end_program(message).
     void start(std::chrono::milliseconds limit, std::string message);
     void stop();
-    /// Between the two the limit does not run.
+    /// The time between the two does not count.
     void pause();
     void go_on();
 

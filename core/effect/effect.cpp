@@ -13,7 +13,7 @@ namespace relevo::effect {
 namespace {
 
 constexpr std::string_view kWho = "plugin";
-/// Of one file. Drivers take minutes for longer ones.
+/// Of one file. Drivers need minutes to compile longer ones.
 constexpr std::size_t kMaxGlslBytes = std::size_t{1} << 20;
 
 [[noreturn]] void fail(const std::string& file, int line, const std::string& message) {
@@ -102,7 +102,7 @@ void check_texts(const Effect& effect) {
                                 kWho, effect.manifest.file.string(), text.address));
 }
 
-/// What a ramp names has to be a parameter of the plugin's own.
+/// The parameters that a ramp names must be the plugin's own.
 void check_ramps(const Effect& effect) {
     const std::vector<shader::Param> params = effect.params();
     const auto find = [&](const std::string& address) {
@@ -135,7 +135,7 @@ void check_named(const Effect& effect, const std::string& address, std::string_v
     const std::vector<shader::Param> params = effect.params();
     const auto param =
         std::ranges::find_if(params, [&](const shader::Param& p) { return p.address == address; });
-    // Host parameters are written when it is settled already what is drawn.
+    // Host parameters are written after the tiles to draw are chosen.
     if (param == params.end() || param->type != shader::ParamType::Float || param->is_host)
         fail(effect.manifest.file.string(), line,
              fmt::format("{}: expected a parameter of type float, not host, but got \"{}\", which "
@@ -151,7 +151,7 @@ void check_bound(const Effect& effect, const DisplaceSpec& spec) {
         if (!length->address.empty()) check_named(effect, length->address, "displaces", spec.line);
 }
 
-/// What is moved into sight has to be drawn: without a bound core would leave it out.
+/// Without a bound core would cull terrain that is displaced into view.
 void check_displace(const Effect& effect) {
     const Manifest& manifest = effect.manifest;
     const std::string function = effect.id() + "_on_displace";

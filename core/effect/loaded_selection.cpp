@@ -8,7 +8,7 @@
 namespace relevo::effect {
 namespace {
 
-/// What effects bring, by their ids.
+/// Textures and modules of effects, by id.
 class Loader {
   public:
     Loader(const shader::ParamStore& values, const std::optional<TextureLimits>& limits,

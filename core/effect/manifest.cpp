@@ -9,7 +9,7 @@
 #include "base/contains.h"
 #include "base/paths.h"
 #include "base/text.h"
-#include "effect/json.h"
+#include "json/object_reader.h"
 
 namespace relevo::effect {
 namespace {
@@ -18,7 +18,7 @@ constexpr std::string_view kWho = "plugin";
 constexpr int kFormat = 1;
 constexpr double kMaxDisplaced_m = 1e5;
 
-// Words of core's command line, parameters and timings, and what its shaders' globals begin with.
+// Words of core's command line, parameters and timings, and prefixes of its shaders' globals.
 constexpr std::array<std::string_view, 48> kReserved = {
     "all",   "antialias", "backdrop", "background", "camera",  "climate",  "colour", "copy",
     "core",  "data",      "depth",    "drape",      "east",    "edges",    "floor",  "footprint",
@@ -45,7 +45,7 @@ bool is_id(std::string_view text) {
            std::ranges::all_of(text, [](char c) { return is_lower(c) || is_digit(c); });
 }
 
-/// A word, which becomes a part of a GLSL name.
+/// A word, which becomes part of a GLSL name.
 bool is_word(std::string_view text) {
     return !text.empty() && is_lower(text[0]) && text.back() != '_' &&
            text.find("__") == std::string_view::npos &&
@@ -58,7 +58,7 @@ bool is_resource(std::string_view text) {
            is_word(text.substr(dot + 1));
 }
 
-std::vector<std::string> words(ObjectReader& object, const std::string& key) {
+std::vector<std::string> words(json::ObjectReader& object, const std::string& key) {
     std::vector<std::string> result = object.strings(key);
     for (const std::string& word : result)
         if (!is_word(word))
@@ -67,8 +67,8 @@ std::vector<std::string> words(ObjectReader& object, const std::string& key) {
     return result;
 }
 
-/// @param folder  the plugin's, or the program's data, where links may lead elsewhere
-std::filesystem::path own_file(const ObjectReader& object, int line, const std::string& key,
+/// @param folder  the plugin's, or the program's data folder, which may have links
+std::filesystem::path own_file(const json::ObjectReader& object, int line, const std::string& key,
                                const std::filesystem::path& folder, const std::string& name,
                                bool shared = false) {
     const std::filesystem::path path(name);
@@ -96,13 +96,13 @@ class ManifestReader {
 
     Manifest run() {
         const std::string file = manifest_.file.string();
-        const Json json = parse_json(kWho, file, read_text(manifest_.file, kWho));
-        ObjectReader object(kWho, file, "", json);
-        const Json& format = object.need("format");
-        if (format.kind != Json::Kind::Number || format.number != kFormat)
+        const json::Value root = json::parse(kWho, file, read_text(manifest_.file, kWho));
+        json::ObjectReader object(kWho, file, "", root);
+        const json::Value& format = object.need("format");
+        if (format.kind != json::Value::Kind::Number || format.number != kFormat)
             object.fail(format.line, "format",
                         fmt::format("expected {}, the format that this program reads, but got {}",
-                                    kFormat, describe(format)));
+                                    kFormat, json::describe(format)));
         identity(object);
         manifest_.provides = words(object, "provides");
         for (const std::string_view word : kCoreWords)
@@ -132,7 +132,7 @@ class ManifestReader {
     }
 
   private:
-    void identity(ObjectReader& object) {
+    void identity(json::ObjectReader& object) {
         manifest_.id = object.string("id");
         if (!is_id(manifest_.id))
             object.fail(
@@ -154,7 +154,7 @@ class ManifestReader {
                                         fmt::join(kGroundWords, ", "), word));
     }
 
-    void glsl(ObjectReader& object) {
+    void glsl(json::ObjectReader& object) {
         const int line = object.line_of("glsl");
         const bool given = object.take("glsl") != nullptr;
         std::vector<std::string> names = object.strings("glsl");
@@ -168,18 +168,18 @@ class ManifestReader {
             manifest_.glsl.push_back(own_file(object, line, "glsl", manifest_.folder, name));
     }
 
-    /// Reads an object of names and values of one kind.
+    /// Reads an object whose members have one kind.
     /// @param what  the kind, for messages
-    /// @param read  takes name and value
+    /// @param read  is called with name and value
     template <typename Read>
-    void named(ObjectReader& object, const std::string& key, std::string_view what,
+    void named(json::ObjectReader& object, const std::string& key, std::string_view what,
                const Read& read) {
-        const Json* const list = object.take(key);
+        const json::Value* const list = object.take(key);
         if (!list) return;
-        if (list->kind != Json::Kind::Object)
-            object.fail(
-                list->line, key,
-                fmt::format("expected an object of name and {} but got {}", what, describe(*list)));
+        if (list->kind != json::Value::Kind::Object)
+            object.fail(list->line, key,
+                        fmt::format("expected an object of name and {} but got {}", what,
+                                    json::describe(*list)));
         for (const auto& [name, value] : list->members) {
             if (!is_word(name))
                 object.fail(value.line, key,
@@ -188,14 +188,15 @@ class ManifestReader {
         }
     }
 
-    void textures(ObjectReader& object) {
-        named(object, "textures", "texture", [&](const std::string& name, const Json& value) {
-            manifest_.textures.push_back(texture(name, value));
-        });
+    void textures(json::ObjectReader& object) {
+        named(object, "textures", "texture",
+              [&](const std::string& name, const json::Value& value) {
+                  manifest_.textures.push_back(texture(name, value));
+              });
     }
 
-    TextureSpec texture(const std::string& name, const Json& value) {
-        ObjectReader object(kWho, manifest_.file.string(), "textures." + name, value);
+    TextureSpec texture(const std::string& name, const json::Value& value) {
+        json::ObjectReader object(kWho, manifest_.file.string(), "textures." + name, value);
         TextureSpec spec;
         spec.name = name;
         spec.resource = manifest_.id + '.' + name;
@@ -219,7 +220,7 @@ class ManifestReader {
         return spec;
     }
 
-    std::filesystem::path data_file(const ObjectReader& object, const std::string& key,
+    std::filesystem::path data_file(const json::ObjectReader& object, const std::string& key,
                                     const std::string& name) const {
         constexpr std::string_view kShared = "data:";
         const bool shared = name.substr(0, kShared.size()) == kShared;
@@ -227,8 +228,8 @@ class ManifestReader {
                         shared ? name.substr(kShared.size()) : name, shared);
     }
 
-    void texts(ObjectReader& object) {
-        named(object, "texts", "text", [&](const std::string& name, const Json& value) {
+    void texts(json::ObjectReader& object) {
+        named(object, "texts", "text", [&](const std::string& name, const json::Value& value) {
             manifest_.texts.push_back(text(name, value));
         });
         if (manifest_.module.empty() && !manifest_.texts.empty())
@@ -236,8 +237,8 @@ class ManifestReader {
                         "expected a \"module\" too: only modules read texts");
     }
 
-    shader::TextParam text(const std::string& name, const Json& value) {
-        ObjectReader object(kWho, manifest_.file.string(), "texts." + name, value);
+    shader::TextParam text(const std::string& name, const json::Value& value) {
+        json::ObjectReader object(kWho, manifest_.file.string(), "texts." + name, value);
         shader::TextParam text;
         text.address = manifest_.id + '.' + name;
         text.is_file = object.choice("kind", {"text", "file"}, 0) == 1;
@@ -250,10 +251,10 @@ class ManifestReader {
         return text;
     }
 
-    void displaces(ObjectReader& object) {
-        const Json* const value = object.take("displaces");
+    void displaces(json::ObjectReader& object) {
+        const json::Value* const value = object.take("displaces");
         if (!value) return;
-        ObjectReader bound(kWho, manifest_.file.string(), "displaces", *value);
+        json::ObjectReader bound(kWho, manifest_.file.string(), "displaces", *value);
         DisplaceSpec& spec = manifest_.displaces.emplace();
         spec.line = value->line;
         spec.down = length(bound, "down_m", 0);
@@ -263,10 +264,10 @@ class ManifestReader {
         bound.finish();
     }
 
-    void invents(ObjectReader& object) {
-        const Json* const value = object.take("invents");
+    void invents(json::ObjectReader& object) {
+        const json::Value* const value = object.take("invents");
         if (!value) return;
-        ObjectReader said(kWho, manifest_.file.string(), "invents", *value);
+        json::ObjectReader said(kWho, manifest_.file.string(), "invents", *value);
         Invention& invention = manifest_.invents.emplace();
         invention.line = value->line;
         invention.what = said.string("what");
@@ -282,20 +283,21 @@ class ManifestReader {
     }
 
     /// @param min  of a number [m]
-    DisplaceSpec::Length length(ObjectReader& object, const std::string& key, double min) const {
-        const Json* const value = object.take(key);
+    DisplaceSpec::Length length(json::ObjectReader& object, const std::string& key,
+                                double min) const {
+        const json::Value* const value = object.take(key);
         if (!value) return {};
         const std::string prefix = manifest_.id + '.';
-        if (value->kind == Json::Kind::Number && value->number >= min &&
+        if (value->kind == json::Value::Kind::Number && value->number >= min &&
             value->number <= kMaxDisplaced_m)
             return {value->number, {}};
-        if (value->kind == Json::Kind::String && value->text.substr(0, prefix.size()) == prefix &&
-            is_resource(value->text))
+        if (value->kind == json::Value::Kind::String &&
+            value->text.substr(0, prefix.size()) == prefix && is_resource(value->text))
             return {0, value->text};
         object.fail(value->line, key,
                     fmt::format("expected metres from {:g} to {:g}, or a parameter such as "
                                 "\"{}height_m\", but got {}",
-                                min, kMaxDisplaced_m, prefix, describe(*value)));
+                                min, kMaxDisplaced_m, prefix, json::describe(*value)));
     }
 
     Manifest manifest_;

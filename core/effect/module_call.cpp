@@ -2,8 +2,6 @@
 
 #include <atomic>
 #include <cstdlib>
-#include <mutex>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -12,31 +10,21 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "base/fatal_signals.h"
-
 namespace relevo::effect {
 namespace {
 
-// A handler of exits gets no object: what it may need is here.
+// For handlers of exits, which get no argument.
 
-/// What there is to say while a module's function runs.
-struct Running {
-    std::string on_exit;
-    Watchdog* watchdog = nullptr;
-    std::thread::id thread{};  // that calls it
-};
-/// Of the process, as a module may have threads of its own.
-std::atomic<const Running*> running{nullptr};
-
-/// Exits are of the whole process, so that one function runs at a time.
+/// The call that runs. One of the process: a module may have threads of its own.
+std::atomic<const ModuleCall*> running{nullptr};
 std::mutex call_mutex;
 
 std::mutex modules_mutex;
 std::vector<const ModuleInProcess*> modules;  // that are loaded
 
-/// The program does not end by itself while a module is loaded: main() unloads them all.
+/// main() unloads all modules: if one is loaded, it has ended the program.
 void on_exit_of_the_program() {
-    if (const Running* now = running.load()) end_program(now->on_exit.c_str());
+    if (const ModuleCall* call = running.load()) end_program(call->exit_message());
     const std::lock_guard lock(modules_mutex);
     if (!modules.empty()) end_program(modules.back()->message("", "ended the program").c_str());
 }
@@ -50,20 +38,20 @@ void watch_for_exits() {
     static_cast<void>(once);
 }
 
-/// Where the library begins that holds an address.
+/// Where the library begins in memory that holds an address.
 const void* base_of(const void* address) {
     Dl_info info{};
     return dladdr(address, &info) != 0 ? info.dli_fbase : nullptr;
 }
 
-/// Says so where code of a module called _exit().
-void blame(const void* caller) {
+/// Ends the program with a message if code of a module called _exit().
+void check_exit(const void* caller) {
     const void* base = base_of(caller);
-    const Running* now = running.load();
-    // While a module's function runs, what is not the program's own is its, or what it has loaded:
-    // where its code lies is not known before it is registered.
-    if (now && base != base_of(reinterpret_cast<const void*>(&base_of)))
-        end_program(now->on_exit.c_str());
+    // While a registration runs, its library's place is not known yet: all code that is not the
+    // program's own counts as the module's.
+    const ModuleCall* const call = running.load();
+    if (call && base != base_of(reinterpret_cast<const void*>(&base_of)))
+        end_program(call->exit_message());
     const std::unique_lock lock(modules_mutex, std::try_to_lock);
     if (!base || !lock) return;
     for (const ModuleInProcess* module : modules)
@@ -72,7 +60,7 @@ void blame(const void* caller) {
 
 }  // namespace
 
-ModuleInProcess::ModuleInProcess(std::string id, std::string library)
+ModuleInProcess::ModuleInProcess(std::string id, std::filesystem::path library)
     : id_(std::move(id)), library_(std::move(library)) {
     watch_for_exits();
     const std::lock_guard lock(modules_mutex);
@@ -84,33 +72,25 @@ ModuleInProcess::~ModuleInProcess() {
     std::erase(modules, this);
 }
 
-void ModuleInProcess::lies_at(const void* address) {
+void ModuleInProcess::set_address(const void* address) {
     base_ = base_of(address);
 }
 
 std::string ModuleInProcess::message(const std::string& function, const std::string& what) const {
-    return fmt::format("effect: {}: {} {}; --disable {} goes on without it", library_,
+    return fmt::format("effect: {}: {} {}; --disable {} goes on without it", library_.string(),
                        function.empty() ? "its code" : "its " + function, what, id_);
 }
 
-struct ModuleCall::Signals {
-    std::unique_lock<std::mutex> turn{call_mutex};
-    Running running;
-    FatalSignalGuard guard;
-};
-
 ModuleCall::ModuleCall(ModuleInProcess& module, const std::string& function)
-    : module_(module),
-      signals_(new Signals{.running = {.on_exit = module.message(function, "ended the program"),
-                                       .watchdog = &module.watchdog_,
-                                       .thread = std::this_thread::get_id()},
-                           .guard = FatalSignalGuard(
-                               [&](const char* ending) {
-                                   return module.message(function,
-                                                         fmt::format("ended in {}", ending));
-                               },
-                               SignalsOf::ThisThread)}) {
-    running.store(&signals_->running);
+    : turn_(call_mutex),
+      module_(module),
+      exit_message_(module.message(function, "ended the program")),
+      guard_(
+          [&](const char* ending) {
+              return module.message(function, fmt::format("ended in {}", ending));
+          },
+          SignalsOf::ThisThread) {
+    running.store(this);
     const std::chrono::milliseconds limit = patience();
     module.watchdog_.start(
         limit, module.message(function, fmt::format("took more than {:g} s",
@@ -123,27 +103,28 @@ ModuleCall::~ModuleCall() {
 }
 
 ModuleCall::Pause::Pause() {
-    const Running* now = running.load();
-    paused_ = now && now->thread == std::this_thread::get_id() ? now->watchdog : nullptr;
-    if (paused_) paused_->pause();
+    const ModuleCall* const call = running.load();
+    if (!call || call->thread_ != std::this_thread::get_id()) return;
+    watchdog_ = &call->module_.watchdog_;
+    watchdog_->pause();
 }
 
 ModuleCall::Pause::~Pause() {
-    if (paused_) paused_->go_on();
+    if (watchdog_) watchdog_->go_on();
 }
 
 }  // namespace relevo::effect
 
-// In front of the C library's, for the modules that call it. GNU's linker and LLVM's give a program
-// this name where a library that it links with has it too.
+// These replace the C library's for modules: the linkers of GNU and LLVM export them, because a
+// library that the program links has the same names.
 extern "C" [[noreturn]] void _exit(int status) {
-    relevo::effect::blame(__builtin_return_address(0));
+    relevo::effect::check_exit(__builtin_return_address(0));
     while (true)
         syscall(SYS_exit_group, status);
 }
 
 extern "C" [[noreturn]] void _Exit(int status) noexcept {
-    relevo::effect::blame(__builtin_return_address(0));
+    relevo::effect::check_exit(__builtin_return_address(0));
     while (true)
         syscall(SYS_exit_group, status);
 }

@@ -1,45 +1,48 @@
 #pragma once
 
-#include <memory>
+#include <filesystem>
+#include <mutex>
 #include <string>
+#include <thread>
 
+#include "base/fatal_signals.h"
 #include "base/watchdog.h"
 
 /// Code of native modules while it runs in this process, after the trial.
 namespace relevo::effect {
 
-/// A library of a plugin that is loaded, for as long as this lives: if it ends the program by
-/// exit(), quick_exit(), _exit() or _Exit(), inside a call or between calls, the program says whose
-/// it was and ends with status 1. What it ends by other ways (a system call of its own, SIGKILL)
-/// cannot be told.
+/// A plugin's library in this process. If it ends the program by exit(), quick_exit(), _exit() or
+/// _Exit(), in a call or between calls, the program ends with status 1 and a message that names it.
+/// An end by a system call of its own or by SIGKILL has no message.
 class ModuleInProcess {
   public:
-    ModuleInProcess(std::string id, std::string library);
+    ModuleInProcess(std::string id, std::filesystem::path library);
     ~ModuleInProcess();
     ModuleInProcess(const ModuleInProcess&) = delete;
     ModuleInProcess& operator=(const ModuleInProcess&) = delete;
 
-    /// Where the library lies, once it is loaded: an address in it.
-    void lies_at(const void* address);
+    /// @param address  in the library, once it is loaded: code there is the module's
+    void set_address(const void* address);
 
     const std::string& id() const { return id_; }
-    const std::string& library() const { return library_; }
-    /// "render: plugins/vsm.so: its prepare() WHAT; --disable vsm goes on without it"
+    const std::filesystem::path& library() const { return library_; }
+    /// "effect: plugins/vsm.so: its prepare() WHAT; --disable vsm goes on without it"
     std::string message(const std::string& function, const std::string& what) const;
-    /// The start of the library whose code has that address; null without lies_at().
+    /// Where the library begins in memory; null before set_address().
     const void* base() const { return base_; }
 
   private:
     friend class ModuleCall;
-    std::string id_, library_;
+    std::string id_;
+    std::filesystem::path library_;
     const void* base_ = nullptr;
     Watchdog watchdog_;
 };
 
-/// While this lives, a module's function runs: a fatal signal, or patience() of its own time, ends
-/// the program with status 1 and the plugin's name. Before and after, signals are handled as they
-/// were. Functions of modules run one at a time, whatever thread calls them: this waits for its
-/// turn.
+/// While this lives, a function of a module runs. A fatal signal of this thread, or more than
+/// patience() of the function's own time, ends the program with status 1 and a message that names
+/// the plugin. Signals are handled as before afterwards. Functions of modules run one at a time on
+/// all threads: this waits for its turn.
 class ModuleCall {
   public:
     /// @param function  as messages name it: "prepare()"
@@ -49,7 +52,11 @@ class ModuleCall {
     ModuleCall(const ModuleCall&) = delete;
     ModuleCall& operator=(const ModuleCall&) = delete;
 
-    /// The module waits for the host, whose time is not the module's. Nothing outside a call.
+    /// The message if the function ends the program.
+    const char* exit_message() const { return exit_message_.c_str(); }
+
+    /// While this lives, the module waits for the host: the time does not count. Does nothing
+    /// outside a call.
     class Pause {
       public:
         Pause();
@@ -58,13 +65,15 @@ class ModuleCall {
         Pause& operator=(const Pause&) = delete;
 
       private:
-        Watchdog* paused_;
+        Watchdog* watchdog_ = nullptr;
     };
 
   private:
-    struct Signals;
+    std::unique_lock<std::mutex> turn_;
     ModuleInProcess& module_;
-    std::unique_ptr<Signals> signals_;
+    std::string exit_message_;
+    std::thread::id thread_ = std::this_thread::get_id();
+    FatalSignalGuard guard_;
 };
 
 }  // namespace relevo::effect

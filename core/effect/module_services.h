@@ -2,61 +2,121 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 
 #include <relevo/plugin.h>
 
+#include "base/pixel_format.h"
+
 namespace relevo::effect {
 
-/// What a host does for a native module: the services of relevo/plugin.h with arguments that are
-/// there and whole structs. ServiceTables puts them behind the C interface. A function that cannot
-/// do what it is asked to throws a std::exception, whose text the user reads.
+/// A texture that a module has created.
+struct ModuleTexture {
+    PixelFormat format{};
+    int width = 0, height = 0, levels = 0;
+    int layers = 0;  ///< 0: no array
+    int filter = 0;  ///< RELEVO_FILTER_
+    std::string name;
+};
+
+/// The services of relevo/plugin.h. This class has the C side: it checks the arguments, once for
+/// all hosts, and no exception reaches the module. A host derives from it and does the work.
 class ModuleServices {
   public:
-    ModuleServices() = default;
+    ModuleServices();
     ModuleServices(const ModuleServices&) = delete;
     ModuleServices& operator=(const ModuleServices&) = delete;
     virtual ~ModuleServices() = default;
 
-    /// Lives while a service draws or waits for the device, whose time is not the module's.
+    /// Offers only "relevo.log" before offer_all(): a registration gets no other service.
+    const relevo_host* host() const { return &host_; }
+    void offer_all() { offers_all_ = true; }
+
+    /// The last reason that a service or the module gave.
+    const std::string& reason() const { return reason_; }
+    void clear_reason() { reason_.clear(); }
+
+    using Value = std::array<double, 4>;
+    using Point = std::array<double, 3>;
+    using Pair = std::array<double, 2>;
+
+  protected:
+    // A function that cannot do its work throws a std::exception, whose text the user reads.
+
+    /// Lives while a service draws or waits for the device: the module's time limit excludes it.
     virtual std::shared_ptr<void> device_at_work() { return nullptr; }
 
     virtual void log(int level, const char* text) = 0;
-
-    using Value = std::array<double, 4>;
     virtual Value parameter(const char* address) = 0;
     virtual void set_parameter(const char* address, const Value& value) = 0;
     virtual std::string text(const char* address) = 0;
 
-    virtual relevo_frame frame() = 0;
-
-    virtual relevo_texture create_texture(const relevo_texture_info& info) = 0;
+    virtual int max_texture_side() const = 0;
+    virtual int max_texture_layers() const = 0;
+    virtual void create_texture(relevo_texture texture, const ModuleTexture& info) = 0;
     virtual void destroy_texture(relevo_texture texture) = 0;
     virtual void write_texture(const relevo_texels& texels) = 0;
     virtual void make_mipmaps(relevo_texture texture) = 0;
+    /// Level 0 of a layer.
     virtual void read_texture(relevo_texture texture, int layer, std::span<float> values) = 0;
 
-    virtual relevo_program create_program(const char* file) = 0;
+    virtual void create_program(relevo_program program, const char* file) = 0;
     virtual void destroy_program(relevo_program program) = 0;
     virtual void draw(const relevo_draw& draw) = 0;
 
+    /// Whether a frame is being prepared. The functions below are called only then.
+    virtual bool in_frame() const = 0;
+    virtual relevo_frame frame() = 0;
     virtual void fill_bounds(relevo_box& box) = 0;
-    /// @returns whether there is ground that near
+    /// @returns whether there is ground within that distance
     virtual bool fill_visible_bounds(double nearer_than_m, relevo_box& box) = 0;
     /// @returns the finest level of detail that was drawn
     virtual int draw_depth(const relevo_box& box, double tolerance_m, relevo_texture target) = 0;
-
     virtual relevo_heights heights() = 0;
     virtual void read_heights(const relevo_nodes& nodes, std::span<float> heights_m) = 0;
-
-    using Point = std::array<double, 3>;
     virtual Point to_local(const Point& lat_lon_height) = 0;
     virtual Point from_local(const Point& local_m) = 0;
-    /// Not finite where there is none.
-    virtual std::array<double, 2> to_post(const std::array<double, 2>& lat_lon) = 0;
-    virtual std::array<double, 2> from_post(const std::array<double, 2>& column_row) = 0;
+    /// Not finite outside the range of the DEM's CRS.
+    virtual Pair to_post(const Pair& lat_lon) = 0;
+    virtual Pair from_post(const Pair& column_row) = 0;
+
+  private:
+    struct Host : relevo_host {
+        ModuleServices* owner = nullptr;
+    };
+    static const void* service(const relevo_host* host, const char* name, std::uint32_t version);
+    template <int needs, typename Body>
+    static relevo_status serve(void* self, const char* function, const Body& body) noexcept;
+    void fill_data_tables();
+    void fill_device_tables();
+    void fill_ground_tables();
+
+    const ModuleTexture& known(relevo_texture texture) const;
+    void check_program(relevo_program program) const;
+    relevo_texture add_texture(const relevo_texture_info& info);
+    void check(const relevo_texels& texels) const;
+    void check(const relevo_draw& draw) const;
+    void check_depth(const relevo_box& box, double tolerance_m, relevo_texture target) const;
+
+    Host host_{};
+    relevo_log_1 log_{};
+    relevo_params_1 params_{};
+    relevo_frame_1 frame_{};
+    relevo_texture_1 texture_{};
+    relevo_draw_1 draw_{};
+    relevo_terrain_1 terrain_{};
+    relevo_heights_1 heights_{};
+    relevo_geo_1 geo_{};
+    std::map<relevo_texture, ModuleTexture> textures_;
+    std::set<relevo_program> programs_;
+    relevo_texture last_texture_ = 0;
+    relevo_program last_program_ = 0;
+    bool offers_all_ = false;
+    std::string reason_;
 };
 
 }  // namespace relevo::effect

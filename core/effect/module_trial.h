@@ -1,16 +1,28 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
-#include "shader/param_store.h"
+namespace relevo::shader {
+class ParamStore;
+}
 
 namespace relevo::effect {
 
-/// Has lib/relevo/try_module call every function of a module, in a process of its own.
-/// @param folder  of its plugin
-/// @returns why it will not do; empty where it will
-/// @throws Error (BadInput) if the trial cannot be held
+/// What lib/relevo/try_module writes to its standard output, which is a file of this size.
+struct TrialReport {
+    std::array<char, 32> function{};  ///< that it called last: "its prepare()"
+    std::array<char, 1024> reason{};  ///< why the module is refused; empty if it is accepted
+    bool is_complete = false;
+};
+
+/// Calls every function of a module in a separate process, lib/relevo/try_module. Its arguments are
+/// the library, the id, the folder, and for each parameter and text "value ADDRESS V V V V",
+/// "host ADDRESS V V V V" or "text ADDRESS".
+/// @param folder  of the plugin
+/// @returns why the module is refused; empty if it is accepted
+/// @throws Error (BadInput) if try_module does not start
 std::string try_module(const std::filesystem::path& library, const std::string& id,
                        const std::filesystem::path& folder, const shader::ParamStore& values);
 

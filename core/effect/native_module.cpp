@@ -22,13 +22,7 @@ constexpr std::string_view kWho = "plugin";
 const void* log_service(const relevo_host*, const char* name, uint32_t version) {
     static const relevo_log_1 table{sizeof(relevo_log_1), 0, nullptr,
                                     [](void*, int32_t level, const char* text) {
-                                        if (!text) return;
-                                        if (level == RELEVO_LOG_WARNING)
-                                            log::warning(text);
-                                        else if (level == RELEVO_LOG_INFO)
-                                            log::info(text);
-                                        else
-                                            log::debug(text);
+                                        if (text) log_of_module(level, text);
                                     }};
     return name && std::strcmp(name, "relevo.log") == 0 && version == 1 ? &table : nullptr;
 }
@@ -40,8 +34,14 @@ void NativeModule::Close::operator()(void* library) const {
     dlclose(library);
 }
 
-NativeModule::NativeModule(NativeModule&&) noexcept = default;
-NativeModule::~NativeModule() = default;
+void log_of_module(int level, const char* text) {
+    if (level >= RELEVO_LOG_WARNING)
+        log::warning(text);
+    else if (level == RELEVO_LOG_INFO)
+        log::info(text);
+    else
+        log::debug(text);
+}
 
 std::filesystem::path module_file(const Manifest& manifest) {
     const std::string name = manifest.module + ".so";
@@ -55,18 +55,16 @@ std::filesystem::path module_file(const Manifest& manifest) {
 }
 
 NativeModule NativeModule::load(const Manifest& manifest, const shader::ParamStore& values) {
-    NativeModule module;
-    module.id_ = manifest.id;
-    module.folder_ = manifest.folder;
-    module.library_ = module_file(manifest);
-    const std::string fault = try_module(module.library_, manifest.id, manifest.folder, values);
-    if (!fault.empty()) fail(module.library_, fault);
+    const std::filesystem::path library = module_file(manifest);
+    const std::string fault = try_module(library, manifest.id, manifest.folder, values);
+    if (!fault.empty()) fail(library, fault);
 
-    module.process_ = std::make_unique<ModuleInProcess>(manifest.id, module.library_.string());
+    NativeModule module;
+    module.folder_ = manifest.folder;
+    module.process_ = std::make_unique<ModuleInProcess>(manifest.id, library);
     const ModuleCall call(*module.process_, "registration");
-    module.handle_ = {dlopen(module.library_.c_str(), RTLD_NOW | RTLD_LOCAL),
-                      Close{module.process_.get()}};
-    if (!module.handle_) fail(module.library_, fmt::format("it cannot be loaded: {}", dlerror()));
+    module.handle_ = {dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL), Close{module.process_.get()}};
+    if (!module.handle_) fail(library, fmt::format("it cannot be loaded: {}", dlerror()));
     const auto registration = reinterpret_cast<decltype(&relevo_plugin_register)>(
         dlsym(module.handle_.get(), "relevo_plugin_register"));
     static const relevo_host host{sizeof(relevo_host), RELEVO_ABI_VERSION, &log_service,
@@ -78,8 +76,8 @@ NativeModule NativeModule::load(const Manifest& manifest, const shader::ParamSto
     } catch (...) {
         good = false;
     }
-    if (!good) fail(module.library_, "its registration failed after it went well once");
-    module.process_->lies_at(reinterpret_cast<const void*>(registration));
+    if (!good) fail(library, "its registration succeeded in the trial, but then failed");
+    module.process_->set_address(reinterpret_cast<const void*>(registration));
     return module;
 }
 

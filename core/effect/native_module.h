@@ -1,10 +1,8 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <relevo/plugin.h>
 
@@ -15,45 +13,43 @@
 /// Shared libraries behind relevo/plugin.h.
 namespace relevo::effect {
 
-/// A module that is loaded. Its library stays as long as this does.
+/// A module that is loaded. Its library stays loaded as long as this lives.
 class NativeModule {
   public:
-    /// Tries the module in a process of its own, which calls each of its functions with services
-    /// that have no device behind them, and loads it here if it lived.
-    /// @param values  what the module reads and writes in the trial
-    /// @throws Error (BadInput) `plugin: FILE: ...`: a library that is not there or cannot be
-    ///         loaded, a symbol that is missing, a wrong version, a registration that fails, a
-    ///         function that throws, crashes or ends the process, and functions that together take
-    ///         more than half of patience(). That one fails in good order is not held against it:
-    ///         with a device it may not
+    /// Tries the module in a separate process (try_module()), and loads it if it passes.
+    /// @param values  that the module reads and writes in the trial
+    /// @throws Error (BadInput) `plugin: FILE: ...`: a library that does not exist or cannot be
+    ///         loaded, a missing symbol, a wrong version, a registration that fails, a function
+    ///         that throws, crashes or ends the process, functions that together take more than
+    ///         half of patience(). A function that returns an error status is not rejected: it may
+    ///         succeed with a device
     static NativeModule load(const Manifest& manifest, const shader::ParamStore& values);
 
-    NativeModule(NativeModule&&) noexcept;
-    ~NativeModule();
-
-    const std::string& id() const { return id_; }                    ///< of its plugin
+    const std::string& id() const { return process_->id(); }         ///< of its plugin
     const std::filesystem::path& folder() const { return folder_; }  ///< its plugin's
-    const std::filesystem::path& library() const { return library_; }
+    const std::filesystem::path& library() const { return process_->library(); }
     /// To be called while a ModuleCall of process() lives.
     const relevo_module& functions() const { return functions_; }
     ModuleInProcess& process() const { return *process_; }
 
   private:
-    NativeModule() = default;
-
     struct Close {
         ModuleInProcess* process;
         void operator()(void* library) const;
     };
-    std::string id_;
-    std::filesystem::path folder_, library_;
+    NativeModule() = default;
+
+    std::filesystem::path folder_;
     std::unique_ptr<ModuleInProcess> process_;
-    std::unique_ptr<void, Close> handle_;  // goes first
+    std::unique_ptr<void, Close> handle_;  // destroyed before process_
     relevo_module functions_{};
 };
 
-/// Where the module of a plugin is: beside its plugin.json, else among the program's own.
+/// The module's file: beside its plugin.json, else among those of the program.
 /// @throws Error (BadInput) naming both places
 std::filesystem::path module_file(const Manifest& manifest);
+
+/// Writes a message of a module. @param level  RELEVO_LOG_
+void log_of_module(int level, const char* text);
 
 }  // namespace relevo::effect

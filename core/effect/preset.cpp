@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
-#include "effect/json.h"
+#include "json/object_reader.h"
 
 namespace relevo::effect {
 namespace {
@@ -37,18 +37,18 @@ std::filesystem::path find_preset(const std::string& name) {
 
 }  // namespace
 
-std::optional<std::string> value_text(const Json& value) {
+std::optional<std::string> value_text(const json::Value& value) {
     switch (value.kind) {
-        case Json::Kind::Bool:
-        case Json::Kind::Number:
-            return describe(value);
-        case Json::Kind::String:
+        case json::Value::Kind::Bool:
+        case json::Value::Kind::Number:
+            return json::describe(value);
+        case json::Value::Kind::String:
             return value.text;
-        case Json::Kind::Array: {
+        case json::Value::Kind::Array: {
             std::vector<std::string> texts;
-            for (const Json& item : value.items) {
-                if (item.kind != Json::Kind::Number) return std::nullopt;
-                texts.push_back(describe(item));
+            for (const json::Value& item : value.items) {
+                if (item.kind != json::Value::Kind::Number) return std::nullopt;
+                texts.push_back(json::describe(item));
             }
             return fmt::format("{}", fmt::join(texts, ","));
         }
@@ -63,26 +63,26 @@ Setting parse_setting(std::string_view text) {
     if (equals == std::string_view::npos || dot == std::string_view::npos || dot == 0 ||
         dot > equals)
         bad_usage(fmt::format(
-            "--set: expected PLUGIN.PARAMETER=VALUE without blanks but got \"{}\"", text));
+            "--set: expected PLUGIN.PARAMETER=VALUE without spaces but got \"{}\"", text));
     return {std::string(text.substr(0, equals)), std::string(text.substr(equals + 1)), 0};
 }
 
-std::vector<Setting> read_settings(ObjectReader& object, const std::string& key,
+std::vector<Setting> read_settings(json::ObjectReader& object, const std::string& key,
                                    const std::string& folder) {
     std::vector<Setting> settings;
-    const Json* const set = object.take(key);
+    const json::Value* const set = object.take(key);
     if (!set) return settings;
-    if (set->kind != Json::Kind::Object)
-        object.fail(
-            set->line, key,
-            fmt::format("expected an object of address and value but got {}", describe(*set)));
+    if (set->kind != json::Value::Kind::Object)
+        object.fail(set->line, key,
+                    fmt::format("expected an object of address and value but got {}",
+                                json::describe(*set)));
     for (const auto& [address, value] : set->members) {
         const std::optional<std::string> text = value_text(value);
         if (!text)
             object.fail(value.line, key,
                         fmt::format("{}: expected a number, true or false, a text or a list of "
                                     "numbers but got {}",
-                                    address, describe(value)));
+                                    address, json::describe(value)));
         settings.push_back({address, *text, value.line, folder});
     }
     return settings;
@@ -98,8 +98,8 @@ Preset load_preset(const std::string& name_or_path) {
     Preset preset;
     preset.name = path.stem().string();
     preset.file = path.string();
-    const Json json = parse_json(kWho, preset.file, read_text(path, kWho));
-    ObjectReader object(kWho, preset.file, "", json);
+    const json::Value root = json::parse(kWho, preset.file, read_text(path, kWho));
+    json::ObjectReader object(kWho, preset.file, "", root);
     preset.description = object.string("description", "");
     if (object.take("only")) preset.switches.only = object.strings("only");
     preset.switches.enable = object.strings("enable");

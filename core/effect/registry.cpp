@@ -13,14 +13,14 @@
 namespace relevo::effect {
 namespace {
 
-/// Whether there is a plugin.json, be it one that cannot be read.
+/// Whether there is a plugin.json, readable or not.
 bool is_plugin(const std::filesystem::path& folder) {
     std::error_code ignored;
     return std::filesystem::exists(
         std::filesystem::symlink_status(folder / "plugin.json", ignored));
 }
 
-/// The folder's own name, "dust" of "." too.
+/// The folder's own name, also if the path is ".".
 std::string name_of(const std::filesystem::path& folder) {
     std::error_code error;
     const std::filesystem::path whole = std::filesystem::absolute(folder, error).lexically_normal();
@@ -38,7 +38,7 @@ std::vector<std::filesystem::path> plugin_folders(const std::filesystem::path& p
         if (is_plugin(entry->path())) folders.push_back(entry->path());
     if (error)
         bad_input(fmt::format("plugin: {}: cannot be read, {}", path.string(), error.message()));
-    // A folder's own order is the file system's.
+    // The file system's order is arbitrary.
     std::ranges::sort(folders);
     return folders;
 }
@@ -57,8 +57,7 @@ Registry Registry::load(const std::vector<std::filesystem::path>& search_paths,
                 id = effect.id();
                 if (const Effect* first = registry.find(id))
                     bad_input(fmt::format(
-                        "plugin: {}: the id {} is taken by {}; one of the "
-                        "two has to go",
+                        "plugin: {}: the id {} is taken by {}; remove one of the two",
                         effect.manifest.file.string(), id, first->manifest.file.string()));
                 registry.effects_.push_back(std::move(effect));
             } catch (const Error& error) {

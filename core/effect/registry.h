@@ -9,24 +9,24 @@
 
 namespace relevo::effect {
 
-/// A plugin's folder that could not be loaded.
+/// A folder of a plugin that could not be loaded.
 struct BrokenEffect {
-    std::string id;  ///< the folder's name where the manifest could not say
+    std::string id;  ///< the folder's name if the manifest has none
     std::filesystem::path folder;
     std::string error;  ///< the whole message
 };
 
-/// All plugins there are. What is on is the selection's to say.
+/// All plugins. The selection has those that are on.
 class Registry {
   public:
     /// Reads every plugin below the search paths: a folder with a plugin.json, or a folder of such
-    /// folders. A broken plugin takes none of the others down; of two with the same id the first
-    /// stays, and the second is broken.
+    /// folders. A broken plugin does not affect the others. Of two with the same id the second is
+    /// broken.
     /// @param data_dir  where `data:` files are
     /// @throws Error (BadInput) only for a search path that is no folder
     static Registry load(const std::vector<std::filesystem::path>& search_paths,
                          const std::filesystem::path& data_dir);
-    /// Reads those that came with the program, then those below `extra` (--plugin-path).
+    /// Reads the bundled plugins, then those below `extra` (--plugin-path).
     static Registry load_installed(const std::vector<std::filesystem::path>& extra = {});
 
     const std::vector<Effect>& effects() const { return effects_; }  ///< by id
@@ -35,11 +35,11 @@ class Registry {
     const std::vector<std::filesystem::path>& search_paths() const { return search_paths_; }
 
     const Effect* find(std::string_view id) const;  ///< or null
-    bool is_broken(std::string_view id) const;      ///< there, but could not be loaded
+    bool is_broken(std::string_view id) const;      ///< found, but could not be loaded
     /// @throws Error (BadInput) `who: id: ...` with the nearest id, or why that plugin is broken
     const Effect& effect(std::string_view id, std::string_view who) const;
     std::vector<shader::Param> params() const;     ///< of all effects, for ParamStore::declare
-    std::vector<shader::TextParam> texts() const;  ///< likewise
+    std::vector<shader::TextParam> texts() const;  ///< of all effects, too
 
   private:
     std::vector<Effect> effects_;

@@ -61,7 +61,7 @@ class Selector {
   private:
     const Effect& effect(const std::string& id) const { return registry_.effect(id, kWho); }
 
-    /// What an effect is for and the DEM has not, for people.
+    /// Features that an effect needs and the DEM lacks, for messages.
     static std::optional<std::string> lacking(const Effect& effect, const GroundWords& ground) {
         if (!ground) return std::nullopt;
         for (std::string word : effect.manifest.default_where) {
@@ -72,9 +72,9 @@ class Selector {
         return std::nullopt;
     }
 
-    // ---- what was asked for
+    // ---- switches
 
-    /// A preset's switches without the plugins that are not there.
+    /// A preset's switches without unknown plugins.
     Switches known_of(const Preset& preset) {
         const auto known = [&](const std::vector<std::string>& ids) {
             std::vector<std::string> result;
@@ -146,7 +146,7 @@ class Selector {
         return result;
     }
 
-    /// Mends one unmet requirement; false if there is none.
+    /// Resolves one unmet requirement. @returns false if there is none
     bool meet_requirements() {
         for (const std::string& id : on_) {
             for (const std::string& word : effect(id).manifest.needs) {
@@ -199,7 +199,7 @@ class Selector {
         unmet_.insert(id);
     }
 
-    /// Says that something broken keeps an effect off.
+    /// Warns that an effect is off because something is broken.
     /// @throws Error if the command line asks for that effect by name
     void warn_off(const std::string& id, const std::string& reason) {
         const bool only = command_line_.only && contains(*command_line_.only, id);
@@ -210,9 +210,9 @@ class Selector {
             fmt::format("{} is off: {}; --disable {} silences this", id, reason, id));
     }
 
-    // ---- words of which there may be one
+    // ---- exclusive words
 
-    /// Whether both provide a word that one of them wants for itself; the word, or empty.
+    /// A word that both provide and one has as `exclusive`; or empty.
     static std::string rival_word(const Effect& a, const Effect& b) {
         for (const std::string& word : a.manifest.exclusive)
             if (std::ranges::find(b.manifest.exclusive, word) != b.manifest.exclusive.end())
@@ -220,7 +220,7 @@ class Selector {
         return "";
     }
 
-    /// Of two effects that cannot both be on, switches off the one that was asked for earlier.
+    /// Of two effects that cannot both be on, switches off the one that was requested earlier.
     /// @returns whether there were two
     bool settle_exclusive_words() {
         for (const std::string& id : on_) {
@@ -273,7 +273,7 @@ class Selector {
         }
     }
 
-    /// Effects that have to come before, and the word that says so.
+    /// Effects that must come before, and the word of `after`.
     std::map<std::string, std::string> before(const std::string& id) const {
         std::map<std::string, std::string> result;
         for (const std::string& word : effect(id).manifest.after)
@@ -298,7 +298,7 @@ class Selector {
         return order;
     }
 
-    /// Every effect of `left` has another of `left` before it, so walking back meets one twice.
+    /// Every effect of `left` must come after another of `left`: going back meets one twice.
     [[noreturn]] void fail_circle(const std::set<std::string>& left) const {
         std::vector<std::string> path = {*left.begin()};
         while (true) {
@@ -320,7 +320,7 @@ class Selector {
                 fmt::format("{} after {} ({})", path[i], other, before(path[i]).at(other)));
             files.push_back(effect(path[i]).manifest.file.string());
         }
-        bad_input(fmt::format("{}: {}: they wait for each other: {}; change \"after\" in {}", kWho,
+        bad_input(fmt::format("{}: {}: their order is circular: {}; change \"after\" in {}", kWho,
                               fmt::join(path, " and "), fmt::join(links, ", "),
                               fmt::join(files, " or ")));
     }
@@ -328,16 +328,17 @@ class Selector {
     const Registry& registry_;
     const Switches& command_line_;
     std::set<std::string> on_;
-    std::set<std::string> asked_;       // by name, or by what was asked for
-    std::map<std::string, int> turns_;  // when each was: by which preset, or after all of them
+    std::set<std::string> asked_;  // by name, or as a requirement of such effects
+    std::map<std::string, int>
+        turns_;  // index of the preset that requested it; the command line is last
     int turn_ = 0;
     std::set<std::string> disabled_;  // by name
     std::set<std::string> unmet_;     // switched off here
-    std::set<std::string> broken_;    // of those, what is unusable or requires what is
+    std::set<std::string> broken_;    // of those, unusable ones and those that require them
     std::vector<std::string> notices_, warnings_;
 };
 
-/// What is set: the path of a file counts from the folder of the file that sets it.
+/// The value to set. A relative path is relative to the folder of the file that sets it.
 std::string text_of(const Setting& setting, const shader::ParamStore& store) {
     const shader::TextParam* const text = store.find_text(setting.address);
     if (!text || !text->is_file || setting.text.empty()) return setting.text;

@@ -14,9 +14,9 @@ namespace relevo::effect {
 /// The effects that are on.
 struct Selection {
     std::vector<const Effect*> effects;     ///< in calling order; they live in the registry
-    std::vector<std::string> capabilities;  ///< what they provide, sorted
-    std::vector<std::string> notices;   ///< what was switched on or off beyond the asked, and why
-    std::vector<std::string> warnings;  ///< what is off because something is broken, and why
+    std::vector<std::string> capabilities;  ///< that they provide, sorted
+    std::vector<std::string> notices;       ///< effects that were also switched on or off, and why
+    std::vector<std::string> warnings;      ///< effects that are off because something is broken
 
     bool has(std::string_view id) const;
     std::vector<const shader::Snippet*> snippets() const;  ///< for shader::StitchInput
@@ -25,45 +25,44 @@ struct Selection {
 /// Effects that cannot be on, by id, and why.
 using Unusable = std::map<std::string, std::string>;
 
-/// What the DEM has, words of ground_words(). None: it is not known yet, and may have all.
+/// Features of the DEM, of ground_words(). None: not known yet, all are assumed.
 using GroundWords = std::optional<std::vector<std::string>>;
 
-/// Decides which effects are on, and in which order they are called.
+/// Decides which effects are on, and their calling order.
 ///
-/// On are those with `enabled_by_default` where the DEM has what their `default_where` says; each
-/// preset, and then the command line, changes that: `only` puts its own list in its place, `enable`
-/// adds, `disable` takes away. What `only` and `enable` name pulls in effects that provide what it
-/// requires, except disabled ones. An effect whose requirement nobody provides goes off. Order:
-/// behind every provider of a word in `after`; ties by id.
+/// Effects with `enabled_by_default` are on, if the DEM has the features of their `default_where`.
+/// Each preset, and then the command line, changes that: `only` replaces the list, `enable` adds to
+/// it, `disable` removes from it. Effects that `only` and `enable` name switch on providers of
+/// their requirements, except disabled ones. An effect whose requirement has no provider is off.
+/// Order: after every provider of a word in `after`; ties by id.
 ///
-/// Of two that list a word as `exclusive`, the one that was asked for
-/// last is on, the command line's after those of presets and those after the defaults (of two
-/// defaults the first by id); the other goes off, with a notice.
+/// Of two effects with the same `exclusive` word, the one that was requested last is on, the other
+/// is off, with a notice. The order is defaults, presets, command line (of two defaults the first
+/// by id is on).
 ///
-/// What a preset names and is not there is a notice, so that deleting a plugin breaks no preset.
-/// @param unusable  effects that cannot be on: they are off, with a warning, and so is what
-///                  requires them
-/// @param ground    an effect that is on although the DEM lacks what it is for is a notice
+/// An unknown plugin in a preset is a notice: deleting a plugin breaks no preset.
+/// @param unusable  effects that cannot be on: they are off, with a warning, and so are effects
+///                  that require them
+/// @param ground    an effect that is on is a notice if the DEM lacks its feature
 /// @throws Error (BadInput) for an id on the command line that is unknown, or both on and off; one
-///         that `only` or `enable` name there and that cannot be on; a circle of `after`; two
-///         providers of an exclusive hook, or of an exclusive word where both were asked for at
-///         once
+///         that `only` or `enable` name there and that cannot be on; a cycle of `after`; two
+///         providers of an exclusive hook, or of an exclusive word if both were requested at once
 Selection select(const Registry& registry, const std::vector<Preset>& presets,
                  const Switches& command_line, const Unusable& unusable = {},
                  const GroundWords& ground = {});
 
 /// Sets the values of presets, then those of the command line. Never switches an effect on.
-/// @param store  has been told of all parameters there are
-/// @returns notices: what a preset sets of plugins that are not there, and what the command line
-///          sets of effects that are off
-/// @throws Error (BadInput) for values that a parameter cannot have, and for unknown parameters: on
-///         the command line all, in a preset those of plugins that are there
+/// @param store  with all parameters declared
+/// @returns notices: values of unknown plugins in a preset, and values that the command line sets
+///          for effects that are off
+/// @throws Error (BadInput) for values that a parameter cannot have, and for unknown parameters (in
+///         a preset only those of known plugins)
 std::vector<std::string> apply_settings(shader::ParamStore& store, const Registry& registry,
                                         const Selection& selection,
                                         const std::vector<Preset>& presets,
                                         const std::vector<Setting>& command_line);
 
-/// The same with absolute paths for parameters that are files, which then hold in any folder.
+/// The same with absolute paths for parameters that are files.
 std::vector<Setting> with_absolute_files(std::vector<Setting> settings,
                                          const shader::ParamStore& store);
 

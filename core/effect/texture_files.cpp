@@ -33,7 +33,7 @@ image::TextureData decode(const std::filesystem::path& file, const TextureSpec& 
     const int wide = picture.channels == 3 ? 4 : picture.channels;
     std::size_t at = 0;
     for (int slice = 0; slice < spec.slices; ++slice) {
-        // Rows run up in a texture and down in a picture.
+        // Rows go up in a texture and down in an image file.
         for (int y = rows - 1; y >= 0; --y) {
             const std::uint8_t* from = picture.row(slice * rows + y);
             for (int x = 0; x < picture.width; ++x, from += picture.channels) {

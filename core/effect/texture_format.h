@@ -10,7 +10,7 @@
 
 namespace relevo::effect {
 
-/// The format of a RELEVO_FORMAT_ number; none of others.
+/// The format of a RELEVO_FORMAT_ number; none for other numbers.
 constexpr std::optional<PixelFormat> texture_format(std::int32_t number) {
     struct Row {
         std::int32_t number;
@@ -29,7 +29,7 @@ constexpr std::optional<PixelFormat> texture_format(std::int32_t number) {
     return std::nullopt;
 }
 
-/// Floats of a texel that a module may read; 0 where it reads none.
+/// Floats of a texel that a module may read; 0 if it may not read the format.
 constexpr int readable_floats(PixelFormat format) {
     const PixelLayout& layout = layout_of(format);
     return layout.kind == ChannelKind::Float && layout.channel_bytes == 4 ? layout.channels : 0;

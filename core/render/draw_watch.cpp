@@ -12,8 +12,8 @@
 namespace relevo::render {
 namespace {
 
-/// What a pixel or a triangle may take for each second of patience: at the usual 20 s that is a
-/// hundred times as long as in a frame on two cores of a software renderer.
+/// Part of patience() that a pixel or a triangle may take. With 20 s it is 100 times what it takes
+/// on two cores of a software renderer.
 constexpr double kPart_share = 0.5e-6;
 
 std::string disable(const std::set<std::string>& ids) {

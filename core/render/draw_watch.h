@@ -11,15 +11,15 @@
 
 namespace relevo::render {
 
-/// Ends the program where a driver compiles or draws for ever, which nothing else can stop (a loop
-/// without an end in a plugin's GLSL), and says whose GLSL it was where a driver ends the program.
+/// Ends the program if a driver compiles or draws without end, for example a loop in a plugin's
+/// GLSL: nothing else can stop it. If the driver crashes, the message names the plugins too.
 class DrawWatch {
   public:
     /// @param snippets  of the enabled plugins; must outlive this
     explicit DrawWatch(const std::vector<const shader::Snippet*>& snippets) : snippets_(snippets) {}
 
-    /// While this lives the device may take patience(), or as long as a slow one takes for work of
-    /// that size where that is longer. At its end the device has to have finished.
+    /// While this lives the device may take patience(), or longer for much work. The caller waits
+    /// for the device before this ends.
     class Turn {
       public:
         /// @param parts  pixels and triangles
@@ -34,7 +34,7 @@ class DrawWatch {
     };
 
   private:
-    /// Of the effects in a program those that did not come with Relevo, where they have been tried.
+    /// The effects in a program that Relevo does not ship.
     std::set<std::string> foreign(const shader::Stitched& stitched) const;
     std::string blame(const shader::Stitched& stitched) const;
 

@@ -1,7 +1,6 @@
 #include "render/native_host.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <map>
 #include <optional>
@@ -18,7 +17,7 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "effect/service_tables.h"
+#include "effect/module_services.h"
 #include "gl/buffer.h"
 #include "gl/framebuffer.h"
 #include "gl/program.h"
@@ -51,7 +50,7 @@ glm::dmat3 axes_of(const relevo_box& box) {
     return {vector_of(box.right), vector_of(box.up), vector_of(box.towards)};
 }
 
-/// What relevo_frame says beside the ground.
+/// The frame that is being prepared.
 struct FrameState {
     Terrain& terrain;
     const Ground& ground;
@@ -69,14 +68,12 @@ struct NativeHost::Impl : effect::ModuleServices {
     shader::ParamStore& values;
     int width_px, height_px;
 
-    effect::ServiceTables tables{*this};
     NativeTextures textures;
     struct OwnProgram {
         gl::Program program;
         std::vector<gl::Program::Sampler> samplers;
     };
     std::map<relevo_program, OwnProgram> programs;
-    relevo_program last_program = 0;
     gl::VertexArray no_inputs;
     gl::Buffer frame_block{sizeof(FrameBlock), "sun frame block"};
     std::optional<FrameState> state;
@@ -91,8 +88,8 @@ struct NativeHost::Impl : effect::ModuleServices {
           values(v),
           width_px(width),
           height_px(height),
-          textures(m.id(), c.info()) {
-        tables.offer_all();
+          textures(m.id()) {
+        offer_all();
     }
     ~Impl() override {
         if (!instance) return;
@@ -104,25 +101,11 @@ struct NativeHost::Impl : effect::ModuleServices {
         }
     }
 
-    [[noreturn]] static void refuse(const std::string& what) { failed(what); }
-
-    const FrameState& now() const {
-        if (!state) refuse("no frame is drawn now; ask inside prepare()");
-        return *state;
-    }
-
     std::shared_ptr<void> device_at_work() override {
         return std::make_shared<effect::ModuleCall::Pause>();
     }
 
-    void log(int level, const char* text) override {
-        if (level >= RELEVO_LOG_WARNING)
-            log::warning(text);
-        else if (level == RELEVO_LOG_INFO)
-            log::info(text);
-        else
-            log::debug(text);
-    }
+    void log(int level, const char* text) override { effect::log_of_module(level, text); }
 
     // ---- parameters
 
@@ -144,8 +127,10 @@ struct NativeHost::Impl : effect::ModuleServices {
 
     // ---- textures
 
-    relevo_texture create_texture(const relevo_texture_info& info) override {
-        return textures.create(info);
+    int max_texture_side() const override { return context.info().max_texture_size; }
+    int max_texture_layers() const override { return context.info().max_array_layers; }
+    void create_texture(relevo_texture texture, const effect::ModuleTexture& info) override {
+        textures.create(texture, info);
     }
     void destroy_texture(relevo_texture texture) override { textures.destroy(texture); }
     void write_texture(const relevo_texels& texels) override { textures.write(texels); }
@@ -156,8 +141,10 @@ struct NativeHost::Impl : effect::ModuleServices {
 
     // ---- the frame and its programs
 
+    bool in_frame() const override { return state.has_value(); }
+
     relevo_frame frame() override {
-        const FrameState& drawn = now();
+        const FrameState& drawn = *state;
         const scene::Camera& camera = drawn.inputs.camera;
         relevo_frame full{};
         full.width_px = width_px;
@@ -184,10 +171,10 @@ struct NativeHost::Impl : effect::ModuleServices {
         return full;
     }
 
-    relevo_program create_program(const char* name) override {
+    void create_program(relevo_program id, const char* name) override {
         const auto path = file_inside(module.folder(), name);
         if (!path)
-            refuse(fmt::format("render: {}: expected a file of the plugin's own folder but got {}",
+            failed(fmt::format("render: {}: expected a file of the plugin's own folder but got {}",
                                module.folder().string(), name));
         const std::string file = path->string();
         const std::string own = shader::unix_lines(read_text(*path, "render"));
@@ -199,28 +186,25 @@ struct NativeHost::Impl : effect::ModuleServices {
             shader::LineMap lines(2);  // of the head
             for (int line = 1; line <= 1 + std::ranges::count(own, '\n'); ++line)
                 lines.push_back({module.id(), file, line});
-            refuse(fmt::format("{}: the driver refuses it\n{}", file,
+            failed(fmt::format("{}: the driver refuses it\n{}", file,
                                shader::parse_driver_log(failure.log, lines).text()));
         }
         std::vector<gl::Program::Sampler> samplers = program->samplers();
-        programs.emplace(++last_program, OwnProgram{std::move(*program), std::move(samplers)});
-        return last_program;
+        programs.emplace(id, OwnProgram{std::move(*program), std::move(samplers)});
     }
 
-    void destroy_program(relevo_program program) override {
-        if (programs.erase(program) == 0) refuse(fmt::format("there is no program {}", program));
-    }
+    void destroy_program(relevo_program program) override { programs.erase(program); }
 
     void check_inputs(const OwnProgram& program, const relevo_draw& draw) {
         const std::span inputs(draw.inputs, static_cast<std::size_t>(draw.input_count));
         for (const gl::Program::Sampler& sampler : program.samplers) {
             if (sampler.unit >= draw.input_count)
-                refuse(fmt::format("expected an input for {} of unit {} but got {} inputs",
+                failed(fmt::format("expected an input for {} of unit {} but got {} inputs",
                                    sampler.name, sampler.unit, draw.input_count));
             const gl::TextureKind kind =
                 textures.get(inputs[static_cast<std::size_t>(sampler.unit)]).kind();
             if (sampler.kind != kind)
-                refuse(
+                failed(
                     fmt::format("expected a texture of the kind that {} of unit {} reads but "
                                 "got one of {}",
                                 sampler.name, sampler.unit, gl::sampler_name(kind)));
@@ -228,15 +212,11 @@ struct NativeHost::Impl : effect::ModuleServices {
     }
 
     void draw(const relevo_draw& draw) override {
-        const auto program = programs.find(draw.program);
-        if (program == programs.end()) refuse(fmt::format("there is no program {}", draw.program));
-        const gl::Texture& target = textures.get(draw.target);
-        if (draw.layer < 0 || draw.layer >= target.extent().depth || draw.level < 0 ||
-            draw.level >= target.levels() || target.format() == gl::Format::Depth32F)
-            refuse("expected a layer and a level of a colour texture");
-        check_inputs(program->second, draw);
-        const gl::Framebuffer framebuffer(target, draw.level, draw.layer, module.id());
-        program->second.program.use();
+        const OwnProgram& program = programs.at(draw.program);
+        check_inputs(program, draw);
+        const gl::Framebuffer framebuffer(textures.get(draw.target), draw.level, draw.layer,
+                                          module.id());
+        program.program.use();
         for (int i = 0; i < draw.input_count; ++i)
             textures.get(draw.inputs[i]).bind(static_cast<unsigned>(i));
         if (draw.value_count > 0) glUniform4fv(0, draw.value_count, draw.values);
@@ -248,7 +228,7 @@ struct NativeHost::Impl : effect::ModuleServices {
     // ---- the ground
 
     bool fill_box(relevo_box& box, const TileSelection* selection, double nearer_than_m) const {
-        const FrameState& drawn = now();
+        const FrameState& drawn = *state;
         const auto extent =
             drawn.terrain.extent(axes_of(box), drawn.inputs.exaggeration, selection, nearer_than_m);
         if (!extent) return false;
@@ -258,24 +238,17 @@ struct NativeHost::Impl : effect::ModuleServices {
     }
 
     void fill_bounds(relevo_box& box) override {
-        if (!fill_box(box, nullptr, 0)) refuse("this DEM has no ground");
+        if (!fill_box(box, nullptr, 0)) failed("this DEM has no ground");
     }
     bool fill_visible_bounds(double nearer_than_m, relevo_box& box) override {
-        return fill_box(box, &now().picture, nearer_than_m);
+        return fill_box(box, &state->picture, nearer_than_m);
     }
 
     int draw_depth(const relevo_box& box, double tolerance_m, relevo_texture target) override {
-        const FrameState& drawn = now();
+        const FrameState& drawn = *state;
         const gl::Texture& depth_texture = textures.get(target);
-        if (depth_texture.format() != gl::Format::Depth32F ||
-            depth_texture.kind() != gl::TextureKind::D2)
-            refuse("expected a target of RELEVO_FORMAT_DEPTH32F without layers");
         const glm::dmat3 axes = axes_of(box);
         const glm::dvec3 low = vector_of(box.low), high = vector_of(box.high);
-        if (!(low.x < high.x && low.y < high.y && low.z < high.z))
-            refuse("expected a box whose sides are longer than nothing");
-        if (!(tolerance_m >= 0))
-            refuse(fmt::format("expected a tolerance of 0 m or more but got {}", tolerance_m));
         const glm::dvec3 origin_m = axes * (0.5 * (low + high));
 
         LodView view;
@@ -318,7 +291,7 @@ struct NativeHost::Impl : effect::ModuleServices {
     }
 
     relevo_heights heights() override {
-        const dem::Pyramid& pyramid = now().terrain.pyramid();
+        const dem::Pyramid& pyramid = state->terrain.pyramid();
         relevo_heights heights{};
         heights.columns = pyramid.columns();
         heights.rows = pyramid.rows();
@@ -327,14 +300,11 @@ struct NativeHost::Impl : effect::ModuleServices {
     }
 
     void read_heights(const relevo_nodes& nodes, std::span<float> heights_m) override {
-        const dem::Pyramid& pyramid = now().terrain.pyramid();
-        if (nodes.level < 0 || nodes.level >= pyramid.levels())
-            refuse(fmt::format("expected a level of 0 to {} but got {}", pyramid.levels() - 1,
-                               nodes.level));
+        const dem::Pyramid& pyramid = state->terrain.pyramid();
         const glm::ivec2 size = pyramid.size(nodes.level);
         if (nodes.column > size.x || nodes.row > size.y || nodes.column < -size.x ||
             nodes.row < -size.y || nodes.columns > 3 * size.x || nodes.rows > 3 * size.y)
-            refuse(fmt::format("expected nodes on a level of {} x {} or near it", size.x, size.y));
+            failed(fmt::format("expected nodes on a level of {} x {} or near it", size.x, size.y));
         const dem::Pyramid::Block block =
             pyramid.block(nodes.level, {nodes.column, nodes.row}, nodes.columns, nodes.rows);
         float* to = heights_m.data();
@@ -349,20 +319,20 @@ struct NativeHost::Impl : effect::ModuleServices {
 
     Point to_local(const Point& at) override {
         const glm::dvec3 local =
-            now().ground.frame.to_local(geo::geodetic_deg(at[0], at[1], at[2]));
+            state->ground.frame.to_local(geo::geodetic_deg(at[0], at[1], at[2]));
         return {local.x, local.y, local.z};
     }
     Point from_local(const Point& local_m) override {
         const geo::Geodetic at =
-            now().ground.frame.to_geodetic({local_m[0], local_m[1], local_m[2]});
+            state->ground.frame.to_geodetic({local_m[0], local_m[1], local_m[2]});
         return {degrees(at.lat_rad), degrees(at.lon_rad), at.height_m};
     }
-    std::array<double, 2> to_post(const std::array<double, 2>& at) override {
-        const glm::dvec2 post = now().terrain.grid().post(geo::geodetic_deg(at[0], at[1], 0));
+    Pair to_post(const Pair& at) override {
+        const glm::dvec2 post = state->terrain.grid().post(geo::geodetic_deg(at[0], at[1], 0));
         return {post.x, post.y};
     }
-    std::array<double, 2> from_post(const std::array<double, 2>& post) override {
-        const geo::Geodetic at = now().terrain.grid().place(post[0], post[1]);
+    Pair from_post(const Pair& post) override {
+        const geo::Geodetic at = state->terrain.grid().place(post[0], post[1]);
         return {degrees(at.lat_rad), degrees(at.lon_rad)};
     }
 
@@ -371,7 +341,7 @@ struct NativeHost::Impl : effect::ModuleServices {
     /// @throws Error (Failed) if it does, or throws
     template <typename Body>
     void call(const char* function, const char* what, const Body& body) {
-        tables.clear_reason();
+        clear_reason();
         std::string reason;
         bool good = false;
         try {
@@ -382,7 +352,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         } catch (...) {
             reason = fmt::format("its {} threw an exception", function);
         }
-        if (reason.empty()) reason = tables.reason();
+        if (reason.empty()) reason = this->reason();
         if (!good)
             failed(fmt::format("render: {}: {}: {}; --disable {} goes on without it",
                                module.library().string(), what,
@@ -407,7 +377,7 @@ NativeHost::NativeHost(const effect::NativeModule& module, gl::Context& context,
     : impl_(std::make_unique<Impl>(module, context, std::move(draw_depth), values, width_px,
                                    height_px)) {
     impl_->call("create()", "it cannot start",
-                [&] { return module.functions().create(impl_->tables.host(), &impl_->instance); });
+                [&] { return module.functions().create(impl_->host(), &impl_->instance); });
 }
 
 NativeHost::NativeHost(NativeHost&&) noexcept = default;

@@ -14,21 +14,20 @@
 
 namespace relevo::render {
 
-/// The GLSL of a program that a module makes of a fragment text of its own.
+/// The GLSL of a program with a module's own fragment shader.
 struct NativeProgramText {
     std::string vertex, fragment;
 };
 NativeProgramText native_program_text(std::string_view own);
 
-/// What a native module sees of the program: the services of relevo/plugin.h over one
-/// renderer, and the module's instance.
+/// The services of relevo/plugin.h for one renderer, and the module's instance.
 class NativeHost {
   public:
     /// Calls `draw` with the program current that draws the terrain orthographically.
     using DrawDepth =
         std::function<void(const Terrain& terrain, const std::function<void()>& draw)>;
 
-    /// Makes the instance. The module, the context and the values must outlive this.
+    /// Creates the instance. The module, the context and the values must outlive this.
     /// @param values  the renderer's own, whose host parameters the module writes
     /// @throws Error (Failed) `render: LIBRARY: reason` if the module cannot
     NativeHost(const effect::NativeModule& module, gl::Context& context, DrawDepth draw_depth,
@@ -37,15 +36,15 @@ class NativeHost {
     NativeHost& operator=(NativeHost&&) noexcept;
     ~NativeHost();
 
-    /// Has the module prepare a frame. The picture's tiles stay drawable.
+    /// Calls the module's prepare(). The image's tiles stay drawable.
     /// @throws Error (Failed) as above
     void prepare(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                  const FrameBlock& block, const TileSelection& picture);
 
-    /// Pictures have these sides from the next frame on.
+    /// Frames have this size from the next one on.
     void resize(int width_px, int height_px);
 
-    /// A texture that the module has made under that name, "vsm.moments"; or null.
+    /// A texture that the module has created with that name, "vsm.moments"; or null.
     const gl::Texture* find(std::string_view resource) const;
 
     const std::string& id() const;

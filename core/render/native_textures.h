@@ -7,42 +7,35 @@
 
 #include <relevo/plugin.h>
 
-#include "gl/context.h"
+#include "effect/module_services.h"
 #include "gl/texture.h"
 
 namespace relevo::render {
 
-/// The textures that a native module has made: "relevo.texture" of relevo/plugin.h.
+/// The textures that a native module has created. effect::ModuleServices has checked the arguments.
 class NativeTextures {
   public:
-    NativeTextures(std::string plugin, const gl::DeviceInfo& device);
+    explicit NativeTextures(std::string plugin) : plugin_(std::move(plugin)) {}
 
-    /// @throws Error (Failed) for what the device does not take
-    relevo_texture create(const relevo_texture_info& info);
-    /// @throws Error (Failed) if there is no such texture; so below
-    void destroy(relevo_texture name);
-    const gl::Texture& get(relevo_texture name) const { return at(name).texture; }
-    gl::Texture& get(relevo_texture name);
-    /// @throws Error (Failed) also for what is no rectangle of the texture, or has other bytes
+    /// @throws Error (Failed) if the device cannot create it
+    void create(relevo_texture name, const effect::ModuleTexture& info);
+    void destroy(relevo_texture name) { textures_.erase(name); }
+    gl::Texture& get(relevo_texture name) { return textures_.at(name).texture; }
     void write(const relevo_texels& texels);
     /// Level 0 of a layer.
-    /// @throws Error (Failed) for too little room, and for textures that are not of floats
     void read(relevo_texture name, int layer, std::span<float> out) const;
 
-    /// The one of that name, "vsm.moments"; or null.
+    /// The newest one of that name, "vsm.moments"; or null.
     const gl::Texture* find(std::string_view resource) const;
 
   private:
     struct Made {
         gl::Texture texture;
-        std::string resource;
+        std::string resource;  // empty: not read by name
     };
-    const Made& at(relevo_texture name) const;
 
     std::string plugin_;
-    gl::DeviceInfo device_;
     std::map<relevo_texture, Made> textures_;
-    relevo_texture last_ = 0;
 };
 
 }  // namespace relevo::render

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "dem/places.h"
-#include "effect/json.h"
+#include "json/object_reader.h"
 #include "scene/job.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_words.h"
@@ -17,8 +17,7 @@ namespace relevo::scene {
 namespace {
 
 namespace fs = std::filesystem;
-using effect::Json;
-using effect::ObjectReader;
+using json::ObjectReader;
 
 constexpr std::string_view kWho = "job";
 constexpr int kFormat = 1;
@@ -49,13 +48,13 @@ class JobReader {
 
     Job run(const std::function<void(Scene&)>& change) {
         json_ =
-            std::make_shared<const Json>(effect::parse_json(kWho, file_, read_text(file_, kWho)));
+            std::make_shared<const json::Value>(json::parse(kWho, file_, read_text(file_, kWho)));
         ObjectReader object(kWho, file_, "", *json_);
-        const Json& format = object.need("format");
-        if (format.kind != Json::Kind::Number || format.number != kFormat)
+        const json::Value& format = object.need("format");
+        if (format.kind != json::Value::Kind::Number || format.number != kFormat)
             object.fail(format.line, "format",
                         fmt::format("expected {}, the format that this program reads, but got {}",
-                                    kFormat, effect::describe(format)));
+                                    kFormat, json::describe(format)));
         object.string("$schema", "");  // which editors look for
         job_.file = file_;
         job_.folder = folder_;
@@ -79,7 +78,7 @@ class JobReader {
     }
 
   private:
-    ObjectReader inside(const Json& value, const std::string& path) const {
+    ObjectReader inside(const json::Value& value, const std::string& path) const {
         return reader_.inside(value, path);
     }
 
@@ -102,19 +101,19 @@ class JobReader {
     }
 
     /// The items of a list.
-    const std::vector<Json>& items(const Json& value, const std::string& path,
-                                   const char* what) const {
-        if (value.kind != Json::Kind::Array)
+    const std::vector<json::Value>& items(const json::Value& value, const std::string& path,
+                                          const char* what) const {
+        if (value.kind != json::Value::Kind::Array)
             bad_input(fmt::format("{}: {}:{}: {}: expected a list of {} but got {}", kWho, file_,
-                                  value.line, path, what, effect::describe(value)));
+                                  value.line, path, what, json::describe(value)));
         return value.items;
     }
 
     void shots(ObjectReader& top) {
-        const Json* const list = top.take("shots");
+        const json::Value* const list = top.take("shots");
         if (!list) return;
         Axis axis{"shot", "shots", list->line, {}, {}};
-        for (const Json& item : items(*list, "shots", "shots")) {
+        for (const json::Value& item : items(*list, "shots", "shots")) {
             const std::string path = fmt::format("shots[{}]", axis.values.size());
             ObjectReader object = inside(item, path);
             const std::string name =
@@ -132,10 +131,10 @@ class JobReader {
     }
 
     void sweep(ObjectReader& top) {
-        const Json* const list = top.take("sweep");
+        const json::Value* const list = top.take("sweep");
         if (!list) return;
         int number = 0;
-        for (const Json& item : items(*list, "sweep", "axes")) {
+        for (const json::Value& item : items(*list, "sweep", "axes")) {
             const std::string path = fmt::format("sweep[{}]", number++);
             ObjectReader object = inside(item, path);
             Axis axis = axis_of(object, item, path);
@@ -146,13 +145,13 @@ class JobReader {
             top.fail(list->line, "sweep", "expected axes but the list is empty");
     }
 
-    Axis axis_of(ObjectReader& object, const Json& item, const std::string& path) {
-        const Json* const times = object.take("times");
-        const Json* const dates = object.take("dates");
-        const Json* const cameras = object.take("cameras");
-        const Json* const sites = object.take("sites");
-        const Json* const effects = object.take("effects");
-        const Json* const set = object.take("set");
+    Axis axis_of(ObjectReader& object, const json::Value& item, const std::string& path) {
+        const json::Value* const times = object.take("times");
+        const json::Value* const dates = object.take("dates");
+        const json::Value* const cameras = object.take("cameras");
+        const json::Value* const sites = object.take("sites");
+        const json::Value* const effects = object.take("effects");
+        const json::Value* const set = object.take("set");
         const int given = !!times + !!dates + !!cameras + !!sites + !!effects + !!set;
         if (given > 1)
             object.fail(
@@ -190,16 +189,16 @@ class JobReader {
         });
     }
 
-    Axis times_axis(const Json& value, const std::string& path) {
+    Axis times_axis(const json::Value& value, const std::string& path) {
         Axis axis{"time", path, value.line, {}, {}};
-        if (value.kind == Json::Kind::Array) {
-            for (const Json& item : value.items) {
+        if (value.kind == json::Value::Kind::Array) {
+            for (const json::Value& item : value.items) {
                 const std::string at = fmt::format("{}[{}]", path, axis.values.size());
-                if (item.kind != Json::Kind::String || item.text != printable(item.text))
+                if (item.kind != json::Value::Kind::String || item.text != printable(item.text))
                     bad_input(fmt::format("{}: {}:{}: {}: expected a time but got {}", kWho, file_,
-                                          item.line, at, effect::describe(item)));
-                Json wrapped;
-                wrapped.kind = Json::Kind::Object;
+                                          item.line, at, json::describe(item)));
+                json::Value wrapped;
+                wrapped.kind = json::Value::Kind::Object;
                 wrapped.line = item.line;
                 check_time(inside(wrapped, at), "", item.text);
                 axis.values.push_back(
@@ -233,7 +232,7 @@ class JobReader {
         return result;
     }
 
-    Axis dates_axis(const Json& value, const std::string& path) {
+    Axis dates_axis(const json::Value& value, const std::string& path) {
         Axis axis{"date", path, value.line, {}, {}};
         std::string at;
         const auto add_date = [&](const sun::Date& day) {
@@ -242,9 +241,9 @@ class JobReader {
                                        if (!at.empty()) draft.time = at;
                                    }});
         };
-        if (value.kind == Json::Kind::Array) {
-            Json wrapped;
-            wrapped.kind = Json::Kind::Object;
+        if (value.kind == json::Value::Kind::Array) {
+            json::Value wrapped;
+            wrapped.kind = json::Value::Kind::Object;
             wrapped.members = {{"dates", value}};
             ObjectReader object = inside(wrapped, path.substr(0, path.rfind('.')));
             for (const std::string& text : object.strings("dates"))
@@ -279,12 +278,12 @@ class JobReader {
         return axis;
     }
 
-    Axis cameras_axis(const Json& value, const std::string& path) {
+    Axis cameras_axis(const json::Value& value, const std::string& path) {
         Axis axis{"camera", path, value.line, {}, {}};
-        for (const Json& item : items(value, path, "cameras")) {
+        for (const json::Value& item : items(value, path, "cameras")) {
             const std::string at = fmt::format("{}[{}]", path, axis.values.size());
             // The name is the axis's, the rest a camera's.
-            auto camera = std::make_shared<Json>(item);
+            auto camera = std::make_shared<json::Value>(item);
             const std::string name = take_name(*camera, at, axis.values.size());
             axis.values.push_back({name, [reader = reader_, camera, at, name](Draft& draft) {
                                        reader.take_camera(*camera, at, draft.scene);
@@ -294,11 +293,11 @@ class JobReader {
         return axis;
     }
 
-    Axis effects_axis(const Json& value, const std::string& path) {
+    Axis effects_axis(const json::Value& value, const std::string& path) {
         Axis axis{"effects", path, value.line, {}, {}};
-        for (const Json& item : items(value, path, "effects to switch")) {
+        for (const json::Value& item : items(value, path, "effects to switch")) {
             const std::string at = fmt::format("{}[{}]", path, axis.values.size());
-            auto effects = std::make_shared<Json>(item);
+            auto effects = std::make_shared<json::Value>(item);
             const bool named = inside(*effects, at).has("name");
             std::string name = take_name(*effects, at, axis.values.size());
             Effects change;
@@ -314,13 +313,13 @@ class JobReader {
     }
 
     /// Takes the member `name` out of an object.
-    std::string take_name(Json& object, const std::string& path, std::size_t index) const {
+    std::string take_name(json::Value& object, const std::string& path, std::size_t index) const {
         const std::string name = inside(object, path).string("name", fmt::format("{}", index + 1));
         std::erase_if(object.members, [](const auto& member) { return member.first == "name"; });
         return name;
     }
 
-    Axis sites_axis(const Json& value, const std::string& path) {
+    Axis sites_axis(const json::Value& value, const std::string& path) {
         Axis axis{"site", path, value.line, {}, {}};
         ObjectReader object = inside(value, path);
         const std::string file = reader_.beside(object.string("file"));
@@ -328,7 +327,7 @@ class JobReader {
         const std::string crs = object.string("crs", "");
         const double height_m = object.number("height", kEyeHeight_m, -500, 10000, false);
         View along;
-        const Json* const target = object.take("look_at");
+        const json::Value* const target = object.take("look_at");
         if (target) {
             along.look_at = reader_.standpoint(object, *target, "look_at", 0);
         } else {
@@ -357,7 +356,7 @@ class JobReader {
         return axis;
     }
 
-    Axis values_axis(ObjectReader& object, const Json& set) {
+    Axis values_axis(ObjectReader& object, const json::Value& set) {
         const std::string address = object.string("set");
         Axis axis{address, "", set.line, {}, {}};
         const auto add_value = [&](const std::string& text) {
@@ -369,20 +368,20 @@ class JobReader {
                                        draft.names[address] = text;
                                    }});
         };
-        if (const Json* const values = object.take("values")) {
+        if (const json::Value* const values = object.take("values")) {
             object.take("from"), object.take("to"), object.take("step");
-            if (values->kind != Json::Kind::Array)
+            if (values->kind != json::Value::Kind::Array)
                 object.fail(
                     values->line, "values",
-                    fmt::format("expected a list of values but got {}", effect::describe(*values)));
+                    fmt::format("expected a list of values but got {}", json::describe(*values)));
             axis.path = "values";
-            for (const Json& item : values->items) {
+            for (const json::Value& item : values->items) {
                 const auto text = effect::value_text(item);
                 if (!text)
                     object.fail(item.line, "values",
                                 fmt::format("expected a number, true or false, a text or a list of "
                                             "numbers but got {}",
-                                            effect::describe(item)));
+                                            json::describe(item)));
                 add_value(*text);
             }
         } else {
@@ -415,8 +414,8 @@ class JobReader {
     std::string file_;
     fs::path folder_;
     SceneReader reader_;
-    std::shared_ptr<const Json> json_;  // the axes' values refer to it
-    Draft probe_;                       // what values are tried on
+    std::shared_ptr<const json::Value> json_;  // the axes' values refer to it
+    Draft probe_;                              // what values are tried on
     Job job_;
 };
 

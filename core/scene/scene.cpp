@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
-#include "effect/json.h"
+#include "json/object_reader.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_words.h"
 
@@ -19,8 +19,7 @@ namespace relevo::scene {
 namespace {
 
 namespace fs = std::filesystem;
-using effect::Json;
-using effect::ObjectReader;
+using json::ObjectReader;
 using nlohmann::ordered_json;
 
 constexpr std::string_view kWho = "scene";
@@ -261,13 +260,13 @@ Scene read_scene(const fs::path& path) {
 }
 
 Scene read_scene_text(const std::string& text, const std::string& file, const fs::path& folder) {
-    const Json json = effect::parse_json(kWho, file, text);
-    ObjectReader object(kWho, file, "", json);
-    const Json& format = object.need("format");
-    if (format.kind != Json::Kind::Number || format.number != kFormat)
+    const json::Value root = json::parse(kWho, file, text);
+    ObjectReader object(kWho, file, "", root);
+    const json::Value& format = object.need("format");
+    if (format.kind != json::Value::Kind::Number || format.number != kFormat)
         object.fail(format.line, "format",
                     fmt::format("expected {}, the format that this program reads, but got {}",
-                                kFormat, effect::describe(format)));
+                                kFormat, json::describe(format)));
     object.need("dem");
     object.string("$schema", "");  // which editors look for
     Scene scene;

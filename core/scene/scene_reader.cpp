@@ -19,21 +19,20 @@ namespace relevo::scene {
 namespace {
 
 namespace fs = std::filesystem;
-using effect::Json;
-using effect::ObjectReader;
+using json::ObjectReader;
 
 /// Numbers in a list of so many.
-std::vector<double> numbers(const ObjectReader& object, const Json& value, const char* key,
+std::vector<double> numbers(const ObjectReader& object, const json::Value& value, const char* key,
                             std::size_t least, std::size_t most, const char* what) {
     std::vector<double> result;
-    if (value.kind == Json::Kind::Array)
-        for (const Json& item : value.items)
-            if (item.kind == Json::Kind::Number && std::isfinite(item.number))
+    if (value.kind == json::Value::Kind::Array)
+        for (const json::Value& item : value.items)
+            if (item.kind == json::Value::Kind::Number && std::isfinite(item.number))
                 result.push_back(item.number);
-    if (value.kind != Json::Kind::Array || result.size() != value.items.size() ||
+    if (value.kind != json::Value::Kind::Array || result.size() != value.items.size() ||
         result.size() < least || result.size() > most)
         object.fail(value.line, key,
-                    fmt::format("expected {} but got {}", what, effect::describe(value)));
+                    fmt::format("expected {} but got {}", what, json::describe(value)));
     return result;
 }
 
@@ -68,26 +67,27 @@ SceneReader::SceneReader(std::string_view who, std::string file, fs::path folder
     : who_(who), file_(std::move(file)), folder_(std::move(folder)), dates_(dates) {}
 
 void SceneReader::take(ObjectReader& object, std::string_view path, Scene& scene) const {
-    if (const Json* const value = object.take("dem")) dem(*value, joined(path, "dem"), scene);
-    if (const Json* const value = object.take("time"))
+    if (const json::Value* const value = object.take("dem"))
+        dem(*value, joined(path, "dem"), scene);
+    if (const json::Value* const value = object.take("time"))
         moment(*value, joined(path, "time"), scene.moment);
     const auto known = std::ranges::find(refractions(), scene.refraction);
     scene.refraction = refractions()[object.choice(
         "refraction", refractions(), static_cast<std::size_t>(known - refractions().begin()))];
-    if (const Json* const value = object.take("camera"))
+    if (const json::Value* const value = object.take("camera"))
         take_camera(*value, joined(path, "camera"), scene);
     scene.exaggeration = object.number("exaggeration", scene.exaggeration, 0.01, 1000, false);
-    if (const Json* const value = object.take("effects"))
+    if (const json::Value* const value = object.take("effects"))
         take_effects(*value, joined(path, "effects"), scene.effects);
-    if (const Json* const value = object.take("overlay"))
+    if (const json::Value* const value = object.take("overlay"))
         overlay(*value, joined(path, "overlay"), scene);
-    if (const Json* const value = object.take("stamps"))
+    if (const json::Value* const value = object.take("stamps"))
         stamps(*value, joined(path, "stamps"), scene.stamps);
-    if (const Json* const value = object.take("picture"))
+    if (const json::Value* const value = object.take("picture"))
         picture(*value, joined(path, "picture"), scene);
 }
 
-ObjectReader SceneReader::inside(const Json& value, const std::string& path) const {
+ObjectReader SceneReader::inside(const json::Value& value, const std::string& path) const {
     return {who_, file_, path, value};
 }
 
@@ -99,7 +99,7 @@ std::string SceneReader::beside(const std::string& name) const {
     return may_be_gdals && !fs::exists(path, unknown) ? name : path.string();
 }
 
-void SceneReader::overlay(const Json& value, const std::string& path, Scene& scene) const {
+void SceneReader::overlay(const json::Value& value, const std::string& path, Scene& scene) const {
     ObjectReader object = inside(value, path);
     Overlay& overlay = scene.overlay.emplace();
     overlay.file = beside(object.string("file"));
@@ -107,7 +107,7 @@ void SceneReader::overlay(const Json& value, const std::string& path, Scene& sce
         static_cast<int>(object.number("band", 1, 1, std::numeric_limits<int>::max(), true));
     overlay.colours = object.string("colours", "");
     if (is_colour_file(overlay.colours)) overlay.colours = beside(overlay.colours);
-    if (const Json* const range = object.take("range")) {
+    if (const json::Value* const range = object.take("range")) {
         const std::vector<double> v =
             numbers(object, *range, "range", 2, 2, "the values of the first and the last colour");
         if (!(v[1] > v[0]))
@@ -119,7 +119,7 @@ void SceneReader::overlay(const Json& value, const std::string& path, Scene& sce
     object.finish();
 }
 
-void SceneReader::dem(const Json& value, const std::string& path, Scene& scene) const {
+void SceneReader::dem(const json::Value& value, const std::string& path, Scene& scene) const {
     ObjectReader object = inside(value, path);
     scene.dems.clear();
     scene.dem = {};
@@ -132,18 +132,18 @@ void SceneReader::dem(const Json& value, const std::string& path, Scene& scene) 
     options.band =
         static_cast<int>(object.number("band", 0, 1, std::numeric_limits<int>::max(), true));
     options.unit = object.string("unit", "");
-    if (const Json* const nodata = object.take("nodata")) {
-        options.no_nodata = nodata->kind == Json::Kind::String && nodata->text == "none";
-        if (nodata->kind == Json::Kind::Number)
+    if (const json::Value* const nodata = object.take("nodata")) {
+        options.no_nodata = nodata->kind == json::Value::Kind::String && nodata->text == "none";
+        if (nodata->kind == json::Value::Kind::Number)
             options.nodata = nodata->number;
         else if (!options.no_nodata)
             object.fail(
                 nodata->line, "nodata",
-                fmt::format("expected a number or \"none\" but got {}", effect::describe(*nodata)));
+                fmt::format("expected a number or \"none\" but got {}", json::describe(*nodata)));
     }
     options.encoding =
         static_cast<dem::Encoding>(object.choice("encoding", encodings(), std::size_t{0}));
-    if (const Json* const bounds = object.take("bounds")) {
+    if (const json::Value* const bounds = object.take("bounds")) {
         const std::vector<double> v =
             numbers(object, *bounds, "bounds", 4, 4, "west, south, east, north in degrees");
         check(object, "bounds", [&] {
@@ -158,7 +158,7 @@ void SceneReader::dem(const Json& value, const std::string& path, Scene& scene) 
     object.finish();
 }
 
-void SceneReader::moment(const Json& value, const std::string& path, Moment& moment) const {
+void SceneReader::moment(const json::Value& value, const std::string& path, Moment& moment) const {
     ObjectReader object = inside(value, path);
     // Another time says its own date.
     const bool timed = object.take("at") != nullptr;
@@ -199,8 +199,8 @@ void SceneReader::check_moment(const ObjectReader& object, const Moment& moment)
     });
 }
 
-Standpoint SceneReader::standpoint(const ObjectReader& object, const Json& value, const char* key,
-                                   double height_agl_m) const {
+Standpoint SceneReader::standpoint(const ObjectReader& object, const json::Value& value,
+                                   const char* key, double height_agl_m) const {
     const std::vector<double> v =
         numbers(object, value, key, 2, 3, "latitude, longitude and perhaps a height");
     if (std::abs(v[0]) > 90 || std::abs(v[1]) > 360)
@@ -212,11 +212,12 @@ Standpoint SceneReader::standpoint(const ObjectReader& object, const Json& value
     return {geo::geodetic_deg(v[0], v[1], has_height ? v[2] : height_agl_m), !has_height};
 }
 
-void SceneReader::take_camera(const Json& value, const std::string& path, Scene& scene) const {
+void SceneReader::take_camera(const json::Value& value, const std::string& path,
+                              Scene& scene) const {
     ObjectReader object = inside(value, path);
     View& view = scene.view;
-    const Json* const orbit = object.take("orbit");
-    const Json* const eye = object.take("eye");
+    const json::Value* const orbit = object.take("orbit");
+    const json::Value* const eye = object.take("eye");
     if (orbit && eye) object.fail(eye->line, "eye", "expected an orbit or an eye but got both");
     if (orbit || eye) {
         const View before = std::exchange(view, {});
@@ -237,7 +238,7 @@ void SceneReader::take_camera(const Json& value, const std::string& path, Scene&
     if (eye) view.eye = standpoint(object, *eye, "eye", kEyeHeight_m);
     if (view.eye) {
         view.eye->above_ground = object.boolean("eye_above_ground", view.eye->above_ground);
-        if (const Json* const target = object.take("look_at"))
+        if (const json::Value* const target = object.take("look_at"))
             view.look_at = standpoint(object, *target, "look_at", 0);
         if (view.look_at && !object.has("heading") && !object.has("pitch")) {
             view.look_at->above_ground =
@@ -260,7 +261,8 @@ void SceneReader::take_camera(const Json& value, const std::string& path, Scene&
     object.finish();
 }
 
-void SceneReader::take_effects(const Json& value, const std::string& path, Effects& effects) const {
+void SceneReader::take_effects(const json::Value& value, const std::string& path,
+                               Effects& effects) const {
     ObjectReader object = inside(value, path);
     Effects change;
     if (object.take("only")) change.switches.only = object.strings("only");
@@ -275,7 +277,7 @@ void SceneReader::take_effects(const Json& value, const std::string& path, Effec
     effects = merge(std::move(effects), change);
 }
 
-void SceneReader::stamps(const Json& value, const std::string& path, Stamps& stamps) const {
+void SceneReader::stamps(const json::Value& value, const std::string& path, Stamps& stamps) const {
     ObjectReader object = inside(value, path);
     stamps.legend = object.boolean("legend", stamps.legend);
     stamps.title_text = printable(object.string("title", stamps.title_text));
@@ -288,9 +290,9 @@ void SceneReader::stamps(const Json& value, const std::string& path, Stamps& sta
     object.finish();
 }
 
-void SceneReader::picture(const Json& value, const std::string& path, Scene& scene) const {
+void SceneReader::picture(const json::Value& value, const std::string& path, Scene& scene) const {
     ObjectReader object = inside(value, path);
-    if (const Json* const size = object.take("size")) {
+    if (const json::Value* const size = object.take("size")) {
         const std::vector<double> v =
             numbers(object, *size, "size", 2, 2, "a width and a height in pixels");
         for (const double side : v)

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "effect/json.h"
+#include "json/object_reader.h"
 #include "scene/scene.h"
 
 namespace relevo::scene {
@@ -29,29 +29,29 @@ class SceneReader {
     /// whole; effects are merged as scene::merge() does, the rest value by value.
     /// @param path  of the object in the file, "" at the top, "shots[3]" inside
     /// @throws Error (BadInput) `who: FILE:LINE: shots[3].camera.fov: what, expected E but got G`
-    void take(effect::ObjectReader& object, std::string_view path, Scene& scene) const;
+    void take(json::ObjectReader& object, std::string_view path, Scene& scene) const;
 
     /// The same for the object of a camera or of effects alone.
-    void take_camera(const effect::Json& value, const std::string& path, Scene& scene) const;
-    void take_effects(const effect::Json& value, const std::string& path, Effects& effects) const;
+    void take_camera(const json::Value& value, const std::string& path, Scene& scene) const;
+    void take_effects(const json::Value& value, const std::string& path, Effects& effects) const;
 
     /// A standpoint from [latitude, longitude] or [latitude, longitude, height], which without a
     /// height is so far above the ground.
-    Standpoint standpoint(const effect::ObjectReader& object, const effect::Json& value,
+    Standpoint standpoint(const json::ObjectReader& object, const json::Value& value,
                           const char* key, double height_agl_m) const;
 
     /// A path that counts from the file's folder; what is no path of this machine stays.
     std::string beside(const std::string& name) const;
     /// A reader of an object inside the file.
-    effect::ObjectReader inside(const effect::Json& value, const std::string& path) const;
+    json::ObjectReader inside(const json::Value& value, const std::string& path) const;
 
   private:
-    void dem(const effect::Json& value, const std::string& path, Scene& scene) const;
-    void moment(const effect::Json& value, const std::string& path, Moment& moment) const;
-    void check_moment(const effect::ObjectReader& object, const Moment& moment) const;
-    void overlay(const effect::Json& value, const std::string& path, Scene& scene) const;
-    void stamps(const effect::Json& value, const std::string& path, Stamps& stamps) const;
-    void picture(const effect::Json& value, const std::string& path, Scene& scene) const;
+    void dem(const json::Value& value, const std::string& path, Scene& scene) const;
+    void moment(const json::Value& value, const std::string& path, Moment& moment) const;
+    void check_moment(const json::ObjectReader& object, const Moment& moment) const;
+    void overlay(const json::Value& value, const std::string& path, Scene& scene) const;
+    void stamps(const json::Value& value, const std::string& path, Stamps& stamps) const;
+    void picture(const json::Value& value, const std::string& path, Scene& scene) const;
 
     std::string who_, file_;
     std::filesystem::path folder_;

@@ -28,7 +28,7 @@ bool is_name(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-/// "Noise scale" of haze_noise_scale.
+/// "Noise scale" for haze_noise_scale.
 std::string label_of(std::string_view name) {
     std::string label(name.substr(name.find('_') + 1));
     std::ranges::replace(label, '_', ' ');
@@ -184,7 +184,7 @@ class ParamReader {
         if (param_.is_static && param_.is_host)
             fail("it cannot be both static, a constant, and host, written for every frame");
         if (param_.is_host && param_.role == ParamRole::Angle)
-            fail("a host parameter is written in the shader's own radians; remove angle");
+            fail("a host parameter is in radians; remove angle");
         if (!param_.words.empty() && param_.range) fail("an enum has its words and no range");
         if (param_.role == ParamRole::Angle && param_.unit.empty()) param_.unit = "deg";
         if (param_.role == ParamRole::Angle && param_.unit != "deg")
@@ -195,10 +195,8 @@ class ParamReader {
         if (param_.role == ParamRole::Direction && param_.range) fail("a direction has no range");
         const bool number = param_.type == ParamType::Float || param_.type == ParamType::Int;
         if (number && !param_.range && param_.words.empty() && !param_.is_host)
-            fail(
-                fmt::format("expected a //@ behind it with a range{}, as a panel and an error "
-                            "message need to know it; add //@ range(min, max)",
-                            param_.type == ParamType::Int ? " or an enum" : ""));
+            fail(fmt::format("expected a //@ after it with a range{}; add //@ range(min, max)",
+                             param_.type == ParamType::Int ? " or an enum" : ""));
     }
 
     std::optional<ParamValue> read_initial(std::string_view text) const {
@@ -246,7 +244,7 @@ std::vector<AnnotationWord> parse_annotation(std::string_view text, std::string_
     const auto fail = [&](const std::string& message) {
         source_error(file, line, fmt::format("//@{}: {}", printable(text), message));
     };
-    // Tabs are blanks here.
+    // Tabs count as spaces.
     std::string plain(text);
     std::ranges::replace(plain, '\t', ' ');
     if (plain != printable(plain)) fail("expected UTF-8 without control characters");
@@ -278,7 +276,7 @@ std::vector<AnnotationWord> parse_annotation(std::string_view text, std::string_
                     if (depth > 0 && !quoted) argument += c;
                 }
             }
-            if (depth > 0) fail(fmt::format("the ( behind {} is never closed", word.name));
+            if (depth > 0) fail(fmt::format("the ( after {} is never closed", word.name));
             word.arguments.emplace_back(quoted ? argument : trimmed(argument));
         }
         words.push_back(std::move(word));

@@ -14,7 +14,7 @@ struct AnnotationWord {
     std::vector<std::string> arguments;  ///< trimmed; quoted ones without their quotes
 };
 
-/// Reads what stands behind `//@`.
+/// Reads the text after `//@`.
 /// @throws Error (BadInput) that names file and line
 std::vector<AnnotationWord> parse_annotation(std::string_view text, std::string_view file,
                                              int line);
@@ -25,10 +25,10 @@ std::vector<AnnotationWord> parse_annotation(std::string_view text, std::string_
 Param parse_param(std::string_view type, std::string_view name, std::string_view initial,
                   std::string_view annotation, std::string_view file, int line);
 
-/// The parameter type of that GLSL name, if it is one.
+/// The parameter type with that GLSL name; none if there is none.
 std::optional<ParamType> param_type(std::string_view glsl_name);
 
-/// "haze.noise_scale" of haze_noise_scale.
+/// "haze.noise_scale" for haze_noise_scale.
 std::string address_of(std::string_view name);
 
 }  // namespace relevo::shader

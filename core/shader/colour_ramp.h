@@ -5,36 +5,35 @@
 #include <string_view>
 #include <vector>
 
-/// What colours of a plugin mean: an annotated constant of its GLSL, which its shader reads and
-/// legends show.
+/// The meaning of a plugin's colours: an annotated constant of its GLSL. Its shader reads it, and
+/// legends show it.
 ///
 ///     const vec3 tint_slope[2] = vec3[](vec3(1.0, 1.0, 0.9), vec3(0.4, 0.1, 0.3)); //@ ramp(0, 60)
 ///     unit(°)
 namespace relevo::shader {
 
 struct ColourRamp {
-    /// A value, of which one is meant.
+    /// A value: of the DEM, a number or a parameter.
     struct End {
-        /// Of the DEM [m]: its lowest and highest post, and the lowest where it has a sea with its
-        /// floor.
+        /// Of the DEM [m]: its lowest and highest post, and its lowest post if it has a sea floor.
         enum class Of { Number, Param, Lowest, Highest, Floor };
         Of of = Of::Number;
         double number = 0;
         std::string address;  ///< of a parameter: "tint.low_m"
     };
     std::string name;                            ///< in GLSL: tint_slope
-    std::vector<std::array<double, 3>> colours;  ///< sRGB, 0..1, as evenly apart as the values are
-    bool is_ring = false;  ///< of directions, degrees clockwise from north; no ends then
+    std::vector<std::array<double, 3>> colours;  ///< sRGB, 0..1, at equal steps of the value
+    bool is_ring = false;  ///< directions, degrees clockwise from north; has no ends
     End from, to;
     std::string unit, label;
-    std::string where, where_word;  ///< shown while that enum parameter has that word; or empty
+    std::string where, where_word;  ///< shown if that enum parameter has that word; or empty
     std::string file;               ///< where it is declared
     int line = 0;
 };
 
 /// Reads a ramp from the parts of its declaration.
 /// @param owner  the plugin's id, whose parameters its words name
-/// @param value  the GLSL text behind the =: `vec3[](vec3(0.1, 0.2, 0.3), ...)`
+/// @param value  the GLSL text after the =: `vec3[](vec3(0.1, 0.2, 0.3), ...)`
 /// @throws Error (BadInput) that names file and line
 ColourRamp parse_ramp(std::string_view owner, std::string_view name, std::string_view value,
                       std::string_view annotation, std::string_view file, int line);

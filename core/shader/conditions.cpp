@@ -12,7 +12,7 @@ Value truth(const Value& value) {
     return *value != 0;
 }
 
-/// The expressions of #if (GLSL 4.50, 3.3), by precedence climbing. What cannot be told is empty.
+/// The expressions of #if (GLSL 4.50, 3.3), by precedence climbing. An unknown value is empty.
 class Expression {
   public:
     Expression(std::string_view text, const Macros& macros) : macros_(macros) { expand(text, 0); }
@@ -24,7 +24,7 @@ class Expression {
     }
 
   private:
-    // Deeper than this the macros go round in a circle, and longer than this they grow without end.
+    // Deeper macros are recursive. Longer expansions have no end.
     static constexpr int kMaxDepth = 16;
     static constexpr std::size_t kMaxWords = 10000;
 
@@ -51,7 +51,7 @@ class Expression {
     std::string defined(std::string_view name) const {
         if (const auto macro = macros_.find(name); macro != macros_.end())
             return macro->second ? "1" : "?";
-        // Whether an extension's macro is there is for the driver to say.
+        // Macros of extensions are known to the driver only.
         return name.substr(0, 3) == "GL_" || name.substr(0, 2) == "__" ? "?" : "0";
     }
 
@@ -104,7 +104,7 @@ class Expression {
         return std::nullopt;
     }
 
-    /// GLSL's integers have 32 bits; what leaves them is for the driver to judge.
+    /// GLSL's integers have 32 bits. The driver decides about larger values.
     static Value in_range(const Value& value) {
         constexpr long long kMax = 0x7FFFFFFF;
         return value && *value >= -kMax - 1 && *value <= kMax ? value : std::nullopt;
@@ -120,7 +120,7 @@ class Expression {
     }
 
     Value unary() {
-        if (++nesting_ > kMaxWords / 10) return std::nullopt;  // spare the stack
+        if (++nesting_ > kMaxWords / 10) return std::nullopt;  // limits the stack
         if (take("!")) {
             const Value value = truth(unary());
             return value ? Value(*value == 0) : std::nullopt;
@@ -154,13 +154,13 @@ class Expression {
 struct Group {
     bool parent_active;
     bool parent_certain;
-    bool decided = true;  // every condition so far could be told
-    bool taken = false;   // a branch is certainly the one
-    bool active = false;  // the current branch may be left in
+    bool decided = true;  // every condition so far is known
+    bool taken = false;   // a branch is certainly active
+    bool active = false;  // the current branch may be compiled
     std::vector<std::size_t> directives;
 };
 
-/// Follows the directives of a file from its first line to its last.
+/// Evaluates the directives of a file in order.
 class Walk {
   public:
     Walk(const Source& source, Macros& macros) : source_(source), macros_(macros) {
@@ -186,7 +186,7 @@ class Walk {
 
     std::string word(std::size_t n) const { return std::string(source_.str(words_[n])); }
 
-    /// Everything behind the directive's word `n`, as one text.
+    /// The text after the directive's word `n`.
     std::string rest(std::size_t n) const {
         std::string text;
         for (std::size_t k = n; k < words_.size(); ++k)

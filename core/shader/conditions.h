@@ -7,23 +7,23 @@
 
 #include "shader/source.h"
 
-/// Which parts of a file the GLSL preprocessor will leave in, as far as that can be told before it
-/// runs: a function that only a switched-off branch calls need not be in the text.
+/// Evaluates the #if directives of a file as far as their values are known before compilation: a
+/// function that only an inactive branch calls can be omitted from the text.
 namespace relevo::shader {
 
-/// Macros by name. Empty: defined, but as a function or in a branch that could not be decided.
+/// Macros by name. Empty: defined, but as a function or in an undecided branch.
 using Macros = std::map<std::string, std::optional<std::string>, std::less<>>;
 
 struct Conditions {
-    std::vector<bool> active;     ///< per token: may be left in
-    std::vector<bool> undecided;  ///< per token: an #if, #elif, #else or #endif that has to stay
+    std::vector<bool> active;     ///< per token: may be compiled
+    std::vector<bool> undecided;  ///< per token: an #if, #elif, #else or #endif that must stay
 };
 
-/// Walks through a file's directives.
-/// @param macros  what is defined before the file; the file's own are added
+/// Evaluates a file's directives in order.
+/// @param macros  that are defined before the file; the file's own are added
 Conditions evaluate_conditions(const Source& source, Macros& macros);
 
-/// The value of an #if expression, if it can be told: integers, `defined`, macros with such values.
+/// The value of an #if expression of integers, `defined` and macros with such values; else none.
 std::optional<long long> evaluate_expression(std::string_view expression, const Macros& macros);
 
 }  // namespace relevo::shader

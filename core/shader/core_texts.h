@@ -12,13 +12,13 @@ class CoreTexts {
   public:
     virtual ~CoreTexts() = default;
 
-    /// The whole text, or nothing if there is no such file.
+    /// The whole text; none if there is no such file.
     virtual std::optional<std::string> text(std::string_view name) const = 0;
-    /// The file as messages shall name it.
+    /// The file's name for messages.
     virtual std::string file(std::string_view name) const = 0;
 };
 
-/// The files of a folder, read afresh at every call.
+/// The files of a folder, read at every call.
 class FolderTexts : public CoreTexts {
   public:
     explicit FolderTexts(std::filesystem::path folder) : folder_(std::move(folder)) {}

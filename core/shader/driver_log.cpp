@@ -9,7 +9,7 @@
 namespace relevo::shader {
 namespace {
 
-/// Reads a log line from the left.
+/// A log line and the place up to which it is read.
 class Cursor {
   public:
     explicit Cursor(std::string_view text) : text_(text) {}

@@ -23,8 +23,8 @@ constexpr double kMaxElements = 65536;
 
 using Words = std::span<const Token>;
 
-/// Words that a text comes to: so many, and for each parameter of the macro that it is in the words
-/// of its argument, so many times.
+/// Number of words of an expanded text: a constant, and for each parameter of the macro around it
+/// how often its argument occurs.
 struct Count {
     double words = 0;
     std::vector<double> of_params;
@@ -38,12 +38,12 @@ struct Count {
 
 struct Macro {
     const Source* source;
-    std::vector<Token> directive;  ///< behind the #
+    std::vector<Token> directive;  ///< after the #
     bool is_function = false;
     std::vector<std::string_view> params;
     std::size_t body = 2;  ///< the first of its words in `directive`
     std::optional<Count> count;
-    bool is_open = false;  ///< being counted: the preprocessor takes its own name as it stands
+    bool is_open = false;  ///< being expanded: the preprocessor does not expand it again
 };
 
 struct Function {
@@ -76,8 +76,8 @@ class Growth {
                         : count(file.source, words_of(file.source, item), {}).words;
                 if (words > kMaxWords)
                     fail(fmt::format(
-                        "{}: comes to {:.2g} words, expected at most {:.0g}: drivers "
-                        "expand macros and copy functions for each call; use a loop",
+                        "{}: {:.2g} words when expanded, expected at most {:.0g}: drivers expand "
+                        "macros and inline calls; use a loop",
                         item.names.empty() ? "it" : item.names.front(), words, kMaxWords));
             }
     }
@@ -136,7 +136,7 @@ class Growth {
         return sum;
     }
 
-    /// Adds what a macro's name at `i` comes to. @returns the last word that belongs to it
+    /// Adds the words of the macro call at `i`. @returns its last word
     std::size_t add_macro_use(const Source& source, Words words, std::size_t i,
                               const std::vector<std::string_view>& params,
                               std::vector<Macro>& definitions, Count& sum) {
@@ -147,7 +147,7 @@ class Growth {
             is_call &&
             std::ranges::any_of(definitions, [](const Macro& macro) { return macro.is_function; });
         if (takes_arguments) arguments = arguments_of(source, words, i + 1, params, end);
-        // Of several the longest: which of them holds here is not asked.
+        // The longest of several definitions, whichever is valid here.
         Count longest{0, std::vector<double>(params.size())};
         for (Macro& macro : definitions) {
             if (macro.is_function && !is_call) continue;
@@ -161,7 +161,7 @@ class Growth {
         return end;
     }
 
-    /// @param open  the bracket. @param end  becomes that which closes it
+    /// @param open  the bracket. @param end  becomes its closing bracket
     std::vector<Count> arguments_of(const Source& source, Words words, std::size_t open,
                                     const std::vector<std::string_view>& params, std::size_t& end) {
         std::vector<Count> arguments;
@@ -207,11 +207,11 @@ class Growth {
 
     std::map<std::string, std::vector<Macro>, std::less<>> macros_;
     std::map<std::string, std::vector<Function>, std::less<>> functions_;
-    std::pair<const Source*, int> at_;  ///< what is checked, for messages
+    std::pair<const Source*, int> at_;  ///< file and line for messages
     int depth_ = 0;
 };
 
-/// Lengths of arrays, as far as numbers, macros and `const int` tell them.
+/// Lengths of arrays that numbers, macros and `const int` give.
 class Arrays {
   public:
     void check(const Source& source) {
@@ -232,7 +232,7 @@ class Arrays {
     }
 
   private:
-    /// Everything from a word on up to one of some marks.
+    /// The words from one up to a mark.
     static std::string until(const Source& source, Words words, std::size_t& i,
                              std::string_view marks) {
         std::string text;
@@ -249,7 +249,7 @@ class Arrays {
         return text;
     }
 
-    /// A macro may have a declaration in it.
+    /// A macro may contain a declaration.
     void directive(const Source& source, const Token& token) {
         const std::vector<Token> words = directive_tokens(source.text, token, source.file);
         if (words.size() < 2 || source.str(words[0]) != "define") return;
@@ -273,7 +273,7 @@ class Arrays {
         }
     }
 
-    /// @returns elements of the array so far. @throws Error where they are too many
+    /// @returns the number of elements so far. @throws Error for too many
     double bracket(const Source& source, Words words, std::size_t i, double elements) const {
         const int line = words[i].line;
         ++i;

@@ -72,7 +72,8 @@ Signature parse_signature(std::string_view head) {
     std::size_t open = 0;
     while (open < tokens.size() && word(open) != "(")
         ++open;
-    // Precision qualifiers mean nothing in desktop GLSL; the name is last, the type before it.
+    // Precision qualifiers have no effect in desktop GLSL. The type is before the name, which is
+    // last.
     result.name = word(open - 1);
     std::size_t type = 0;
     while (word(type) == "highp" || word(type) == "mediump" || word(type) == "lowp")
@@ -84,7 +85,7 @@ Signature parse_signature(std::string_view head) {
     while (i + 1 < tokens.size()) {
         Argument argument{"in", "", ""};
         int words = 0;
-        int depth = 0;  // of [ ], which may stand behind the type or behind the name
+        int depth = 0;  // of [ ], which may be after the type or the name
         std::string brackets;
         for (; word(i) != "," && i + 1 < tokens.size(); ++i) {
             const std::string text = word(i);

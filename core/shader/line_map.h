@@ -5,10 +5,10 @@
 
 namespace relevo::shader {
 
-/// Where a line of a program's text comes from.
+/// The source of a line of a program's text.
 struct LineOrigin {
-    std::string owner;  ///< plugin id, "core", or empty for what the stitcher wrote itself
-    std::string file;   ///< empty for what the stitcher wrote itself
+    std::string owner;  ///< plugin id, "core", or empty for a line of the stitcher
+    std::string file;   ///< empty for a line of the stitcher
     int line = 0;       ///< in that file, from 1
 };
 

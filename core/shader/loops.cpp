@@ -33,8 +33,8 @@ class Reader {
                    : std::string_view();
     }
 
-    /// Behind what closes the bracket at `i`.
-    std::size_t behind(std::size_t i) const {
+    /// The token after the bracket that closes the one at `i`.
+    std::size_t after_brackets(std::size_t i) const {
         int depth = 0;
         do {
             depth += str(i) == "(" || str(i) == "{";
@@ -70,7 +70,7 @@ class Reader {
 
     /// @param head  of a for
     bool is_bounded(std::size_t head) const {
-        const std::size_t close = behind(head + 1);  // behind the )
+        const std::size_t close = after_brackets(head + 1);  // after the )
         std::vector<std::size_t> semicolons;
         for (std::size_t i = head + 1; i < close; ++i)
             if (str(i) == ";") semicolons.push_back(i);
@@ -83,7 +83,7 @@ class Reader {
         const std::size_t step = semicolons[1] + 1;
         std::size_t end = close;  // of the body
         if (str(close) == "{")
-            end = behind(close);
+            end = after_brackets(close);
         else
             while (end < source_.tokens.size() && str(end) != ";")
                 ++end;

@@ -24,12 +24,12 @@ void ParamStore::declare(const std::vector<Param>& params, const std::vector<Tex
         if (kept == values_.end()) continue;
         const Entry& entry = kept->second;
         if (entry.type != param.type) {
-            log::warning(fmt::format("{}: was of type {}, is of type {} now; its value is {} again",
-                                     param.address, glsl_name(entry.type), glsl_name(param.type),
-                                     format_value(param, param.initial)));
+            log::warning(fmt::format(
+                "{}: the type has changed from {} to {}; the value is reset to {}", param.address,
+                glsl_name(entry.type), glsl_name(param.type), format_value(param, param.initial)));
             values_.erase(kept);
         } else if (!param.is_host && !is_valid(param, entry.value)) {
-            log::warning(fmt::format("{}: its value is no longer {}; it is {} again", param.address,
+            log::warning(fmt::format("{}: the value is not {}; it is reset to {}", param.address,
                                      describe_values(param), format_value(param, param.initial)));
             values_.erase(kept);
         }
@@ -128,8 +128,9 @@ void ParamStore::reset(std::string_view address) {
 void ParamStore::write_host(std::string_view address, const ParamValue& value) {
     const Param& known = param(address);
     if (!known.is_host)
-        bad_input(fmt::format("parameter: {}: not a host parameter; only people set it", address));
-    // Without a range, but to be sent as a whole number.
+        bad_input(
+            fmt::format("parameter: {}: not a host parameter; modules cannot write it", address));
+    // Without a range, but the shader needs a whole number.
     const bool whole = known.type == ParamType::Int || known.type == ParamType::Bool;
     if (whole && !is_valid(known, value))
         bad_input(fmt::format("parameter: {}: expected {} but got {}", address,
@@ -151,7 +152,7 @@ BlockLayout block_layout(const std::vector<Param>& params) {
     for (const Param& param : params) {
         if (param.is_static) continue;
         const auto count = static_cast<std::size_t>(component_count(param.type));
-        // A vec3 is aligned as a vec4 is, but leaves its last four bytes to whoever comes next.
+        // A vec3 has the alignment of a vec4, but the next member may use its last four bytes.
         const std::size_t alignment = 4 * (count == 3 ? 4 : count);
         const std::size_t offset = (layout.size + alignment - 1) / alignment * alignment;
         layout.members.push_back({param, offset});
@@ -165,7 +166,7 @@ std::vector<std::byte> pack(const BlockLayout& layout, const ParamStore& store) 
     std::vector<std::byte> bytes(layout.size);
     for (const BlockMember& member : layout.members) {
         const Param& param = member.param;
-        // A program that outlived a reload may have members that are declared otherwise by now.
+        // After a reload an older program may have members with other declarations.
         const Param* const known = store.find(param.address);
         const ParamValue value =
             known && known->type == param.type ? store.value(param.address) : param.initial;

@@ -10,7 +10,7 @@
 
 namespace relevo::shader {
 
-/// A text that an effect takes, which no shader sees: its native module reads it.
+/// A text parameter of an effect. Its native module reads it; no shader does.
 struct TextParam {
     std::string address;   ///< "overlay.picture"
     bool is_file = false;  ///< the path of a file
@@ -18,18 +18,18 @@ struct TextParam {
     std::string initial;
 };
 
-/// The values of parameters, kept on the host and keyed by address and type, so that a program
-/// that fails to compile, or a plugin that is off for a while, loses nothing.
+/// The values of parameters, by address and type. They are independent of programs: a program that
+/// fails to compile, or a plugin that is switched off for a while, keeps its values.
 class ParamStore {
   public:
-    /// Makes `params` the parameters there are. Values of addresses known before are kept, also of
-    /// those that `params` no longer has, for when they come back. A value whose parameter now has
-    /// another type, or a range without it, goes back to the default, with a warning.
+    /// Declares all parameters. Values of known addresses are kept, also of addresses that `params`
+    /// lacks: they may be declared again. If a parameter's type has changed, or its range excludes
+    /// the value, it is reset to the default, with a warning.
     void declare(const std::vector<Param>& params, const std::vector<TextParam>& texts = {});
 
-    /// The declared parameter of that address, or null.
+    /// Null if no such parameter is declared.
     const Param* find(std::string_view address) const;
-    /// @throws Error (BadInput) with the nearest address where there is one
+    /// @throws Error (BadInput) with the nearest address, if there is one
     const Param& param(std::string_view address) const;
     /// Declared parameters, by address.
     std::vector<const Param*> params() const;
@@ -38,16 +38,16 @@ class ParamStore {
 
     const TextParam* find_text(std::string_view address) const;  ///< or null
     std::vector<const TextParam*> texts() const;                 ///< declared ones, by address
-    std::string text(std::string_view address) const;  ///< throws where there is no such text
+    std::string text(std::string_view address) const;  ///< throws if there is no such text
 
-    /// Sets a value as people do; of a text, the text itself.
+    /// Sets a parameter or a text from the text that people write.
     /// @throws Error (BadInput) for an unknown address, a value that the parameter cannot have, or
     ///         a host parameter
     void set(std::string_view address, std::string_view text);
     void set(std::string_view address, const ParamValue& value);
     void reset(std::string_view address);  ///< back to the default
 
-    /// Writes a host parameter, as the code that owns it does for every frame.
+    /// Writes a host parameter. Its native module does so for every frame.
     /// @throws Error (BadInput) for an unknown address or one that is not host
     void write_host(std::string_view address, const ParamValue& value);
 
@@ -60,12 +60,12 @@ class ParamStore {
     const Param& settable(std::string_view address) const;
 
     std::map<std::string, Param, std::less<>> params_;
-    std::map<std::string, Entry, std::less<>> values_;  // only what differs from the default
+    std::map<std::string, Entry, std::less<>> values_;  // only values other than the default
     std::map<std::string, TextParam, std::less<>> text_params_;
-    std::map<std::string, std::string, std::less<>> texts_;  // likewise
+    std::map<std::string, std::string, std::less<>> texts_;  // only texts other than the default
 };
 
-/// Where a parameter lies in the block `Params`.
+/// A parameter's place in the block `Params`.
 struct BlockMember {
     Param param;
     std::size_t offset = 0;  ///< bytes
@@ -79,7 +79,7 @@ struct BlockLayout {
     friend bool operator==(const BlockLayout& a, const BlockLayout& b);
 };
 
-/// Lays out the parameters in their order, static ones left out.
+/// Lays out the parameters in their order, without static ones.
 BlockLayout block_layout(const std::vector<Param>& params);
 
 /// The block's bytes, for the uniform buffer at binding 1.

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-/// Parameters: annotated uniforms of a plugin's GLSL, the one source for panel, JSON, command line
-/// and docs.
+/// Parameters: annotated uniforms of a plugin's GLSL. Panel, JSON, command line and docs follow
+/// from them.
 ///
 ///     uniform float haze_density = 0.08; //@ range(0, 2) unit(1/km) label("Density")
 namespace relevo::shader {
@@ -18,17 +18,17 @@ enum class ParamType { Float, Int, Bool, Vec2, Vec3, Vec4 };
 std::string_view glsl_name(ParamType type);  ///< "vec3"
 int component_count(ParamType type);         ///< 1 to 4
 
-/// What the components mean, where it changes how a value is written or sent.
+/// The meaning of the components, if it changes how a value is written or uploaded.
 enum class ParamRole {
     Plain,
-    Colour,      ///< vec3 or vec4, linear light; a #rrggbb is sRGB and is linearised
-    ColourSrgb,  ///< vec3 or vec4, sRGB as it stands; for `display` hooks
-    Angle,       ///< float; degrees wherever people meet it, radians in the shader
-    Direction,   ///< vec3, east, north, up; of any length, unit length in the shader
+    Colour,      ///< vec3 or vec4, linear light; #rrggbb is sRGB and is linearised
+    ColourSrgb,  ///< vec3 or vec4, sRGB, not linearised; for `display` hooks
+    Angle,       ///< float; degrees for people, radians in the shader
+    Direction,   ///< vec3: east, north, up; normalised in the shader
 };
 
-/// A value as people write it (angles in degrees). Components beyond the type's are 0; a bool is 0
-/// or 1, an enum the number of its word.
+/// A value as people write it (angles in degrees). Unused components are 0. A bool is 0 or 1, an
+/// enum the index of its word.
 using ParamValue = std::array<double, 4>;
 
 struct ParamRange {
@@ -38,18 +38,18 @@ struct ParamRange {
 
 struct Param {
     std::string name;     ///< in GLSL: haze_density
-    std::string address;  ///< everywhere else: haze.density
+    std::string address;  ///< elsewhere: haze.density
     ParamType type = ParamType::Float;
     ParamRole role = ParamRole::Plain;
     ParamValue initial{};             ///< the default
-    std::optional<ParamRange> range;  ///< of every component; ends included
+    std::optional<ParamRange> range;  ///< of every component, inclusive
     std::string unit;                 ///< "1/km", or empty
     std::string label;                ///< "Density"
     std::string description;          ///< a sentence, or empty
     std::vector<std::string> words;   ///< of an enum, for the values 0, 1, 2 ...
-    bool is_static = false;           ///< a constant in the text: a new value means a new program
-    bool is_host = false;             ///< written by code for every frame; people cannot set it
-    std::string file;                 ///< where it is declared
+    bool is_static = false;           ///< a constant in the text: a new value needs a new program
+    bool is_host = false;  ///< written by a native module for every frame; people cannot set it
+    std::string file;      ///< where it is declared
     int line = 0;
 };
 
@@ -62,16 +62,16 @@ ParamValue parse_value(const Param& param, std::string_view text);
 /// The shortest text that parse_value reads back as the same value.
 std::string format_value(const Param& param, const ParamValue& value);
 
-/// What a value of the parameter must be: "a float in [0, 2] 1/km", "one of linear, square".
+/// The values that a parameter takes: "a float in [0, 2] 1/km", "one of linear, square".
 std::string describe_values(const Param& param);
 
-/// The same for a value that was given, where there is more to say: numbers beyond a float's.
+/// The same for a given value, which may be a number outside a float's range.
 std::string expected_values(const Param& param, const ParamValue& given);
 
-/// Whether the value is one the parameter may have.
+/// Whether the parameter may have the value.
 bool is_valid(const Param& param, const ParamValue& value);
 
-/// The value as the shader gets it: angles in radians, directions of unit length.
+/// The value for the shader: angles in radians, directions of unit length.
 std::array<float, 4> shader_value(const Param& param, const ParamValue& value);
 
 /// The value as a GLSL constant expression: `vec3(0.1, 0.2, 0.3)`.

@@ -56,7 +56,7 @@ void read_wanted(Snippet& snippet, const Token& word) {
     if (!known) snippet.wanted.push_back({std::string(capability), word.line});
 }
 
-// HAS_ macros are 0 or 1, so that a misspelt one cannot pass for a capability that is not there.
+// HAS_ macros are 0 or 1: a misspelt one is an error, not a missing capability.
 void check_has(const Snippet& snippet, const std::vector<Token>& directive) {
     for (std::size_t i = 1; i < directive.size(); ++i) {
         const std::string_view text = snippet.source.str(directive[i]);

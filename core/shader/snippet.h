@@ -16,21 +16,21 @@ struct HookFunction {
     int line = 0;
 };
 
-/// A capability word that a snippet asks for with the macro `HAS_<word>`, which is 1 while an
-/// enabled effect provides it and 0 else.
+/// A capability word that a snippet uses as the macro `HAS_<word>`: 1 if an enabled effect provides
+/// it, else 0.
 struct Wanted {
     std::string word;
     int line = 0;
 };
 
-/// One GLSL file of a plugin, read and checked. A plugin with several files has a snippet for each,
-/// one behind the other and all with the same id.
+/// One GLSL file of a plugin, parsed and checked. A plugin with several files has consecutive
+/// snippets with the same id.
 struct Snippet {
     std::string id;
     std::string file;
     std::vector<HookFunction> hooks;  ///< in the order of the file
     std::vector<Wanted> wanted;       ///< each word once
-    Source source;                    ///< parameters, samplers, varyings, includes; and the text
+    Source source;                    ///< text, parameters, samplers, varyings, includes
 
     const HookFunction* find(std::string_view hook_name) const;  ///< or null
 };
@@ -40,9 +40,9 @@ struct Snippet {
 /// - `<id>_on_<hook>` with the hook's exact types is the registration;
 /// - `uniform` is a parameter (`= default; //@ annotation`) or a sampler, `out` a varying: one a
 ///   line, never under #if;
-/// - `//@ include lib/NAME.glsl` asks for core's shared functions.
+/// - `//@ include lib/NAME.glsl` includes core's shared functions.
 /// @param id    `[a-z][a-z0-9]*`
-/// @param file  as messages shall name it
+/// @param file  its name for messages
 /// @throws Error (BadInput) `shader: file:line: what is wrong`
 Snippet parse_snippet(std::string_view id, std::string_view file, std::string_view text);
 

@@ -10,16 +10,16 @@
 #include "shader/params.h"
 #include "shader/tokenizer.h"
 
-/// One GLSL file, taken apart so that the stitcher can leave pieces of it out.
+/// One GLSL file, parsed into items that the stitcher can omit.
 namespace relevo::shader {
 
-/// A top-level piece of a file that goes into a program's text as it stands.
+/// A top-level declaration or directive, which is copied into a program's text unchanged.
 struct Item {
     enum class Kind {
         Function,
         Prototype,
         Declaration,  ///< constant, struct, global variable
-        Interface,    ///< core only, always there: inputs and outputs with a layout, blocks
+        Interface,    ///< core only, never omitted: inputs and outputs with a layout, blocks
         Macro,        ///< #define
         Undef,
         Conditional,  ///< #if, #ifdef, #ifndef, #elif, #else, #endif
@@ -28,13 +28,13 @@ struct Item {
     std::vector<std::string> names;  ///< globals that it declares
     std::size_t first = 0;           ///< its tokens: [first, last)
     std::size_t last = 0;
-    std::size_t begin = 0;  ///< its characters, with the comment on top and the one behind it:
+    std::size_t begin = 0;  ///< its characters, with the comments above and after it:
     std::size_t end = 0;    ///< [begin, end)
     int line = 0;           ///< of `begin`
     int name_line = 0;      ///< of the first of `names`
 };
 
-/// A sampler, lifted out of the file; its texture unit is given out at stitch time.
+/// A sampler, lifted out of the file. Stitching assigns its texture unit.
 struct Sampler {
     std::string name;      ///< in GLSL: haze_noise
     std::string type;      ///< "sampler2DArray"
@@ -43,12 +43,12 @@ struct Sampler {
     int line = 0;
 };
 
-/// A value handed from the vertex to the fragment side, lifted out of the file.
+/// A varying from the vertex to the fragment stage, lifted out of the file.
 struct Varying {
     std::string name;
     std::string type;
     std::string interpolation;  ///< "flat", "smooth", "noperspective" or empty
-    bool is_input = false;      ///< declared with `in`, which only a fragment main does
+    bool is_input = false;      ///< declared with `in`: in fragment mains only
     std::string file;
     int line = 0;
 };
@@ -63,7 +63,7 @@ enum class SourceKind { Snippet, Lib, Defaults, VertexMain, FragmentMain };
 struct Source {
     SourceKind kind = SourceKind::Lib;
     std::string owner;  ///< plugin id, or "core"
-    std::string file;   ///< as messages name it
+    std::string file;   ///< its name for messages
     std::string text;
     std::vector<Token> tokens;
     std::vector<Item> items;  ///< in the order of the file
@@ -78,8 +78,8 @@ struct Source {
     Signature signature(const Item& item) const;
 };
 
-/// Takes a file apart.
-/// @param owner  a plugin's id for a snippet, whose globals must then begin `<owner>_`; "core" else
+/// Parses a file.
+/// @param owner  a snippet's plugin id, with which its globals must begin (`<owner>_`); else "core"
 /// @throws Error (BadInput) `shader: file:line: ...`
 Source parse_source(SourceKind kind, std::string_view owner, std::string_view file,
                     std::string_view text);

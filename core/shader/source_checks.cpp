@@ -46,7 +46,7 @@ class Brackets {
                                              "of line {}",
                                              source_.str(token), branches_.back().line));
         }
-        // What the innermost forgotten brace left open is its function, not itself.
+        // A forgotten brace leaves its function open: that is the line to report.
         if (!open_.empty())
             fail(open_.front().line, fmt::format("{} is never closed", open_.front().bracket));
         if (!branches_.empty()) fail(branches_.back().line, "#if without an #endif");
@@ -103,16 +103,16 @@ void check_word(const Source& source, const Token& token) {
         source_error(source.file, token.line, message);
     };
     if (word.find("__") != std::string_view::npos)
-        fail(fmt::format("{}: GLSL keeps names with __ to itself", word));
+        fail(fmt::format("{}: names with __ are reserved for GLSL", word));
     if (contains(kOwnedByCore, word))
         fail(fmt::format("{} is core's; a plugin moves the ground in {}_on_displace", word,
                          source.owner));
     if (word == "discard")
         fail(
-            "discard: every pixel has to be written, or it keeps what another frame left there; "
-            "leave the arguments as they are instead");
+            "discard: every pixel must be written, or it shows an earlier frame; leave the "
+            "arguments unchanged instead");
     if (contains(kBarriers, word))
-        fail(fmt::format("{}: a plugin writes nothing that another would have to wait for", word));
+        fail(fmt::format("{}: plugins have no shared memory, so barriers are not allowed", word));
     if (word.substr(0, 5) == "hook_")
         fail(fmt::format("{}: only core's main programs call hooks", word));
 }
@@ -124,13 +124,13 @@ void check_words(const Source& source) {
     for (const Token& token : source.tokens) {
         if (token.kind == TokenKind::Word) check_word(source, token);
         if (token.kind != TokenKind::Directive) continue;
-        // What a macro puts together is not looked at again.
+        // Names that a macro pastes together are not checked.
         for (const Token& word : directive_tokens(source.text, token, source.file)) {
             if (word.kind == TokenKind::Word) check_word(source, word);
             if (source.str(word) == "#" || source.str(word) == "\"")
                 source_error(
                     source.file, word.line,
-                    fmt::format("{} has no place in a directive of GLSL 4.50", source.str(word)));
+                    fmt::format("{} is not allowed in a directive of GLSL 4.50", source.str(word)));
         }
     }
 }

@@ -44,7 +44,7 @@ Stage::Stage(CoreLibrary& library, const ProgramRecipe& program, const StitchInp
 
     add_core(UnitRole::Types, SourceKind::Lib, "lib/types.glsl");
     add_core(UnitRole::Frame, SourceKind::Lib, "lib/frame.glsl");
-    // Core's needs come first, so that its own text does not change with the plugins.
+    // Core's items first: plugins must not change its text.
     add_core(UnitRole::Main, main_kind, main);
     const Unit main_unit = std::move(units_.back());
     units_.pop_back();
@@ -85,7 +85,7 @@ void Stage::add_core(UnitRole role, SourceKind kind, const std::string& name) {
     add_unit(role, source, name);
 }
 
-// Depth first, so that a file stands behind those it includes.
+// Depth first: a file comes after its includes.
 void Stage::add_includes(const Source& source, std::vector<std::string>& pending) {
     for (const Include& include : source.includes) {
         const Source* const lib = library_.find(SourceKind::Lib, include.name);
@@ -99,7 +99,7 @@ void Stage::add_includes(const Source& source, std::vector<std::string>& pending
         add_includes(*lib, pending);
         pending.pop_back();
         if (source.kind == SourceKind::Snippet) {
-            // With the files that this one includes.
+            // And the files that it includes.
             const std::function<void(const std::string&)> note = [&](const std::string& name) {
                 if (!includes_[source.owner].insert(name).second) return;
                 for (const Include& inner : library_.find(SourceKind::Lib, name)->includes)
@@ -146,7 +146,7 @@ void Stage::index(Macros macros) {
 void Stage::lift(const std::string& name, Lifted lifted) {
     const auto [known, fresh] = lifted_.try_emplace(name, lifted);
     if (fresh) return;
-    // Two of core's files may read the same texture.
+    // Two of core's files may declare the same sampler.
     const Lifted& other = known->second;
     if (lifted.owner == "core" && lifted.sampler && other.sampler &&
         lifted.sampler->type == other.sampler->type)
@@ -156,7 +156,7 @@ void Stage::lift(const std::string& name, Lifted lifted) {
                                   lifted.line, name, other.file, other.line));
 }
 
-// ---- look-ups
+// ---- queries
 
 const Unit& Stage::unit(UnitRole role) const {
     return *std::ranges::find_if(units_, [&](const Unit& unit) { return unit.role == role; });
@@ -261,7 +261,7 @@ std::vector<std::string> Stage::providers(const Hook& hook) const {
     return ids;
 }
 
-std::vector<std::string> Stage::answers(const Hook& hook) const {
+std::vector<std::string> Stage::called_functions(const Hook& hook) const {
     std::vector<std::string> functions;
     for (const std::string& id : providers(hook))
         functions.push_back(fmt::format("{}_on_{}", id, hook.name));
@@ -270,7 +270,7 @@ std::vector<std::string> Stage::answers(const Hook& hook) const {
     return functions;
 }
 
-// ---- reaching
+// ---- reachability
 
 void Stage::reach(std::vector<const Stage*> readers) {
     readers_ = std::move(readers);
@@ -312,13 +312,13 @@ void Stage::keep(const Place& place) {
     if (item(place).kind != Item::Kind::Conditional) keep_conditionals(place);
 }
 
-// The directives around an item stay with it where it is for the driver to decide.
+// Keeps the undecided directives around kept items: the driver evaluates them.
 void Stage::keep_conditionals(const Place& place) {
     Unit& unit = units_[place.unit];
     const std::vector<Item>& items = unit.source->items;
     std::vector<std::vector<std::size_t>> open;  // directives of the groups around items[i]
     std::vector<std::vector<std::size_t>> around;
-    std::size_t still_open = 0;  // of those around the item
+    std::size_t still_open = 0;  // of the groups around the item
     for (std::size_t i = 0; i < items.size(); ++i) {
         if (i == place.item) still_open = open.size();
         if (items[i].kind != Item::Kind::Conditional) continue;
@@ -346,7 +346,7 @@ void Stage::read(const Place& place) {
     const std::string by = it.names.empty() ? unit.title : it.names[0];
     if (it.kind == Item::Kind::Function) {
         check_stage(place, uses);
-        // Overloads may call one another; by name alone that would look like recursion.
+        // Overloads may call each other. By name that would look like recursion.
         const auto [known, fresh] = functions_.try_emplace(by, uses);
         if (!fresh) known->second.calls.clear();
     }
@@ -369,7 +369,7 @@ void Stage::call_hook(const Hook& hook, const Place& from, const std::string& by
     const HookStage wanted = kind_ == StageKind::Vertex ? HookStage::Vertex : HookStage::Fragment;
     const HookStage stage = hook.stage == HookStage::Post ? HookStage::Fragment : hook.stage;
     if (stage != wanted && stage != HookStage::Any)
-        fail(from, fmt::format("hook_{} is called from the {} side, which does not have it",
+        fail(from, fmt::format("hook_{} is called from the {} stage, which does not have it",
                                hook.name, wanted == HookStage::Vertex ? "vertex" : "fragment"));
     if (unit_of(from).role != UnitRole::Main) early_hooks_.insert(hook.name);
     if (!hooks_.insert(hook.name).second) return;
@@ -377,7 +377,7 @@ void Stage::call_hook(const Hook& hook, const Place& from, const std::string& by
                                               : std::string(kHookPrefix) + std::string(hook.name);
     parents_.try_emplace(name, by);
     Uses calls;
-    for (const std::string& function : answers(hook)) {
+    for (const std::string& function : called_functions(hook)) {
         if (function.substr(0, 5) == "core_") check_default(function, hook);
         need(function, name);
         calls.calls.insert(function);

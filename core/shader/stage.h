@@ -14,23 +14,23 @@
 #include "shader/stitch.h"
 #include "shader/uses.h"
 
-/// One side of a program while it is put together: its files, and what of them `main` reaches.
+/// One stage of a program during stitching: its files, and the items that `main` reaches.
 namespace relevo::shader {
 
 enum class StageKind { Vertex, Fragment };
 
-/// What a file is for; in the order in which they stand in the text.
+/// The kinds of files, in their order in the text.
 enum class UnitRole { Types, Frame, Lib, Defaults, Snippet, Main };
 
 struct Unit {
     UnitRole role;
     const Source* source;
-    std::string title;  ///< "lib/noise.glsl"; of a snippet the bare name of the file
+    std::string title;  ///< "lib/noise.glsl"; the file's name for a snippet
     Conditions conditions;
     std::vector<bool> kept;  ///< per item
 };
 
-/// Core's files, each taken apart once.
+/// Core's files, each parsed once.
 class CoreLibrary {
   public:
     explicit CoreLibrary(const CoreTexts& texts) : texts_(texts) {}
@@ -48,9 +48,9 @@ class Stage {
     Stage(CoreLibrary& library, const ProgramRecipe& program, const StitchInput& input,
           StageKind kind);
 
-    /// Finds what `main` reaches.
-    /// @param readers  the fragment sides, when this is the vertex side: plugins whose varyings
-    ///                 they do not read are not asked to fill them
+    /// Finds the items that `main` reaches.
+    /// @param readers  the fragment stages, if this is a vertex stage: hooks that only fill
+    ///                 varyings that no reader needs are not called
     void reach(std::vector<const Stage*> readers);
 
     StageKind kind() const { return kind_; }
@@ -59,7 +59,7 @@ class Stage {
 
     /// Whether a global of that name is needed.
     bool reaches(std::string_view name) const { return parents_.count(name) > 0; }
-    /// "main -> hook_lit -> haze_on_lit": who needs it.
+    /// The chain of names that needs it: "main -> hook_lit -> haze_on_lit".
     std::string trail(const std::string& name) const;
     const std::string& owner_of(const std::string& name) const;  ///< of a lifted declaration
 
@@ -71,12 +71,13 @@ class Stage {
     std::vector<const Varying*> varyings() const;  ///< the needed ones, in order of the files
     const Varying* find_varying(std::string_view name) const;  ///< any declared one, or null
     std::vector<Define> has_macros() const;                    ///< the needed HAS_<word>
-    static bool is_foreign(const Sampler& sampler);  ///< reads a texture its plugin did not make
+    static bool is_foreign(const Sampler& sampler);  ///< reads a texture of another plugin
 
     bool calls(const Hook& hook) const { return hooks_.count(hook.name) > 0; }
     bool needs_prototype(const Hook& hook) const;
-    std::string head(const Hook& hook) const;                    ///< of the generated function
-    std::vector<std::string> answers(const Hook& hook) const;    ///< functions it calls, in order
+    std::string head(const Hook& hook) const;  ///< of the generated function
+    std::vector<std::string> called_functions(
+        const Hook& hook) const;  ///< functions that it calls, in order
     std::vector<std::string> providers(const Hook& hook) const;  ///< ids of the plugins among them
 
   private:
@@ -100,7 +101,7 @@ class Stage {
 
     const Item& item(const Place& place) const;
     const Unit& unit_of(const Place& place) const { return units_[place.unit]; }
-    const Place& definition(const std::string& function) const;  ///< not a prototype of it
+    const Place& definition(const std::string& function) const;  ///< not a prototype
     [[noreturn]] void fail(const Place& place, std::string_view message) const;
 
     void need(const std::string& name, const std::string& by);
@@ -120,13 +121,14 @@ class Stage {
     std::vector<const Stage*> readers_;
     std::vector<Unit> units_;
     std::set<std::string, std::less<>> libs_;                        // already in units_
-    std::map<std::string, std::set<std::string>> includes_;          // owner -> libs it asked for
+    std::map<std::string, std::set<std::string>> includes_;          // owner -> its included libs
     std::map<std::string, std::vector<Place>, std::less<>> places_;  // of globals in the text
     std::map<std::string, Lifted, std::less<>> lifted_;              // of globals lifted out
-    std::map<std::string, std::string, std::less<>> parents_;        // needed name -> by whom
-    std::set<std::string_view> hooks_;                               // called by core or snippets
-    std::set<std::string_view> early_hooks_;                         // before their definition
-    std::map<std::string, Uses, std::less<>> functions_;             // what kept ones mention
+    std::map<std::string, std::string, std::less<>>
+        parents_;                                         // needed name -> the name that needs it
+    std::set<std::string_view> hooks_;                    // called by core or snippets
+    std::set<std::string_view> early_hooks_;              // before their definition
+    std::map<std::string, Uses, std::less<>> functions_;  // names that kept functions use
     std::deque<Place> queue_;
 };
 

@@ -1,4 +1,4 @@
-// What a stage refuses: the checks of Stage.
+// The checks of Stage.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -13,7 +13,7 @@
 namespace relevo::shader {
 namespace {
 
-// GLSL 4.50, 7.1 and 8: what only one of the two stages has.
+// GLSL 4.50, 7.1 and 8: names that only one of the two stages has.
 constexpr std::array<std::string_view, 18> kFragmentOnly = {"dFdx",
                                                             "dFdy",
                                                             "fwidth",
@@ -50,7 +50,7 @@ void Stage::check_default(const std::string& function, const Hook& hook) const {
                                             expected.text(), found.text()));
 }
 
-// A plugin may use itself, core's functions it has asked for, and services.
+// A plugin may use its own names, functions of core that it includes, and services.
 void Stage::check_name(const Place& place, const std::string& name, bool called) const {
     const Source& source = *unit_of(place).source;
     if (source.kind != SourceKind::Snippet) return;
@@ -91,7 +91,7 @@ void Stage::check_stage(const Place& place, const Uses& uses) const {
         const bool foreign = vertex ? contains(kFragmentOnly, name) : contains(kVertexOnly, name);
         if (foreign)
             fail(place,
-                 fmt::format("{} uses {}, which only the {} side has, but the {} side reaches it "
+                 fmt::format("{} uses {}, which only the {} stage has, but the {} stage reaches it "
                              "({})",
                              item(place).names[0], name, vertex ? "fragment" : "vertex",
                              vertex ? "vertex" : "fragment", trail(item(place).names[0])));
@@ -125,11 +125,11 @@ void Stage::check_recursion() const {
         visit(name);
 }
 
-// Core may move a vertex several times, for its neighbours' sake, and does so in depth passes too.
+// Core may displace a vertex several times, for its neighbours, and in depth passes too.
 void Stage::check_displace() const {
     const Hook& displace = *find_hook("displace");
     if (!calls(displace)) return;
-    for (const std::string& function : answers(displace)) {
+    for (const std::string& function : called_functions(displace)) {
         std::vector<std::string> pending = {function};
         std::set<std::string> seen;
         while (!pending.empty()) {

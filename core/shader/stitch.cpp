@@ -46,7 +46,8 @@ class Stitcher {
     }
 
     Stitched run() {
-        // Backwards: what the fragment side reads decides which vertex hooks are worth calling.
+        // The fragment stage first: the varyings that it reads decide which vertex hooks are
+        // called.
         fragment_.reach({});
         std::vector<const Stage*> readers{&fragment_};
         if (shading_) {
@@ -84,14 +85,14 @@ class Stitcher {
         return program_.vertex_main + " + " + program_.fragment_main;
     }
 
-    /// Whether this is a shading program, which loads what a geometry program stored.
+    /// Whether this is a shading program, which loads the varyings of a geometry program.
     bool loads() const { return !program_.geometry_of.empty(); }
 
     // ---- varyings
 
     void check_varyings(const Stage& reader) const {
         for (const Varying* read : reader.varyings()) {
-            // The shading program's come out of textures; the geometry program checks them.
+            // The shading program loads them from textures. The geometry program checks them.
             if (loads() && reader.owner_of(read->name) != "core") continue;
             const Varying* const written = vertex_.find_varying(read->name);
             const std::string where =
@@ -99,7 +100,7 @@ class Stitcher {
             if (!written || !vertex_.reaches(read->name))
                 throw AuthorError(
                     reader.owner_of(read->name),
-                    fmt::format("{}: the fragment side reads it ({}), but nothing that {} "
+                    fmt::format("{}: the fragment stage reads it ({}), but nothing that {} "
                                 "calls writes it",
                                 where, reader.trail(read->name), program_.vertex_main));
             if (qualified(*written) != qualified(*read))
@@ -129,7 +130,7 @@ class Stitcher {
         write_params(out, stage);
         units_.write(out, stage);
         write_varyings(out, stage);
-        // Before its readers: Mesa warns of a global that is read above the line that sets it.
+        // Before its readers: Mesa warns if a global is read above the line that sets it.
         if (stage.kind() == StageKind::Fragment && loads()) stored_.write_load(out);
         write_prototypes(out, stage);
         for (const Unit& unit : stage.units())
@@ -184,7 +185,7 @@ class Stitcher {
         out.heading("");
     }
 
-    /// Whether a varying of the vertex side goes on to a fragment side.
+    /// Whether a fragment stage reads a varying of the vertex stage.
     bool is_handed_on(const Varying& varying) const {
         return fragment_.reaches(varying.name) || stored_.holds(varying);
     }
@@ -196,8 +197,8 @@ class Stitcher {
             const LineOrigin from = origin(declared_in, varying.name, varying.file, varying.line);
             const bool plain =
                 fragment && loads() ? stored_.holds(varying) : !fragment && !is_handed_on(varying);
-            // Plain: loaded from a texture, or written for nobody, where an output would be
-            // interpolated all the same.
+            // A plain global: it is loaded from a texture, or no one reads it. An output would be
+            // interpolated in vain.
             if (plain)
                 out.line(fmt::format("{} {};", varying.type, varying.name), from);
             else
@@ -254,7 +255,7 @@ class Stitcher {
             for (const Varying* varying : stage.varyings())
                 if (stage.owner_of(varying->name) != "core" && is_handed_on(*varying))
                     out.line(fmt::format("    {} = {};", varying->name, zero_of(varying->type)));
-        for (const std::string& function : stage.answers(hook))
+        for (const std::string& function : stage.called_functions(hook))
             out.line(answer + function + arguments);
         out.line("}");
     }

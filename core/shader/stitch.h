@@ -18,17 +18,16 @@ struct Define {
     std::string value;
 };
 
-/// A program of core's: two mains and the switches that they are compiled with.
+/// One of core's programs: two mains and the macros that they are compiled with.
 struct ProgramRecipe {
     std::string vertex_main;    ///< "terrain.vert.glsl"
     std::string fragment_main;  ///< "depth.frag.glsl"
     std::vector<Define> defines{};
 
-    /// Deferred shading splits a program in two. The geometry program stores what plugins hand from
-    /// the vertex to the fragment side; the shading program, drawn later over the whole picture,
-    /// loads it again for each pixel. Set on the geometry program: the fragment main of the shading
-    /// program. Its own fragment main then calls `store_varyings()`, which writes to the outputs at
-    /// location 1 and up.
+    /// Deferred shading splits a program in two. The geometry program stores the plugins' varyings.
+    /// The shading program, which is drawn over the whole image, loads them for each pixel. Set on
+    /// the geometry program: the fragment main of the shading program. Its own fragment main then
+    /// calls `store_varyings()`, which writes the outputs at location 1 and up.
     std::string shaded_by{};
     /// Set on the shading program: the vertex main of the geometry program. Its fragment main then
     /// calls `load_varyings(pixel)` before any hook.
@@ -37,14 +36,14 @@ struct ProgramRecipe {
 
 struct StitchInput {
     std::vector<const Snippet*> snippets;   ///< of the enabled plugins, in calling order
-    std::vector<std::string> capabilities;  ///< what they provide: HAS_<word> is 1 for these
-    const ParamStore* values = nullptr;     ///< of static parameters; null takes their defaults
+    std::vector<std::string> capabilities;  ///< that they provide: HAS_<word> is 1
+    const ParamStore* values = nullptr;     ///< of static parameters; null: their defaults
     int max_texture_units = 16;             ///< GL_MAX_TEXTURE_IMAGE_UNITS
-    /// Textures that hold the same as another, by which name that one is on the device.
+    /// Textures equal to another one, with the name of that one on the device.
     std::map<std::string, std::string> same_textures{};
 };
 
-/// The text of one stage, compiled as one string, and where its lines come from.
+/// The text of one stage, which is compiled as one string, and the sources of its lines.
 struct StageText {
     std::string text;
     LineMap lines;
@@ -57,14 +56,15 @@ struct TextureUnit {
     std::string type;      ///< "sampler2DArray"
     std::string resource;  ///< "haze.noise"; the sampler's own name for core's
     std::string owner;     ///< plugin id, or "core"
-    /// Other names of the same texture, which need no unit of their own.
+    /// Other names of the same texture. They share its unit.
     std::vector<std::string> also;
 };
 
-/// A hook that a program calls, and who answers.
+/// A hook that a program calls, and its providers.
 struct HookUse {
     const Hook* hook;
-    std::vector<std::string> providers;  ///< plugin ids in calling order; empty: core alone
+    std::vector<std::string>
+        providers;  ///< plugin ids in calling order; empty: core's default only
 };
 
 struct Stitched {
@@ -74,12 +74,12 @@ struct Stitched {
     BlockLayout params;  ///< block `Params` at binding 1: the same for all programs of a selection
     bool uses_params = false;  ///< whether this program has the block
     std::vector<HookUse> hooks;
-    /// Of a geometry or a shading program: how many RGBA32F targets hold the stored varyings, which
-    /// the shading program reads as the layers of `varyings`.
+    /// Number of RGBA32F targets with the stored varyings of a geometry or shading program. The
+    /// shading program reads them as the layers of `varyings`.
     int varying_targets = 0;
 };
 
-/// What a plugin's author can mend. The others' effects could be drawn without that plugin.
+/// An error in a plugin. The frame could be drawn without that plugin.
 class AuthorError : public Error {
   public:
     /// @param owner  id of the plugin
@@ -91,10 +91,9 @@ class AuthorError : public Error {
     std::string owner_;
 };
 
-/// Puts a program together. Reads from `core` the two mains, lib/types.glsl, lib/frame.glsl,
-/// defaults.glsl and what is included. Of all of them, and of the snippets, only what the two
-/// `main` functions reach is in the texts; equal input gives equal bytes, and no path of a file is
-/// in them.
+/// Stitches a program. Reads from `core` the two mains, lib/types.glsl, lib/frame.glsl,
+/// defaults.glsl and included files. The texts have only those items of core and snippets that the
+/// two `main` functions reach. Equal input gives equal bytes. The texts have no file paths.
 ///
 /// A text is laid out as: version, a define for each capability and each word of `wants`,
 /// lib/types.glsl, the frame block, the block of parameters, samplers, varyings, prototypes of

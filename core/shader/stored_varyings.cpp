@@ -11,7 +11,7 @@
 namespace relevo::shader {
 namespace {
 
-// Outputs 1 to 7 beside the G-buffer: GL guarantees eight.
+// Outputs 1 to 7, after the G-buffer: GL guarantees eight.
 constexpr int kMaxTargets = 7;
 
 int components(const Varying& varying, const std::string& owner) {

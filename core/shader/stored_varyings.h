@@ -8,27 +8,27 @@
 
 namespace relevo::shader {
 
-/// The varyings that a geometry program stores in textures for its shading program to load. Both
-/// programs come to the same places: into the first texture with room, in the order of the files.
+/// The varyings that a geometry program stores in textures for its shading program. Both programs
+/// assign the same places: the first texture with room, in the order of the files.
 class StoredVaryings {
   public:
     StoredVaryings() = default;
-    /// Takes what plugins' functions on the shading side read.
-    /// @param shading  the fragment side of the shading program
+    /// Adds the varyings that plugins' functions read in the shading program.
+    /// @param shading  the fragment stage of the shading program
     /// @param program  its name, for messages
-    /// @throws Error (Failed) if they do not fit into the textures there are, (BadInput) for a type
+    /// @throws Error (Failed) if they do not fit into the textures, (BadInput) for a type
     ///         that a texture cannot hold
     StoredVaryings(const Stage& shading, const std::string& program);
 
     struct Stored {
         const Varying* varying;
-        int target, first, count;  ///< components [first, first + count) of that texture
+        int target, first, count;  ///< components [first, first + count) of the texture
     };
     const std::vector<Stored>& all() const { return stored_; }
     int targets() const { return targets_; }
     bool holds(const Varying& varying) const;
 
-    /// The sampler of the targets in the shading program, an array of theirs.
+    /// The declaration of the shading program's sampler, an array texture of the targets.
     static constexpr const char* kTexture = "varyings";
 
     /// `store_varyings()`, which fills the outputs at location 1 and up.

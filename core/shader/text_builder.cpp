@@ -17,7 +17,7 @@ void TextBuilder::line(std::string_view text, LineOrigin origin) {
 
 void TextBuilder::item(const Source& source, const Item& item) {
     const std::string_view text = source.text;
-    // What stands before the piece on its line belongs to others; blanks keep the columns.
+    // Spaces replace the other text before it on its line, so that columns stay.
     std::size_t start = item.begin;
     while (start > 0 && text[start - 1] != '\n')
         --start;

@@ -8,16 +8,15 @@
 
 namespace relevo::shader {
 
-/// Writes a stage's text line by line, and its line map beside it.
+/// Writes a stage's text and its line map.
 class TextBuilder {
   public:
-    /// A line of the stitcher's own.
+    /// A line of the stitcher.
     void line(std::string_view text) { line(text, {}); }
     void line(std::string_view text, LineOrigin origin);
     /// An empty line and a heading; written only if a line follows.
     void heading(std::string_view text) { heading_ = text; }
-    /// A piece of a file as it stands, in its own columns, and behind an empty line where it stands
-    /// so in its file.
+    /// An unchanged part of a file, at its columns, after an empty line if it has one there.
     void item(const Source& source, const Item& item);
 
     StageText take() { return std::move(stage_); }

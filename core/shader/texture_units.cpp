@@ -11,13 +11,13 @@
 namespace relevo::shader {
 namespace {
 
-/// Under which name a texture is on the device.
+/// The name of a texture on the device.
 const std::string& same_as(const std::string& resource, const StitchInput& input) {
     const auto found = input.same_textures.find(resource);
     return found == input.same_textures.end() ? resource : found->second;
 }
 
-/// Where a plugin stands in the calling order, and a sampler in its file.
+/// The index of a plugin in the calling order, and of a sampler in its file.
 std::pair<std::size_t, std::size_t> place_of(const Sampler& sampler, const StitchInput& input) {
     for (std::size_t i = 0; i < input.snippets.size(); ++i) {
         const std::vector<Sampler>& samplers = input.snippets[i]->source.samplers;

@@ -9,10 +9,10 @@
 
 namespace relevo::shader {
 
-/// Gives out a program's texture units: one for each texture, however many samplers of core and
-/// plugins read it, by whatever names.
+/// Assigns a program's texture units: one for each texture, which samplers of core and plugins may
+/// read under several names.
 ///
-/// Core's come first, then those that a plugin reads of another, then each plugin's own in the
+/// The order is: core's textures, textures that a plugin reads of another, each plugin's own in the
 /// order of its file.
 class TextureUnits {
   public:
@@ -20,27 +20,27 @@ class TextureUnits {
     /// @throws AuthorError (BadInput) for samplers of one texture that differ in type
     TextureUnits(const Stage& vertex, const Stage& fragment, const StitchInput& input);
 
-    /// One more of core's, that no file declares.
+    /// Adds a sampler of core that no file declares.
     void add_core(const std::string& name, const std::string& type);
 
-    /// @throws Error (Failed) for more than the device has, with who takes which
+    /// @throws Error (Failed) for more units than the device has, with their owners
     void check(const std::string& program, int max_units) const;
 
     std::vector<TextureUnit> units() const;
 
-    /// Declares what a stage reads.
+    /// The declarations of the samplers that a stage reads.
     void write(TextBuilder& out, const Stage& stage) const;
 
   private:
     struct Texture {
         TextureUnit unit;
-        std::vector<const Sampler*> samplers;  // the first names the unit; none: core's
+        std::vector<const Sampler*> samplers;  // the first names the unit; empty: core's
     };
     struct Read {
         const Sampler* sampler;
         std::string owner;
-        std::string resource;  // after what is the same
-        bool shared;           // some plugin reads it without having made it
+        std::string resource;  // the equal texture that is on the device
+        bool shared;           // a plugin reads it that does not own it
     };
     void add(const Read& read);
 

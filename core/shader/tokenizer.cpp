@@ -17,7 +17,7 @@ bool is_word(char c) {
     return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-// Longest first, so that the first that fits is the one GLSL reads.
+// Longest first: GLSL reads the longest that matches.
 constexpr std::array<std::string_view, 21> kLongMarks = {
     "<<=", ">>=", "<<", ">>", "<=", ">=", "==", "!=", "&&", "||", "^^",
     "++",  "--",  "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^="};
@@ -62,18 +62,17 @@ class Scanner {
         return text_.substr(at_, std::min(what.size(), end_ - at_)) == what;
     }
 
-    // A backslash before the line end joins two lines everywhere, comments included (GLSL 4.50,
-    // 3.2).
+    // A backslash before the line end joins two lines, also in comments (GLSL 4.50, 3.2).
     bool continues() const { return starts("\\\n"); }
 
-    // A word or a mark in two halves would be another one for the driver than it is here.
+    // The driver would join a split word or mark; the tokens here would differ.
     void check_continuation() const {
         const auto is_blank = [](char c) {
             return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\n';
         };
         if (at_ > 0 && !is_blank(text_[at_ - 1]) && at_ + 2 < text_.size() &&
             !is_blank(text_[at_ + 2]))
-            fail("\\ joins this line and the next without a blank between them; add one");
+            fail("\\ joins this line and the next without a space between them; add one");
     }
 
     void advance(std::size_t count) {
@@ -97,7 +96,9 @@ class Scanner {
             advance(2);
             while (at_ < end_ && !starts("*/")) {
                 if (text_[at_] == '*' && at_ + 1 < end_ && text_[at_ + 1] == '\\')
-                    fail("* and \\ side by side in a comment may end it; put a blank between them");
+                    fail(
+                        "* and \\ next to each other in a comment may end it; put a space between "
+                        "them");
                 advance(1);
             }
             if (at_ == end_) source_error(file_, result.line, "/* is never closed");

@@ -10,11 +10,11 @@ namespace relevo::shader {
 enum class TokenKind {
     Word,       ///< identifier or keyword
     Number,     ///< 1, 0.5f, 0x1Fu
-    Mark,       ///< operator or bracket, longest first: "<<=" is one
-    Directive,  ///< a whole preprocessor line with its continuations, without a comment behind it
+    Mark,       ///< operator or bracket, the longest that matches: "<<="
+    Directive,  ///< a whole preprocessor line with its continuations, without a comment after it
 };
 
-/// A piece of GLSL, as a range of the text it was read from.
+/// A range of the text.
 struct Token {
     TokenKind kind;
     std::size_t offset;  ///< of its first byte
@@ -36,18 +36,18 @@ struct Tokens {
     std::vector<Comment> comments;
 };
 
-/// Cuts GLSL 4.50 into tokens and comments.
+/// Splits GLSL 4.50 into tokens and comments.
 /// @param text  with "\n" line ends (see unix_lines)
 /// @param file  only for messages
-/// @throws Error (BadInput) for an unclosed comment, a byte that GLSL has no use for outside
-///         comments, or a `#` that is not first on its line
+/// @throws Error (BadInput) for an unclosed comment, a byte that GLSL allows in comments only, or
+///         a `#` that is not first on its line
 Tokens tokenize(std::string_view text, std::string_view file);
 
-/// The tokens of a directive behind its `#`; offsets are into the same text.
+/// The tokens of a directive after its `#`. Offsets are into the same text.
 std::vector<Token> directive_tokens(std::string_view text, const Token& directive,
                                     std::string_view file);
 
-/// The text without byte-order mark and with every line end as "\n".
+/// The text without a byte-order mark, with "\n" line ends.
 std::string unix_lines(std::string_view text);
 
 inline std::string_view text_of(std::string_view text, const Token& token) {

@@ -8,7 +8,7 @@
 namespace relevo::shader {
 namespace {
 
-// A word behind one of these is not a name that is being declared.
+// A word after one of these is not a declared name.
 constexpr std::array<std::string_view, 17> kNotTypes = {
     "return",  "else", "do",      "case",   "in",   "out",     "inout",  "const",        "highp",
     "mediump", "lowp", "precise", "struct", "flat", "uniform", "smooth", "noperspective"};
@@ -39,7 +39,7 @@ class Reader {
 
     void directive(const Token& token) {
         const std::vector<Token> words = directive_tokens(source_.text, token, source_.file);
-        // The text of a macro is behind its name, and calls as any other does.
+        // The text of a macro is after its name, and may have calls.
         const bool defines = !words.empty() && source_.str(words[0]) == "define";
         for (std::size_t i = 0; i < words.size(); ++i) {
             if (words[i].kind != TokenKind::Word) continue;
@@ -73,7 +73,7 @@ class Reader {
             return;
         }
         if (!called && declares(i)) {
-            pending_.push_back({name, round_});
+            pending_.push_back({name, depth_});
             return;
         }
         if (!called && is_local(name)) return;
@@ -81,11 +81,11 @@ class Reader {
         if (called) uses_.calls.insert(name);
     }
 
-    // A name holds from behind its own declarator on: in `vec3 n = normalize(n)` the second is the
-    // outer one.
-    void settle() {
+    // The scope of a name begins after its declarator: in `vec3 n = normalize(n)` the second n is
+    // the outer one.
+    void declare_pending() {
         for (auto name = pending_.begin(); name != pending_.end();) {
-            if (name->round < round_) {
+            if (name->depth < depth_) {
                 ++name;
                 continue;
             }
@@ -94,23 +94,23 @@ class Reader {
         }
     }
 
-    /// What the head of a loop declares holds to the end of its body.
+    /// The scope of a declaration in a loop's head ends with the body.
     struct Loop {
-        int round;           // depth of ( and [ where it stands
-        std::size_t scopes;  // with its own
+        int depth;           // its depth of ( and [
+        std::size_t scopes;  // including its own
         bool in_head = true;
         bool has_block = false;
     };
     void begin_loop() {
         scopes_.emplace_back();
-        loops_.push_back({round_, scopes_.size()});
+        loops_.push_back({depth_, scopes_.size()});
     }
-    /// A statement ends: with it the loops whose body it is.
+    /// A statement ends, with the loops whose body it is.
     /// @param with_block  at the } of a block
     void end_loops(bool with_block) {
         while (!loops_.empty()) {
             const Loop& loop = loops_.back();
-            if (loop.in_head || loop.round != round_ || loop.scopes != scopes_.size()) return;
+            if (loop.in_head || loop.depth != depth_ || loop.scopes != scopes_.size()) return;
             if (loop.has_block && !with_block) return;
             scopes_.pop_back();
             loops_.pop_back();
@@ -119,14 +119,14 @@ class Reader {
 
     void mark(std::string_view text) {
         if (text == "(" || text == "[") {
-            ++round_;
+            ++depth_;
         } else if (text == ")" || text == "]") {
-            // Arguments of a function end with its ), declarators inside a for(...) with their ;
-            settle();
-            --round_;
-            if (!loops_.empty() && loops_.back().round == round_) loops_.back().in_head = false;
+            // Arguments of a function end at its `)`, declarators inside a for(...) at their `;`.
+            declare_pending();
+            --depth_;
+            if (!loops_.empty() && loops_.back().depth == depth_) loops_.back().in_head = false;
         } else if (text == "," || text == ";") {
-            settle();
+            declare_pending();
             if (text == ";") end_loops(/*with_block=*/false);
         } else if (text == "{") {
             if (!loops_.empty() && loops_.back().scopes == scopes_.size())
@@ -140,7 +140,7 @@ class Reader {
 
     struct Pending {
         std::string name;
-        int round;  // depth of ( and [ where it stands
+        int depth;  // its depth of ( and [
     };
 
     const Source& source_;
@@ -150,7 +150,7 @@ class Reader {
     std::vector<std::set<std::string, std::less<>>> scopes_;
     std::vector<Pending> pending_;
     std::vector<Loop> loops_;
-    int round_ = 0;
+    int depth_ = 0;
     bool head_read_ = false;
 };
 

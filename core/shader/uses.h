@@ -8,14 +8,14 @@
 
 namespace relevo::shader {
 
-/// What a piece of GLSL mentions beyond what it declares itself.
+/// The names that an item uses and does not declare.
 struct Uses {
-    std::set<std::string, std::less<>> names;  ///< every identifier, fields behind a dot left out
-    std::set<std::string, std::less<>> calls;  ///< those with a ( behind them
+    std::set<std::string, std::less<>> names;  ///< every identifier but fields after a dot
+    std::set<std::string, std::less<>> calls;  ///< those with a ( after them
 };
 
-/// The names in an item that reach outside it: a function's own arguments and local variables are
-/// not among them, in the scope where they hold.
+/// Names of an item that refer to globals. A function's arguments and local variables are excluded
+/// within their scope.
 /// @param active  per token of the source, evaluate_conditions().active
 Uses uses_of(const Source& source, const Item& item, const std::vector<bool>& active);
 

@@ -5,7 +5,6 @@
 
 #include <dlfcn.h>
 
-#include "effect/service_tables.h"
 #include "effect/stand_in_host.h"
 
 int main(int argc, char** argv) {
@@ -15,7 +14,6 @@ int main(int argc, char** argv) {
     services.add_parameter("probe.size", false, {3, 0, 0, 0});
     services.add_parameter("probe.level", true, {});
     services.add_text("probe.track");
-    ServiceTables tables(services);
     void* library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
     if (!library) return std::printf("%s\n", dlerror()), 1;
     const auto* version = static_cast<const std::uint32_t*>(dlsym(library, "relevo_plugin_abi"));
@@ -23,11 +21,11 @@ int main(int argc, char** argv) {
         dlsym(library, "relevo_plugin_register"));
     if (!version || !registration) return std::puts("a symbol is missing"), 1;
     const auto failed = [&](const char* where) {
-        return std::printf("%s: %s\n", where, tables.reason().c_str()), 1;
+        return std::printf("%s: %s\n", where, services.reason().c_str()), 1;
     };
     relevo_module module{};
     module.size = sizeof module;
-    const relevo_host* host = tables.host();
+    const relevo_host* host = services.host();
     relevo_host other = *host;
     if (argc > 3 && std::strcmp(argv[3], "older-major") == 0) other.abi_version = 1 << 16;
     if (argc > 3 && std::strcmp(argv[3], "small-table") == 0) module.size = 16;
@@ -39,7 +37,7 @@ int main(int argc, char** argv) {
         return 0;
     }
     if (registration(host, &module) != RELEVO_OK) return failed("registration");
-    tables.offer_all();
+    services.offer_all();
     void* instance = nullptr;
     if (module.create(host, &instance) != RELEVO_OK) return failed("create");
     for (int frame = 0; frame < 3; ++frame) {

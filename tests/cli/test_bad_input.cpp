@@ -158,7 +158,7 @@ TEST(BadEffect, EachHasItsMessage) {
                       "parameter: terrain.normal: expected one of fragment, vertex but got \"7\"");
     expect_no_picture(
         with({"--set", "terrain.normal"}), 2,
-        "--set: expected PLUGIN.PARAMETER=VALUE without blanks but got \"terrain.normal\"");
+        "--set: expected PLUGIN.PARAMETER=VALUE without spaces but got \"terrain.normal\"");
 }
 
 TEST(BadOutput, EachHasItsMessage) {

@@ -67,7 +67,7 @@ TEST(Newcomer, MissingAndDividedWords) {
                    "el=30: no such file; an option's value is one word, as in --view "
                    "az=210,el=30");
     expect_failure(capture({"--set", "haze.density", "=", "0.2"}), 2,
-                   "--set: expected PLUGIN.PARAMETER=VALUE without blanks but got "
+                   "--set: expected PLUGIN.PARAMETER=VALUE without spaces but got "
                    "\"haze.density\"");
     expect_failure(capture({"--size", "1920"}), 2,
                    "--size: expected WIDTHxHEIGHT such as 1920x1080, each 1 to 16384, but got "

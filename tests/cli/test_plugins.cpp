@@ -139,9 +139,9 @@ TEST_F(Plugins, DiscardIsRefused) {
     const Result run = capture();
     EXPECT_EQ(run.status, 0);
     EXPECT_EQ(run.err,
-              "relevo: warning: shader: plugins/odd/odd.glsl:2: discard: every pixel has to be "
-              "written, or it keeps what another frame left there; leave the arguments as they are "
-              "instead; --disable odd silences this\n");
+              "relevo: warning: shader: plugins/odd/odd.glsl:2: discard: every pixel must be "
+              "written, or it shows an earlier frame; leave the arguments unchanged instead; "
+              "--disable odd silences this\n");
 }
 
 /// Statements that keep a device busy. llvmpipe leaves every loop after 65535 turns in all, which

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -12,6 +13,15 @@
 #include "support/support.h"
 
 namespace relevo::effect::test {
+
+/// A variable of the environment while this lives.
+struct Variable {
+    Variable(const char* n, const std::string& value) : name(n) { setenv(name, value.c_str(), 1); }
+    ~Variable() { unsetenv(name); }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+    const char* name;
+};
 
 /// A folder of plugins that a test writes.
 class Plugins {

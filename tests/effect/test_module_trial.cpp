@@ -1,4 +1,4 @@
-// Whatever a native module does in any of its functions, it does it in the trial.
+// The trial finds a fault in any function of a native module.
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -15,13 +15,6 @@
 
 namespace relevo::effect::test {
 namespace {
-
-/// A variable of the environment, for a while.
-struct Variable {
-    Variable(const char* n, const std::string& value) : name(n) { setenv(name, value.c_str(), 1); }
-    ~Variable() { unsetenv(name); }
-    const char* name;
-};
 
 std::filesystem::path faulty() {
     return relevo::test::build_dir() / "tests/modules/faulty.so";
@@ -57,6 +50,7 @@ TEST(ModuleTrial, CallsEveryFunction) {
 }
 
 TEST(ModuleTrial, ExceptionsAreNamed) {
+    EXPECT_EQ(verdict("register throw"), "its registration threw an exception: no good today");
     EXPECT_EQ(verdict("create throw"), "its create() threw an exception: no good today");
     EXPECT_EQ(verdict("prepare throwint"), "its prepare() threw an exception");
     EXPECT_EQ(verdict("destroy throw"), "its destroy() threw an exception: no good today");

@@ -19,7 +19,7 @@ TEST(Setting, IsAddressAndValue) {
     for (const char* bad : {"haze", "haze.density", "haze=1.0", ".density=1", ""})
         EXPECT_EQ(error_of([&] { parse_setting(bad); }),
                   std::string(
-                      "exit 2: --set: expected PLUGIN.PARAMETER=VALUE without blanks but got \"") +
+                      "exit 2: --set: expected PLUGIN.PARAMETER=VALUE without spaces but got \"") +
                       bad + "\"");
 }
 

@@ -114,7 +114,7 @@ TEST(Registry, OfTwoWithOneIdTheFirstStays) {
     ASSERT_EQ(registry.broken().size(), 1u);
     EXPECT_EQ(plugins.relative(registry.broken()[0].error),
               "plugin: more/mist/plugin.json: the id haze is taken by "
-              "plugins/haze/plugin.json; one of the two has to go");
+              "plugins/haze/plugin.json; remove one of the two");
 }
 
 TEST(Registry, ErrorsNameWhatIsNotThere) {

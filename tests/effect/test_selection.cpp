@@ -369,7 +369,7 @@ TEST(SelectionError, ACircleNamesItsSides) {
     plugins.add("aaa", R"("after": ["air"])");
     const Registry registry = plugins.load();
     EXPECT_EQ(plugins.relative(error_of([&] { select(registry, {}, {}); })),
-              "exit 3: effects: haze and bump: they wait for each other: haze after bump "
+              "exit 3: effects: haze and bump: their order is circular: haze after bump "
               "(relief), bump after haze (air); change \"after\" in plugins/haze/plugin.json or "
               "plugins/bump/plugin.json");
     EXPECT_THAT(ids(select(registry, {}, {.disable = {"bump"}})), ElementsAre("haze", "aaa"));

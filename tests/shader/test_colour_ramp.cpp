@@ -55,7 +55,7 @@ TEST(ColourRamp, MistakesNameTheirLine) {
                     "label(\"A\")"),
               none);
     EXPECT_EQ(error("const float haze_a = 1.0; //@ ramp(0, 1) label(\"A\")"),
-              "1: haze_a: an annotation behind a variable is for a ramp of colours, const vec3 "
+              "1: haze_a: an annotation after a variable is for a ramp of colours, const vec3 "
               "haze_a[N] = vec3[](...);");
 }
 

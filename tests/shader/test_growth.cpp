@@ -51,8 +51,8 @@ TEST(Growth, WhatADriverHoldsIsLeft) {
 
 TEST(Growth, MacrosThatDoubleAreRefused) {
     const std::string message =
-        "exit 3: shader: 0.glsl:26: odd_on_albedo: comes to 1.7e+08 words, expected at most "
-        "1e+06: drivers expand macros and copy functions for each call; use a loop";
+        "exit 3: shader: 0.glsl:26: odd_on_albedo: 1.7e+08 words when expanded, expected at most "
+        "1e+06: drivers expand macros and inline calls; use a loop";
     EXPECT_EQ(error({doubled(24) + in_a_hook("odd_m24")}), message);
     // As functions, with arguments in each other, from another file, and of constants.
     const std::string twice = "#define odd_d(x) ((x) + (x))\n";

@@ -283,7 +283,7 @@ TEST(ParamStore, AnotherTypeResetsWithAWarning) {
     EXPECT_EQ(store.value("haze.a"), ParamValue{1});
     EXPECT_EQ(logged.lines,
               std::vector<std::string>{
-                  "haze.a: was of type float, is of type int now; its value is 1 again"});
+                  "haze.a: the type has changed from float to int; the value is reset to 1"});
 }
 
 TEST(ParamStore, ANarrowerRangeResetsWithAWarning) {
@@ -293,9 +293,8 @@ TEST(ParamStore, ANarrowerRangeResetsWithAWarning) {
     store.set("haze.a", "1.5");
     store.declare(params("uniform float haze_a = 0; //@ range(0, 1)"));
     EXPECT_EQ(store.value("haze.a"), ParamValue{0});
-    EXPECT_EQ(logged.lines,
-              std::vector<std::string>{
-                  "haze.a: its value is no longer a number in [0, 1]; it is 0 again"});
+    EXPECT_EQ(logged.lines, std::vector<std::string>{
+                                "haze.a: the value is not a number in [0, 1]; it is reset to 0"});
 }
 
 TEST(ParamStore, ErrorsNameTheParameter) {
@@ -314,7 +313,7 @@ TEST(ParamStore, ErrorsNameTheParameter) {
               "exit 3: parameter: haze.drift: written by the program for every frame; it "
               "cannot be set");
     EXPECT_EQ(error_of([&] { store.write_host("haze.density", {1}); }),
-              "exit 3: parameter: haze.density: not a host parameter; only people set it");
+              "exit 3: parameter: haze.density: not a host parameter; modules cannot write it");
     store.write_host("haze.drift", {7});
     EXPECT_EQ(store.value("haze.drift"), ParamValue{7});
 }

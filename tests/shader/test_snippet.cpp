@@ -166,8 +166,8 @@ INSTANTIATE_TEST_SUITE_P(
             "void haze_on_albedo(inout Surface s) {}\nvoid haze_on_albedo(inout Surface s) {}",
             "2: haze_on_albedo: defined already in line 1"},
         Bad{"UnderIf", "#if HAS_sky\nvoid haze_on_albedo(inout Surface s) {}\n#endif",
-            "2: haze_on_albedo stands under the #if of line 1; what a plugin has must not depend "
-            "on what else is on, so move the #if into a function"},
+            "2: haze_on_albedo is under the #if of line 1; a plugin's declarations must not depend "
+            "on other effects; move the #if into a function"},
         Bad{"CallsAHook", "void haze_on_albedo(inout Surface s) { hook_normal(s); }",
             "1: hook_normal: only core's main programs call hooks"}),
     [](const auto& test) { return test.param.name; });
@@ -197,9 +197,9 @@ INSTANTIATE_TEST_SUITE_P(
             "1: strength: a plugin's globals begin with its id, expected haze_strength but got "
             "strength"},
         Bad{"TwoUnderscores", "void haze_f() { float a__b; }",
-            "1: a__b: GLSL keeps names with __ to itself"},
+            "1: a__b: names with __ are reserved for GLSL"},
         Bad{"TwoUnderscoresInAMacro", "#define haze__A 1",
-            "1: haze__A: GLSL keeps names with __ to itself"},
+            "1: haze__A: names with __ are reserved for GLSL"},
         Bad{"Main", "void main() {}",
             "1: main is core's; a plugin hooks into it with functions named haze_on_<hook>"},
         Bad{"Position", "\nvoid haze_f() { gl_Position.x = 1.0; }",
@@ -213,8 +213,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 const std::string kDiscard =
-    "discard: every pixel has to be written, or it keeps what another frame left there; leave the "
-    "arguments as they are instead";
+    "discard: every pixel must be written, or it shows an earlier frame; leave the arguments "
+    "unchanged instead";
 const std::string kDiscard1 = "1: " + kDiscard, kDiscard3 = "3: " + kDiscard;
 
 INSTANTIATE_TEST_SUITE_P(
@@ -230,19 +230,19 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"DiscardAsAnArgument", "#define haze_DO(x) x\n\nvoid haze_f() { haze_DO(discard); }",
             kDiscard3.c_str()},
         Bad{"DiscardPasted", "#define haze_DROP dis ## card",
-            "1: # has no place in a directive of GLSL 4.50"},
+            "1: # is not allowed in a directive of GLSL 4.50"},
         Bad{"DiscardInTwoLines", "\nvoid haze_f() { dis\\\ncard; }",
-            "2: \\ joins this line and the next without a blank between them; add one"},
+            "2: \\ joins this line and the next without a space between them; add one"},
         Bad{"DiscardInThreeLines", "\nvoid haze_f() { dis\\\n\\\ncard; }",
-            "2: \\ joins this line and the next without a blank between them; add one"},
+            "2: \\ joins this line and the next without a space between them; add one"},
         Bad{"DiscardInTwoLinesOfAMacro", "#define haze_DROP dis\\\ncard",
-            "1: \\ joins this line and the next without a blank between them; add one"},
+            "1: \\ joins this line and the next without a space between them; add one"},
         Bad{"CommentThatTheDriverEndsEarlier", "void haze_f() { /* *\\\n/ discard; /* */ }",
-            "1: * and \\ side by side in a comment may end it; put a blank between them"},
+            "1: * and \\ next to each other in a comment may end it; put a space between them"},
         Bad{"CommentThatTheDriverBegins", "void haze_f() { /\\\n/ }\n}",
-            "1: \\ joins this line and the next without a blank between them; add one"},
+            "1: \\ joins this line and the next without a space between them; add one"},
         Bad{"Barrier", "void haze_f() { memoryBarrier(); }",
-            "1: memoryBarrier: a plugin writes nothing that another would have to wait for"},
+            "1: memoryBarrier: plugins have no shared memory, so barriers are not allowed"},
         Bad{"Image", "uniform image2D haze_i;",
             "1: haze_i: expected a parameter of type float, int, bool, vec2, vec3 or vec4, or a "
             "sampler, but got image2D"},
@@ -305,9 +305,9 @@ INSTANTIATE_TEST_SUITE_P(
             "1: #extension is core's: every program is plain GLSL 4.50 core"},
         Bad{"Line", "#line 7", "1: #line would lose the file's own line numbers; remove it"},
         Bad{"Pragma", "#pragma optimize(off)",
-            "1: #pragma is not for here; there are #define, #undef and #if"},
+            "1: #pragma is not supported; use #define, #undef or #if"},
         Bad{"MisspeltDirective", "#defin haze_A",
-            "1: #defin is not for here; there are #define, #undef and #if"},
+            "1: #defin is not supported; use #define, #undef or #if"},
         Bad{"NamelessDefine", "#define", "1: #define without a name"},
         Bad{"DefineInAFunction", "void haze_f() {\n#define haze_A 1\n}",
             "2: #define inside haze_f; move it out of the function"},
@@ -320,12 +320,12 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"EndsEarly", "const float",
             "1: expected a declaration but got float the end of the file"},
         Bad{"NoBody", "void haze_f()\nvoid haze_g() {}",
-            "1: expected { or ; behind the head of haze_f but got void"},
+            "1: expected { or ; after the head of haze_f but got void"},
         Bad{"ForgottenSemicolon",
             "const float haze_a = 1.0\nvoid haze_on_albedo(inout Surface s) {}",
-            "1: expected ; behind haze_a but got void"},
+            "1: expected ; after haze_a but got void"},
         Bad{"ForgottenSemicolonAfterStruct", "struct haze_S { float x; }\nvoid haze_f() {}",
-            "1: expected ; behind the struct haze_S"},
+            "1: expected ; after the struct haze_S"},
         Bad{"NamelessStruct", "struct { float x; } haze_s;",
             "1: expected a struct with a name and its members"},
         Bad{"Layout", "layout(location = 0) out vec4 haze_colour;",
@@ -343,7 +343,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"IncludeFromElsewhere", "//@ include lib/../../secret.glsl",
             "1: expected //@ include lib/NAME.glsl but got //@ include lib/../../secret.glsl"},
         Bad{"StrayAnnotation", "\n//@ range(0, 1)\nuniform bool haze_a = true;",
-            "2: //@ range(0, 1) has nothing to say here; it stands behind a uniform, or is //@ "
+            "2: //@ range(0, 1) is misplaced; expected it after a uniform, or //@ "
             "include lib/NAME.glsl"}),
     [](const auto& test) { return test.param.name; });
 
@@ -351,13 +351,11 @@ INSTANTIATE_TEST_SUITE_P(
     Parameters, SnippetError,
     testing::Values(
         Bad{"NoDefault", "uniform float haze_a; //@ range(0, 1)",
-            "1: haze_a: a parameter has a default; expected = behind it but got ;"},
+            "1: haze_a: a parameter has a default; expected = after it but got ;"},
         Bad{"NoRange", "uniform float haze_a = 1.0;",
-            "1: haze_a: expected a //@ behind it with a range, as a panel and an error message "
-            "need to know it; add //@ range(min, max)"},
+            "1: haze_a: expected a //@ after it with a range; add //@ range(min, max)"},
         Bad{"NoRangeOrEnum", "uniform int haze_a = 1; //@ label(\"A\")",
-            "1: haze_a: expected a //@ behind it with a range or an enum, as a panel and an error "
-            "message need to know it; add //@ range(min, max)"},
+            "1: haze_a: expected a //@ after it with a range or an enum; add //@ range(min, max)"},
         Bad{"DefaultOutOfRange", "uniform float haze_a = 3.0; //@ range(0, 2) unit(m)",
             "1: haze_a: expected a default that is a number in [0, 2] m but got 3.0"},
         Bad{"DefaultIsNoLiteral", "uniform float haze_a = 1.0 / 3.0; //@ range(0, 2)",
@@ -376,14 +374,14 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"Array", "uniform float haze_a[2] = float[2](1.0, 2.0); //@ range(0, 2)",
             "1: haze_a: expected one float without brackets and commas"},
         Bad{"TwoAtOnce", "uniform float haze_a = 1.0; uniform float haze_b = 1.0;",
-            "1: haze_a: uniforms and varyings stand alone, one a line"},
+            "1: haze_a: expected one uniform or varying, alone on its line"},
         Bad{"TwoNames", "uniform float haze_a, haze_b;",
             "1: haze_a: expected one float without brackets and commas"},
         Bad{"TwoLines", "uniform float haze_a =\n    1.0; //@ range(0, 2)",
             "1: haze_a: expected ; before the end of the line"},
         Bad{"UnderIf", "#if 1\nuniform float haze_a = 1.0; //@ range(0, 2)\n#endif",
-            "2: haze_a stands under the #if of line 1; what a plugin has must not depend on what "
-            "else is on, so move the #if into a function"},
+            "2: haze_a is under the #if of line 1; a plugin's declarations must not depend on "
+            "other effects; move the #if into a function"},
         Bad{"Twice", "uniform bool haze_a = true;\nout float haze_a;",
             "2: haze_a: declared already in line 1"},
         Bad{"UnknownAnnotation", "uniform bool haze_a = true; //@ labl(\"A\")",
@@ -428,13 +426,13 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"StaticHost", "uniform float haze_a = 1.0; //@ static host",
             "1: haze_a: it cannot be both static, a constant, and host, written for every frame"},
         Bad{"HostAngle", "uniform float haze_a = 1.0; //@ angle host",
-            "1: haze_a: a host parameter is written in the shader's own radians; remove angle"},
+            "1: haze_a: a host parameter is in radians; remove angle"},
         Bad{"TwoRoles", "uniform vec3 haze_a = vec3(1); //@ colour direction",
             "1: haze_a: it can be only one of colour, angle and direction"},
         Bad{"OpenQuote", "uniform bool haze_a = true; //@ label(\"A)",
             "1: //@ label(\"A): a quotation mark is never closed"},
         Bad{"OpenBracket", "uniform bool haze_a = true; //@ range(0, 1",
-            "1: //@ range(0, 1: the ( behind range is never closed"},
+            "1: //@ range(0, 1: the ( after range is never closed"},
         Bad{"NoWord", "uniform bool haze_a = true; //@ , static",
             "1: //@ , static: expected a word but got , static"}),
     [](const auto& test) { return test.param.name; });
@@ -447,16 +445,16 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"SamplerWithDefault", "uniform sampler2D haze_a = 1;",
             "1: haze_a: expected ; but got ="},
         Bad{"SamplerAnnotation", "uniform sampler2D haze_a; //@ range(0, 1)",
-            "1: haze_a: a sampler has no annotation but from(name.word), for a texture that "
-            "another plugin makes"},
+            "1: haze_a: a sampler's only annotation is from(name.word), for a texture of another "
+            "plugin"},
         Bad{"FromNowhere", "uniform sampler2D haze_a; //@ from(noise)",
-            "1: haze_a: a sampler has no annotation but from(name.word), for a texture that "
-            "another plugin makes"},
+            "1: haze_a: a sampler's only annotation is from(name.word), for a texture of another "
+            "plugin"},
         Bad{"Image", "uniform image2D haze_a;",
             "1: haze_a: expected a parameter of type float, int, bool, vec2, vec3 or vec4, or a "
             "sampler, but got image2D"},
         Bad{"In", "in float haze_strength;",
-            "1: a varying is declared once, for both sides, with out instead of in"},
+            "1: a varying is declared once, for both stages, with out instead of in"},
         Bad{"VaryingType", "out bool haze_a;",
             "1: haze_a: expected a varying of type float, int or uint, a vector of them, mat3 or "
             "mat4, but got bool"},
@@ -464,14 +462,14 @@ INSTANTIATE_TEST_SUITE_P(
             "1: haze_a: expected a varying of type float, int or uint, a vector of them, mat3 or "
             "mat4, but got float[]"},
         Bad{"VaryingArrayBehind", "out float haze_a[2];",
-            "1: haze_a: expected ; behind the varying but got ["},
+            "1: haze_a: expected ; after the varying but got ["},
         Bad{"WholeVarying", "out int haze_a;",
             "1: haze_a: whole numbers are not interpolated; expected flat out int but got out int"},
         Bad{"VaryingUnderIf", "#if 1\nout float haze_a;\n#endif",
-            "2: haze_a stands under the #if of line 1; what a plugin has must not depend on what "
-            "else is on, so move the #if into a function"},
+            "2: haze_a is under the #if of line 1; a plugin's declarations must not depend on "
+            "other effects; move the #if into a function"},
         Bad{"TwoVaryings", "out float haze_a; out float haze_b;",
-            "1: haze_a: uniforms and varyings stand alone, one a line"}),
+            "1: haze_a: expected one uniform or varying, alone on its line"}),
     [](const auto& test) { return test.param.name; });
 
 // ---- broken files

@@ -667,12 +667,13 @@ INSTANTIATE_TEST_SUITE_P(
               "}"}},
             terrain_program(),
             "exit 3: shader: haze.glsl:2: haze_width uses fwidth, which only the fragment "
-            "side has, but the vertex side reaches it (main -> hook_displace -> haze_on_displace)"},
+            "stage has, but the vertex stage reaches it (main -> hook_displace -> "
+            "haze_on_displace)"},
         Bad{"VertexIdInTheFragmentSide",
             {{"haze", "void haze_on_albedo(inout Surface s) { s.diffuse *= float(gl_VertexID); }"}},
             terrain_program(),
             "exit 3: shader: haze.glsl:1: haze_on_albedo uses gl_VertexID, which only the "
-            "vertex side has, but the fragment side reaches it (main -> hook_albedo)"},
+            "vertex stage has, but the fragment stage reaches it (main -> hook_albedo)"},
         Bad{"VaryingThatNobodyFills",
             {{"haze",
               "\n\nout float haze_strength;\n"
@@ -680,7 +681,7 @@ INSTANTIATE_TEST_SUITE_P(
               "vec3(haze_strength); }\n"
               "void haze_on_vertex(in VertexFrame v) { haze_strength = 1.0; }"}},
             sky_program(),
-            "exit 3: shader: haze.glsl:3: haze_strength: the fragment side reads it (main "
+            "exit 3: shader: haze.glsl:3: haze_strength: the fragment stage reads it (main "
             "-> background_radiance -> haze_on_background_radiance), but nothing that "
             "fullscreen.vert.glsl calls writes it"},
         Bad{"VaryingInDisplace",
@@ -738,7 +739,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCore{"HookOfTheOtherSide",
                 {{"terrain.vert.glsl", "void main() { hook_albedo(); }"}},
                 "exit 1: shader: shaders/terrain.vert.glsl:1: hook_albedo is called from "
-                "the vertex side, which does not have it"},
+                "the vertex stage, which does not have it"},
         BadCore{"NoDefault",
                 {{"defaults.glsl", ""}},
                 "exit 1: shader: shaders/defaults.glsl: no core_on_brdf, the default of "
@@ -752,8 +753,8 @@ INSTANTIATE_TEST_SUITE_P(
                 {{"terrain.frag.glsl",
                   "in vec2 screen;\nlayout(location = 0) out vec4 c;\nvoid main() { c = "
                   "screen.xyxy; }"}},
-                "exit 3: shader: shaders/terrain.frag.glsl:1: screen: the fragment side "
-                "reads it (main), but nothing that terrain.vert.glsl calls writes it"},
+                "exit 3: shader: shaders/terrain.frag.glsl:1: screen: the fragment stage reads it "
+                "(main), but nothing that terrain.vert.glsl calls writes it"},
         BadCore{"VaryingOfAnotherType",
                 {{"terrain.frag.glsl",
                   "in vec2 ground_position_m;\nlayout(location = 0) out vec4 c;\nvoid main() { c = "

@@ -1,28 +1,27 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "effect/json.h"
+#include "json/object_reader.h"
 #include "support/support.h"
 
-namespace relevo::effect {
+namespace relevo::json {
 namespace {
 
 using relevo::test::error_of;
 
 TEST(Json, KnowsTheLineOfEveryMember) {
-    const Json json =
-        parse_json("who", "a.json", "{\n  \"a\": 1,\n  \"b\": {\n\"c\": [\n1,\n\"x\"]}}");
+    const Value json = parse("who", "a.json", "{\n  \"a\": 1,\n  \"b\": {\n\"c\": [\n1,\n\"x\"]}}");
     ASSERT_EQ(json.members.size(), 2u);
     EXPECT_EQ(json.members[0].second.line, 2);
     EXPECT_EQ(json.members[1].second.line, 3);
-    const Json& list = json.members[1].second.members[0].second;
+    const Value& list = json.members[1].second.members[0].second;
     EXPECT_EQ(list.line, 4);
     EXPECT_EQ(list.items[1].line, 6);
     EXPECT_EQ(list.items[0].number, 1);
 }
 
 TEST(Json, AMembersLineIsItsKeys) {
-    EXPECT_EQ(parse_json("who", "a.json", "{\"a\":\n\n1}").members[0].second.line, 1);
+    EXPECT_EQ(parse("who", "a.json", "{\"a\":\n\n1}").members[0].second.line, 1);
 }
 
 struct Bad {
@@ -34,7 +33,7 @@ struct Bad {
 class JsonError : public testing::TestWithParam<Bad> {};
 
 TEST_P(JsonError, NamesFileAndLine) {
-    EXPECT_EQ(error_of([] { parse_json("who", "a.json", GetParam().text); }), GetParam().message);
+    EXPECT_EQ(error_of([] { parse("who", "a.json", GetParam().text); }), GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -57,28 +56,28 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.name; });
 
 TEST(Json, DeepNestingIsRefused) {
-    EXPECT_EQ(error_of([] { parse_json("who", "a.json", std::string(100000, '[')); }),
+    EXPECT_EQ(error_of([] { parse("who", "a.json", std::string(100000, '[')); }),
               "exit 3: who: a.json:1: nested deeper than 64 levels");
 }
 
 TEST(Json, BytesThatAreNoUtf8AreNamedInAMessageThatIs) {
     EXPECT_EQ(
-        error_of([] { parse_json("who", "a.json", "{\n\"a\": \"\xff\"}"); }),
+        error_of([] { parse("who", "a.json", "{\n\"a\": \"\xff\"}"); }),
         "exit 3: who: a.json:2: syntax error while parsing value - invalid string: ill-formed "
         "UTF-8 byte; last read: '\"\\xff'");
     EXPECT_EQ(
-        error_of([] { parse_json("who", "a.json", "{\xff}"); }),
+        error_of([] { parse("who", "a.json", "{\xff}"); }),
         "exit 3: who: a.json:1: syntax error while parsing object key - invalid literal; last "
         "read: '{\\xff'; expected string literal");
 }
 
 TEST(Json, NumbersBeyondADoubleHaveNoRawText) {
-    EXPECT_EQ(error_of([] { parse_json("who", "a.json", "{\n\"a\": 1e999}"); }),
+    EXPECT_EQ(error_of([] { parse("who", "a.json", "{\n\"a\": 1e999}"); }),
               "exit 3: who: a.json:2: number overflow parsing '1e999'");
 }
 
 TEST(Json, TextsThatATerminalWouldObeyAreRefused) {
-    const Json json = parse_json("who", "a.json", R"({"name": "a\u001b[2J", "words": ["b\n"]})");
+    const Value json = parse("who", "a.json", R"({"name": "a\u001b[2J", "words": ["b\n"]})");
     ObjectReader object("who", "a.json", "", json);
     EXPECT_EQ(error_of([&] { object.string("name"); }),
               "exit 3: who: a.json:1: name: expected a text without control characters but got "
@@ -94,13 +93,13 @@ TEST(Json, ManyKeysTakeNoLongerThanTheyShould) {
     std::string text = "{";
     for (int i = 0; i < 90000; ++i)
         text += fmt::format("{}\"k{}\":1", i > 0 ? "," : "", i);
-    EXPECT_EQ(parse_json("who", "a.json", text + "}").members.size(), 90000u);
+    EXPECT_EQ(parse("who", "a.json", text + "}").members.size(), 90000u);
 }
 
 TEST(Json, LongFilesAreRefused) {
-    EXPECT_EQ(error_of([] { parse_json("who", "a.json", std::string(kMaxJsonBytes + 1, ' ')); }),
+    EXPECT_EQ(error_of([] { parse("who", "a.json", std::string(kMaxBytes + 1, ' ')); }),
               "exit 3: who: a.json: expected at most 1024 KiB but got 1025");
 }
 
 }  // namespace
-}  // namespace relevo::effect
+}  // namespace relevo::json

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// Reads JSON files that people write: scenes, jobs, presets and plugin manifests. Every value
+/// knows its line, for messages. JSON is written with nlohmann/json directly.
+namespace relevo::json {
+
+struct Value {
+    enum class Kind { Null, Bool, Number, String, Array, Object };
+    Kind kind = Kind::Null;
+    bool boolean = false;
+    double number = 0;
+    std::string text;
+    std::vector<Value> items;                            ///< of an array
+    std::vector<std::pair<std::string, Value>> members;  ///< of an object, in the file's order
+    int line = 0;                                        ///< of a member: its key's
+};
+
+/// A value for messages: `"text"`, `12`, `a list`, `an object`.
+std::string describe(const Value& value);
+
+/// Limit of a file, longer than people write [bytes].
+inline constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+
+/// @param who   begins messages: "scene"
+/// @param file  its name for messages
+/// @throws Error (BadInput) `who: file:line: ...` for a syntax error, bytes that are not UTF-8, a
+///         duplicate key, and a text of more than kMaxBytes
+Value parse(std::string_view who, std::string_view file, std::string_view text);
+
+}  // namespace relevo::json
