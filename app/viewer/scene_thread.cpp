@@ -333,6 +333,7 @@ struct SceneThread::Impl {
         if (new_pages_at) return false;
         publish(began, answers, whole && scale == 1 && !keep && !session->dem()->stands_in);
         read_rest();
+        session->link_rest();
         // What is coarse or lags is drawn anew when the hand has come to rest.
         return whole && (scale == 1 || now.moving || now.sun_moving);
     }

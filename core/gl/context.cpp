@@ -258,6 +258,8 @@ struct Context::Impl {
             glDebugMessageControl(GL_DONT_CARE, GL_DEBUG_TYPE_POP_GROUP, GL_DONT_CARE, 0, nullptr,
                                   GL_FALSE);
         }
+        if (epoxy_has_gl_extension("GL_KHR_parallel_shader_compile"))
+            glMaxShaderCompilerThreadsKHR(~GLuint{0});  // as many as the driver likes
         glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
         glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
         glPixelStorei(GL_PACK_ALIGNMENT, 1);

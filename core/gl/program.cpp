@@ -1,6 +1,7 @@
 #include "gl/program.h"
 
 #include <array>
+#include <utility>
 
 #include <epoxy/gl.h>
 
@@ -8,12 +9,6 @@
 
 namespace relevo::gl {
 namespace {
-
-void destroy_shader(unsigned name) {
-    glDeleteShader(name);
-}
-
-using Shader = Handle<&destroy_shader>;
 
 template <typename GetLength, typename GetLog>
 std::string info_log(GLuint name, GetLength get_length, GetLog get_log) {
@@ -28,16 +23,19 @@ std::string info_log(GLuint name, GetLength get_length, GetLog get_log) {
     return log;
 }
 
-/// An empty text on success, else the driver's log.
-std::optional<std::string> compile(const Shader& shader, std::string_view text) {
+void compile(GLuint shader, std::string_view text) {
     const char* lines = text.data();
     const GLint length = static_cast<GLint>(text.size());
-    glShaderSource(shader.name(), 1, &lines, &length);
-    glCompileShader(shader.name());
+    glShaderSource(shader, 1, &lines, &length);
+    glCompileShader(shader);
+}
+
+/// Empty on success, else the driver's log.
+std::optional<std::string> compile_error(GLuint shader) {
     GLint good = 0;
-    glGetShaderiv(shader.name(), GL_COMPILE_STATUS, &good);
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
     if (good) return std::nullopt;
-    return info_log(shader.name(), glGetShaderiv, glGetShaderInfoLog);
+    return info_log(shader, glGetShaderiv, glGetShaderInfoLog);
 }
 
 /// @param is_sampler  of the type of a uniform; the kind none where no Texture is of it
@@ -97,27 +95,40 @@ void Program::destroy(unsigned name) {
     glDeleteProgram(name);
 }
 
-std::optional<Program> Program::build(std::string_view vertex, std::string_view fragment,
-                                      std::string_view label, Failure& failure) {
-    const Shader vertex_shader(glCreateShader(GL_VERTEX_SHADER));
-    if (auto log = compile(vertex_shader, vertex)) {
+void Program::Pending::destroy_shader(unsigned name) {
+    glDeleteShader(name);
+}
+
+Program::Pending Program::begin(std::string_view vertex, std::string_view fragment,
+                                std::string_view label) {
+    Pending pending;
+    pending.vertex_ = Pending::Shader(glCreateShader(GL_VERTEX_SHADER));
+    pending.fragment_ = Pending::Shader(glCreateShader(GL_FRAGMENT_SHADER));
+    compile(pending.vertex_.name(), vertex);
+    compile(pending.fragment_.name(), fragment);
+    const GLuint name = glCreateProgram();
+    pending.program_ = Handle<&Program::destroy>(name);
+    set_label(GL_PROGRAM, name, label);
+    glAttachShader(name, pending.vertex_.name());
+    glAttachShader(name, pending.fragment_.name());
+    glLinkProgram(name);
+    return pending;
+}
+
+std::optional<Program> Program::finish(Pending pending, Failure& failure) {
+    if (auto log = compile_error(pending.vertex_.name())) {
         failure = {Failure::Stage::Vertex, *log};
         return std::nullopt;
     }
-    const Shader fragment_shader(glCreateShader(GL_FRAGMENT_SHADER));
-    if (auto log = compile(fragment_shader, fragment)) {
+    if (auto log = compile_error(pending.fragment_.name())) {
         failure = {Failure::Stage::Fragment, *log};
         return std::nullopt;
     }
     Program program;
-    program.handle_ = Handle<&Program::destroy>(glCreateProgram());
+    program.handle_ = std::move(pending.program_);
     const GLuint name = program.name();
-    set_label(GL_PROGRAM, name, label);
-    glAttachShader(name, vertex_shader.name());
-    glAttachShader(name, fragment_shader.name());
-    glLinkProgram(name);
-    glDetachShader(name, vertex_shader.name());
-    glDetachShader(name, fragment_shader.name());
+    glDetachShader(name, pending.vertex_.name());
+    glDetachShader(name, pending.fragment_.name());
     GLint good = 0;
     glGetProgramiv(name, GL_LINK_STATUS, &good);
     if (!good) {

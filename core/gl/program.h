@@ -12,6 +12,8 @@ namespace relevo::gl {
 
 /// A linked vertex and fragment program.
 class Program {
+    static void destroy(unsigned name);
+
   public:
     Program() = default;
 
@@ -22,9 +24,24 @@ class Program {
             log;  ///< as the driver wrote it; shader::driver_log turns it into the author's lines
     };
 
-    /// Compiles and links. @returns nothing and fills `failure` where the driver refuses the text.
+    /// A program that the driver may still be compiling, on threads of its own.
+    class Pending {
+      private:
+        friend class Program;
+        static void destroy_shader(unsigned name);
+        using Shader = Handle<&Pending::destroy_shader>;
+        Shader vertex_, fragment_;
+        Handle<&Program::destroy> program_;
+    };
+    /// Begins to compile and link.
+    static Pending begin(std::string_view vertex, std::string_view fragment,
+                         std::string_view label);
+    /// Waits for it. @returns nothing and fills `failure` where the driver refuses the text.
+    static std::optional<Program> finish(Pending pending, Failure& failure);
     static std::optional<Program> build(std::string_view vertex, std::string_view fragment,
-                                        std::string_view label, Failure& failure);
+                                        std::string_view label, Failure& failure) {
+        return finish(begin(vertex, fragment, label), failure);
+    }
 
     void use() const;
 
@@ -39,7 +56,6 @@ class Program {
     unsigned name() const { return handle_.name(); }
 
   private:
-    static void destroy(unsigned name);
     Handle<&Program::destroy> handle_;
 };
 

@@ -224,9 +224,16 @@ void dump_programs(const StitchedFrames& frames, const std::filesystem::path& fo
 }
 
 gl::Program link_program(const ProgramText& text) {
+    return finish_program(begin_program(text), text);
+}
+
+gl::Program::Pending begin_program(const ProgramText& text) {
+    return gl::Program::begin(text.stitched.vertex.text, text.stitched.fragment.text, text.name);
+}
+
+gl::Program finish_program(gl::Program::Pending pending, const ProgramText& text) {
     gl::Program::Failure failure;
-    auto program = gl::Program::build(text.stitched.vertex.text, text.stitched.fragment.text,
-                                      text.name, failure);
+    auto program = gl::Program::finish(std::move(pending), failure);
     if (program) return std::move(*program);
     const bool vertex = failure.stage == gl::Program::Failure::Stage::Vertex;
     const shader::StageText& stage = vertex ? text.stitched.vertex : text.stitched.fragment;

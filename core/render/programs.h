@@ -70,5 +70,8 @@ void dump_programs(const StitchedFrames& frames, const std::filesystem::path& fo
 /// Compiles and links. @throws Error (Failed) with what the driver says, in the author's file and
 /// line
 gl::Program link_program(const ProgramText& text);
+/// The same in two steps: the driver may compile several programs at once.
+gl::Program::Pending begin_program(const ProgramText& text);
+gl::Program finish_program(gl::Program::Pending pending, const ProgramText& text);
 
 }  // namespace relevo::render

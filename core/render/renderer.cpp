@@ -15,6 +15,7 @@
 #include "base/paths.h"
 #include "base/units.h"
 #include "gl/texture.h"
+#include "render/background_linker.h"
 #include "render/footprint_texture.h"
 #include "render/frame_runner.h"
 #include "render/ground_probe.h"
@@ -127,6 +128,8 @@ struct Renderer::Impl : FrameServices {
     bool native_is_current = false;  // by the last frame that this or another renderer drew
     bool outside;                    // of the DEM, and that makes a difference
     FrameRunner runner;
+    std::vector<const shader::Snippet*> snippets;
+    std::optional<BackgroundLinker> linker;  // last: its thread reads the snippets
 
     Impl(gl::Context& c, const EffectInputs& effects, const RendererOptions& o)
         : context(c),
@@ -145,7 +148,8 @@ struct Renderer::Impl : FrameServices {
               [this](const shader::TextureUnit& unit, const Terrain& terrain) {
                   return find_texture(unit, terrain);
               },
-              values) {
+              values),
+          snippets(effects.stitch.snippets) {
         if (effects.stitch.values) {
             values = *effects.stitch.values;
             const std::vector<std::byte> params = shader::pack(layout(), values);
@@ -166,10 +170,31 @@ struct Renderer::Impl : FrameServices {
 
     /// What the first frame is drawn with, so that a driver refuses it now.
     void link() {
+        std::vector<std::string> names;
         for (const Plan::Step& step : runner.plan().steps) {
             const Pass& pass = runner.graph().passes[static_cast<std::size_t>(step.pass)];
-            if (!pass.program.empty()) programs.link(pass.program);
+            if (!pass.program.empty()) names.push_back(pass.program);
         }
+        for (const std::string& name : names)
+            programs.begin(name);
+        for (const std::string& name : names)
+            programs.link(name);
+    }
+
+    /// Links what later frames may need: other programs at night, and from outside or within.
+    void link_rest() {
+        if (linker) return;
+        std::vector<ProgramText> rest;
+        for (const ProgramText& text : frames.programs)
+            if (!shared.programs.find(text)) rest.push_back(text);
+        linker.emplace(context, std::move(rest), snippets);
+    }
+
+    /// Takes programs that have been linked in the background.
+    void take_linked() {
+        if (!linker) return;
+        for (auto& [hash, program] : linker->take())
+            shared.programs.add(hash, std::move(program));
     }
 
     void move(bool is_outside) {
@@ -326,6 +351,7 @@ void Renderer::render_frame(Terrain& terrain, const Ground& ground, const FrameI
     FrameInputs inputs = frame;
     const FrameBlock block = impl_->prepare(terrain, ground, inputs);
     impl_->exposure = block.exposure;
+    impl_->take_linked();
     impl_->draw(terrain, ground, inputs, block, times);
 }
 
@@ -344,6 +370,10 @@ void Renderer::set_values(const shader::ParamStore& values) {
     }
     if (impl_->params_block.size() > 0)
         impl_->params_block.write(shader::pack(impl_->layout(), impl_->values));
+}
+
+void Renderer::link_rest() {
+    impl_->link_rest();
 }
 
 void Renderer::release_targets() {

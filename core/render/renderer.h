@@ -93,6 +93,9 @@ class Renderer {
     /// Frames have these sides from the next one on.
     /// @throws Error (BadInput) for a picture that the device cannot draw at once
     void resize(int width_px, int height_px);
+    /// Begins to link, in the background, the programs that no frame so far has needed: of nights,
+    /// and of eyes outside the DEM or within.
+    void link_rest();
     /// Gives the memory of its frames to renderers that share it. The last frame is gone; the next
     /// one takes memory again.
     void release_targets();

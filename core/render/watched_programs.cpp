@@ -32,6 +32,12 @@ ProgramCache::Entry& WatchedPrograms::entry(const std::string& name) {
     return *known;
 }
 
+void WatchedPrograms::begin(const std::string& name) {
+    if (cache_.find(text(name))) return;
+    const DrawWatch::Turn turn(watch(), text(name), 0);
+    cache_.begin(text(name));
+}
+
 const gl::Program& WatchedPrograms::link(const std::string& name) {
     return entry(name).program;
 }

@@ -20,6 +20,8 @@ class WatchedPrograms {
                     std::vector<const shader::Snippet*> snippets);
 
     const ProgramText& text(const std::string& name) const;
+    /// Has the driver begin to compile and link, so that it may do several at once.
+    void begin(const std::string& name);
     /// Links it, if that has not been done yet. @throws Error as link_program
     const gl::Program& link(const std::string& name);
     /// Whether no draw with a program has ended yet.

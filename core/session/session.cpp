@@ -548,6 +548,10 @@ std::string Session::climate_text() const {
     return session::climate_text(report) + "; " + ground_text(report);
 }
 
+void Session::link_rest() {
+    impl_->drawn->renderer().link_rest();
+}
+
 int Session::linked_programs() const {
     return impl_->shared.programs.links();
 }

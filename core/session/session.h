@@ -211,6 +211,8 @@ class Session {
     std::string climate_text() const;
 
     const StageTimes& stages() const;
+    /// As render::Renderer::link_rest(): for sessions whose user may move the sun or the eye.
+    void link_rest();
     /// How many programs the driver has linked so far.
     int linked_programs() const;
     int triangles() const;  ///< of the last frame

@@ -110,7 +110,11 @@ cover_Shape cover_shape(in Surface s, in float pixel_m) {
     return shape;
 }
 
-float cover_tan(in float slope_rad) { return tan(radians(min(slope_rad, 89.0))); }
+/// Tangents of two slopes, in degrees, of which the second is the greater one: else smoothstep is undefined.
+vec2 cover_tangents(in vec2 slopes_deg) {
+    vec2 tangents = tan(radians(min(slopes_deg, vec2(89.0))));
+    return vec2(tangents.x, max(tangents.y, tangents.x + 1e-3));
+}
 
 /// Warmth for plants where a tree line is given: as steep as the climate's.
 float cover_growth(in ClimateGround ground, in float height_m) {
@@ -169,7 +173,7 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
                           in cover_Shape shape) {
     cover_Shares shares;
     float ragged = shape.ragged;
-    vec2 rocky = vec2(cover_tan(cover_rock_deg.x), cover_tan(cover_rock_deg.y));
+    vec2 rocky = cover_tangents(cover_rock_deg);
     // Where plants grow all year roots hold soil on slopes half as steep again.
     float rooted = 1.0 + 0.5 * smoothstep(2.5, 6.0, growth) * smoothstep(1.0, 2.0, rain);
     shares.rock = smoothstep(rocky.x * rooted, rocky.y * rooted, shape.steep * (1.0 + 0.2 * ragged));
@@ -184,7 +188,7 @@ cover_Shares cover_shares(in ClimateGround ground, in vec2 white, in float rain,
     wooded *= 1.0 - cover_open_flats * temperate * flats * shape.fine;
     shares.forest = cover_trees == 2 ? 0.0 : wooded * (1.0 - smoothstep(0.85 * rooted, 1.3 * rooted, shape.steep));
 
-    vec2 bare = vec2(cover_tan(cover_bare_deg.x), cover_tan(cover_bare_deg.y));
+    vec2 bare = cover_tangents(cover_bare_deg);
     float holds = 1.0 - 0.85 * smoothstep(bare.x, bare.y, shape.steep * (1.0 + 0.25 * ragged));
     shares.ice = smoothstep(0.0, 0.7, white.x + 0.3 * ragged) * holds;
     float edge = 4.0 * white.y * (1.0 - white.y);

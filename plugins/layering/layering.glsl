@@ -72,6 +72,11 @@ layering_Limits layering_limits_at(in float latitude_deg) {
         at = layering_Limits(layering_sand_grass_m, trees + vec2(-150.0, 450.0),
                              snow + vec2(-100.0, 250.0));
     }
+    // Between edges of which the second is not above the first, smoothstep is undefined.
+    float least = layering_limits == 0 ? 1e-4 : 0.01;
+    at.sand_grass.y = max(at.sand_grass.y, at.sand_grass.x + least);
+    at.grass_rock.y = max(at.grass_rock.y, at.grass_rock.x + least);
+    at.rock_snow.y = max(at.rock_snow.y, at.rock_snow.x + least);
     return at;
 }
 

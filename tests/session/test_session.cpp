@@ -224,6 +224,41 @@ TEST(Session, AnEffectThatComesBackIsReadAgainWhereItsFileHasChanged) {
     EXPECT_EQ(picture(scene.effects), blue);
 }
 
+TEST(Session, LinksProgramsOfNightsInTheBackground) {
+    double first_ms[2] = {0, 0};
+    image::Image8 pictures[2];
+    for (const bool ahead : {false, true}) {
+        FilesInUse files;
+        scene::Scene scene = bundled_scene();
+        scene.effects = {};
+        scene.view.eye.emplace();
+        scene.view.eye->place = geo::Geodetic{radians(36.36), radians(-84.23), 900};
+        Session session(scene, {.device = "software"}, files);
+        session.draw();
+        if (ahead) {
+            session.link_rest();
+            const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+            int linked = -1, steady = 0;
+            while (steady < 10 && std::chrono::steady_clock::now() < until) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(100));
+                session.draw();
+                steady = session.linked_programs() == linked ? steady + 1 : 0;
+                linked = session.linked_programs();
+            }
+        }
+        const int before = session.linked_programs();
+        session.set_moment(sun::parse_time("2026-06-21T06:00Z").utc);
+        first_ms[ahead] = least_ms(1, [&] { session.draw_alone(); });
+        EXPECT_EQ(session.linked_programs() == before, ahead);
+        pictures[ahead] = session.picture();
+    }
+    EXPECT_EQ(pictures[0].values, pictures[1].values);
+    fmt::print(
+        "[ night ] the first frame takes {:.0f} ms, {:.0f} if its programs were linked in the"
+        " background\n",
+        first_ms[0], first_ms[1]);
+}
+
 TEST(Session, DrawsCoarserGroundUntilItsPagesAreThere) {
     scene::Scene scene = bundled_scene();
     scene.effects.switches.only->clear();
