@@ -3,7 +3,9 @@
 
 Usage: bench_viewer.py BUILD [DEM...]   (BUILD is build/release or build/dev; needs Xvfb and xdotool)
 
-Everything is read off the screen of a display of its own (Xvfb's screen is a file), as a person would see it.
+Everything is read off the screen of a display of its own (Xvfb's screen is a file), as a person would see it. With both
+ways of presentation (RELEVO_PRESENT) it also counts what a frame asks of the GL device while the camera orbits; bytes of
+ring buffers are left out, as the device reads them where the program writes them.
 """
 
 import ctypes
@@ -64,12 +66,12 @@ class Screen:
 
 
 def wait_for_picture(screen, began):
-    while time.perf_counter() - began < 60:
+    while time.perf_counter() - began < 30:
         sample = screen.sample()
         if len(set(sample)) > 40:
             return time.perf_counter() - began
         time.sleep(0.005)
-    sys.exit("no picture within a minute")
+    raise RuntimeError("no picture within 30 s")
 
 
 def settle(screen):
@@ -139,6 +141,35 @@ def first_start(program, arguments, env, screen):
             viewer.wait()
 
 
+def count_gl(program, arguments, env, screen, presentation):
+    """Per frame of the scene: draws, bytes of buffers and of textures written, bytes read, reads, waits."""
+    library = pathlib.Path(program).parent.parent / "tests/modules/count_gl.so"
+    if not library.exists():
+        return
+    counts = pathlib.Path(screen.folder.name) / "counts"
+    read = lambda: struct.unpack("7Q", counts.read_bytes())
+    viewer = subprocess.Popen([program, "-q", *arguments], cwd=screen.folder.name, env={
+        **env, "RELEVO_PRESENT": presentation, "LD_PRELOAD": str(library), "RELEVO_COUNT_GL": str(counts)})
+    try:
+        wait_for_picture(screen, time.perf_counter())
+        settle(screen)
+        screen.act("mousemove", 850, 400)
+        screen.act("mousedown", 3)
+        before = read()
+        shown = pictures_a_second(screen, lambda i: screen.move(850 + 3 * (i % 60), 400))
+        frames, *figures = [after - first for after, first in zip(read(), before)]
+        screen.act("mouseup", 3)
+        draws, buffers, textures, back, reads, waits = [figure / max(1, frames) for figure in figures]
+        print(f"  {presentation}: {shown:.1f} pictures/s; a frame: {draws:.1f} draws, {buffers / 1e3:.0f} kB written to "
+              f"buffers and {textures / 1e3:.0f} kB to textures, {back / 1e3:.0f} kB read in {reads:.1f} reads, "
+              f"{waits:.1f} waits")
+    finally:
+        viewer.terminate()
+        viewer.wait()
+        while len(set(screen.sample())) > 40:  # till the window has gone
+            time.sleep(0.05)
+
+
 def bench(program, dem):
     arguments = [dem] if dem else []
     screen = Screen()
@@ -183,6 +214,12 @@ def bench(program, dem):
     finally:
         viewer.terminate()
         viewer.wait()
+    try:
+        while len(set(screen.sample())) > 40:
+            time.sleep(0.05)
+        for presentation in ("copy", "shared"):
+            count_gl(program, arguments, env, screen, presentation)
+    finally:
         screen.close()
 
 
