@@ -6,6 +6,7 @@
 
 //@ include lib/drape.glsl
 //@ include lib/exposed.glsl
+//@ include lib/filtered.glsl
 //@ include lib/finite.glsl
 //@ include lib/ground.glsl
 //@ include lib/octahedral.glsl
@@ -41,7 +42,7 @@ vec3 unexaggerated(in vec3 step_m, in vec3 up) {
 /// East and north part of the normal at a post, as a level of the pyramid has it.
 vec2 slope_at(in vec2 post, in int level) {
     PagePlace at = page_place(post, level);
-    return textureLod(normal_pages, vec3((at.node + 1.5) / kNormalPage_px, float(at.layer)), 0.0).rg;
+    return filtered(normal_pages, vec3((at.node + 1.5) / kNormalPage_px, float(at.layer))).rg;
 }
 
 void main() {

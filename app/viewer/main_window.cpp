@@ -53,6 +53,10 @@ scene::Scene MainWindow::scene() const {
     return is_open() ? whole_scene() : state_.document.scene;
 }
 
+Clock::duration MainWindow::shown_for() const {
+    return first_picture_at_ ? Clock::now() - *first_picture_at_ : Clock::duration::zero();
+}
+
 void MainWindow::run() {
     while (!window_->should_close()) {
         const bool is_animated = state_.playing || hand_->is_moving();

@@ -31,6 +31,8 @@ class MainWindow {
     void run();
     /// As it is now, for another window to begin with.
     scene::Scene scene() const;
+    /// Since when it has shown pictures; 0 before the first one.
+    Clock::duration shown_for() const;
 
   private:
     // ---- event loop and frames: main_window.cpp
@@ -129,7 +131,8 @@ class MainWindow {
     std::shared_ptr<const Picture> picture_;
     std::optional<Wanted> wanted_;
     Clock::time_point checked_at_ = Clock::now();  // files
-    bool sun_moved_ = false;                       // in the frame before
+    std::optional<Clock::time_point> first_picture_at_;
+    bool sun_moved_ = false;      // in the frame before
     bool has_new_input_ = false;  // ImGui has processed input since process_mouse()
     bool shows_keys_ = false, closes_menus_ = false, takes_picture_ = false;
 };

@@ -144,6 +144,7 @@ bool MainWindow::poll_opening() {
 void MainWindow::poll_images() {
     if (const auto newer = opening_->thread().newer_than(picture_ ? picture_->number : 0)) {
         picture_ = newer;
+        if (!first_picture_at_) first_picture_at_ = Clock::now();
         raise_eye();
         hand_->see(picture_);
         window_->take(*newer);

@@ -245,12 +245,15 @@ struct SceneThread::Impl {
                 attempt([&] { change(new_effects, new_values); });
                 if (new_drape) attempt([&] { session->drape(*new_drape); });
                 awaits_pages = false;
-                if (!attempt([&] { sharp = draw(now, answers); })) sharp = true;
+                if (!attempt([&] { sharp = draw(now, answers); })) {
+                    sharp = true;
+                    awaits_pages = false;
+                }
+                finish_pictures(/*all=*/sharp || awaits_pages);
             } catch (const gl::DeviceLost&) {
                 fail();
                 return;
             }
-            finish_pictures(/*all=*/sharp || awaits_pages);
             if (frame_px > 0) ms_a_pixel = milliseconds_since(frame_began) / frame_px;
             frame_px = 0;
             on_change();
@@ -277,6 +280,7 @@ struct SceneThread::Impl {
         } catch (const gl::DeviceLost&) {
             throw;
         } catch (const std::exception& error) {
+            gl::throw_if_lost();  // which is why, then
             say(text_of(error));
             return false;
         }

@@ -10,7 +10,8 @@
 namespace relevo::viewer {
 namespace {
 
-/// A device that is lost again so soon after will be lost by the same scene for ever.
+/// A device that is lost again so soon after a window has shown its first picture will be lost by
+/// the same scene for ever.
 constexpr auto kLostAgain = std::chrono::seconds(5);
 
 }  // namespace
@@ -18,16 +19,16 @@ constexpr auto kLostAgain = std::chrono::seconds(5);
 void run(const scene::Scene& scene, const std::string& device) {
     scene::Scene current = scene;
     while (true) {
-        const auto began = std::chrono::steady_clock::now();
         MainWindow window(current, device);
         try {
             window.run();
             return;
         } catch (const gl::DeviceLost& lost) {
-            if (std::chrono::steady_clock::now() - began < kLostAgain) throw;
+            if (window.shown_for() < kLostAgain) throw;
             log::warning(
                 fmt::format("{}; the window begins again with the same scene", lost.what()));
             current = window.scene();
+            current.moment.zone = scene.moment.zone;
         }
     }
 }

@@ -371,7 +371,7 @@ void Window::draw(const std::function<void()>& panels) {
     impl_->show(size);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     glfwSwapBuffers(impl_->handle);
-    impl_->context->check_lost();
+    gl::throw_if_lost();
 }
 
 std::vector<KeyPress> Window::take_keys() {

@@ -404,16 +404,8 @@ const DeviceInfo& Context::info() const {
     return impl_->info;
 }
 
-void Context::check_lost() {
-    if (glGetGraphicsResetStatus() != GL_NO_ERROR)
-        throw DeviceLost(
-            fmt::format("gl: {} was lost: its driver has reset it, after a fault or after a "
-                        "command that took too long",
-                        impl_->info.renderer));
-}
-
 void Context::check_errors() {
-    check_lost();
+    throw_if_lost();
     const GLenum error = glGetError();
     if (impl_->errors.empty() && error != GL_NO_ERROR) impl_->errors.push_back(error_name(error));
     if (impl_->errors.empty()) return;

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/error.h"
+#include "gl/errors.h"
 
 namespace relevo::gl {
 
@@ -51,12 +51,6 @@ struct DeviceInfo {
 /// That a software renderer draws as hardware would not do; empty where there was none.
 std::string fall_back_notice(std::span<const RefusedDevice> refused, const DeviceInfo& chosen);
 
-/// The driver has reset the device: all contexts and what was made in them are lost.
-class DeviceLost : public Error {
-  public:
-    explicit DeviceLost(const std::string& message) : Error(ErrorCode::NoDevice, message) {}
-};
-
 struct ContextOptions {
     /// "auto", the index of a device, "software", or a part of a renderer's name ("nvidia").
     std::string device = "auto";
@@ -99,8 +93,6 @@ class Context {
     /// Whether both are of one EGL device, so that they can share.
     bool is_on_device_of(const Context& other) const;
 
-    /// @throws DeviceLost where the driver says so
-    void check_lost();
     /// Throws what went wrong since the last call: what a debug context has collected, else the
     /// name of the first error.
     /// @throws DeviceLost; Error (Failed) `gl: message`

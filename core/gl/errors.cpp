@@ -29,8 +29,18 @@ std::string error_name(unsigned error) {
     return fmt::format("GL error 0x{:04x}", error);
 }
 
+void throw_if_lost() {
+    if (glGetGraphicsResetStatus() == GL_NO_ERROR) return;
+    const GLubyte* const renderer = glGetString(GL_RENDERER);
+    throw DeviceLost(fmt::format(
+        "gl: {} was lost: its driver has reset it, after a fault or after a command that took too "
+        "long",
+        renderer ? reinterpret_cast<const char*>(renderer) : "the device"));
+}
+
 void expect_no_error(std::string_view before) {
     const GLenum error = glGetError();
+    if (error != GL_NO_ERROR) throw_if_lost();
     if (error != GL_NO_ERROR) failed(fmt::format("gl: before {}: {}", before, error_name(error)));
 }
 

@@ -4,6 +4,8 @@
 
 #include <epoxy/gl.h>
 
+#include "gl/errors.h"
+
 namespace relevo::gl {
 namespace {
 
@@ -43,7 +45,10 @@ bool Fence::wait(std::chrono::milliseconds at_most) const {
     if (!sync_) return true;
     const auto ns = std::chrono::nanoseconds(at_most).count();
     const GLenum found = glClientWaitSync(sync_of(sync_), 0, static_cast<GLuint64>(ns));
-    return found == GL_ALREADY_SIGNALED || found == GL_CONDITION_SATISFIED;
+    if (found == GL_ALREADY_SIGNALED || found == GL_CONDITION_SATISFIED) return true;
+    // On a lost device a wait may fail, or never end.
+    throw_if_lost();
+    return found != GL_TIMEOUT_EXPIRED;
 }
 
 }  // namespace relevo::gl

@@ -21,6 +21,7 @@ class Fence {
     /// Has the device execute no further command of the current context before.
     void wait_on_device() const;
     /// Has the calling thread wait. @returns has_passed()
+    /// @throws DeviceLost
     bool wait(std::chrono::milliseconds at_most) const;
 
   private:

@@ -45,6 +45,7 @@ Framebuffer::Framebuffer(std::span<const Texture* const> colours, const Texture*
         extent_ = depth->extent();
     }
     const GLenum status = glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE) throw_if_lost();
     if (status != GL_FRAMEBUFFER_COMPLETE)
         failed(fmt::format("framebuffer: {}: this device cannot draw to it, status 0x{:04x}", label,
                            status));
@@ -62,6 +63,7 @@ Framebuffer::Framebuffer(const Texture& colour, int level, int layer, std::strin
     extent_ = {std::max(colour.extent().width >> level, 1),
                std::max(colour.extent().height >> level, 1), 1};
     const GLenum status = glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE) throw_if_lost();
     if (status != GL_FRAMEBUFFER_COMPLETE)
         failed(fmt::format("framebuffer: {}: this device cannot draw to it, status 0x{:04x}", label,
                            status));

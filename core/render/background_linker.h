@@ -25,6 +25,8 @@ class BackgroundLinker {
     /// Waits for the program in work.
     ~BackgroundLinker();
 
+    /// Has the thread end after the program in work, without waiting for it.
+    void stop() { ends_ = true; }
     /// What has been linked since the last call, by the hash of its text. A program that the driver
     /// refuses is left out: whoever needs it gets the error.
     std::vector<std::pair<std::string, gl::Program>> take();

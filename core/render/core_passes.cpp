@@ -68,6 +68,7 @@ class Declaration {
     /// @returns its name, which ends in the word
     std::string program(const char* name, shader::ProgramRecipe recipe,
                         const char* word = nullptr) {
+        if (facts_.software) recipe.defines.push_back({"EXACT_FILTERS", ""});
         const std::string full = word ? std::string(name) + "_" + word : name;
         frame_.programs.push_back({full, std::move(recipe), word ? word : ""});
         return full;
@@ -155,7 +156,7 @@ class Declaration {
                                      .fragment_main = "geometry.frag.glsl",
                                      .shaded_by = "terrain.frag.glsl"};
         ground_defines(recipe);
-        if (facts_.nan_slivers) recipe.defines.push_back({"NAN_SLIVERS", ""});
+        if (facts_.software) recipe.defines.push_back({"NAN_SLIVERS", ""});
         Pass pass{.name = "geometry",
                   .kind = PassKind::Geometry,
                   .program = program("geometry", recipe, outside_word()),

@@ -37,7 +37,7 @@ struct FrameFacts {
     bool audited = false;         ///< the terrain pass also writes what SunSeen has
     bool vertex_normals = false;  ///< per vertex instead of per fragment
     bool displaced = false;       ///< effects move the ground
-    bool nan_slivers = false;     ///< the device cuts triangles to slivers without coordinates
+    bool software = false;        ///< as ProgramOptions
     bool height_steps = false;    ///< hooks read height_dx_m or height_dy_m
     int varying_targets = 0;      ///< layers of stored varyings: shader::Stitched
     std::vector<std::string> natives{};  ///< ids of native effects, in their order

@@ -20,7 +20,12 @@ void ProgramCache::begin(const ProgramText& text) {
 std::shared_ptr<ProgramCache::Entry> ProgramCache::link(const ProgramText& text) {
     begin(text);
     auto pending = pending_.extract(text.hash);
-    return keep(text.hash, finish_program(std::move(pending.mapped()), text));
+    try {
+        return keep(text.hash, finish_program(std::move(pending.mapped()), text));
+    } catch (...) {
+        pending_.clear();  // of the same selection: nobody will ask for them
+        throw;
+    }
 }
 
 void ProgramCache::add(const std::string& hash, gl::Program program) {

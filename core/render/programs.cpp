@@ -67,7 +67,7 @@ class Stitcher {
         facts_.audited = options.audited;
         facts_.vertex_normals = options.vertex_normals;
         facts_.displaced = answers(input, "displace");
-        facts_.nan_slivers = options.nan_slivers;
+        facts_.software = options.software;
         facts_.natives = options.natives;
         facts_.wants_night = wants(input, kNightWord);
         facts_.wants_outside = wants(input, kOutsideWord);

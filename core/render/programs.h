@@ -29,8 +29,9 @@ struct ProgramOptions {
     bool antialias = true;
     /// The ground's programs also write what audits read: SunSeen of renderer.h.
     bool audited = false;
-    /// Of a software renderer: the near plane cuts triangles to slivers whose heights are NaN.
-    bool nan_slivers = false;
+    /// The device is a software renderer: its near plane cuts triangles to slivers whose heights
+    /// are NaN, and the weights of its filters are exact (shaders/lib/filtered.glsl).
+    bool software = false;
     /// Ids of native effects; with any there is "depth": the terrain as an orthographic view has
     /// it.
     std::vector<std::string> natives{};

@@ -83,7 +83,7 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
                           .shown = !options.radiance,
                           .antialias = options.antialias,
                           .audited = options.audited,
-                          .nan_slivers = info.device.software};
+                          .software = info.device.software};
     for (const effect::NativeModule* const module : effects.modules)
         wanted.natives.push_back(module->id());
     StitchedFrames frames = stitch_frames(core, input, wanted);
@@ -378,11 +378,14 @@ void Renderer::link_rest() {
 
 void Renderer::release_targets() {
     impl_->runner.release();
+    impl_->take_linked();
+    if (impl_->linker) impl_->linker->stop();
     impl_->native_is_current = false;
 }
 
 void Renderer::resize(int width_px, int height_px) {
-    if (width_px == impl_->options.width_px && height_px == impl_->options.height_px) return;
+    const bool same = width_px == impl_->options.width_px && height_px == impl_->options.height_px;
+    if (same && impl_->runner.is_arranged()) return;
     check_size(impl_->context, width_px, height_px);
     impl_->runner.arrange(impl_->outside, width_px, height_px);
     impl_->options.width_px = width_px;

@@ -56,7 +56,6 @@ void TileMesh::make_walls(const std::vector<Tile>& tiles, Sides& sides) {
         of.emplace_back(tile.key.packed(), tile.quadrants);
     if (walls_ && walls_->of == of) return;
     walls_.emplace();
-    walls_->of = std::move(of);
     std::vector<glm::vec4> vertices;
     std::vector<std::uint16_t> indices;
     for (std::size_t i = 0; i < tiles.size(); ++i) {
@@ -69,6 +68,7 @@ void TileMesh::make_walls(const std::vector<Tile>& tiles, Sides& sides) {
         walls_->draws.push_back({count, 1, first_index, first_vertex, instance});
         walls_->tiles.push_back(i);
     }
+    walls_->of = std::move(of);
     if (indices.empty()) return;
     walls_->vertices = gl::Buffer::of<glm::vec4>(vertices, "terrain sides");
     walls_->indices = gl::Buffer::of<std::uint16_t>(indices, "terrain sides indices");

@@ -136,19 +136,37 @@ void ActiveEffects::add_inputs(FilesInUse& files) const {
     });
 }
 
+namespace {
+
+/// A folder, the folders in it, and the files of these: a plugin may read any of its files, and a
+/// folder may become a plugin.
+void add_plugins_of(const std::filesystem::path& path, std::vector<std::filesystem::path>& to) {
+    const auto add = [&](const std::filesystem::path& folder, const auto& each) {
+        to.push_back(folder);
+        std::error_code ignored;
+        for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+            each(entry);
+    };
+    const auto file = [&](const std::filesystem::directory_entry& entry) {
+        to.push_back(entry.path());
+    };
+    add(path, [&](const std::filesystem::directory_entry& entry) {
+        std::error_code ignored;
+        if (entry.is_directory(ignored))
+            add(entry.path(), file);
+        else
+            file(entry);
+    });
+}
+
+}  // namespace
+
 std::vector<std::filesystem::path> ActiveEffects::files_and_folders() const {
-    std::vector<std::filesystem::path> all(registry.search_paths());
+    std::vector<std::filesystem::path> all;
+    for (const std::filesystem::path& path : registry.search_paths())
+        add_plugins_of(path, all);
     visit_files(
         [&](const std::filesystem::path& path, const std::string&) { all.push_back(path); });
-    for (const effect::Effect& effect : registry.effects())
-        all.push_back(effect.manifest.file.parent_path());
-    // Of a broken plugin it is not known which file is at fault.
-    for (const effect::BrokenEffect& broken : registry.broken()) {
-        all.push_back(broken.folder);
-        std::error_code ignored;
-        for (const auto& file : std::filesystem::directory_iterator(broken.folder, ignored))
-            all.push_back(file.path());
-    }
     return all;
 }
 
@@ -165,7 +183,7 @@ std::optional<shader::ParamStore> ActiveEffects::values_with(
     if (aloud)
         for (const std::string& notice : said)
             if (!contains(notices, notice)) log::info(notice);
-    notices = std::move(said);
+    notices.insert(notices.end(), said.begin(), said.end());
     return changed;
 }
 

@@ -99,7 +99,7 @@ bool DrawnEffects::take(const EffectsRequest& request) {
 void DrawnEffects::set(const std::string& address, const std::string& value) {
     for (const Half& half : halves()) {
         const shader::Param* const param = half.effects.values.find(address);
-        if (param && param->is_static)
+        if ((param && param->is_static) || half.effects.values.find_text(address))
             bad_input(
                 fmt::format("session: {}: a static parameter: another value needs another "
                             "shader",
@@ -123,6 +123,11 @@ void DrawnEffects::render(render::Terrain& terrain, const render::Ground& ground
     if (without_) without_->render_frame(terrain, ground, inputs);
 }
 
+bool DrawnEffects::has_modules() const {
+    return std::ranges::any_of(
+        halves(), [](const Half& half) { return !half.effects.loaded.modules.empty(); });
+}
+
 bool DrawnEffects::is_watched() const {
     return renderer_->is_watched() || (without_ && without_->is_watched());
 }
@@ -143,6 +148,9 @@ std::optional<DrawnEffects> RecentEffects::take(const EffectsRequest& request) {
 }
 
 void RecentEffects::keep(DrawnEffects drawn) {
+    // A module that is written again cannot be loaded while its former library is, and keeps
+    // textures of its own.
+    if (drawn.has_modules()) return;
     drawn.release_targets();
     kept_.push_front(std::move(drawn));
     if (kept_.size() > kMost) kept_.pop_back();

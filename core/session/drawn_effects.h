@@ -57,6 +57,8 @@ class DrawnEffects {
     void resize(int width_px, int height_px);
     void render(render::Terrain& terrain, const render::Ground& ground,
                 const render::FrameInputs& inputs, render::PassTimes* times = nullptr);
+    /// Whether native modules draw, which may be refused at their first frame.
+    bool has_modules() const;
     /// As render::Renderer, of both halves.
     bool is_watched() const;
     void release_targets();

@@ -183,16 +183,16 @@ struct Session::Impl {
     void switch_to(const EffectsRequest& wanted) {
         if (drawn->take(wanted)) return;
         if (std::optional<DrawnEffects> known = recent.take(wanted)) {
-            recent.keep(std::move(*drawn));
-            drawn = std::move(known);
-            drawn->resize(state.scene.width_px, state.scene.height_px);
+            known->resize(state.scene.width_px, state.scene.height_px);
+            recent.keep(std::exchange(*drawn, std::move(*known)));
             return;
         }
         DrawnEffects fresh = DrawnEffects::load(wanted, /*aloud=*/false);
         fresh.fit(context->info());
         compile(fresh);
-        // A driver may refuse a program at its first draw.
-        if (fresh.is_watched()) fresh.render(*terrain, state.ground(), state.inputs);
+        // A driver may refuse a program at its first draw, and a module its first frame.
+        if (fresh.is_watched() || fresh.has_modules())
+            fresh.render(*terrain, state.ground(), state.inputs);
         recent.keep(std::exchange(*drawn, std::move(fresh)));
         shared.targets.trim();  // each has had its own
     }

@@ -6,6 +6,8 @@
 //!           usando placas graficas programaveis (Tecgraf, PUC-Rio), equations 1 to 3; the textures are
 //!           made by tools/sky, which names its model; stars: the Bright Star Catalogue
 
+//@ include lib/filtered.glsl
+
 uniform sampler3D sky_radiance;  // by s, t and height of the sun
 uniform sampler3D sky_light;     // irradiance of slopes, likewise
 uniform sampler2DArray sky_times;
@@ -244,13 +246,13 @@ vec3 sky_on_background_radiance(in vec3 direction, in bool with_disc) {
     if (sky_earth) at.y *= smoothstep(0.0, sky_band(), above);
     vec3 colour;
     if (sky_colours == 0) {
-        colour = textureLod(sky_radiance, sky_texel(vec3(at, sky_slice(sun_sine)), sky_size), 0.0).rgb;
+        colour = filtered(sky_radiance, sky_texel(vec3(at, sky_slice(sun_sine)), sky_size)).rgb;
     } else {
         vec2 texel = sky_texel(vec3(at, 0.0), sky_size).xy;
         vec3 blend = sky_blend(sun_sine);
         colour = vec3(0.0);
         for (int time = 0; time < 3; ++time)  // day, sunset, night
-            colour += blend[time] * textureLod(sky_times, vec3(texel, float(time)), 0.0).rgb;
+            colour += blend[time] * filtered(sky_times, vec3(texel, float(time))).rgb;
     }
     vec3 radiance = sky_brightness * sky_luminance() * colour;
     float haze = sky_air_mass ? sky_air_mass_of(sun_sine) : 1.0;
@@ -279,7 +281,7 @@ void sky_on_ambient(in Surface s, inout vec3 irradiance) {
         vec3 at = vec3(sky_s(to_sun, s.normal, s.up), clamp(dot(s.normal, s.up), 0.0, 1.0),
                        sky_slice(dot(to_sun, s.up)));
         irradiance = sky_luminance() *
-                         textureLod(sky_light, sky_texel(at, sky_light_size), 0.0).rgb +
+                         filtered(sky_light, sky_texel(at, sky_light_size)).rgb +
                      sky_bounce(dot(s.normal, s.up), dot(to_sun, s.up));
     } else {
         irradiance = frame.sky_irradiance.rgb;

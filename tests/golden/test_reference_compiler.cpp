@@ -35,7 +35,7 @@ const std::vector<std::string> kNatives{"native"};
 /// What makes the text of a program another one, but for effects and their values.
 const std::map<std::string, render::ProgramOptions> kOptions = {
     {"picture", {.shown = true, .natives = kNatives}},
-    {"picture of a software device", {.shown = true, .nan_slivers = true, .natives = kNatives}},
+    {"picture of a software device", {.shown = true, .software = true, .natives = kNatives}},
     {"radiance", {.natives = kNatives}},
     {"radiance and overlay", {.draped = true, .natives = kNatives}},
     {"overlay", {.draped = true, .shown = true, .natives = kNatives}},
@@ -201,7 +201,7 @@ TEST(ReferenceCompiler, SeesTheProgramsOfACapture) {
     const Ids ids = *shipped.everything().begin();
     Programs programs;
     programs.add(effect::select(shipped.registry, {}, {.only = ids}), shipped.values(), "all", "",
-                 {.shown = true, .nan_slivers = true});
+                 {.shown = true, .software = true});
     const std::filesystem::path dir = scratch_dir(), dump = dir / "shaders";
     const Result taken =
         relevo({"-q", "capture", bundled_dem(), "-o", (dir / "a.png").string(), "--size", "64x48",
@@ -292,7 +292,7 @@ TEST(ReferenceCompiler, SeesADiscardInTheGeometryOfSoftwareDevicesAlone) {
         Programs programs;
         for (const Ids& ids : shipped.everything())
             programs.add(effect::select(shipped.registry, {}, {.only = ids}), values, "all", "",
-                         {.shown = true, .nan_slivers = software});
+                         {.shown = true, .software = software});
         for (const Programs::Program& program : programs.all()) {
             if (!program.name.starts_with("geometry")) continue;
             const ReferenceProgram compiled = reference_compile(program.vertex, program.fragment);
