@@ -68,7 +68,7 @@ void frame(GLFWwindow* window, Shown& shown) {
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);
     session.resize(std::max(width, 1), std::max(height, 1));
-    session.draw_what_is_there();
+    session.draw_available();
     relevo::gl::Framebuffer({&session.texture()}, nullptr, "shown").copy_to_window(width, height);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

@@ -18,7 +18,7 @@ namespace {
 constexpr ImU32 kNow = IM_COL32(200, 40, 20, 255);
 constexpr float kHeight_units = 300;
 
-/// Draws a chart in its own size. @returns its upper left corner in the window
+/// Draws a chart unscaled. @returns its upper left corner in the window
 ImVec2 show(const gl::Texture& texture) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const gl::Extent extent = texture.extent();
@@ -32,7 +32,7 @@ ImVec2 at_screen(ImVec2 corner, glm::dvec2 units, double px_a_unit) {
             corner.y + static_cast<float>(units.y * px_a_unit)};
 }
 
-/// Where the chosen point is in the window [px], from its upper left.
+/// Window position of the chosen point [px], from the upper left.
 std::optional<glm::vec2> chosen_in_window(const State& state, glm::vec2 size_px) {
     geo::Geodetic place = *state.chosen;
     place.height_m = state.land.aim_m(place) * state.land.exaggeration;
@@ -51,7 +51,7 @@ void ChartsPanel::Shown<Chart>::take(std::shared_ptr<const Chart> newer) {
     texture = chart ? texture_of(chart->picture) : gl::Texture();
 }
 
-/// With the sun as it stands now.
+/// With the sun's current position.
 void ChartsPanel::horizon(State& state) {
     const double px_a_unit = state.point->of.px_a_unit;
     const ImVec2 corner = show(horizon_.texture);
@@ -65,7 +65,7 @@ void ChartsPanel::horizon(State& state) {
     list.AddCircle(at, 7.5f, kNow, 0, 2);
 }
 
-/// With the shown day and time; a click goes to another.
+/// Marks the displayed day and time. A click sets another time.
 void ChartsPanel::year(State& state) {
     const double px_a_unit = state.point->of.px_a_unit;
     const ImVec2 corner = show(year_.texture);
@@ -109,7 +109,7 @@ void ChartsPanel::place(const State& state, glm::vec2 size_px, float unit) {
         const bool is_under =
             from.x > 0 && from.y > 0 && from.x < extent_px_.x && from.y < extent_px_.y;
         if (is_under) {
-            // At the upper edge where there is more room, else at the lower one.
+            // At the edge with more room, upper or lower.
             const float top = ImGui::GetFrameHeight() + 10;
             at_px_.y = point->y - top > size_px.y - point->y ? top : size_px.y - extent_px_.y;
         }

@@ -7,12 +7,12 @@
 
 namespace relevo::viewer {
 
-/// The chosen point's horizon and year, in a panel of their own, at the lower edge.
+/// Panel of the chosen point's horizon and year, at the lower edge.
 class ChartsPanel {
   public:
-    /// Shows what there is, and says in the state how large it is to be.
+    /// Draws the charts, and stores the size they need in the state.
     /// @param size_px     of the window
-    /// @param px_a_unit   of the drawings, whose letters are about 12 units high
+    /// @param px_a_unit   scale of the charts, whose letters are about 12 units high
     void draw(State& state, glm::vec2 size_px, double px_a_unit);
 
   private:
@@ -23,13 +23,13 @@ class ChartsPanel {
         void take(std::shared_ptr<const Chart> newer);
     };
 
-    /// Puts the panel where it opens: where it was, but beside the point.
+    /// Sets the panel's initial position: the last one, moved clear of the point.
     void place(const State& state, glm::vec2 size_px, float unit);
     void horizon(State& state);
     void year(State& state);
 
     bool is_open_ = false;
-    glm::vec2 at_px_{0}, extent_px_{0};  // where it was last; 0: nowhere yet
+    glm::vec2 at_px_{0}, extent_px_{0};  // last position and size; 0: not opened yet
     Shown<HorizonPicture> horizon_;
     Shown<YearPicture> year_;
 };

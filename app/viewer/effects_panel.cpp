@@ -22,16 +22,16 @@ bool mentions(const std::string& text, const std::string& word) {
     return lower(text).find(lower(word)) != std::string::npos;
 }
 
-/// Ranges of several powers of ten have most of the use in the lowest.
+/// Logarithmic if the range spans several powers of ten.
 bool is_wide(const shader::ParamRange& range) {
     return range.min >= 0 && range.max >= 100;
 }
 
-/// @returns whether the value was changed
+/// @returns true if the value was changed
 bool widget(const Param& param, ParamValue& value) {
     const std::string unit = param.unit.empty() ? "" : " " + param.unit;
     const int components = shader::component_count(param.type);
-    // One number has no exponent where digits do.
+    // No exponent for numbers that are short without one.
     const double size = std::abs(value[0]);
     const bool is_long = components == 1 && size >= 1000 && size < 1e7;
     const std::string format = (is_long ? "%.0f" : "%.3g") + unit;
@@ -113,7 +113,7 @@ void param_row(State& state, const Param& param, bool on) {
     ImGui::PopID();
 }
 
-/// Why an effect is off that was not switched off; empty: it is not for want of something.
+/// Why an effect is off without being switched off; empty if it does not lack anything.
 std::string lack_of(const State& state, const effect::Effect& effect) {
     const std::string off = effect.id() + " is off: ";
     for (const std::string& notice : state.effects->selection.notices)
@@ -195,7 +195,7 @@ void effects_panel(State& state) {
         ImGui::SetTooltip("The left side stays, the right side follows. Drag the line.");
     ImGui::SetNextItemWidth(-1);
     ImGui::InputTextWithHint("##search", "search effects and parameters", &state.search);
-    // Rows may make another model, whose effects are other objects.
+    // A row may replace the model and its effects.
     const std::vector<effect::Effect>& effects = state.effects->registry.effects();
     for (std::size_t i = 0; i < effects.size() && !state.new_effects; ++i)
         if (is_found(effects[i], state.search)) effect_row(state, effects[i]);

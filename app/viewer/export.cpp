@@ -11,7 +11,7 @@
 #include "image/image.h"
 #include "render/renderer.h"
 #include "scene/job.h"
-#include "session/not_numbers.h"
+#include "session/non_finite.h"
 #include "session/record.h"
 #include "session/stamps.h"
 #include "session/words.h"
@@ -106,7 +106,7 @@ namespace {
 /// As session::Session::sun_text().
 std::string sun_of(const Picture& picture, const scene::Scene& scene,
                    const render::Ground& ground) {
-    const auto eye = session::told_eye(ground.frame, picture.camera, scene.exaggeration);
+    const auto eye = session::observer_of(ground.frame, picture.camera, scene.exaggeration);
     const geo::Geodetic middle = ground.frame.origin();
     const geo::Geodetic air =
         eye.value_or(geo::Geodetic{middle.lat_rad, middle.lon_rad, ground.air_height_m()});
@@ -119,9 +119,9 @@ std::string sun_of(const Picture& picture, const scene::Scene& scene,
 std::string save_picture(const Picture& picture, const scene::Scene& scene, const Opened& opened,
                          const Coloured& coloured) {
     const std::vector<std::uint8_t> rgba = picture.read_rgba();
-    if (const int pixels = render::count_not_numbers(rgba); pixels > 0)
+    if (const int pixels = render::count_non_finite(rgba); pixels > 0)
         failed(
-            "picture: " + session::not_numbers_text(pixels, {picture.width_px, picture.height_px}) +
+            "picture: " + session::non_finite_text(pixels, {picture.width_px, picture.height_px}) +
             "; relevo capture names the effect");
     image::Image8 image = image::from_device(picture.width_px, picture.height_px, rgba);
     const geo::LocalFrame& frame = opened.ground.frame;

@@ -6,14 +6,14 @@
 
 namespace relevo::viewer {
 
-/// Frames that a scene's thread draws and the window shows. One is used again when all pictures of
-/// it are gone: the window's, and those that it has not fetched.
+/// Pool of frames that a scene's thread draws and the window displays. A frame is reused when no
+/// Picture refers to it.
 class FrameExchange {
   public:
     FrameExchange();
 
-    /// A frame that nobody has. What is written to it next waits, on the device, until the window
-    /// has shown what it had before.
+    /// A free frame. On the device, later writes wait until the window has displayed its previous
+    /// contents.
     std::shared_ptr<SharedFrame> take(gl::Extent extent);
 
   private:

@@ -14,12 +14,12 @@
 namespace relevo::viewer {
 namespace {
 
-constexpr float kLine_px = 8;   // beside the line of a comparison that take hold of it
-constexpr float kClick_px = 4;  // that a click may move by
-/// The last turn of the wheel and the last pull of the hand die away so fast [1/s].
+constexpr float kLine_px = 8;   // distance at which a dividing line can be grabbed
+constexpr float kClick_px = 4;  // greatest motion of a click
+/// Decay of zooming and gliding [1/s].
 constexpr double kZoomRate = 14, kGlideRate = 7;
 constexpr float kPanANotch_px = 60;
-constexpr double kAhead_deg = -10;  // as a walker looks
+constexpr double kAhead_deg = -10;  // pitch of a walker's view
 
 }  // namespace
 
@@ -59,8 +59,8 @@ bool Hand::glides() const {
     return std::abs(zoom_left_) > 1e-3 || length(glide_deg_a_s_) > 0.5;
 }
 
-/// By as much as was scrolled since the last time, which of a touchpad is any part of a notch.
-/// ImGui drops with each of its frames what has not been taken by then.
+/// Scrolls by the wheel's motion since the last call, fractional on touchpads. ImGui discards it
+/// with each frame.
 void Hand::scroll(glm::vec2 mouse) {
     ImGuiIO& io = ImGui::GetIO();
     glm::vec2 by(std::exchange(io.MouseWheelH, 0.0f), std::exchange(io.MouseWheel, 0.0f));
@@ -71,7 +71,7 @@ void Hand::scroll(glm::vec2 mouse) {
         return;
     }
     stop_gliding();
-    // Content moves as it does under a page: scrolling down shows what lies lower.
+    // As in documents: scrolling down shows what is below.
     const glm::vec2 to = mouse + kPanANotch_px * by;
     state_.document.pose =
         pan(state_.document.pose, state_.land, hold(mouse), in_view(to), aspect());
@@ -104,7 +104,7 @@ bool Hand::move(Command command, const std::function<Whole()>& whole) {
             pose.heading_deg = 0;
             return true;
         case Command::FromAbove: {
-            // Whoever sees about all of the DEM goes on seeing all of it.
+            // If most of the DEM is in view, all of it stays in view.
             const double away_m = distance(pose.eye_m, middle);
             const Pose all = whole().above;
             const bool sees_all = away_m > 0.5 * distance(all.eye_m, middle);
@@ -114,7 +114,7 @@ bool Hand::move(Command command, const std::function<Whole()>& whole) {
         case Command::Walk:
             walking_ = !walking_;
             if (walking_) {
-                // Whoever saw the ground from above does not look at his feet.
+                // Not straight at the feet after a view from above.
                 pose.pitch_deg = std::max(pose.pitch_deg, kAhead_deg);
                 pose = walk(pose, state_.land, {0, 0});
             }
@@ -128,7 +128,7 @@ glm::dvec2 Hand::in_view(glm::vec2 at_px) const {
     return viewer::in_view(at_px, window_.size());
 }
 
-/// The ground of the picture that is shown.
+/// Ground in the displayed frame.
 std::optional<glm::dvec3> Hand::ground_at(glm::vec2 at_px) const {
     if (!picture_) return std::nullopt;
     const int x =
@@ -142,8 +142,8 @@ std::optional<glm::dvec3> Hand::ground_at(glm::vec2 at_px) const {
     return picture_->camera.eye_m + depth_m / dot(direction, picture_->camera.forward) * direction;
 }
 
-/// What the hand takes hold of: the ground there, else where that of the middle would be if it
-/// were level, else some way ahead.
+/// The point that the mouse grabs: the ground under it, else on a horizontal plane through the
+/// ground at the centre, else a point ahead.
 glm::dvec3 Hand::hold(glm::vec2 at_px) const {
     if (const auto ground = ground_at(at_px)) return *ground;
     if (const auto middle = ground_at(0.5f * window_.size())) {
@@ -195,7 +195,7 @@ void Hand::drag(glm::vec2 mouse, double passed_s) {
         dragging_.reset();
         return;
     }
-    // Held still it moves nothing, not even by what sums are rounded by: the picture comes to rest.
+    // Ignores rounding while the mouse is still, so that drawing can end.
     const bool is_still = mouse == last_px_;
     const glm::dvec2 by = glm::dvec2(mouse - last_px_) / static_cast<double>(window_.size().y);
     last_px_ = mouse;
@@ -270,7 +270,7 @@ void Hand::hover(glm::vec2 mouse) {
     state_.cursor = cursor;
 }
 
-/// As navigation has it, with as much room as a coarse level's surface takes in the picture.
+/// viewer::drawn_height_m() with a tolerance for coarse levels of detail.
 double Hand::drawn_height_m(const glm::dvec3& point_m) const {
     constexpr double kWithin_px = 8;
     const double px_m = 2 * std::tan(picture_->camera.fov_y_rad / 2) / window_.size().y *
@@ -279,7 +279,7 @@ double Hand::drawn_height_m(const glm::dvec3& point_m) const {
                                   std::max(kWithin_px * px_m, state_.spacing_m / 4));
 }
 
-/// By central differences over a post spacing each way.
+/// From central differences over one post spacing.
 void Hand::slope_at(Cursor& cursor) const {
     const double reach_m = state_.spacing_m;
     const geo::Axes axes = state_.land.axes(cursor.point_m);

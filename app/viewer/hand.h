@@ -13,7 +13,7 @@
 
 namespace relevo::viewer {
 
-/// The whole DEM, from its side and from above.
+/// Home view of the whole DEM, and from above.
 struct Whole {
     Pose home, above;
 };
@@ -28,7 +28,7 @@ class Hand {
     void see(std::shared_ptr<const Picture> picture) { picture_ = std::move(picture); }
     /// Processes the input since the last call.
     /// @param comparing  there is a dividing line to drag
-    /// @param new_input  ImGui has processed clicks since then
+    /// @param new_input  ImGui has processed mouse events since the last call
     void act(double passed_s, bool comparing, bool new_input);
     /// Carries out a command that moves the camera. @returns false: `command` is another one
     /// @param whole  called only for commands that show the whole DEM
@@ -38,7 +38,7 @@ class Hand {
 
     /// Whether the camera moves without new input.
     bool is_moving() const { return glides() || keys_held_; }
-    /// Whether a drag, a glide or a held key continues.
+    /// True while a drag, a glide or a held key continues.
     bool is_busy() const { return dragging_ || is_moving(); }
     /// Whether the last act() moved the camera.
     bool has_moved() const { return has_moved_; }
@@ -75,7 +75,7 @@ class Hand {
     std::optional<glm::dvec3> clicked_;
     glm::vec2 pressed_px_{0}, last_px_{0};
     glm::dvec3 held_{0}, zoom_at_{0};
-    double zoom_left_ = 0;  // natural logarithm of the zoom factor to go
+    double zoom_left_ = 0;  // natural logarithm of the remaining zoom factor
     glm::dvec2 glide_deg_a_s_{0};
     bool walking_ = false, keys_held_ = false, has_moved_ = false;
 };

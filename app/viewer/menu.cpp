@@ -56,7 +56,7 @@ void item(State& state, const char* label, const char* keys, Command command, bo
     if (ImGui::MenuItem(label, keys, checked, enabled)) state.commands.push_back(command);
 }
 
-/// The last part of a DEM's name, and how many files it has beside.
+/// The file name of a DEM, and the number of its other files.
 std::string short_name(const std::vector<std::string>& dems) {
     std::string name = printable(std::filesystem::path(dems.front()).filename().string());
     if (name.empty()) name = printable(dems.front());

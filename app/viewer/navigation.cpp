@@ -12,13 +12,13 @@ namespace relevo::viewer {
 namespace {
 
 constexpr double kSteepest_deg = 89.9;
-constexpr double kNearest_m = 2;  // that zooming comes to what it zooms to
+constexpr double kNearest_m = 2;  // least distance when zooming
 
 double wrapped_deg(double angle_deg) {
     return angle_deg - 360 * std::floor(angle_deg / 360);
 }
 
-/// Up to where there is room above the ground.
+/// Raises the pose to the least height above ground.
 Pose above_ground(Pose pose, const Land& land) {
     const geo::Geodetic place = land.frame->to_geodetic(pose.eye_m);
     const double ground_m = land.aim_m(place) * land.exaggeration;
@@ -27,8 +27,7 @@ Pose above_ground(Pose pose, const Land& land) {
     return pose;
 }
 
-/// The pose whose camera stands at `eye_m` and looks along `forward`; its heading is kept where
-/// that is straight up or down.
+/// A pose at `eye_m` that looks along `forward`. Keeps the heading if that is vertical.
 Pose looking(const Pose& before, const Land& land, const glm::dvec3& eye_m,
              const glm::dvec3& forward) {
     const geo::Axes axes = land.axes(eye_m);
@@ -66,7 +65,7 @@ scene::Camera camera_of(const Pose& pose, const Land& land) {
 Pose pose_of(const scene::Camera& camera, const Land& land) {
     Pose pose;
     pose.fov_y_rad = camera.fov_y_rad;
-    // Straight down the top of the picture tells where it is turned to.
+    // When looking straight down, the image's upward direction is the heading.
     const geo::Axes axes = land.axes(camera.eye_m);
     pose.heading_deg =
         wrapped_deg(degrees(std::atan2(dot(camera.up, axes.east), dot(camera.up, axes.north))));
@@ -129,7 +128,7 @@ Pose pan(const Pose& pose, const Land& land, const glm::dvec3& grabbed_m, glm::d
     const glm::dvec3 up = land.axes(grabbed_m).up;
     const glm::dvec3 direction = ray(camera, to, aspect);
     const double falls = -dot(direction, up), above_m = dot(pose.eye_m - grabbed_m, up);
-    // Towards the horizon the ground runs away from under the hand.
+    // Near the horizon the ground under the mouse is too far away.
     constexpr double kLeast = 0.02;
     if (above_m <= 0 || falls <= kLeast) return pose;
     const glm::dvec3 under_hand = pose.eye_m + above_m / falls * direction;
@@ -146,7 +145,7 @@ Pose zoom(const Pose& pose, const Land& land, const glm::dvec3& point_m, double 
     const double then_m = std::clamp(now_m * factor, std::min(now_m, kNearest_m), 1e9);
     const glm::dvec3 eye_m = point_m + offset * (then_m / now_m);
     Pose moved = looking(pose, land, eye_m, camera_of(pose, land).forward);
-    // Almost straight down a heading is only what it was.
+    // Near the vertical the heading is unstable and is kept.
     constexpr double kSteep_deg = 80;
     if (std::abs(pose.pitch_deg) > kSteep_deg) {
         moved.heading_deg = pose.heading_deg;
@@ -183,7 +182,7 @@ Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m) {
     moved.eye_m += by_m.x * right + by_m.y * forward;
     const geo::Geodetic place = land.frame->to_geodetic(moved.eye_m);
     const double ground_m = land.aim_m(place) * land.exaggeration;
-    if (std::isnan(ground_m)) return pose;  // no ground to stand on
+    if (std::isnan(ground_m)) return pose;
     moved.eye_m = land.frame->to_local({place.lat_rad, place.lon_rad, ground_m + kWalk_m});
     return moved;
 }
@@ -191,7 +190,7 @@ Pose walk(const Pose& pose, const Land& land, glm::dvec2 by_m) {
 Pose look_at(const Pose& pose, const Land& land, const glm::dvec3& point_m, double distance_m) {
     constexpr double kDown_deg = -20;
     Pose there = pose;
-    there.eye_m = point_m;  // whose up and north count
+    there.eye_m = point_m;  // the point's up and north apply
     there.pitch_deg = std::min(pose.pitch_deg, kDown_deg);
     there.eye_m -= distance_m * camera_of(there, land).forward;
     return above_ground(there, land);

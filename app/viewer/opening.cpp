@@ -40,7 +40,7 @@ Opening::Event Opening::poll() {
     } catch (const gl::DeviceLost&) {
         throw;
     } catch (const std::exception& error) {
-        if (stands_in()) last_good_ = last_good_before_;  // this DEM cannot be read completely
+        if (is_preview()) last_good_ = last_good_before_;  // this DEM cannot be read completely
         if (!last_good_) throw;
         return go_back(error.what());
     }

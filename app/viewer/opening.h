@@ -41,7 +41,7 @@ class Opening {
     /// Null: the scene is still being opened.
     const std::shared_ptr<const Opened>& opened() const { return opened_; }
     /// Whether opened() has a coarse DEM until all posts are read.
-    bool stands_in() const { return opened_ && opened_->dem->stands_in; }
+    bool is_preview() const { return opened_ && opened_->dem->is_preview; }
     bool has_failed() const { return attempt_ == Attempt::Failed; }
     bool has_last_good() const { return last_good_.has_value(); }
     /// As requested, not as opened.

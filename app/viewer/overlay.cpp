@@ -19,7 +19,7 @@ namespace {
 constexpr ImU32 kLine = IM_COL32(255, 80, 60, 255);
 constexpr ImU32 kInk = IM_COL32(255, 255, 255, 235), kShade = IM_COL32(0, 0, 0, 150);
 
-/// The largest 1, 2 or 5 times a power of ten up to `length`.
+/// The largest 1, 2 or 5 times a power of ten that is not above `length`.
 double round_length(double length) {
     const double power = std::pow(10, std::floor(std::log10(length)));
     for (const double digit : {5.0, 2.0})
@@ -35,8 +35,8 @@ std::string length_text(double length_m) {
                          : fmt::format("{:.3g} cm", 100 * length_m);
 }
 
-/// Heights from the line's first end on the left to its second on the right. The tooltip has the
-/// height under the cursor.
+/// Plots heights from the line's start on the left to its end. A tooltip shows the height under the
+/// cursor.
 void plot_profile(const Profile& profile, float low_m, float high_m) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 extent{ImGui::GetContentRegionAvail().x, 5 * ImGui::GetFontSize()};
@@ -170,7 +170,7 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
                           const std::optional<glm::dvec3>& middle_m, glm::vec2 size_px,
                           float top_px) {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
-    // North, as it is at the eye, on a level plate.
+    // True north at the eye, as if the arrow lay on level ground.
     const geo::Axes axes = land.axes(picture.camera.eye_m);
     const glm::dvec3 right = cross(picture.camera.forward, picture.camera.up);
     const glm::dvec2 north(dot(axes.north, right), dot(axes.north, picture.camera.up));
@@ -186,7 +186,7 @@ void draw_scale_and_north(const Picture& picture, const Land& land,
     const ImVec2 letter = tip(north, 26);
     list.AddText({letter.x - 5, letter.y - 8}, kInk, "N");
     if (!middle_m) return;
-    // A length across the picture, at the distance of the ground in its middle.
+    // A scale bar across the view, at the depth of the ground in the centre.
     const double depth_m = dot(*middle_m - picture.camera.eye_m, picture.camera.forward);
     const double m_a_px = 2 * depth_m * std::tan(picture.camera.fov_y_rad / 2) / size_px.y;
     constexpr double kBar_px = 160;

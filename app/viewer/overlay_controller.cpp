@@ -36,7 +36,7 @@ void OverlayController::clear() {
 
 bool OverlayController::waits_for_posts() const {
     const OverlayKind kind = state_.document.overlay.kind;
-    return state_.stands_in && kind != OverlayKind::None && kind != OverlayKind::File;
+    return state_.is_preview && kind != OverlayKind::None && kind != OverlayKind::File;
 }
 
 bool OverlayController::is_wanted() const {

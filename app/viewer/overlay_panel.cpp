@@ -23,7 +23,7 @@ constexpr std::array<const char*, 7> kNames = {"none",
                                                "direct sun at this time",
                                                "sky view"};
 
-/// What a choice is called; the scene's has its file's name.
+/// Name of an overlay kind; that of the scene is its file's name.
 std::string name_of(const State& state, OverlayKind kind) {
     const std::optional<scene::Overlay>& of_scene = state.document.scene.overlay;
     if (kind == OverlayKind::File && of_scene)
@@ -53,10 +53,10 @@ void opacity(State& state) {
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
 }
 
-/// Of how many posts the figures are, and how far they have come.
+/// Resolution of the overlay, and progress.
 void work(const State& state) {
     const ImVec2 size{-1, ImGui::GetTextLineHeight()};
-    if (state.stands_in)
+    if (state.is_preview)
         ImGui::TextDisabled("waiting until all posts are read ...");
     else if (state.overlay_progress)
         ImGui::ProgressBar(static_cast<float>(*state.overlay_progress), size, "refining ...");

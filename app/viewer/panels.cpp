@@ -23,7 +23,7 @@ void export_panel(State& state) {
     button("Save scene", Command::SaveScene);
 }
 
-/// Keeps the height of the text of one point for the next, so that panels below do not move.
+/// Keeps a constant height for the panel's text, so that panels below do not move.
 void roomy_point_panel(State& state) {
     const float top = ImGui::GetCursorPosY();
     point_panel(state);
@@ -93,7 +93,7 @@ void status_line(const State& state, bool is_drawing) {
     } else {
         text = "H: keys";
     }
-    if (state.stands_in) text += "   reading all posts; terrain and shadows are coarse until then";
+    if (state.is_preview) text += "   reading all posts; terrain and shadows are coarse until then";
     if (is_drawing) text += "   drawing ...";
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const ImVec2 extent = ImGui::CalcTextSize(text.c_str());

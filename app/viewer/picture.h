@@ -18,39 +18,39 @@
 
 namespace relevo::viewer {
 
-/// A frame on the device, drawn in the context of a scene and shown in that of the window, which
-/// share (gl::Context::sharing).
+/// A frame on the device, drawn in a scene's context and displayed in the window's, which share
+/// objects (gl::Context::sharing).
 struct SharedFrame {
     gl::Texture colour;  ///< RGBA8
-    gl::Texture depth;   ///< Depth32F, as renderers have it
-    gl::Fence drawn;     ///< by the scene
-    gl::Fence shown;     ///< by the window, the last time
+    gl::Texture depth;   ///< Depth32F, as in render::Renderer
+    gl::Fence drawn;     ///< the scene has finished drawing
+    gl::Fence shown;     ///< the window has finished its last use
 };
 
-/// A frame as it was drawn, whatever has been asked for since.
+/// A finished frame with its camera and sun.
 struct Picture {
-    /// How far the ground is from the eye, along the direction it looks in [m]; infinity where
-    /// there is sky. Of a shared frame each pixel is read once, on the window's thread.
+    /// Depth of ground along the optical axis [m]; infinite in the sky. Pixels of a shared frame
+    /// are read on demand, on the window's thread, and cached.
     /// @param x, y  from the lower left corner
     float depth_m(int x, int y) const;
-    /// Reads the depths of pixels together, of which depth_m() is asked next.
+    /// Reads the depths of several pixels at once, for later calls of depth_m().
     void fetch_depths(std::span<const glm::ivec2> pixels) const;
-    /// All pixels, rows from below. Of a shared frame on the window's thread.
+    /// All pixels, rows from the bottom. Shared frames: on the window's thread.
     std::vector<std::uint8_t> read_rgba() const;
-    /// As session::Session::read_depths, likewise.
+    /// As session::Session::read_depths. Shared frames: on the window's thread.
     std::vector<float> read_depths_m() const;
 
     std::uint64_t number = 0;
-    std::uint64_t answers = 0;  ///< the last of SceneThread::wants() that is in it
+    std::uint64_t answers = 0;  ///< the latest of SceneThread::wants() that it includes
     int width_px = 0, height_px = 0;
-    std::shared_ptr<SharedFrame> shared;  ///< null: the two below have it
-    std::vector<std::uint8_t> rgba;       ///< rows from below
+    std::shared_ptr<SharedFrame> shared;  ///< null: the next two members hold the frame
+    std::vector<std::uint8_t> rgba;       ///< rows from the bottom
     std::vector<float> depths_m;          ///< as session::Session::read_depths
-    scene::Camera camera;       ///< raised above the drawn ground where the eye wanted is not
-    scene::GroundHeight aim_m;  ///< Session::heights_to_aim_at()
+    scene::Camera camera;                 ///< possibly raised above the drawn ground
+    scene::GroundHeight aim_m;            ///< Session::heights_to_aim_at()
     sun::Instant utc;
-    std::vector<chart::Legend> legends;  ///< of what effects colour the ground by
-    /// In the window's size, with all its ground, from all posts, and with its sun's shadows.
+    std::vector<chart::Legend> legends;  ///< of effects
+    /// Full size, all tile pages, the complete DEM, current shadows.
     bool sharp = false;
 
   private:

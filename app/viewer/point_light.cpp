@@ -15,7 +15,7 @@
 namespace relevo::viewer {
 namespace {
 
-/// Of a horizon that is drawn, and of a year.
+/// Of a drawn horizon; time step of a year [s].
 constexpr int kDirections = 3600;
 constexpr int kStep_s = 240;
 
@@ -31,7 +31,7 @@ bool same_point(const PointWanted& a, const PointWanted& b) {
     return same_ground(a, b) && same_place(a.place, b.place);
 }
 
-/// As the options of `relevo sun` have it.
+/// The same options as `relevo sun`.
 light::LightOptions light_options(const PointWanted& wanted, const geo::Geodetic& place) {
     light::LightOptions options;
     options.refraction = session::refraction_at(wanted.refraction, place);
@@ -46,7 +46,7 @@ void add_dark_days(const light::Carpet& carpet, YearPicture& to) {
         return carpet.days[static_cast<std::size_t>(i % count)];
     };
     int row = 0;
-    // Twice, so that a row goes on over the end of the year.
+    // Twice, so that runs continue past the end of the year.
     for (int i = 0; i < 2 * count; ++i) {
         row = day(i).lit_s == 0 ? std::min(row + 1, count) : 0;
         if (i < count) to.dark_days += row > 0;
@@ -58,7 +58,7 @@ void add_dark_days(const light::Carpet& carpet, YearPicture& to) {
 
 }  // namespace
 
-/// A point's light, and what it was made from: kept for the next day, size or year.
+/// Computes a point's light and caches intermediate results for the next day, size or year.
 class PointWork::Worker {
   public:
     explicit Worker(const PointWanted& wanted, const Worker* before) : wanted_(wanted) {
@@ -147,8 +147,8 @@ class PointWork::Worker {
 
     PointWanted wanted_;
     std::shared_ptr<const dem::Posts> posts_;
-    std::optional<light::TerrainHorizon> horizon_;  // of posts_
-    std::optional<light::DirectLight> light_;       // of horizon_
+    std::optional<light::TerrainHorizon> horizon_;  // from posts_
+    std::optional<light::DirectLight> light_;       // from horizon_
     std::vector<light::HorizonPoint> profile_;
     std::optional<light::LightDay> day_, tomorrow_;
     std::string day_zone_;
@@ -176,7 +176,7 @@ PointWork::~PointWork() {
 }
 
 void PointWork::work_out(const PointWanted* wanted) {
-    if (!wanted) return worker_.reset();  // and with it the posts of a DEM that may be gone
+    if (!wanted) return worker_.reset();  // also frees the posts of a DEM that may be closed
     PointLight light;
     light.of = *wanted;
     const auto publish_it = [&](bool done) {

@@ -18,74 +18,75 @@
 
 namespace relevo::viewer {
 
-/// What is to be known of a point of the ground.
+/// A request about a point of the ground.
 struct PointWanted {
     std::shared_ptr<const session::LoadedDem> dem;
-    std::vector<std::string> dems;  ///< its files
-    dem::LoadOptions options;       ///< how they are read
+    std::vector<std::string> dems;  ///< files of the DEM
+    dem::LoadOptions options;       ///< options of reading them
     std::string refraction;         ///< as scene::Scene
     geo::Geodetic place;
     sun::Date date;
     sun::Zone zone;
-    glm::ivec2 chart_px{0};  ///< sides of the drawings; 0: none are wanted
-    double px_a_unit = 1;    ///< of them
+    glm::ivec2 chart_px{0};  ///< size of charts; 0: no charts
+    double px_a_unit = 1;    ///< scale of charts
 };
 
-/// The horizon of a point, with the sun's ways of a day before it.
+/// Chart of a point's horizon with the sun's paths of a day.
 struct HorizonPicture {
     image::Image8 picture;
-    chart::HorizonPanorama::Axes axes;  ///< in units
+    chart::HorizonPanorama::Axes axes;  ///< in chart units
 };
 
-/// A year of light at a point.
+/// Chart of sunlight during a year at a point.
 struct YearPicture {
     image::Image8 picture;
-    chart::Rect plot;  ///< in units
+    chart::Rect plot;  ///< in chart units
     double lit_s = 0, level_s = 0;
-    int dark_days = 0;  ///< on which the sun never shines here, for ground or polar night
-    int dark_row = 0;  ///< most of them one after the other; the year's last goes on with its first
-    std::pair<sun::Date, sun::Date> dark;  ///< their first and last day, if there are any
+    int dark_days = 0;  ///< without direct sun, for terrain or polar night
+    int dark_row = 0;   ///< most of them in succession, possibly past the year's end
+    std::pair<sun::Date, sun::Date> dark;  ///< first and last day of dark_row, if any
 };
 
-/// A stretch of a day with sun. Where it shines at midnight the day begins or ends, not the light.
+/// A period of sun within a day. At midnight the day may cut it off.
 struct LitSpan : sun::TimeSpan {
     bool from_midnight = false, to_midnight = false;
 };
 
-/// When the sun reaches a point of the ground on a day.
+/// Direct sun at a point of the ground on a day.
 struct PointLight {
     PointWanted of;
     std::vector<LitSpan> lit;
-    double lit_s = 0, flat_s = 0;  ///< of that day, here and over a flat horizon
-    double not_known_s = 0;        ///< of lit_s, for holes of the DEM
-    /// The first light of the day after; none: there is none. Not looked for after the last year.
+    double lit_s = 0, flat_s = 0;  ///< duration of sun [s], here and over a level horizon
+    double not_known_s = 0;        ///< part of lit_s that is uncertain because of voids
+    /// First light of the next day; nullopt without one. Not computed after the last supported
+    /// year.
     std::optional<sun::Instant> tomorrow;
     bool tomorrow_is_known = false;
-    /// Where the DEM ends too near to be sure: azimuths [deg], from and to.
+    /// Ranges of azimuth [deg], from and to, where unmodelled terrain could hide more.
     std::vector<glm::dvec2> open_deg;
-    std::shared_ptr<const HorizonPicture> horizon;  ///< null: not yet, or not wanted
-    std::shared_ptr<const YearPicture> year;        ///< likewise
-    std::string error;                              ///< why there is no answer
+    std::shared_ptr<const HorizonPicture> horizon;  ///< null: not computed or not requested
+    std::shared_ptr<const YearPicture> year;        ///< null: not computed or not requested
+    std::string error;                              ///< why the computation failed
 
     bool is_lit(sun::Instant utc) const;
-    /// When that changes next on that day; none: not any more.
+    /// Next change between sun and shade on that day; nullopt if there is none.
     std::optional<sun::Instant> next_change(sun::Instant utc) const;
 };
 
-/// Works it out on a thread of its own, from every post of the DEM: first the day, then the
-/// drawings. What was begun for another point is given up; what the next answer can use is kept.
+/// Computes PointLight in the background from all posts of the DEM: first the day, then the charts.
+/// A new point cancels older work; reusable results are cached.
 class PointWork : public LatestWork<PointWanted, PointLight> {
   public:
-    /// @param on_change  called on that thread whenever there is more to be had
+    /// @param on_change  called on that thread when there is a new result
     explicit PointWork(std::function<void()> on_change);
-    /// Waits for the step in work.
+    /// Waits for the current step.
     ~PointWork() override;
 
   private:
     class Worker;
     void work_out(const PointWanted* wanted) override;
 
-    std::unique_ptr<Worker> worker_;  // the thread's own
+    std::unique_ptr<Worker> worker_;  // used only on that thread
 };
 
 }  // namespace relevo::viewer

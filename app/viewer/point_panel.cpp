@@ -8,7 +8,7 @@
 namespace relevo::viewer {
 namespace {
 
-/// To the nearest minute, as diagrams have it.
+/// Rounded to the nearest minute, as in diagrams.
 std::string clock_text(sun::Instant utc, const sun::Zone& zone) {
     const sun::CivilTime wall = zone.local(utc + 30.0).wall;
     return fmt::format("{:02}:{:02}", wall.hour, wall.minute);
@@ -32,7 +32,7 @@ ImVec4 colour_of(bool lit, bool on_light) {
     return lit ? ImVec4(1, 0.85f, 0.4f, 1) : ImVec4(0.6f, 0.7f, 1, 1);
 }
 
-/// "in the sun, till it leaves at 15:03".
+/// "in the sun until 15:03".
 std::string light_words(const PointLight& point, sun::Instant now, const sun::Zone& zone) {
     const auto next = point.next_change(now);
     if (point.is_lit(now))
@@ -46,7 +46,7 @@ std::string light_words(const PointLight& point, sun::Instant now, const sun::Zo
     return text;
 }
 
-/// Of a span, as its ends are shown.
+/// Duration of a period of sun between its displayed ends.
 std::string span_text(const LitSpan& span) {
     static const sun::Instant kAny = sun::Instant::from_utc({{2000, 1, 1}});
     const auto minute = [](sun::Instant utc) { return std::floor((utc - kAny + 30) / 60); };
@@ -64,10 +64,10 @@ std::string dark_text(const YearPicture& year) {
                                  : fmt::format(", {} to {}", day_label(first), day_label(last)));
 }
 
-/// What the DEM leaves open.
+/// Warns of voids and unmodelled terrain.
 void doubts(const PointLight& point) {
     if (point.not_known_s > 0)
-        ImGui::TextWrapped("%s of it are not known because of voids in the DEM.",
+        ImGui::TextWrapped("%s of it are uncertain because of voids in the DEM.",
                            duration_text(point.not_known_s).c_str());
     if (point.open_deg.empty()) return;
     std::string where;
@@ -116,7 +116,7 @@ void point_panel(State& state) {
     ImGui::Text("height %.1f m", place.height_m);
     if (state.point && !state.point->error.empty())
         ImGui::TextWrapped("%s", state.point->error.c_str());
-    else if (state.stands_in)
+    else if (state.is_preview)
         ImGui::TextDisabled("waiting until all posts are read ...");
     else if (!state.point || state.point->of.date != state.day.date)
         ImGui::TextDisabled("computing its horizon ...");

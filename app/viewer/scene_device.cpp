@@ -42,7 +42,7 @@ struct SceneDevice::State {
         known.notify_all();
     }
 
-    /// Null if it does not open.
+    /// Null if the window does not open.
     const gl::Context* wait_for_window() {
         std::unique_lock lock(mutex);
         known.wait(lock, [&] { return is_known; });

@@ -8,35 +8,35 @@
 
 namespace relevo::viewer {
 
-/// How the window gets the frames of a scene: RELEVO_PRESENT.
+/// How frames reach the window: RELEVO_PRESENT.
 enum class Presentation {
-    Auto,    ///< Shared where the window is on hardware, and the scene on the same; else Copy
-    Shared,  ///< from contexts that share with the window's: frames stay on the device
-    Copy,    ///< read by the processor and written to the window's device
+    Auto,    ///< Shared if window and scene are on the same hardware; otherwise Copy
+    Shared,  ///< contexts share objects: frames stay on the device
+    Copy,    ///< frames are read by the CPU and uploaded to the window's device
 };
 
-/// @throws Error (Usage) for another word than "shared", "copy", "auto" or none
+/// @throws Error (Usage) for words other than "shared", "copy", "auto"
 Presentation presentation_of_environment();
 
-/// The device that scenes are drawn on. Made before the window, whose context some of them share.
-/// May be used by several threads.
+/// The device for scenes. Created before the window, with which some contexts share objects.
+/// Thread-safe.
 class SceneDevice {
   public:
     /// @param device  as session::Options
     explicit SceneDevice(std::string device, Presentation presentation = Presentation::Copy);
 
-    /// The window's context, once it is open; must outlive the contexts of scenes.
+    /// Sets the window's context, which must outlive the contexts of scenes.
     void set_window(const gl::Context& window) const;
-    /// The window will not open: open() does not wait for it any more.
+    /// Ends the wait of open() if no window can be opened.
     void give_up() const;
 
     struct Opened {
         gl::Context context;
-        bool shares = false;  ///< with the window's
+        bool shares = false;  ///< with the window's context
     };
-    /// Opens a context for a scene, current on the calling thread. Waits for the window if that may
-    /// share.
-    /// @throws Error (NoDevice) as gl::Context, and where Shared is asked for and cannot be
+    /// Creates a context for a scene, current on the calling thread. Waits for the window if
+    /// sharing is possible.
+    /// @throws Error (NoDevice) as gl::Context, and if Shared is impossible
     Opened open() const;
 
   private:

@@ -26,20 +26,21 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// What a frame may take while the hand moves [ms].
+/// Target duration of a frame while the user moves the camera [ms].
 constexpr double kSoon_ms = 30;
-/// Shares of the window's sides that frames are drawn at then, the largest that is soon enough.
+/// Fractions of the window's sides to draw at while moving. The largest that meets kSoon_ms is
+/// used.
 constexpr std::array<double, 5> kScales = {1, 0.8, 0.65, 0.5, 0.34};
 constexpr double kLeastScale = 0.5, kLeastScaleOfSun = 0.34;
-/// A picture stays so long at most while the pages of all posts are made in place of those that
-/// stood in: coarser ones would take its place.
+/// For this long a frame of a preview stays visible while the complete DEM's tile pages are made;
+/// until then, new frames would be coarser.
 constexpr auto kNewPages = std::chrono::seconds(2);
-/// At rest a picture with some pages takes the place of one with fewer so often, at most.
+/// Interval between frames with more tile pages when nothing moves.
 constexpr auto kMorePages = std::chrono::milliseconds(400);
-/// A device that draws a frame is asked so often whether the thread is to end.
+/// Interval of checks for the thread's end while the device draws.
 constexpr auto kFrame = std::chrono::milliseconds(100);
 constexpr auto kLookAgain = std::chrono::milliseconds(10);
-/// Shadows are this old at most while the sun is dragged.
+/// Greatest age of shadows while the sun is dragged.
 constexpr auto kShadowsAge = std::chrono::milliseconds(350);
 
 double milliseconds_since(Clock::time_point began) {
@@ -75,34 +76,33 @@ struct SceneThread::Impl {
     bool has_new_wants = false, ends = false, rests = false;
     std::optional<scene::Effects> effects;
     std::map<std::string, std::string> values;
-    std::optional<std::shared_ptr<const render::Drape>> drape;  // none: as it is
-    /// That the window has not fetched: the newest finished one, and others that the device is
-    /// drawing.
+    std::optional<std::shared_ptr<const render::Drape>> drape;  // nullopt: unchanged
+    /// Frames the window has not fetched: the newest finished one, and those the device is drawing.
     std::deque<std::shared_ptr<const Picture>> pictures;
     std::optional<std::string> message;
     std::exception_ptr failure;
     std::shared_ptr<const Opened> opened;
-    std::shared_ptr<const session::LoadedDem> all_posts;  // that have not been taken yet
+    std::shared_ptr<const session::LoadedDem> all_posts;  // not taken yet
     std::uint64_t wants = 0;
 
-    // The thread's own.
-    bool reads_rest = false;    // where others stand in for all posts
-    bool awaits_pages = false;  // of a picture at rest
+    // Used only on the thread.
+    bool reads_all_posts = false;  // the complete DEM replaces a preview
+    bool awaits_pages = false;     // a frame without motion lacks tile pages
     std::unique_ptr<session::Session> session;
-    std::optional<FrameExchange> exchange;  // where frames are shared with the window
+    std::optional<FrameExchange> exchange;  // if frames are shared with the window
     std::uint64_t published = 0;
     glm::dvec3 shadows_eye_m{0};
     double ms_a_pixel = 0;
-    Clock::time_point frame_began;  // of the picture that was published last
+    Clock::time_point frame_began;  // start of the last published frame
     double frame_px = 0;            // its pixels, until the device has finished it
     Clock::time_point shadows_at;
     bool shadows_lag = false;
-    std::optional<Clock::time_point> new_pages_at;  // not all of them are there yet
-    std::future<void> reading;                      // ends before what it writes to
+    std::optional<Clock::time_point> new_pages_at;  // set while the complete DEM lacks tile pages
+    std::future<void> reading;                      // destroyed before what it writes to
 
     std::thread thread;
 
-    /// Sets the work to do next and wakes the thread.
+    /// Changes the request and wakes the thread.
     template <typename Change>
     void change(const Change& change) {
         {
@@ -123,12 +123,12 @@ struct SceneThread::Impl {
                                   : "view: frames are copied to the window's device");
                 return std::move(context);
             };
-            options.may_stand_in = true;
-            reads_rest = !dem;
+            options.allow_preview = true;
+            reads_all_posts = !dem;
             options.dem = std::move(dem);
             FilesInUse files;
             session = std::make_unique<session::Session>(scene, options, files);
-            // The view of the whole DEM hangs on the window's size.
+            // The view of the whole DEM depends on the window's size.
             const Wanted first = first_wanted();
             session->resize(first.width_px, first.height_px);
             publish_opened(first.insets);
@@ -139,7 +139,7 @@ struct SceneThread::Impl {
         on_change();
         if (!failure) draw_until_end();
         {
-            // Shared frames need a context to be destroyed in.
+            // Shared frames must be destroyed in a context.
             const std::lock_guard lock(mutex);
             pictures.clear();
             exchange.reset();
@@ -153,16 +153,16 @@ struct SceneThread::Impl {
         return wanted;
     }
 
-    /// The window waits for none of this: the lock is for handing over alone.
+    /// Holds the lock only for the hand-over, so that the window does not wait.
     void publish_opened(const scene::Insets& insets) {
         auto anew = as_opened();
-        look_beside_panels(*anew, insets);
+        look_at_whole(*anew, insets);
         const std::lock_guard lock(mutex);
         opened = std::move(anew);
     }
 
-    /// At the whole of the scene, while the window has not said from where.
-    void look_beside_panels(const Opened& of, const scene::Insets& insets) {
+    /// Looks at the whole scene until the window requests a view.
+    void look_at_whole(const Opened& of, const scene::Insets& insets) {
         const scene::Scene& now = of.scene;
         if (now.view.eye) return;
         const double aspect = static_cast<double>(now.width_px) / now.height_px;
@@ -179,9 +179,9 @@ struct SceneThread::Impl {
                                                session->moment(), std::move(legend)});
     }
 
-    /// Beside, when there is a picture of what stands in.
-    void read_rest() {
-        if (!reads_rest || reading.valid() || !session->dem()->stands_in) return;
+    /// Reads the complete DEM in the background, after the first frame of a preview.
+    void read_all_posts() {
+        if (!reads_all_posts || reading.valid() || !session->dem()->is_preview) return;
         reading = std::async(std::launch::async, [this, source = session->dem()->source] {
             std::shared_ptr<const session::LoadedDem> read;
             std::exception_ptr error;
@@ -213,7 +213,7 @@ struct SceneThread::Impl {
             const auto is_asked = [&] {
                 return ends || has_new_wants || effects || !values.empty() || drape || all_posts;
             };
-            // Drawing it again before would take from the pages that it waits for.
+            // Drawing sooner would slow down the tile pages that it waits for.
             const auto drawn_at = Clock::now();
             while (awaits_pages && !is_asked() && session->is_loading() &&
                    Clock::now() - drawn_at < kMorePages)
@@ -240,7 +240,7 @@ struct SceneThread::Impl {
                     return;
                 }
             }
-            // Where something fails the last good picture stays until something changes.
+            // After a failure the last frame stays until the next request.
             try {
                 attempt([&] { change(new_effects, new_values); });
                 if (new_drape) attempt([&] { session->drape(*new_drape); });
@@ -261,7 +261,7 @@ struct SceneThread::Impl {
         }
     }
 
-    /// Ends with the exception that is being handled.
+    /// Ends the thread with the current exception.
     void fail() {
         {
             const std::lock_guard lock(mutex);
@@ -270,7 +270,7 @@ struct SceneThread::Impl {
         on_change();
     }
 
-    /// @returns whether it worked; if not, there is a message
+    /// @returns false, with a message, if it failed
     /// @throws gl::DeviceLost
     template <typename Do>
     bool attempt(const Do& act) {
@@ -298,7 +298,7 @@ struct SceneThread::Impl {
             session->set(address, value);
     }
 
-    /// The share of the window's sides that can be drawn soon.
+    /// Fraction of the window's sides at which a frame meets kSoon_ms.
     double scale_for(const Wanted& now) const {
         if (!now.moving && !now.sun_moving) return 1;
         const double least = now.sun_moving ? kLeastScaleOfSun : kLeastScale;
@@ -308,23 +308,24 @@ struct SceneThread::Impl {
         return least;
     }
 
-    /// @returns whether there is nothing left to do for it
+    /// @returns true if nothing is left to do for the request
     bool draw(const Wanted& now, std::uint64_t answers) {
         const auto began = Clock::now();
         const double scale = scale_for(now);
         if (now.view) session->look(*now.view, now.keep_above_m);
         if (now.utc && *now.utc != session->moment()) {
             session->set_moment(*now.utc);
-            shadows_lag = !session->effects().loaded.modules.empty();  // core's never do
+            // Core's lighting is always current.
+            shadows_lag = !session->effects().loaded.modules.empty();
         }
         session->resize(std::max(1, static_cast<int>(std::lround(now.width_px * scale))),
                         std::max(1, static_cast<int>(std::lround(now.height_px * scale))));
-        // From another eye they would lie elsewhere.
+        // Shadow maps depend on the eye.
         const bool keep = now.sun_moving && shadows_lag &&
                           session->camera().eye_m == shadows_eye_m &&
                           Clock::now() - shadows_at < kShadowsAge;
-        session->keep_native(keep);
-        const bool whole = session->draw_what_is_there();
+        session->freeze_native(keep);
+        const bool whole = session->draw_available();
         awaits_pages = !whole && !now.moving && !now.sun_moving;
         if (!keep) {
             shadows_at = Clock::now();
@@ -335,10 +336,10 @@ struct SceneThread::Impl {
             (new_pages_at && Clock::now() - *new_pages_at > kNewPages))
             new_pages_at.reset();
         if (new_pages_at) return false;
-        publish(began, answers, whole && scale == 1 && !keep && !session->dem()->stands_in);
-        read_rest();
+        publish(began, answers, whole && scale == 1 && !keep && !session->dem()->is_preview);
+        read_all_posts();
         session->link_rest();
-        // What is coarse or lags is drawn anew when the hand has come to rest.
+        // Coarse and outdated frames are drawn again when motion ends.
         return whole && (scale == 1 || now.moving || now.sun_moving);
     }
 
@@ -364,7 +365,7 @@ struct SceneThread::Impl {
         pictures.push_back(std::move(made));
     }
 
-    /// Leaves the frame on the device, where the window reads it.
+    /// Keeps the frame on the device, where the window reads it.
     void share(Picture& picture, gl::Extent extent) {
         picture.shared = exchange->take(extent);
         picture.shared->colour.copy_from(session->texture());
@@ -379,9 +380,8 @@ struct SceneThread::Impl {
         session->read_depths(picture.depths_m);
     }
 
-    /// Waits for the device to finish pictures, so that it is asked for no more than it draws, and
-    /// forgets those that a newer one replaces.
-    /// @param all  else but the last one
+    /// Waits for the device to finish frames, which limits its queue, and drops superseded ones.
+    /// @param all  false: all but the last one
     void finish_pictures(bool all) {
         std::shared_ptr<const Picture> last;
         {

@@ -14,29 +14,28 @@
 #include "viewer/picture.h"
 #include "viewer/scene_device.h"
 
-/// The scene is drawn on a thread of its own, in a context of its own, so that the window never
-/// waits for it.
+/// Draws the scene on its own thread in its own context, so that the window never waits for it.
 namespace relevo::viewer {
 
-/// What the window wants to see: the last word counts.
+/// What the window requests. The latest request replaces earlier ones.
 struct Wanted {
-    std::optional<scene::View> view;  ///< none: the scene's
-    double keep_above_m = 0;          ///< the eye is raised to be so far above the drawn ground
-    std::optional<sun::Instant> utc;  ///< likewise
+    std::optional<scene::View> view;  ///< nullopt: the scene's
+    double keep_above_m = 0;          ///< least height of the eye above the drawn ground [m]
+    std::optional<sun::Instant> utc;  ///< nullopt: the scene's
     int width_px = 1, height_px = 1;  ///< of the window
     scene::Insets insets;             ///< of its panels, for the scene's view
-    bool moving = false;              ///< the hand moves the camera: rather soon than sharp
-    bool sun_moving = false;          ///< likewise the sun: shadows may lag behind
+    bool moving = false;  ///< the user moves the camera: a quick frame is better than a sharp one
+    bool sun_moving = false;  ///< the user moves the sun: shadows may lag behind as well
 };
 
-/// A scene as it was opened.
+/// An open scene.
 struct Opened {
-    /// A view of it without an eye of its own stands so that all is seen beside the panels.
+    /// Camera of a view. Orbits are placed so that all ground is visible next to the panels.
     scene::Camera camera(const scene::View& view, double aspect, const scene::Insets& insets) const;
 
     std::shared_ptr<const session::LoadedDem> dem;
     render::Ground ground;
-    scene::Scene scene;  ///< whose orbit has both angles
+    scene::Scene scene;  ///< both angles of its orbit are set
     scene::Outline outline;
     scene::GroundHeight aim_m;  ///< Session::heights_to_aim_at()
     sun::Instant utc;
@@ -45,46 +44,45 @@ struct Opened {
 
 class SceneThread {
   public:
-    /// Opens the scene and draws. Where the DEM takes long to read, first what stands in for it
-    /// (session::LoadedDem::stands_in); all posts are then read beside, and take its place.
-    /// @param device    that it is drawn on
-    /// @param on_change called on that thread whenever there is something to fetch
-    /// @param dem       the scene's, where it has been read already; else it is read
+    /// Opens the scene and draws it. If reading the DEM takes long, a preview is drawn first
+    /// (session::LoadedDem::is_preview), while the complete DEM loads in the background.
+    /// @param device    the device to draw on
+    /// @param on_change called on this thread when there is something to fetch
+    /// @param dem       the scene's DEM if it has been read, else null
     SceneThread(scene::Scene scene, const SceneDevice& device, std::function<void()> on_change,
                 std::shared_ptr<const session::LoadedDem> dem = {});
     SceneThread(const SceneThread&) = delete;
     SceneThread& operator=(const SceneThread&) = delete;
-    /// Waits for the frame in work, or for the scene to be open: Discard does it beside.
+    /// Waits for the current frame, or until the scene is open. Discard does so in the background.
     ~SceneThread();
 
-    /// Once the scene is open; else null. Another one when all posts have taken the place of what
-    /// stood in for them; its frame is the same.
+    /// The open scene, or null. Replaced when the complete DEM replaces a preview; the frame of
+    /// reference stays the same.
     std::shared_ptr<const Opened> opened() const;
-    /// Why it cannot be opened, or all of it not be read.
-    /// @throws Error what opening threw
+    /// @throws Error if opening, or reading the complete DEM, has failed
     void check() const;
 
     void want(const Wanted& wanted);
-    /// Other effects, or the same read again from their files.
+    /// Requests other effects, or to reload their files.
     void want_effects(const scene::Effects& effects);
-    /// A value of a parameter that is not static.
+    /// Sets a parameter that is not static.
     void want_value(const std::string& address, const std::string& value);
 
-    /// All posts of the DEM, of which others stand in.
+    /// Replaces a preview with the complete DEM.
     void want_dem(std::shared_ptr<const session::LoadedDem> dem);
 
-    /// Colours on the ground; null: none.
+    /// Sets the overlay; null: none.
     void want_drape(std::shared_ptr<const render::Drape> drape);
 
-    /// Whether there is nothing left to draw.
+    /// True if there is nothing left to draw.
     bool rests() const;
-    /// How often something was wanted.
+    /// Number of requests so far.
     std::uint64_t wants() const;
 
-    /// The newest picture that the device has finished, if it is newer than `number`. Called with
-    /// the window's context current where frames are shared.
+    /// The newest frame that the device has finished, if its number is greater than `number`. If
+    /// frames are shared, call it with the window's context current.
     std::shared_ptr<const Picture> newer_than(std::uint64_t number) const;
-    /// What went wrong since the last call, such as a shader that no driver takes.
+    /// The latest failure since the last call, such as a shader that does not compile.
     std::optional<std::string> take_message();
 
   private:

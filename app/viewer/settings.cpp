@@ -28,7 +28,7 @@ using nlohmann::ordered_json;
 constexpr std::size_t kMostRecent = 12;
 constexpr std::array<const char*, 3> kCoordinates = {"utm", "mgrs", "degrees"};
 
-/// A folder of the desktop's, as its specification says where it is: relative names do not count.
+/// A folder of the XDG base directory specification, which ignores relative paths.
 fs::path folder_of(const char* variable, const char* otherwise) {
     const char* const folder = std::getenv(variable);
     if (folder && fs::path(folder).is_absolute()) return fs::path(folder) / "relevo";
@@ -37,7 +37,7 @@ fs::path folder_of(const char* variable, const char* otherwise) {
     return {};
 }
 
-/// What a file holds; null where there is none, or where it holds no JSON.
+/// Content of a file; null without one, or if it is not JSON.
 json read(const fs::path& file) {
     std::error_code ignored;
     if (file.empty() || !fs::exists(file, ignored)) return {};
@@ -57,18 +57,18 @@ void write_whole(const fs::path& file, const ordered_json& content) {
     std::error_code failure;
     fs::create_directories(file.parent_path(), failure);
     if (failure)
-        failed(fmt::format("view: {}: cannot be made, {}; settings are not saved",
+        failed(fmt::format("view: {}: cannot be created, {}; settings are not saved",
                            printable(file.parent_path().string()), failure.message()));
-    // A pipe would keep the window waiting until somebody reads it.
+    // Writing to a pipe would block the window.
     if (fs::exists(file, failure) && !fs::is_regular_file(file, failure))
-        failed(fmt::format("view: {}: is no regular file; nothing is remembered, remove it",
+        failed(fmt::format("view: {}: is not a regular file, so that nothing is saved; remove it",
                            printable(file.string())));
-    // Names of files may be of any bytes.
+    // File names may contain any bytes.
     write_text(file, content.dump(2, ' ', false, json::error_handler_t::replace) + "\n",
                /*overwrite=*/true, "view");
 }
 
-/// A member of the right type; else what is there already.
+/// Reads a member of the right type; otherwise keeps `value`.
 template <typename T>
 void take(const json& from, const char* name, T& value) {
     const auto member = from.is_object() ? from.find(name) : from.end();
@@ -87,7 +87,7 @@ std::vector<std::string> strings(const json& from) {
     return result;
 }
 
-/// A view whose figures mean one; none for another.
+/// A saved view; nullopt if its values are invalid.
 std::optional<SavedView> view_of(const json& from) {
     SavedView view;
     std::string time;
@@ -114,7 +114,7 @@ std::optional<SavedView> view_of(const json& from) {
     return view;
 }
 
-/// As the "dem" of a scene; of the files alone where they are read as files say.
+/// As the "dem" of a scene; only the list of files if options are defaults.
 ordered_json json_of(const RecentDem& dem) {
     scene::Scene scene;
     scene.dems = dem.files;
@@ -124,7 +124,7 @@ ordered_json json_of(const RecentDem& dem) {
     return as_read.size() > 1 ? as_read : ordered_json(dem.files);
 }
 
-/// What is no DEM of a scene counts as nothing.
+/// nullopt if `from` is not the "dem" of a scene.
 std::optional<RecentDem> recent_of(const json& from) {
     try {
         const json scene{{"format", 1}, {"dem", from.is_array() ? json{{"files", from}} : from}};
@@ -147,7 +147,7 @@ ordered_json json_of(const SavedView& view) {
             {"time", sun::to_iso(view.utc, 3)}};
 }
 
-/// FNV-1a, for a short name of a file.
+/// FNV-1a, for a short file name.
 std::uint64_t hash_of(const std::vector<std::string>& words) {
     std::uint64_t hash = 0xcbf29ce484222325;
     for (const std::string& word : words)
@@ -253,7 +253,7 @@ std::vector<std::string> absolute_names(std::vector<std::string> dems) {
     for (std::string& dem : dems) {
         std::error_code error;
         if (!fs::exists(dem, error)) continue;
-        // The working folder may be gone.
+        // The working folder may have been deleted.
         const fs::path whole = fs::absolute(dem, error);
         if (!error) dem = whole.lexically_normal().string();
     }

@@ -30,8 +30,8 @@ void State::use_dem_of(const Opened& opened) {
     land.exaggeration = opened.scene.exaggeration;
     land.height_m = [dem = opened.dem](const geo::Geodetic& at) { return dem->height_m(at); };
     land.aim_m = opened.aim_m;
-    stands_in = dem.stands_in;
-    const dem::Grid& grid = stands_in ? dem.source->grid() : dem.field.grid;
+    is_preview = dem.is_preview;
+    const dem::Grid& grid = is_preview ? dem.source->grid() : dem.field.grid;
     const glm::dvec2 sides_m = grid.post_spacing_m();
     spacing_m = std::sqrt(sides_m.x * sides_m.y);
     stand_on(opened.ground);

@@ -14,15 +14,15 @@
 namespace relevo::viewer {
 namespace {
 
-/// Posts that have their figures first, and that have them at most where memory has means alone.
+/// Number of posts of the first result, and limit for DEMs that are in memory only as means.
 constexpr double kCoarsePosts = 160e3, kMostPosts = 4e6;
-/// The window is woken for a bar so often at most.
-constexpr auto kTell = std::chrono::milliseconds(80);
+/// Least interval of waking the window for progress.
+constexpr auto kProgressInterval = std::chrono::milliseconds(80);
 
-/// Nobody wants it any more.
-struct GivenUp {};
+/// Thrown to cancel a computation.
+struct Cancelled {};
 
-/// Heights at fewer posts of a DEM, the first and the last lines where they were.
+/// A DEM resampled to fewer posts, with the outer rows and columns in place.
 dem::Heightfield thinned(const dem::Heightfield& field, double most) {
     const double posts = double{1} * field.grid.columns() * field.grid.rows();
     const double step = std::max(1.0, std::sqrt(posts / most));
@@ -51,7 +51,7 @@ dem::Heightfield thinned(const dem::Heightfield& field, double most) {
 
 }  // namespace
 
-/// A DEM at the posts that have their figures in turn.
+/// Computes values for a DEM, first at fewer posts.
 class OverlayWork::Levels {
   public:
     explicit Levels(std::shared_ptr<const session::LoadedDem> dem) : dem_(std::move(dem)) {
@@ -97,7 +97,7 @@ session::SunRasterWanted raster_of(OverlayKind kind, sun::Instant utc, const sun
     };
     switch (kind) {
         case OverlayKind::Week: {
-            // Weeks begin on Monday; 1 January 1900 was one.
+            // Weeks begin on Monday, like 1 January 1900.
             const sun::Date monday =
                 sun::add_days(date, -((sun::days_between({1900, 1, 1}, date) % 7 + 7) % 7));
             days(monday, sun::add_days(monday, 6));
@@ -156,7 +156,7 @@ double OverlayShown::value_at(const geo::Geodetic& place) const {
     return raster->values.at(static_cast<int>(column), static_cast<int>(row));
 }
 
-// What comes first is soon there, and worth showing while one wish of a DEM follows the other.
+// The first result is quick and may be displayed while later ones of the same DEM are computed.
 OverlayWork::OverlayWork(std::function<void()> on_change)
     : LatestWork(std::move(on_change), [](const OverlayWanted& of, const OverlayWanted& now) {
           return of.dem == now.dem;
@@ -186,7 +186,7 @@ void colour(OverlayShown& shown) {
 void OverlayWork::work_out(const OverlayWanted* wanted) {
     progress_ = 0;
     if (!wanted) {
-        levels_.reset();  // and with it what is known of a DEM that may be gone
+        levels_.reset();  // also frees data of a DEM that may be closed
         last_.reset();
         return;
     }
@@ -206,7 +206,7 @@ void OverlayWork::work_out(const OverlayWanted* wanted) {
         } else {
             measure(now);
         }
-    } catch (const GivenUp&) {
+    } catch (const Cancelled&) {
         return;
     } catch (const std::exception& error) {
         shown.error = error.what();
@@ -223,17 +223,17 @@ void OverlayWork::measure(const OverlayWanted& now) {
     if (!levels_ || levels_->dem() != now.dem.get()) levels_ = std::make_unique<Levels>(now.dem);
     for (const Levels::Level& level : levels_->all()) {
         const bool is_last = &level == &levels_->all().back();
-        const auto gives_up = [&] { return is_last ? is_given_up() : is_of_no_use(now); };
+        const auto is_cancelled = [&] { return is_last ? is_given_up() : is_of_no_use(now); };
         double share = 0;
         OverlayShown shown;
         shown.of = now;
         shown.raster = std::make_shared<const session::SunRaster>(
             session::sun_raster(level.posts, now.raster, {}, [&](double more) {
                 share += more;
-                if (gives_up()) throw GivenUp();
+                if (is_cancelled()) throw Cancelled();
                 if (is_last) tell(share);
             }));
-        if (gives_up()) return;
+        if (is_cancelled()) return;
         shown.grid = level.posts.grid();
         shown.every = level.every;
         colour(shown);
@@ -245,8 +245,8 @@ void OverlayWork::measure(const OverlayWanted& now) {
 void OverlayWork::tell(double share) {
     progress_ = share;
     const auto now = std::chrono::steady_clock::now();
-    if (now - told_at_ < kTell) return;
-    told_at_ = now;
+    if (now - reported_at_ < kProgressInterval) return;
+    reported_at_ = now;
     tell_of_change();
 }
 
@@ -257,7 +257,7 @@ OverlaySave::OverlaySave(OverlayWanted wanted, std::shared_ptr<const session::Su
 }
 
 OverlaySave::~OverlaySave() {
-    gives_up_ = true;
+    is_cancelled_ = true;
     thread_.join();
 }
 
@@ -277,7 +277,7 @@ void OverlaySave::run(const session::SunRaster* whole) {
                                       wanted_.options.max_posts / session::kPostsAPart,
                                       RELEVO_VERSION, [&](double more) { tell(share += more); });
         });
-    } catch (const GivenUp&) {
+    } catch (const Cancelled&) {
         return;
     } catch (...) {
         failure_ = std::current_exception();
@@ -287,7 +287,7 @@ void OverlaySave::run(const session::SunRaster* whole) {
 }
 
 void OverlaySave::tell(double share) {
-    if (gives_up_) throw GivenUp();
+    if (is_cancelled_) throw Cancelled();
     const bool is_worth_it = share - progress_ > 0.01;
     if (!is_worth_it) return;
     progress_ = share;

@@ -79,7 +79,7 @@ class OverlayWork : public LatestWork<OverlayWanted, OverlayShown> {
     // The thread's own.
     std::unique_ptr<Levels> levels_;
     std::shared_ptr<const OverlayShown> last_;
-    std::chrono::steady_clock::time_point told_at_;
+    std::chrono::steady_clock::time_point reported_at_;
 };
 
 /// Writes the raster of all posts, as `relevo sun` does, to the working folder under a free name.
@@ -106,7 +106,7 @@ class OverlaySave {
 
     OverlayWanted wanted_;
     std::function<void()> on_change_;
-    std::atomic<bool> gives_up_ = false, is_done_ = false;
+    std::atomic<bool> is_cancelled_ = false, is_done_ = false;
     std::atomic<double> progress_ = 0;
     std::string name_;
     std::exception_ptr failure_;

@@ -12,10 +12,10 @@ namespace {
 
 constexpr float kSun_px = 11, kReach_px = 26;
 constexpr double kFar_m = 1e9;
-/// From high up the horizon lies below the level one.
+/// From great heights the horizon is below the horizontal.
 constexpr double kLowest_deg = -4;
 
-/// Where a direction is in the window; none behind the camera.
+/// Window position of a direction; nullopt behind the camera.
 std::optional<ImVec2> at_window(const Picture& picture, glm::vec2 size_px,
                                 const glm::dvec3& direction) {
     const auto at = in_picture(picture.camera, picture.camera.eye_m + kFar_m * direction,
@@ -25,7 +25,7 @@ std::optional<ImVec2> at_window(const Picture& picture, glm::vec2 size_px,
     return ImVec2(px.x, px.y);
 }
 
-/// The pixel at a place of the window; none outside.
+/// Pixel at a window position; nullopt outside.
 std::optional<glm::ivec2> pixel_at(const Picture& picture, glm::vec2 size_px, ImVec2 at) {
     const int x = static_cast<int>(at.x / size_px.x * static_cast<float>(picture.width_px));
     const int y = static_cast<int>((1 - at.y / size_px.y) * static_cast<float>(picture.height_px));
@@ -33,13 +33,13 @@ std::optional<glm::ivec2> pixel_at(const Picture& picture, glm::vec2 size_px, Im
     return glm::ivec2(x, y);
 }
 
-/// Whether there is sky at a place of the window.
+/// True if there is sky at a window position.
 bool is_sky(const Picture& picture, glm::vec2 size_px, ImVec2 at) {
     const auto pixel = pixel_at(picture, size_px, at);
     return !pixel || std::isinf(picture.depth_m(pixel->x, pixel->y));
 }
 
-/// Reads the depths at all points of some days together.
+/// Reads the depths along several days' paths in one transfer.
 void fetch_depths(const std::vector<const SunDay*>& days, const Picture& picture,
                   glm::vec2 size_px) {
     std::vector<glm::ivec2> pixels;

@@ -29,60 +29,61 @@ namespace relevo::viewer {
 namespace {
 
 constexpr int kWidth = 1280, kHeight = 800;
-constexpr float kText_px = 16;  // that panels' sizes are made for
+constexpr float kText_px = 16;  // text height that sizes of panels refer to
 
 [[noreturn]] void no_display() {
     throw Error(ErrorCode::NoDevice,
-                "view: there is no display to open a window on; relevo capture takes a picture "
+                "view: no display to open a window on; relevo capture takes a picture "
                 "without one");
 }
 
-/// Where the X server goes Xlib calls exit(), under threads that still draw: nothing that runs then
-/// may be run. Has the program end at once, with a line that says why.
+/// Xlib calls exit() when the X server is gone, while other threads still draw, so that destructors
+/// and exit handlers must not run. This ends the process at once with a message.
 void end_where_the_display_goes() {
-    void* const xlib = dlopen("libX11.so.6", RTLD_LAZY);  // as GLFW does, for good
+    // The library that GLFW loads; never unloaded.
+    void* const xlib = dlopen("libX11.so.6", RTLD_LAZY);
     if (!xlib) return;
     using Handler = int (*)(void* display);
     const auto set = reinterpret_cast<Handler (*)(Handler)>(dlsym(xlib, "XSetIOErrorHandler"));
     if (!set) return;
-    set([](void*) -> int { end_program("view: the display is gone; the window is closed"); });
+    set([](void*) -> int { end_program("view: the connection to the display was lost"); });
 }
 
-/// The letter that is written on a key, whatever the keyboard's layout; else the key itself.
+/// The letter on a key in the user's keyboard layout, else the key itself.
 int letter_of(int key, int scancode) {
     const char* const name = glfwGetKeyName(key, scancode);
     const bool is_letter = name && name[0] >= 'a' && name[0] <= 'z' && name[1] == '\0';
     return is_letter ? GLFW_KEY_A + (name[0] - 'a') : key;
 }
 
-/// Keys that act again while they are held.
+/// Keys that repeat while held.
 bool repeats(int key) {
     return key == GLFW_KEY_LEFT_BRACKET || key == GLFW_KEY_RIGHT_BRACKET || key == GLFW_KEY_Z ||
            key == GLFW_KEY_Y;
 }
 
-/// What GLFW said last; it is told of in the Error.
+/// GLFW's last error message, for Error.
 std::string& last_error() {
     static std::string text;
     return text;
 }
 
-/// Whether there is a window that can be woken.
+/// True while there is a window to wake.
 std::atomic<bool>& is_open() {
     static std::atomic<bool> open{false};
     return open;
 }
 
-/// @param text_px  of the display
-/// @param letters  besides the usual ones
+/// @param text_px  in pixels of the display
+/// @param letters  additional characters
 void load_fonts(float text_px, const std::set<char32_t>& letters) {
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-    // Latin with its accents, Greek, Cyrillic, and dashes and degrees: is_usual().
+    // Latin with accents, Greek, Cyrillic, dashes, degrees: is_usual().
     static const ImWchar usual[] = {0x20, 0x24f, 0x370, 0x52f, 0x2010, 0x2044, 0x2190, 0x2193, 0};
     const std::string file = usual_font_file();
     if (file.empty()) return;
     fonts.AddFontFromFileTTF(file.c_str(), text_px, nullptr, usual);
-    // ImGui reads them when the atlas is built.
+    // Must exist until the atlas is built.
     static std::list<std::vector<ImWchar>> ranges;
     ranges.clear();
     for (const FontFile& font : fonts_with(letters)) {
@@ -97,10 +98,10 @@ void load_fonts(float text_px, const std::set<char32_t>& letters) {
     }
 }
 
-/// A picture on the display's device.
+/// A displayed frame on the window's device.
 struct Shown {
-    gl::Texture texture;                 // of its own, where it is copied
-    std::shared_ptr<SharedFrame> frame;  // else that of the scene
+    gl::Texture texture;                 // a copied frame
+    std::shared_ptr<SharedFrame> frame;  // otherwise a shared frame
     std::optional<gl::Framebuffer> target;
 
     void take(const Picture& picture) {
@@ -123,7 +124,7 @@ struct Shown {
         texture.write(0, {0, 0, 0}, extent, std::as_bytes(std::span(picture.rgba)));
     }
 
-    /// Copies it to the window.
+    /// Copies the frame to the window.
     void draw(glm::ivec2 size_px, float share = 1) const {
         target->copy_to_window(size_px.x, size_px.y, share);
         if (frame) frame->shown = gl::Fence::insert();
@@ -137,19 +138,19 @@ struct Window::Impl {
     std::optional<gl::Context> context;
     Shown shown, before;
     float line = 0.5f;
-    std::set<char32_t> letters;  // that panels show besides the usual ones
+    std::set<char32_t> letters;  // additional characters of panels
     std::vector<KeyPress> keys;
-    std::set<int> held;  // pressed without Ctrl, whichever of the two is let go first
-    /// Since the last frame. ImGui looks at keys once a frame: one that has been let go by then
-    /// was none to it.
+    std::set<int> held;  // pressed without Ctrl, even if Ctrl is released first
+    /// Keys since the last frame. ImGui polls keys once a frame and would miss those already
+    /// released.
     std::vector<int> tapped;
     std::vector<std::string> dropped;
-    bool has_input = false;  // clicks, keys or turns of the wheel
+    bool has_input = false;  // clicks, keys or wheel events
 
     explicit Impl(const std::string& title) {
         glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
         end_where_the_display_goes();
-        // A display that goes, or stands still, while a window is made lets Mesa wait for ever.
+        // If the display hangs while a window is created, Mesa waits forever.
         Watchdog watchdog;
         watchdog.start(patience(),
                        "view: the display does not answer; relevo capture takes a "
@@ -160,7 +161,7 @@ struct Window::Impl {
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
         glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-        // Some devices do not report that they were lost.
+        // Some drivers cannot report the loss of a device.
         for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {
             glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);
             handle = glfwCreateWindow(kWidth, kHeight, title.c_str(), nullptr, nullptr);
@@ -202,7 +203,7 @@ struct Window::Impl {
                 if (action == GLFW_PRESS || (action == GLFW_REPEAT && repeats(key)))
                     self.keys.push_back({key, control, (mods & GLFW_MOD_SHIFT) != 0});
             });
-        // ImGui's own callbacks call these.
+        // ImGui's callbacks chain to these.
         glfwSetMouseButtonCallback(
             handle, [](GLFWwindow* window, int, int, int) { of(window).has_input = true; });
         glfwSetScrollCallback(

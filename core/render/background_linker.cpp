@@ -37,7 +37,7 @@ void BackgroundLinker::link(const ProgramText& text, gl::Context& context, DrawW
     try {
         const DrawWatch::Turn turn(watch, text, 0);
         gl::Program program = link_program(text);
-        context.finish();  // else other contexts may not see it yet
+        context.finish();  // makes the program visible to other contexts
         const std::lock_guard lock(mutex_);
         linked_.emplace_back(text.hash, std::move(program));
     } catch (const std::exception& error) {

@@ -12,23 +12,21 @@
 
 namespace relevo::render {
 
-/// Links programs on a thread of its own, in a context that shares with the one that will draw with
-/// them.
+/// Links programs on its own thread, in a context that shares objects with the drawing one.
 class BackgroundLinker {
   public:
     /// @param context   must outlive this, as must the snippets
-    /// @param snippets  of the enabled plugins: a driver that compiles without end, or crashes,
-    /// ends
-    ///                  the program with a message that names them (DrawWatch)
+    /// @param snippets  of the enabled plugins. If the driver hangs or crashes on one, the process
+    ///     ends with a message that names it (DrawWatch)
     BackgroundLinker(const gl::Context& context, std::vector<ProgramText> texts,
                      std::vector<const shader::Snippet*> snippets);
-    /// Waits for the program in work.
+    /// Waits for the program that is being linked.
     ~BackgroundLinker();
 
-    /// Has the thread end after the program in work, without waiting for it.
+    /// Ends the thread after the program that is being linked, without waiting for it.
     void stop() { ends_ = true; }
-    /// What has been linked since the last call, by the hash of its text. A program that the driver
-    /// refuses is left out: whoever needs it gets the error.
+    /// Programs linked since the last call, by the hash of their source. Programs that failed are
+    /// omitted: linking one again in the foreground reports the error.
     std::vector<std::pair<std::string, gl::Program>> take();
 
   private:

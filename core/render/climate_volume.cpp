@@ -13,14 +13,15 @@
 namespace relevo::render {
 namespace {
 
-/// What aspects and shifts of limits may ask for beyond the DEM's heights [m].
+/// Margin around the DEM's heights for aspects and shifted limits [m].
 constexpr double kMargin_m = 3000;
-/// Heights of the Earth, whatever outliers a DEM has [m].
+/// Bounds against outliers of a DEM [m].
 constexpr double kLowest_m = -600, kHighest_m = 9000;
 
 constexpr double kHalfTurn_deg = 180;
 
-/// From a coordinate to that of a texture whose first and last texels' middles are at two values.
+/// Maps a coordinate to texture coordinates, with the centres of the outer texels at `first` and
+/// `last`.
 /// @returns factor and constant
 glm::dvec2 to_texture(double first, double last, int texels) {
     const double scale = (texels - 1.0) / texels / std::max(last - first, 1e-12);
@@ -73,7 +74,7 @@ ClimateVolume::ClimateVolume(const climate::ClimateMap& map, const dem::Grid& gr
                                          radians(box.east_deg) - origin_rad, table_.columns());
     const glm::dvec2 row =
         to_texture(radians(box.south_deg), radians(box.north_deg), table_.rows());
-    // The ground's half of the texture; the snow's lies above.
+    // Cover is in the lower half of the texture, snow in the upper half.
     const glm::dvec2 level =
         0.5 * to_texture(table_.lowest_m(), table_.highest_m(), table_.heights());
     place_ = glm::vec4(column, row);

@@ -10,24 +10,25 @@
 
 namespace relevo::render {
 
-/// The sampler of lib/climate.glsl.
+/// Sampler in lib/climate.glsl.
 inline constexpr const char* kClimateTexture = "climate_table";
 
-/// The box of the Earth that a grid lies in; with a pole in it all longitudes. Longitudes run
-/// `origin` +- 180 degrees, so that no box is cut at the date line.
+/// Bounding box of a grid in geographic coordinates; all longitudes if it contains a pole.
+/// Longitudes are within 180 degrees of `origin`, so that no box is split at the date line.
 climate::Box box_of(const dem::Grid& grid, const geo::Geodetic& origin);
 
-/// The climate's tables over a DEM on the device, for lib/climate.glsl.
+/// Climate tables of a DEM's area on the device, read by lib/climate.glsl.
 class ClimateVolume {
   public:
-    /// @param frame  the DEM's local frame
+    /// @param frame                  the DEM's local frame
+    /// @param lowest_m, highest_m   range of the DEM's heights
     ClimateVolume(const climate::ClimateMap& map, const dem::Grid& grid,
                   const geo::LocalFrame& frame, double lowest_m, double highest_m);
 
-    /// Takes the snow of a day, 0 to 364; the same day again costs nothing.
+    /// Updates the snow for a day of the year, 0 to 364, if it has changed.
     void set_day(int day);
     const gl::Texture& texture() const { return texture_; }
-    /// Says where places and heights are in the texture.
+    /// Writes the texture's mapping from places and heights.
     void write(FrameBlock& block) const;
 
   private:

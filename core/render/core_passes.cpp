@@ -106,9 +106,10 @@ class Declaration {
                  .kind = PassKind::Host,
                  .writes = {"tiles"},
                  .body = [](PassContext& frame) {
-                     frame.tiles = frame.terrain.select_for_picture(
+                     frame.tiles = frame.terrain.select_for_frame(
                          frame.inputs.camera, frame.width_px, frame.height_px,
-                         frame.inputs.exaggeration, frame.inputs.loading, frame.inputs.afresh);
+                         frame.inputs.exaggeration, frame.inputs.loading,
+                         frame.inputs.deterministic);
                  }});
         add(Pass{.name = "light",
                  .kind = PassKind::Host,

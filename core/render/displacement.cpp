@@ -5,8 +5,8 @@
 namespace relevo::render {
 
 std::pair<double, double> Displacement::range_m(double lowest_m, double highest_m) const {
-    // Lowered and raised, heights are a concave and a convex function of where they were: the ends
-    // of the range have the extremes.
+    // The lowest (highest) drawn height is a concave (convex) function of the height: its extremes
+    // are at the range's ends.
     std::pair<double, double> range{lowest_m, highest_m};
     for (const double height_m : {lowest_m, highest_m}) {
         double lowered_m = height_m - down_m, raised_m = height_m + up_m;

@@ -8,26 +8,26 @@
 
 namespace relevo::render {
 
-/// How far the enabled effects move the ground at most, in metres of the DEM's heights: what they
-/// move into sight has to be drawn, and lit.
+/// Bounds of displacement by the enabled effects, in metres of the DEM's heights. Displaced ground
+/// has to be drawn and lit.
 struct Displacement {
-    double down_m = 0, up_m = 0;  ///< along the vertical, each 0 or above
-    double aside_m = 0;           ///< across it, in any direction
-    std::vector<double> to_m;     ///< and anywhere between the ground and each of these heights
+    double down_m = 0, up_m = 0;  ///< along the vertical, not negative
+    double aside_m = 0;           ///< horizontal, in any direction
+    std::vector<double> to_m;     ///< heights that ground may be moved to, fully or partly
 
     bool any() const { return down_m > 0 || up_m > 0 || aside_m > 0 || !to_m.empty(); }
 
-    /// Heights that ground of these heights may be drawn at, before exaggeration; its own are among
-    /// them, as a vertex glides to its coarser level by where it is not displaced.
+    /// Range of drawn heights of ground between two heights, without exaggeration. It includes
+    /// these, because vertices morph to coarser levels at undisplaced positions.
     /// @returns lowest and highest
     std::pair<double, double> range_m(double lowest_m, double highest_m) const;
 
     friend bool operator==(const Displacement&, const Displacement&) = default;
 };
 
-/// What the bounds of several effects come to, whatever their order.
-/// @param values  of the parameters that the bounds name
-/// @throws Error (BadInput) for a parameter that is not declared
+/// Combined bounds of several effects, in any order.
+/// @param values  of the parameters that bounds refer to
+/// @throws Error (BadInput) for an undeclared parameter
 Displacement displacement_of(const std::vector<effect::DisplaceSpec>& specs,
                              const shader::ParamStore& values);
 

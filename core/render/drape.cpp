@@ -11,13 +11,13 @@
 namespace relevo::render {
 namespace {
 
-/// Along a side: where the texels lie that are nearest to a node, [first, end).
+/// Texels along an axis that are nearest to a node, [first, end).
 struct Span {
     int first, end;
 };
 
 /// @param post, level  of the node
-/// @param posts        of the DEM along the side
+/// @param posts        of the DEM along the axis
 Span span_of(int post, int level, int posts, int texels) {
     const double scale = posts > 1 ? (texels - 1.0) / (posts - 1.0) : 0;
     const double middle = post * scale, half = scale * (1 << level) / 2;

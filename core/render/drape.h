@@ -10,18 +10,18 @@
 
 namespace relevo::render {
 
-/// Colours that lie on the ground of a DEM, whatever light falls on it.
+/// Unlit colours over the ground of a DEM: an overlay.
 struct Drape {
-    /// 0xAABBGGRR: sRGB, premultiplied by alpha. Its first and its last columns and rows lie on the
-    /// DEM's; it may have more or fewer of them.
+    /// 0xAABBGGRR: sRGB, premultiplied by alpha. Rows from the north. The outer rows and columns
+    /// coincide with the DEM's; their number may differ.
     Array2d<std::uint32_t> rgba;
 };
 
-/// sRGB and alpha, 0 to 1, as a texel of a Drape.
+/// A texel of a Drape from sRGB and alpha, each 0 to 1.
 std::uint32_t drape_texel(double red, double green, double blue, double alpha);
 
-/// Colours at the nodes of a normal page and its border, kNormalPage_px a side: means over what is
-/// nearest to each node.
+/// Colours at the nodes of a normal tile page with its border, kNormalPage_px a side. Each is the
+/// mean of the texels nearest to its node.
 std::vector<std::uint32_t> drape_page(const Drape& drape, const dem::Pyramid& pyramid, int level,
                                       glm::ivec2 page);
 

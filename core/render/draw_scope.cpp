@@ -5,7 +5,7 @@
 namespace relevo::render {
 namespace {
 
-// A full-screen triangle lies at depth 0, the far end.
+// The full-screen triangle is at depth 0, the far plane.
 GLenum function_of(DepthTest test) {
     switch (test) {
         case DepthTest::Nearer:
@@ -22,7 +22,7 @@ void set_depth(const gl::Framebuffer& target, const Depth& depth) {
     glEnable(GL_DEPTH_TEST);
     glDepthMask(depth.writes ? GL_TRUE : GL_FALSE);
     glDepthFunc(function_of(depth.test));
-    if (depth.clear) target.clear_depth(*depth.clear);  // obeys the mask
+    if (depth.clear) target.clear_depth(*depth.clear);  // affected by the depth mask
 }
 
 void set_stencil(const gl::Framebuffer& target, const Stencil& stencil) {

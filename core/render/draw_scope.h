@@ -7,21 +7,21 @@
 
 namespace relevo::render {
 
-/// The state of draws, other than program and textures. Nothing else sets depth, stencil, colour
-/// masks and clip distances, or binds framebuffers for draws of the terrain.
+/// State of draws, except program and textures. Depth, stencil, colour mask, clip distances and
+/// framebuffers of terrain draws are set only here.
 struct DrawState {
     std::optional<Depth> depth{};
     std::optional<Stencil> stencil{};
     bool clips_voids = false;   ///< GL_CLIP_DISTANCE0
     bool clamps_depth = false;  ///< GL_DEPTH_CLAMP
-    /// Culls triangles that are seen from below; none: draws both sides.
+    /// Culls triangles seen from below; nullopt: draws both sides.
     std::optional<bool> winds_counterclockwise{};
 };
 
-/// While this lives draws go to a framebuffer in a state. At its end every capability is off again.
+/// Binds a framebuffer and sets a state. The destructor disables all capabilities.
 class DrawScope {
   public:
-    /// Clears the depth and the stencil where the state says so.
+    /// Clears depth and stencil if the state says so.
     DrawScope(const gl::Framebuffer& target, const DrawState& state);
     ~DrawScope();
     DrawScope(const DrawScope&) = delete;

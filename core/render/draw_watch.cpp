@@ -12,8 +12,8 @@
 namespace relevo::render {
 namespace {
 
-/// Part of patience() that a pixel or a triangle may take. With 20 s it is 100 times what it takes
-/// on two cores of a software renderer.
+/// Fraction of patience() per pixel or triangle. With 20 s it is 100 times the time on two cores of
+/// a software renderer.
 constexpr double kPart_share = 0.5e-6;
 
 std::string disable(const std::set<std::string>& ids) {
@@ -21,7 +21,7 @@ std::string disable(const std::set<std::string>& ids) {
                        ids.size() == 1 ? "it" : "them");
 }
 
-/// The effects whose GLSL is in a program.
+/// Ids of the effects whose GLSL is in a program.
 std::set<std::string> present_in(const shader::Stitched& stitched) {
     std::set<std::string> ids;
     for (const shader::HookUse& use : stitched.hooks)
@@ -76,7 +76,7 @@ std::string DrawWatch::blame(const shader::Stitched& stitched) const {
         }
     }
     if (suspects.empty()) return fmt::format("; of the effects in it, {}", disable(present));
-    return fmt::format("; {} may go on for ever; {}", fmt::join(loops, ", "), disable(suspects));
+    return fmt::format("; {} may never end; {}", fmt::join(loops, ", "), disable(suspects));
 }
 
 }  // namespace relevo::render

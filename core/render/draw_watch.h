@@ -11,18 +11,19 @@
 
 namespace relevo::render {
 
-/// Ends the program if a driver compiles or draws without end, for example a loop in a plugin's
-/// GLSL: nothing else can stop it. If the driver crashes, the message names the plugins too.
+/// Ends the process if a driver hangs in compiling or drawing, for example in an endless loop of a
+/// plugin. A hanging driver cannot be stopped otherwise. The message names the plugins, also if the
+/// driver crashes.
 class DrawWatch {
   public:
     /// @param snippets  of the enabled plugins; must outlive this
     explicit DrawWatch(const std::vector<const shader::Snippet*>& snippets) : snippets_(snippets) {}
 
-    /// While this lives the device may take patience(), or longer for much work. The caller waits
-    /// for the device before this ends.
+    /// A period in which the device must finish within patience(), or longer for large draws. Wait
+    /// for the device before destroying it.
     class Turn {
       public:
-        /// @param parts  pixels and triangles
+        /// @param parts  number of pixels and triangles
         Turn(DrawWatch& watch, const ProgramText& program, double parts);
         ~Turn();
         Turn(const Turn&) = delete;
@@ -34,7 +35,7 @@ class DrawWatch {
     };
 
   private:
-    /// The effects in a program that Relevo does not ship.
+    /// The effects in a program that are not bundled with Relevo.
     std::set<std::string> foreign(const shader::Stitched& stitched) const;
     std::string blame(const shader::Stitched& stitched) const;
 

@@ -10,12 +10,13 @@
 
 namespace relevo::render {
 
-/// Textures of effects on the device, by the files that they were read from. Keeps those in use.
+/// Caches effects' textures on the device by the files that they were read from. Unused ones are
+/// deleted.
 class EffectTextureCache {
   public:
-    /// The texture, with mipmaps where the manifest says so and the files have none.
+    /// The texture. Creates mipmaps if the manifest requests them and the files have none.
     /// @pre  effect::check_limits() of this device
-    /// @throws Error (Failed) where the device has no memory for it
+    /// @throws Error (Failed) if the device is out of memory
     std::shared_ptr<const gl::Texture> find_or_make(const effect::LoadedTexture& from,
                                                     double anisotropy);
 
@@ -28,7 +29,7 @@ class EffectTextureCache {
     std::vector<Known> known_;
 };
 
-/// The textures of all enabled effects, on the device.
+/// The textures of the enabled effects on the device.
 class EffectTextures {
   public:
     EffectTextures() = default;
@@ -36,7 +37,7 @@ class EffectTextures {
     EffectTextures(const std::vector<const effect::LoadedTexture*>& textures, double anisotropy,
                    EffectTextureCache& cache);
 
-    /// Null if no effect asked for it.
+    /// Null if no effect declares it.
     const gl::Texture* find(const std::string& resource) const;
 
   private:

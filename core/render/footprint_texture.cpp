@@ -10,7 +10,7 @@
 namespace relevo::render {
 namespace {
 
-/// Means of a footprint over squares of so many, three times over, which is nearly a Gaussian.
+/// Three box blurs along each axis, which approximate a Gaussian. @param reach  in squares
 Array2d<float> blurred(const Array2d<float>& sharp, int reach) {
     Array2d<float> from = sharp, to = sharp;
     for (int turn = 0; turn < 6; ++turn) {

@@ -5,7 +5,7 @@
 
 namespace relevo::render {
 
-/// A footprint as shaders/lib/floor.glsl reads it: blurred a little, and more.
+/// Texture for shaders/lib/floor.glsl. R: footprint with a narrow blur; G: with a wide blur.
 gl::Texture footprint_texture(const Footprint& footprint);
 
 }  // namespace relevo::render

@@ -16,14 +16,14 @@ namespace {
 
 using geo::kEquatorialRadius_m;
 using geo::kFlattening;
-constexpr double kBennett45_rad = radians(59.7 / 3600);  // frame.glsl: eye_sun_light.a
+constexpr double kBennett45_rad = radians(59.7 / 3600);  // as in frame.glsl: eye_sun_light.a
 
-/// Of a sun, at a place where its geometric elevation has a sine: irradiance, and in `a` how far
-/// along the vertical the air moves its direction.
+/// rgb: irradiance at a place where the sine of the sun's geometric elevation is `sine`. a:
+/// displacement of the unit vector to the sun along the vertical by refraction.
 glm::dvec4 light_at(const SunLight& sun, double sine) {
     const double elevation = std::asin(std::clamp(sine, -1.0, 1.0));
     const double lift = sun.refraction_rad ? sun.refraction_rad(elevation) : 0.0;
-    // normalize(direction + a up) is lifted by the refraction; at the zenith there is none.
+    // Refraction raises normalize(direction + a up). There is none at the zenith.
     const double cosine = std::cos(elevation + lift);
     return {sun::direct_transmittance(elevation + lift, sun.ground_height_m),
             cosine > 1e-6 ? std::sin(lift) / cosine : 0.0};
@@ -63,7 +63,7 @@ double sun_light_scale(double sine) {
 }
 
 SunLightTable sun_light_table(const SunLight& sun) {
-    // Margins make up for single precision.
+    // Widened for single precision.
     const double begin = sun_light_scale(sun.lowest_sine) - 1e-5,
                  step = (sun_light_scale(sun.highest_sine) + 1e-5 - begin) /
                         (SunLightTable::kEntries - 1);
@@ -76,7 +76,7 @@ SunLightTable sun_light_table(const SunLight& sun) {
     return table;
 }
 
-// In one piece: a list of members, each filled once.
+// In one piece: each member is assigned once.
 FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int width_px,
                             int height_px, double footprint_limit) {
     const scene::Camera& camera = inputs.camera;
@@ -100,8 +100,8 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     const glm::dvec2 over_ground(camera.eye_m), anchor = eye_anchor(over_ground);
     block.eye_anchor = glm::vec4(anchor, over_ground - kEyeAnchor_m * anchor);
 
-    // The normal of an ellipsoid at p is along D p, D = diag(1, 1, a^2/b^2) about the Earth's
-    // centre; turned into the local frame, D stays a matrix and the centre becomes a constant.
+    // The normal of an ellipsoid at p is along D p, with p relative to the Earth's centre and D =
+    // diag(1, 1, a^2/b^2). In the local frame D is still a matrix, and the centre is a constant.
     const geo::Geodetic& origin = ground.frame.origin();
     const double e2 = kFlattening * (2 - kFlattening);
     const geo::Axes pole = ground.frame.axes(kPi / 2, 0);
@@ -112,7 +112,7 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     };
     const double curvature_m =
         kEquatorialRadius_m / std::sqrt(1 - e2 * std::pow(std::sin(origin.lat_rad), 2));
-    // Where the Earth's centre lies: down the normal to the axis, then along the axis.
+    // The Earth's centre: down the normal to the axis, then along the axis.
     const glm::dvec3 origin_up(0, 0, 1);
     const glm::dvec3 centre = -(curvature_m + origin.height_m) * origin_up +
                               curvature_m * e2 * std::sin(origin.lat_rad) * axis;
@@ -155,7 +155,7 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
         glm::vec4(eye_up, -std::sqrt(1 - std::pow(curvature_m / (curvature_m + above_sea_m), 2)));
     const double eye_elevation =
         std::asin(std::clamp(dot(inputs.sun.direction, eye_up), -1.0, 1.0));
-    // Refraction goes with the density of the air around the eye, which falls by e over 10 km.
+    // Refraction is proportional to the density of air at the eye, with a scale height of 10 km.
     const double thinned =
         std::exp(std::clamp((inputs.sun.ground_height_m - above_sea_m) / 10000, -10.0, 1.0));
     const double eye_lift =
@@ -172,7 +172,8 @@ FrameBlock make_frame_block(const FrameInputs& inputs, const Ground& ground, int
     for (int i = 0; i < 3; ++i)
         block.celestial[static_cast<std::size_t>(i)] = glm::vec4(rows[i], inputs.stars.velocity[i]);
     const double base_m = ground.base_m(inputs.exaggeration);
-    // On the round Earth the lowest of the rim has a vertical of its own, and so less of its depth.
+    // On the curved Earth the lowest point of the rim has its own vertical, which shortens the
+    // depth along z.
     const double floor_m = ground.floor_m + base_m * (1 + ground.floor_m / kEquatorialRadius_m);
     block.block = {base_m / inputs.exaggeration, floor_m, ground.block_m, 0};
     const Footprint& footprint = ground.footprint;

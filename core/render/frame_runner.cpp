@@ -12,10 +12,10 @@
 namespace relevo::render {
 namespace {
 
-/// Pixels that are drawn at once under a watch: as many as a usual frame has.
+/// Most pixels drawn at once under a watch: about a usual frame.
 constexpr double kMaxWatched_px = 1 << 21;
 
-/// Draws reach no pixel outside while this lives.
+/// Restricts draws to a rectangle.
 struct Scissor {
     Scissor(int x, int y, int width, int height) {
         glScissor(x, y, width, height);
@@ -26,7 +26,7 @@ struct Scissor {
     ~Scissor() { glDisable(GL_SCISSOR_TEST); }
 };
 
-/// A group of commands by which debuggers show a pass.
+/// Names a pass for graphics debuggers.
 struct DebugGroup {
     explicit DebugGroup(const std::string& name) {
         glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name.c_str());
@@ -72,7 +72,7 @@ void FrameRunner::release() {
     is_arranged_ = false;
 }
 
-/// Passes that have written to memory of the graph have to write again: it is new.
+/// Passes that write to new targets must run again.
 void FrameRunner::forget_remade() {
     for (const Pass& pass : graph().passes)
         for (const Access& access : accesses(pass))
@@ -163,8 +163,8 @@ void FrameRunner::draw_geometry(const Pass& pass, const std::string& program,
                                 const gl::Framebuffer& target, PassContext& frame) {
     const double triangles = frame.tiles.triangles();
     const auto body = [&] { pass.body(frame); };
-    // Of a large frame the vertices come alone before, so that those that never end are found as
-    // soon as in a small one.
+    // On a large frame, runs the vertices first with one pixel, to detect endless ones as soon as
+    // on a small frame.
     if (programs_.needs_watch(program) && pixels(target) > kMaxWatched_px) {
         const Scissor corner(0, 0, 1, 1);
         programs_.draw(program, triangles, body);
@@ -172,8 +172,8 @@ void FrameRunner::draw_geometry(const Pass& pass, const std::string& program,
     programs_.draw(program, pixels(target) + triangles, body);
 }
 
-/// Covers the targets, those of a large frame in bands while the program needs a watch: a pixel
-/// that never ends is found as soon as in a small frame.
+/// Draws a full-screen triangle. Unproven programs draw large frames in bands, to detect endless
+/// pixels as soon as in a small frame.
 void FrameRunner::fill(const std::string& program, const gl::Framebuffer& target) {
     const auto draw_all = [this] {
         no_inputs_.bind();

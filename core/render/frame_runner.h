@@ -17,47 +17,47 @@
 
 namespace relevo::render {
 
-/// Executes frame graphs: for each step of the plan it binds the program, its textures and the
-/// targets, sets the state, and draws.
+/// Executes frame graphs: for each step of the plan binds program, textures and targets, sets the
+/// state, and draws.
 class FrameRunner {
   public:
-    /// A texture that no pass of the graph's own makes, by the resource's name; null: there is
-    /// none.
+    /// Finds a texture that is not produced in the graph, by the name of its resource; null if
+    /// there is none.
     using Provider =
         std::function<const gl::Texture*(const shader::TextureUnit& unit, const Terrain& terrain)>;
 
-    /// @param frames  whose passes have their bodies; must outlive this, as must the rest
+    /// @param frames  their passes must have bodies; all references must outlive this
     FrameRunner(gl::Context& context, const StitchedFrames& frames, WatchedPrograms& programs,
                 TexturePool& pool, Provider provider, const shader::ParamStore& values);
 
-    /// Sets the size of frames, and which graph they are drawn by. Where it throws, nothing has
-    /// changed. @throws Error (Failed) as GraphTargets
+    /// Sets the frame size and selects the graph. Has no effect if it throws.
+    /// @throws Error (Failed) as GraphTargets
     void arrange(bool outside, int width_px, int height_px);
-    /// Returns the memory of frames to the pool, with the last frame. Call arrange() before the
-    /// next one.
+    /// Returns all targets to the pool, including the last frame's. Call arrange() before the next
+    /// frame.
     void release();
     bool is_arranged() const { return is_arranged_; }
 
     const FrameGraph& graph() const { return graph_of(outside_); }
     const Plan& plan() const { return plan_; }
     GraphTargets& targets() { return targets_; }
-    /// Of the last frame. @pre the graph has such a texture
+    /// A texture of the last frame. @pre the graph allocates it
     const gl::Texture& texture(std::string_view resource);
 
     /// Draws a frame.
-    /// @param night  passes with a program for nights take that
-    /// @param times  filled with what each pass took if not null
+    /// @param night  uses the night programs of passes that have one
+    /// @param times  if not null, receives the duration of each pass
     void run(PassContext& frame, bool night, PassTimes* times);
 
-    /// Makes a program and its textures current. @throws Error (Failed) where a texture is missing
+    /// Binds a program and its textures. @throws Error (Failed) if a texture is missing
     void use(const std::string& program, const Terrain& terrain);
 
-    /// Fills memory with NaN where the contents of a resource begin, for tests.
+    /// Fills targets with NaN before their first use, for tests.
     void set_poison(bool poison) { poisons_ = poison; }
 
   private:
     const FrameGraph& graph_of(bool outside) const;
-    /// What a pass that is not executed in every frame depends on.
+    /// Inputs of a pass that runs only when they change.
     struct Inputs {
         std::uint64_t ground = 0;
         glm::dvec3 sun{0};
@@ -84,8 +84,8 @@ class FrameRunner {
     bool outside_ = false, poisons_ = false, is_arranged_ = false;
     Plan plan_;
     GraphTargets targets_;
-    std::map<std::string, Inputs> executed_;  // by pass: for what it was executed last
-    std::set<std::string> changed_;  // by passes of this frame that are not executed in every one
+    std::map<std::string, Inputs> executed_;  // by pass: inputs of its last execution
+    std::set<std::string> changed_;           // resources written in this frame by such passes
     gl::VertexArray no_inputs_;
 };
 

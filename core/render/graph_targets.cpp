@@ -41,7 +41,7 @@ GraphTargets::GraphTargets(const FrameGraph& graph, const Plan& plan, int width_
         }
         textures_[m] = pool.take(kind_of(first.kind), first.format,
                                  extent_of(first.size, width_px, height_px), label);
-        // A stencil is never sampled.
+        // Stencils are not sampled.
         if (first.format != gl::Format::Stencil8)
             textures_[m]->set_sampling(first.linear ? gl::Filter::Linear : gl::Filter::Nearest,
                                        gl::Wrap::Clamp);

@@ -12,30 +12,31 @@
 
 namespace relevo::render {
 
-/// The memory of a plan on the device, for frames of one size.
+/// Textures, buffers and framebuffers of a plan, for one frame size.
 class GraphTargets {
   public:
     GraphTargets() = default;
-    /// @throws Error (Failed) if the device has no memory for it, or cannot draw to a combination
-    /// @param pool  that textures come from; must outlive this
+    /// @throws Error (Failed) if the device is out of memory, or does not support a combination of
+    ///     targets
+    /// @param pool  source of textures; must outlive this
     GraphTargets(const FrameGraph& graph, const Plan& plan, int width_px, int height_px,
                  TexturePool& pool);
 
-    /// A texture that the graph has allocated; null: there is none of that name.
+    /// An allocated texture, or null.
     gl::Texture* texture(std::string_view resource);
-    /// A buffer that the graph has allocated; null: there is none of that name.
+    /// An allocated buffer, or null.
     const gl::Buffer* buffer(std::string_view resource) const;
-    /// What a step of the plan draws to; null if it draws to nothing.
+    /// The framebuffer of a plan's step, or null.
     const gl::Framebuffer* framebuffer(std::size_t step) const;
 
-    /// Fills the memory of the resources that begin in a step with NaN, so that a test shows who
-    /// reads what no pass has written.
+    /// Fills resources whose lifetime begins in a step with NaN, so that tests detect reads of
+    /// unwritten memory.
     void poison(const FrameGraph& graph, const Plan::Step& step);
 
   private:
     struct Named {
         std::string name;
-        int memory;  ///< index in textures_ and buffers_
+        int memory;  ///< index into textures_ and buffers_
     };
     int memory_of(std::string_view resource) const;
     gl::Framebuffer make_framebuffer(const Pass& pass);

@@ -14,17 +14,17 @@
 namespace relevo::render {
 namespace {
 
-constexpr int kPiecesAcross = 48;  // of a DEM, when it is thinned out for the camera
-constexpr int kRimLines = 256;     // rows and columns whose ends are kept then
-/// Squares of a footprint along its longer side, and of them beside the ground on each side.
+constexpr int kPiecesAcross = 48;  // pieces of a DEM along each axis
+constexpr int kRimLines = 256;     // rows and columns whose ends are kept
+/// Squares along a footprint's longer side, and of its margin on each side.
 constexpr int kFootprintSquares = 96, kFootprintRoom = 16;
-constexpr int kFootprintSamples = 192;  // of the grid along each side
-/// The block's depth, as a share of the DEM's width.
+constexpr int kFootprintSamples = 192;  // of the grid along each axis
+/// Depth of the block as a fraction of the DEM's width.
 constexpr double kBlockShare = 0.07;
-/// Wider DEMs go round the Earth; they have no sides [m].
+/// Wider DEMs are globes without sides [m].
 constexpr double kWidestBlock_m = 8e6;
 
-/// Which squares hold ground, by samples of the grid that are less than a square apart.
+/// Samples are less than a square apart.
 Footprint make_footprint(const dem::Heightfield& dem, const Ground& ground) {
     const glm::dvec2 sides_m = ground.north_east_m - ground.south_west_m;
     Footprint footprint;
@@ -74,13 +74,13 @@ Footprint make_footprint(const dem::Heightfield& dem, const Ground& ground) {
     return footprint;
 }
 
-/// What the DEM is as a body seen from outside.
+/// Sets the footprint and the block.
 void make_block(const dem::Heightfield& dem, Ground& ground) {
     const glm::dvec2 sides_m = ground.north_east_m - ground.south_west_m;
     ground.footprint = make_footprint(dem, ground);
     if (std::max(sides_m.x, sides_m.y) > kWidestBlock_m) return;
     ground.block_m = kBlockShare * std::sqrt(sides_m.x * sides_m.y);
-    // On the round Earth the rim lies lower than the middle.
+    // On the curved Earth the rim is below the centre.
     const double columns = dem.grid.columns() - 1, rows = dem.grid.rows() - 1;
     std::array<double, kPiecesAcross + 1> lowest{};
     parallel_for(0, kPiecesAcross + 1, 4, [&](int first, int last) {
@@ -109,7 +109,7 @@ Ground make_ground(const dem::Heightfield& dem, const dem::Grid& whole) {
     const double columns = whole.columns() - 1, rows = whole.rows() - 1;
     ground.south_west_m = glm::dvec2(1e300);
     ground.north_east_m = glm::dvec2(-1e300);
-    // A map of the world has corners that are no place; more of it then says where its ground is.
+    // Corners of a world map may be off the Earth; then more samples are taken.
     for (const int steps : {2, kPiecesAcross}) {
         bool all_on_earth = true;
         for (int i = 0; i <= steps; ++i) {
@@ -130,7 +130,7 @@ Ground make_ground(const dem::Heightfield& dem, const dem::Grid& whole) {
 
 namespace {
 
-/// Collects posts of a DEM as they are drawn.
+/// Computes drawn positions of posts.
 class Collector {
   public:
     Collector(const dem::Heightfield& dem, const Ground& ground, double exaggeration)
@@ -150,13 +150,13 @@ class Collector {
         if (!std::isnan(point.x)) points.push_back(point);
     }
 
-    /// The first and the last post of rows or columns that have a height.
+    /// Adds the first and the last valid post of rows and columns.
     void add_ends(std::vector<glm::dvec3>& rim) const {
         const int width = dem_.height_m.width(), height = dem_.height_m.height();
         const auto ends = [&](int lines, int length, const auto& place) {
             const int step = std::max(1, lines / kRimLines);
             for (int next = 0; next < lines + step - 1; next += step) {
-                const int line = std::min(next, lines - 1);  // the last one too
+                const int line = std::min(next, lines - 1);  // includes the last one
                 const auto there = [&](int along) {
                     const glm::ivec2 post = place(line, along);
                     return has(post.x, post.y);
@@ -257,12 +257,12 @@ bool is_outside(const Ground& ground, const glm::dvec3& eye_m, double exaggerati
     const glm::dvec2 sides_m = ground.north_east_m - ground.south_west_m;
     const double above_m =
         ground.frame.to_geodetic(eye_m).height_m - ground.highest_m * exaggeration;
-    constexpr double kHigh = 0.35;  // of the DEM's width
-    // The extent of what goes round the Earth is no width.
+    constexpr double kHigh = 0.35;  // as a fraction of the DEM's width
+    // The extent of a globe is not its width.
     const double width_m =
         ground.block_m > 0 ? std::min(sides_m.x, sides_m.y) : 2 * geo::kEquatorialRadius_m;
     if (above_m > kHigh * width_m) return true;
-    // What goes round the Earth has no side to stand beside.
+    // A globe has no outside at ground level.
     return ground.block_m > 0 && ground.footprint.at(glm::dvec2(eye_m)) < 0.5;
 }
 

@@ -11,9 +11,9 @@
 namespace relevo::render {
 namespace {
 
-/// Half the pixel's width [m]. Rasterisers round corners of triangles to 1/256 of a pixel.
+/// Half of the pixel's width [m]. Rasterisers round vertices to 1/256 pixel.
 constexpr double kHalfPixel_m = 0.5;
-/// Beyond the range of the ground's heights, for what rounding takes [m].
+/// Margin of the height range against rounding [m].
 constexpr double kMargin_m = 1;
 
 }  // namespace

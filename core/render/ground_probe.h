@@ -9,30 +9,31 @@
 
 namespace relevo::render {
 
-/// Measures the height of the drawn ground on the vertical through an eye. The ground is drawn
-/// there, one pixel wide and from above, with the program of the picture: so all that places a
-/// vertex counts, such as the level of detail and effects that displace.
+/// Measures the height of the drawn ground on the vertical through an eye. Draws the ground from
+/// above into one pixel with the frame's own program, so that level of detail and displacement are
+/// included.
 class GroundProbe {
   public:
-    /// Looks straight down from an eye through one pixel: the view that selects the tiles.
-    /// @param tolerance    of the picture's view, LodView::tolerance
+    /// Camera straight down from an eye through one pixel; selects the tiles.
+    /// @param picture      the frame's camera
+    /// @param tolerance    LodView::tolerance of the frame
     /// @param pixel_error  of the terrain; 0 draws every post
     static scene::Camera camera_below(const scene::Camera& picture, const geo::LocalFrame& frame,
                                       double tolerance, double pixel_error);
 
-    /// Has a frame's block show the vertical through its eye, and heights as depths.
+    /// Sets an orthographic projection of the vertical through the eye, with heights as depths.
     void aim(const FrameInputs& inputs, const Ground& ground, FrameBlock& block);
 
-    /// Draws into the pixel. @returns the height of the highest ground drawn [m]: ellipsoidal,
-    /// exaggerated; accurate to 1 cm of a range of heights of 20 km
-    /// (tests/session/test_standing.cpp). None where none is drawn.
-    /// @param has_voids  the ground is clipped at them
+    /// Calls `draw` with the pixel as target. @returns height of the highest ground [m],
+    /// ellipsoidal and exaggerated; accurate to 1 cm within a height range of 20 km
+    /// (tests/session/test_standing.cpp). nullopt without ground.
+    /// @param has_voids  clips the ground at voids
     std::optional<double> height_m(bool has_voids, const std::function<void()>& draw);
 
   private:
     gl::Texture depth_;
     gl::Framebuffer target_;
-    double lowest_m_ = 0, range_m_ = 1;  // heights of depths 0 and 1
+    double lowest_m_ = 0, range_m_ = 1;  // lowest_m_: height of depth 0; range_m_: of depths 0 to 1
 };
 
 }  // namespace relevo::render

@@ -2,8 +2,8 @@
 
 namespace relevo::render {
 
-/// Whether a frame waits for the pages of the ground that it needs, or has coarser ground where
-/// they are missing, while they are made beside it.
-enum class Loading { Wait, Beside };
+/// Whether a frame waits for the tile pages that it needs (Wait), or draws coarser ground while
+/// missing ones are made in the background.
+enum class Loading { Wait, Background };
 
 }  // namespace relevo::render

@@ -18,18 +18,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using geo::kEquatorialRadius_m;
 using geo::kFlattening;
 
-/// Where morphing starts, as a share of a level's range (Strugar's paper, section 4.2).
+/// Start of morphing as a fraction of a level's range (Strugar, section 4.2).
 constexpr double kMorphStart = 0.66;
 
-/// Tiles whose error a level's range vouches for; the rest are spikes and cliffs, which stand out
-/// at any level.
+/// Fraction of tiles whose error determines a level's range. The others are spikes and cliffs,
+/// which exceed any range.
 constexpr double kVouchedShare = 0.98;
 
-/// A level counts as wrong by this many times its root mean square distance from the posts.
+/// Error of a level, in RMS distances from the posts.
 constexpr double kSigmas = 4;
 
-/// Error of the biquadratic net over a tile of side s on a sphere of radius R, in s^3 / R^2: that
-/// of interpolating a sine at three points, both ways, with room for the projection's own.
+/// Error of the biquadratic proxy grid over a tile of side s on a sphere of radius R, in s^3 / R^2:
+/// interpolation of a sine at three points along both axes, plus a margin for the projection.
 constexpr double kNetError = 0.03;
 
 }  // namespace
@@ -74,7 +74,7 @@ TileTree::TileTree(const dem::Pyramid& pyramid, const dem::Grid& grid, const geo
     earth_centre_m_ = frame.to_local({0, 0, -kEquatorialRadius_m});
     polar_axis_ = frame.up(kPi / 2, 0);
 
-    // Geographic grids are widest nearest to the equator.
+    // The widest spacing of geographic grids is nearest to the equator.
     constexpr int kSamples = 8;
     const glm::dvec2 last(grid.columns() - 1, grid.rows() - 1);
     for (int j = 0; j <= kSamples; ++j) {
@@ -157,7 +157,7 @@ Box TileTree::box(const TileKey& key, double exaggeration) {
             }
         }
     }
-    // Between those points the net bulges by a sixteenth of its second differences.
+    // Between those points the proxy grid deviates by up to 1/16 of its second differences.
     const auto& p = n.net.position_m;
     const double bulge =
         (length(p[2]) + length(p[6]) + length(p[5]) + length(p[7]) + length(p[8])) / 16;
@@ -170,8 +170,8 @@ Box TileTree::box(const TileKey& key, double exaggeration) {
 }
 
 bool TileTree::below_horizon(const Box& box, const LodView& view) const {
-    // In a space where the ellipsoid, lowered to the lowest ground as drawn, is the unit sphere.
-    // Source: P. Cozzi, K. Ring, 3D Engine Design for Virtual Globes, 2011, section 12.
+    // In coordinates in which the ellipsoid, lowered to the lowest drawn ground, is the unit
+    // sphere. Source: P. Cozzi, K. Ring, 3D Engine Design for Virtual Globes, 2011, section 12.
     const double lowered = std::min(lowest_m_ * view.exaggeration, 0.0);
     const double a = kEquatorialRadius_m + lowered;
     const double b = kEquatorialRadius_m * (1 - kFlattening) + lowered;
@@ -248,7 +248,7 @@ std::vector<TileDraw> TileTree::select(const LodView& view, const Resident& resi
 std::vector<TileDraw> TileTree::select_from_eye(const LodView& view, const Resident* resident) {
     const LodRanges ranges = this->ranges(view);
     std::vector<TileDraw> draws;
-    // True where the tile is dealt with, false where it is left to its parent's level.
+    // Returns false if the parent has to draw the tile's quadrant.
     const auto take = [&](auto&& self, const TileKey& key) -> bool {
         if (pyramid_->bounds(key.level, key.at).empty()) return true;
         const Box b = box(key, view.exaggeration);

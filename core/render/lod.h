@@ -17,19 +17,19 @@
 #include "render/patch_net.h"
 #include "scene/camera.h"
 
-/// Which tiles of a DEM's pyramid a view is drawn from.
+/// Selects the tiles of a DEM's pyramid to draw.
 ///
 /// After F. Strugar, Continuous Distance-Dependent Level of Detail for Rendering Heightmaps,
-/// Journal of Graphics, GPU and Game Tools 14(4), 2009: each level has a range, the distance from
-/// the eye up to which it is drawn; over the last third of it the vertices glide onto the triangles
-/// of the next coarser level, so that levels meet without cracks and change without a jump. Here
-/// the ranges follow from what each level is known to be wrong by.
+/// Journal of Graphics, GPU and Game Tools 14(4), 2009. A level is drawn up to its range, a
+/// distance from the eye. Over the last third of the range, vertices morph onto the triangles of
+/// the next coarser level, so that levels meet without cracks and change without popping. Here
+/// ranges are derived from each level's measured error.
 namespace relevo::render {
 
 /// A tile of dem::Pyramid.
 struct TileKey {
     int level = 0;
-    glm::ivec2 at{0, 0};  ///< column and row of the tile in its level
+    glm::ivec2 at{0, 0};  ///< column and row within the level
 
     std::uint64_t packed() const {
         return static_cast<std::uint64_t>(level) << 56 | static_cast<std::uint64_t>(at.y) << 28 |
@@ -38,29 +38,30 @@ struct TileKey {
     friend bool operator==(const TileKey&, const TileKey&) = default;
 };
 
-/// A box along the axes of the local frame [m].
+/// An axis-aligned box in the local frame [m].
 struct Box {
     glm::dvec3 low{0}, high{0};
 
-    /// From a point to the nearest of the box; 0 inside.
+    /// Distance of a point to the box; 0 inside.
     double distance(const glm::dvec3& point) const;
-    /// Whether it lies wholly on the negative side of one of the planes (xyz normal, w offset).
+    /// True if the box is entirely on the negative side of one of the planes (xyz: normal, w:
+    /// offset).
     bool outside(std::span<const glm::dvec4> planes) const;
 };
 
-/// What is seen, and how well it has to be drawn.
+/// A view volume and the required accuracy.
 struct LodView {
-    /// Half-spaces whose intersection holds all that can be seen.
+    /// Half-spaces whose intersection is the view volume.
     std::vector<glm::dvec4> planes;
-    /// From where; none for an orthographic view, which sees each tile as coarse as it alone may
-    /// be.
+    /// Position of the eye; nullopt for an orthographic view, where each tile's level is
+    /// independent of distance.
     std::optional<glm::dvec3> eye_m;
-    /// Largest angle [rad] by which a point of the picture may be displaced, or with no eye the
-    /// largest distance [m]. 0: every post is drawn.
+    /// Largest permitted displacement of a point as seen from the eye [rad], or for an orthographic
+    /// view [m]. 0: all posts are drawn.
     double tolerance = 0;
     double exaggeration = 1;
 
-    /// @param pixel_error  tolerance in pixels at the picture's middle
+    /// @param pixel_error  tolerance in pixels at the frame's centre
     static LodView of_camera(const scene::Camera& camera, int width_px, int height_px,
                              double pixel_error, double exaggeration);
 };
@@ -68,56 +69,55 @@ struct LodView {
 /// A tile to draw.
 struct TileDraw {
     TileKey key;
-    std::uint8_t quadrants = 0xf;  ///< bit x + 2 y: the part of it that is drawn
-    double distance_m = 0;         ///< of its box from the eye
+    std::uint8_t quadrants = 0xf;  ///< bit x + 2 y: quadrants to draw
+    double distance_m = 0;         ///< from the eye to its box
 };
 
-/// Up to where each level is drawn [m].
+/// Ranges of levels [m].
 struct LodRanges {
     struct Range {
         double range_m = 0;
-        double morph_start_m = 0;  ///< from here to range_m vertices glide to the coarser level
+        double morph_start_m = 0;  ///< from here to range_m vertices morph to the coarser level
     };
     std::vector<Range> levels;
 };
 
-/// The tiles of a DEM as a quadtree in space.
+/// Spatial quadtree of a DEM's tiles.
 class TileTree {
   public:
-    /// All must outlive this.
+    /// All arguments must outlive this.
     TileTree(const dem::Pyramid& pyramid, const dem::Grid& grid, const geo::LocalFrame& frame);
 
-    /// How far effects move the ground from now on: boxes and ranges hold where it ends up too.
+    /// Sets the bounds of displacement, which extend boxes and ranges.
     void displace(const Displacement& displacement);
     const Displacement& displacement() const { return displacement_; }
 
-    /// Where the tile's part of the DEM lies; u and v run over that part. Kept once asked for.
+    /// Proxy grid of a tile; u and v run from 0 to 1 over its part of the DEM. Cached.
     const PatchNet& net(const TileKey& key);
 
-    /// Holds all of a tile's posts, where they are and where effects move them.
+    /// Bounding box of a tile's posts, displaced and undisplaced.
     Box box(const TileKey& key, double exaggeration);
 
-    /// Ranges that keep the tolerance of a view from an eye, and are far enough apart for levels to
-    /// meet.
+    /// Ranges that meet a view's tolerance and let adjacent levels morph without cracks.
     LodRanges ranges(const LodView& view);
 
-    /// The tiles to draw, nearest first. Every visible post is covered exactly once. In an
-    /// orthographic view levels do not meet: skirts have to hang down to the lowest ground.
+    /// The tiles to draw, nearest first. Covers each visible post exactly once. In an orthographic
+    /// view levels do not match at their edges: skirts have to reach the lowest ground.
     std::vector<TileDraw> select(const LodView& view);
 
-    /// Which tiles can be drawn.
+    /// Which tiles have pages.
     struct Resident {
         std::function<bool(const TileKey&)> is_there;
-        /// Filled with those that a view asks for, there or not, and those that stand above them.
+        /// Receives the tiles that a view needs, with or without pages, and their ancestors.
         std::vector<TileKey>& needed;
     };
-    /// The same from an eye, with a coarser tile in the place of those that are not there. The root
-    /// has to be.
+    /// As above for a perspective view, with coarser tiles in place of those without pages. The
+    /// root must have a page.
     std::vector<TileDraw> select(const LodView& view, const Resident& resident);
 
-    /// Tiles that can be seen at no more than `nearest` levels from the top; for pages that are
-    /// chosen by distance alone.
-    /// @param wanted  whether a tile at this distance is to be divided further
+    /// Visits visible tiles from `key` down to `last_level`, for pages that are selected by
+    /// distance only.
+    /// @param wanted  wanted(level, distance_m): true to visit a tile's children
     template <typename Wanted, typename Take>
     void visit(const LodView& view, const TileKey& key, int last_level, const Wanted& wanted,
                const Take& take) {
@@ -137,7 +137,7 @@ class TileTree {
     struct Node {
         PatchNet net;
         Box box;
-        double exaggeration = -1;  ///< that the box was made with
+        double exaggeration = -1;  ///< used for `box`; -1: not computed
     };
 
     template <typename Visit>
@@ -164,9 +164,9 @@ class TileTree {
     glm::dvec3 polar_axis_;
     double longest_spacing_m_ = 0;
     Displacement displacement_;
-    double lowest_m_ = 0;           // of the whole ground, displaced
-    std::vector<double> error_m_;   // by level
-    std::vector<double> relief_m_;  // largest of a tile, displaced, by level
+    double lowest_m_ = 0;           // of all displaced ground
+    std::vector<double> error_m_;   // error of a level
+    std::vector<double> relief_m_;  // by level: largest height range of a tile, displaced
     std::unordered_map<std::uint64_t, Node> nodes_;
 };
 

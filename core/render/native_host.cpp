@@ -50,7 +50,7 @@ glm::dmat3 axes_of(const relevo_box& box) {
     return {vector_of(box.right), vector_of(box.up), vector_of(box.towards)};
 }
 
-/// The frame that is being prepared.
+/// Inputs of the frame that is being prepared.
 struct FrameState {
     Terrain& terrain;
     const Ground& ground;
@@ -167,7 +167,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         full.lowest_m = drawn.ground.lowest_m;
         full.highest_m = drawn.ground.highest_m;
         full.post_spacing_m = drawn.terrain.normal_spacing_m();
-        full.afresh = drawn.inputs.afresh ? 1 : 0;
+        full.afresh = drawn.inputs.deterministic ? 1 : 0;
         return full;
     }
 
@@ -183,7 +183,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         auto program =
             gl::Program::build(text.vertex, text.fragment, path->filename().string(), failure);
         if (!program) {
-            shader::LineMap lines(2);  // of the head
+            shader::LineMap lines(2);  // lines of the preamble
             for (int line = 1; line <= 1 + std::ranges::count(own, '\n'); ++line)
                 lines.push_back({module.id(), file, line});
             failed(fmt::format("{}: the driver refuses it\n{}", file,
@@ -282,7 +282,7 @@ struct NativeHost::Impl : effect::ModuleServices {
             .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true, /*clear=*/0.0F},
             .clips_voids = drawn.terrain.has_holes(),
             .clamps_depth = true};
-        // Light meets the ground's upper side first. Under a void it may meet the lower one.
+        // Light hits the upper side of ground first, except under voids.
         if (!drawn.terrain.has_holes())
             drawing.winds_counterclockwise = drawn.terrain.winds_counterclockwise();
         const DrawScope scope(framebuffer, drawing);
@@ -337,8 +337,8 @@ struct NativeHost::Impl : effect::ModuleServices {
     }
 
     /// Calls a function of the module.
-    /// @param what  as a message says that it fails
-    /// @throws Error (Failed) if it does, or throws
+    /// @param what  describes a failure in the message
+    /// @throws Error (Failed) if it returns an error or throws
     template <typename Body>
     void call(const char* function, const char* what, const Body& body) {
         clear_reason();

@@ -14,41 +14,41 @@
 
 namespace relevo::render {
 
-/// The GLSL of a program with a module's own fragment shader.
+/// Shader sources of a module's full-screen program. @param own  its fragment shader
 struct NativeProgramText {
     std::string vertex, fragment;
 };
 NativeProgramText native_program_text(std::string_view own);
 
-/// The services of relevo/plugin.h for one renderer, and the module's instance.
+/// A module's instance, and the services of relevo/plugin.h for one renderer.
 class NativeHost {
   public:
-    /// Calls `draw` with the program current that draws the terrain orthographically.
+    /// Draws terrain orthographically: binds the program, then calls `draw`.
     using DrawDepth =
         std::function<void(const Terrain& terrain, const std::function<void()>& draw)>;
 
-    /// Creates the instance. The module, the context and the values must outlive this.
-    /// @param values  the renderer's own, whose host parameters the module writes
-    /// @throws Error (Failed) `render: LIBRARY: reason` if the module cannot
+    /// Creates the instance. Module, context and values must outlive this.
+    /// @param values  the renderer's; the module writes its host parameters
+    /// @throws Error (Failed) `render: LIBRARY: reason` if the module fails
     NativeHost(const effect::NativeModule& module, gl::Context& context, DrawDepth draw_depth,
                shader::ParamStore& values, int width_px, int height_px);
     NativeHost(NativeHost&&) noexcept;
     NativeHost& operator=(NativeHost&&) noexcept;
     ~NativeHost();
 
-    /// Calls the module's prepare(). The image's tiles stay drawable.
-    /// @throws Error (Failed) as above
+    /// Calls the module's prepare(). Does not evict tile pages of `picture`, the frame's selection.
+    /// @throws Error (Failed) as the constructor
     void prepare(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                  const FrameBlock& block, const TileSelection& picture);
 
-    /// Frames have this size from the next one on.
+    /// Sets the size of subsequent frames.
     void resize(int width_px, int height_px);
 
-    /// A texture that the module has created with that name, "vsm.moments"; or null.
+    /// The module's texture with a name such as "vsm.moments", or null.
     const gl::Texture* find(std::string_view resource) const;
 
     const std::string& id() const;
-    /// Whether a host parameter was written since the last call.
+    /// True if a host parameter was written since the last call.
     bool take_changes();
 
   private:

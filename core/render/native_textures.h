@@ -12,26 +12,26 @@
 
 namespace relevo::render {
 
-/// The textures that a native module has created. effect::ModuleServices has checked the arguments.
+/// Textures of a native module. effect::ModuleServices has validated all arguments.
 class NativeTextures {
   public:
     explicit NativeTextures(std::string plugin) : plugin_(std::move(plugin)) {}
 
-    /// @throws Error (Failed) if the device cannot create it
+    /// @throws Error (Failed) if the device cannot create the texture
     void create(relevo_texture name, const effect::ModuleTexture& info);
     void destroy(relevo_texture name) { textures_.erase(name); }
     gl::Texture& get(relevo_texture name) { return textures_.at(name).texture; }
     void write(const relevo_texels& texels);
-    /// Level 0 of a layer.
+    /// Reads level 0 of a layer.
     void read(relevo_texture name, int layer, std::span<float> out) const;
 
-    /// The newest one of that name, "vsm.moments"; or null.
+    /// The newest texture of a name such as "vsm.moments", or null.
     const gl::Texture* find(std::string_view resource) const;
 
   private:
     struct Made {
         gl::Texture texture;
-        std::string resource;  // empty: not read by name
+        std::string resource;  // empty: no sampler reads it
     };
 
     std::string plugin_;

@@ -10,7 +10,7 @@
 namespace relevo::render {
 namespace {
 
-constexpr std::size_t kBatch = 64;  // pages that are made before they are handed to the device
+constexpr std::size_t kBatch = 64;  // pages in memory before their upload
 
 }  // namespace
 
@@ -21,11 +21,11 @@ struct PageCache::Impl {
     };
 
     std::vector<PageLayer> layers;
-    std::vector<gl::Texture> textures;  // of the layers
+    std::vector<gl::Texture> textures;  // one for each layer
     std::vector<Slot> slots;
     std::unordered_map<std::uint64_t, int> slot_of;
     std::uint64_t now = 0;
-    std::optional<PageMaker> maker;  // ends before what it makes from
+    std::optional<PageMaker> maker;  // last, to be destroyed before the layers it calls
 
     Impl(std::vector<PageLayer> given, int count)
         : layers(std::move(given)), slots(static_cast<std::size_t>(count)) {
@@ -49,7 +49,7 @@ struct PageCache::Impl {
         return found == slot_of.end() ? -1 : found->second;
     }
 
-    /// Those that are there count as used. @returns the others
+    /// Marks resident pages as used. @returns the others
     std::vector<TileKey> missing(std::span<const TileKey> keys) {
         assert(keys.size() <= slots.size());
         ++now;
@@ -64,7 +64,7 @@ struct PageCache::Impl {
         return missing;
     }
 
-    /// Slots, those first that have not been used for longest.
+    /// Slots, least recently used first.
     std::vector<int> oldest() const {
         std::vector<int> order(slots.size());
         std::iota(order.begin(), order.end(), 0);
@@ -111,7 +111,7 @@ struct PageCache::Impl {
         std::size_t next = 0;
         for (const MadePage& page : maker->take()) {
             const auto found = std::ranges::find(wanted, page.key);
-            if (found == wanted.end()) continue;  // no longer wanted, or already there
+            if (found == wanted.end()) continue;  // no longer requested, or already resident
             put(page, order[next++]);
             wanted.erase(found);
         }

@@ -43,7 +43,7 @@ void PageMaker::want(std::vector<TileKey> keys) {
 std::vector<MadePage> PageMaker::take() {
     const std::lock_guard lock(mutex_);
     if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
-    // What was made is known to who takes it; the rest of a batch is not there yet.
+    // Pages in made_ are still listed in in_work_ until they are taken.
     for (const MadePage& page : made_)
         in_work_.erase(std::remove(in_work_.begin(), in_work_.end(), page.key), in_work_.end());
     return std::exchange(made_, {});
@@ -59,7 +59,7 @@ void PageMaker::run() {
     while (true) {
         changed_.wait(lock, [&] { return ends_ || !wanted_.empty(); });
         if (ends_) return;
-        // Few at a time, so that what is wanted may change.
+        // Small batches, so that want() takes effect soon.
         const std::size_t count =
             std::min(wanted_.size(), static_cast<std::size_t>(2 * thread_count()));
         const auto end = wanted_.begin() + static_cast<std::ptrdiff_t>(count);

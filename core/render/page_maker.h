@@ -13,31 +13,31 @@
 
 namespace relevo::render {
 
-/// The texels of a page in each of its layers.
+/// Texels of a page, one vector for each layer.
 struct MadePage {
     TileKey key;
     std::vector<std::vector<std::byte>> layers;
 };
 
 /// Makes pages on all processors.
-/// @param make  texels of a page in each layer; called on several threads at once
+/// @param make  called on several threads
 std::vector<MadePage> make_pages(std::span<const TileKey> keys,
                                  const std::function<MadePage(const TileKey&)>& make);
 
-/// Makes pages beside the thread that draws.
+/// Makes pages in the background.
 class PageMaker {
   public:
     explicit PageMaker(std::function<MadePage(const TileKey&)> make);
     PageMaker(const PageMaker&) = delete;
     PageMaker& operator=(const PageMaker&) = delete;
-    /// Waits for the pages that are being made.
+    /// Waits for pages in progress.
     ~PageMaker();
 
-    /// What to make from now on, first things first, in place of what was wanted before.
+    /// Replaces the queue of pages to make.
     void want(std::vector<TileKey> keys);
-    /// What has been made since the last call. @throws what `make` threw
+    /// Pages that were made since the last call. @throws what `make` threw
     std::vector<MadePage> take();
-    /// Whether there is more to come than take() would give now.
+    /// True if pages are being made that take() would not return yet.
     bool is_at_work() const;
 
   private:

@@ -14,8 +14,8 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// A block of a level with its coverage blurred, so that the cut beside holes, at one half, is
-/// smooth where posts would make steps. Nodes stay on the side of the cut that they are on.
+/// A block of a level with its coverage blurred, which smooths the clipped edge of voids. Nodes
+/// stay on their side of 0.5.
 dem::Pyramid::Block smoothly_cut(const dem::Pyramid& pyramid, int level, glm::ivec2 first,
                                  int columns, int rows) {
     if (!pyramid.has_holes()) return pyramid.block(level, first, columns, rows);
@@ -60,7 +60,7 @@ std::vector<float> height_page(const dem::Pyramid& pyramid, int level, glm::ivec
     }
     const glm::ivec2 last = pyramid.size(level) - 1;
     const auto on_level = [&](int i, int n) { return std::clamp(i, 0, n); };
-    // The part of the coarser level that the page lies on.
+    // The part of the coarser level under the page.
     const int left = pyramid.column_in_coarser(level, on_level(first.x, last.x)).from;
     const int above = pyramid.row_in_coarser(level, on_level(first.y, last.y)).from;
     constexpr int kCoarse = kHeightPage_px / 2 + 3;
@@ -94,22 +94,22 @@ std::vector<float> surface_page(const dem::Pyramid& pyramid, int level, glm::ive
 
 namespace {
 
-/// Posts of a page's row, and what their normals have in common.
+/// Posts of a page's row, and the constants of their normals.
 struct NormalRow {
-    // Of each post: its height, and those beside it, NaN where there is none.
+    // Heights of each post and its neighbours, NaN without one.
     const float *here, *west, *east, *north, *south;
-    const float* u;                  // where it is on the net
-    const float *to_west, *to_east;  // posts, 0 where there is none
+    const float* u;                  // of each post on the proxy grid
+    const float *to_west, *to_east;  // distances to neighbours in posts, 0 without one
     float to_north, to_south;
     float step_x, step_y;
-    glm::vec3 up0, up_u, up_v;            // up there: up0 + u * up_u + up_v
-    glm::vec3 base_u0, base_u1;           // the net's derivative by u: base_u0 + u * base_u1
-    glm::vec3 base_v0, base_v1, base_v2;  // and by v: base_v0 + u * (base_v1 + u * base_v2)
-    glm::vec3 rise_u, rise_v;             // what a metre up adds to them
+    glm::vec3 up0, up_u, up_v;            // vertical: up0 + u * up_u + up_v
+    glm::vec3 base_u0, base_u1;           // derivative of position by u: base_u0 + u * base_u1
+    glm::vec3 base_v0, base_v1, base_v2;  // by v: base_v0 + u * (base_v1 + u * base_v2)
+    glm::vec3 rise_u, rise_v;             // change of these derivatives per metre of height
     glm::vec3 pole, east_middle;
 };
 
-/// Rise a post between neighbours, from both sides where both are there, else from the one that is.
+/// Slope in metres per post: a central difference, or one-sided next to a missing neighbour.
 inline float slope_of(float before, float here, float after, float to_before, float to_after) {
     const bool has_before = before == before, has_after = after == after;
     const float low = has_before ? before : here, high = has_after ? after : here;
@@ -117,9 +117,9 @@ inline float slope_of(float before, float here, float after, float to_before, fl
     return (high - low) / (posts > 0 ? posts : 1.0f);
 }
 
-/// To the nearest whole number, the even one of two.
+/// Rounds half to even.
 inline int nearest(float value) {
-    constexpr float kWhole = 12582912.0f;  // floats from there on have no fraction
+    constexpr float kWhole = 12582912.0f;  // floats of this magnitude have no fraction
     return static_cast<int>((value + kWhole) - kWhole);
 }
 
@@ -129,10 +129,10 @@ inline std::uint32_t snorm16(float value) {
     return static_cast<std::uint32_t>(nearest((least < 1.0f ? least : 1.0f) * 32767.0f)) & 0xffffU;
 }
 
-/// @param to  east in the lower half of each, north in the upper one
+/// @param to  east in the low half, north in the high half
 void encode_normals(const NormalRow& given, std::uint32_t* to) {
     using vec3 = glm::vec3;
-    const NormalRow row = given;  // nothing is written to it, as far as compilers know
+    const NormalRow row = given;  // a copy, so that compilers need not assume aliasing with `to`
     for (int i = 0; i < kNormalPage_px; ++i) {
         const float h = row.here[i], u = row.u[i], to_west = row.to_west[i],
                     to_east = row.to_east[i], west = row.west[i], east = row.east[i];
@@ -148,7 +148,7 @@ void encode_normals(const NormalRow& given, std::uint32_t* to) {
         const vec3 normal = across * ((dot(across, up) < 0 ? -1.0f : 1.0f) / length(across));
         const vec3 aside = cross(row.pole, up);
         const float reach = dot(aside, aside);
-        const bool has_east = reach > 1e-12f;  // not at a pole
+        const bool has_east = reach > 1e-12f;  // false at a pole
         const vec3 unit = aside / std::sqrt(has_east ? reach : 1.0f);
         const vec3 eastwards(has_east ? unit.x : row.east_middle.x,
                              has_east ? unit.y : row.east_middle.y,
@@ -157,11 +157,12 @@ void encode_normals(const NormalRow& given, std::uint32_t* to) {
     }
 }
 
-/// What of a page's posts is the same along its columns.
+/// Values that depend only on the column.
 struct NormalColumns {
     using Figures = std::array<float, kNormalPage_px>;
     Figures u, to_west, to_east;
-    std::array<int, kNormalPage_px> at;  // of the page's block, which has a node more on each side
+    // Indices into the page's block, which has one more node on each side.
+    std::array<int, kNormalPage_px> at;
 
     NormalColumns(const dem::Pyramid& pyramid, int level, int first_node, int first, float step) {
         const int last = pyramid.size(level).x - 1;
@@ -175,8 +176,8 @@ struct NormalColumns {
         }
     }
 
-    /// A row's figures at the columns, or `aside` of them.
-    /// @param moved  memory for them where columns are not one beside the other, as beside the DEM
+    /// A row's values at the columns, shifted by `aside`.
+    /// @param moved  buffer, used if columns are not contiguous, as at the DEM's edge
     const float* of(std::span<const float> row, int aside, Figures& moved) const {
         const float* const from = row.data() + aside;
         if (at.front() == 1 && at.back() == kNormalPage_px) return from + 1;
@@ -186,7 +187,7 @@ struct NormalColumns {
     }
 };
 
-/// What of a row is the same for all its posts. @param v  where it is on the net
+/// Constants of a row. @param v  of the row on the proxy grid
 NormalRow normal_row(const PatchNet& net, const glm::dvec3& axis, float v) {
     using vec3 = glm::vec3;
     std::array<vec3, 9> p;
@@ -210,12 +211,12 @@ NormalRow normal_row(const PatchNet& net, const glm::dvec3& axis, float v) {
 
 std::vector<std::uint32_t> normal_page(const dem::Pyramid& pyramid, int level, glm::ivec2 page,
                                        const PatchNet& net, const glm::dvec3& axis) {
-    // Everything from here on is relative to the page's middle: floats hold it to micrometres.
+    // Relative to the page's centre, single precision is accurate to micrometres.
     const glm::ivec2 first_node = page * kNormalNodes;
     const glm::ivec2 first = first_node << level;
     const glm::vec2 step = 1.0f / glm::vec2(span_on_dem(pyramid, first, kNormalNodes << level));
     const int last = pyramid.size(level).y - 1;
-    // One more node on each side than the page has.
+    // With one more node on each side than the page.
     auto block = pyramid.block(level, first_node - 2, kNormalPage_px + 2, kNormalPage_px + 2);
     Array2d<float>& known_m = block.coverage;
     for (std::size_t i = 0; i < known_m.size(); ++i)
@@ -230,7 +231,7 @@ std::vector<std::uint32_t> normal_page(const dem::Pyramid& pyramid, int level, g
         const int post = pyramid.post(level, {0, row}).y;
         const int to_north = post - pyramid.post(level, {0, std::max(row - 1, 0)}).y;
         const int to_south = pyramid.post(level, {0, std::min(row + 1, last)}).y - post;
-        const int at = row - first_node.y + 2;  // of the block
+        const int at = row - first_node.y + 2;  // index into the block
         NormalRow posts = normal_row(net, axis, static_cast<float>(post - first.y) * step.y);
         posts.here = columns.of(block.height_m.row(at), 0, moved[0]);
         posts.west = columns.of(known_m.row(at), -1, moved[1]);

@@ -10,35 +10,35 @@
 
 namespace relevo::render {
 
-/// What a renderer has beside the terrain and does for the bodies of core's passes.
+/// Services of a renderer for the bodies of core's passes.
 class FrameServices {
   public:
     virtual ~FrameServices() = default;
-    /// Uploads and binds the blocks of the frame and of the parameters.
+    /// Uploads and binds the frame's and the parameters' uniform blocks.
     virtual void upload_blocks(const FrameBlock& block) = 0;
-    /// Computes the texture `floor_ground`.
+    /// Creates the texture `floor_ground`.
     virtual void make_footprint(const Footprint& footprint) = 0;
-    /// Lets a native effect prepare the frame.
+    /// Calls a native effect's prepare().
     virtual void prepare_native(const std::string& id, PassContext& frame) = 0;
 };
 
-/// What the body of a pass is given. The program, the targets and their state are bound already.
+/// Arguments of a pass's body. Program, targets and state are already bound.
 struct PassContext {
     Terrain& terrain;
     const Ground& ground;
     const FrameInputs& inputs;
-    FrameBlock& block;     ///< uploaded by the pass "frame"
-    TileSelection& tiles;  ///< chosen by the pass "select"
+    FrameBlock& block;     ///< uploaded in the pass "frame"
+    TileSelection& tiles;  ///< selected in the pass "select"
     int width_px, height_px;
     const Plan& plan;
     GraphTargets& targets;
     FrameServices& services;
-    const Pass* pass = nullptr;  ///< the one that is executed; set by the runner
+    const Pass* pass = nullptr;  ///< the current pass; set by the runner
 
-    /// Whether any pass of this frame reads a resource.
+    /// True if a pass of this frame reads a resource.
     bool is_read(std::string_view resource) const { return plan.reads(resource); }
-    /// Memory that the graph has allocated. @throws Error (Failed) for a resource that the pass
-    /// does not declare, or of another kind
+    /// A target of the graph. @throws Error (Failed) if the pass does not declare it, or it is of
+    /// another kind
     gl::Texture& texture(std::string_view resource) const;
     const gl::Buffer& buffer(std::string_view resource) const;
 };

@@ -10,18 +10,18 @@
 
 namespace relevo::render {
 
-/// Milliseconds of the passes of one frame, by their names, in their order.
+/// Durations of a frame's passes [ms] by name, in order.
 using PassTimes = std::vector<std::pair<std::string, double>>;
 
-/// Measures passes: on hardware by the device's time stamps, which need no wait between passes. A
-/// software renderer is waited for after each pass, as its time stamps do not count vertex work.
+/// Measures passes. On hardware uses the device's time stamps, which need no waiting. On software
+/// renderers waits for the device after each pass, because their time stamps exclude vertex work.
 class PassTimers {
   public:
     explicit PassTimers(gl::Context& context);
 
-    /// A pass begins: the one before has ended.
+    /// Starts a pass and ends the one before. @param on_host  measures CPU time
     void begin(const std::string& pass, bool on_host);
-    /// The last pass has ended. Waits for the device.
+    /// Ends the last pass. Waits for the device.
     PassTimes end();
 
   private:

@@ -28,11 +28,11 @@ std::array<glm::dvec3, 9> biquadratic(const std::array<glm::dvec3, 9>& nodes) {
     return result;
 }
 
-/// Values at the nodes of the biquadratic that is nearest to what is known of it.
+/// Least-squares fit of a biquadratic; yields its values at the nodes.
 class NodeFit {
   public:
     NodeFit() {
-        // Keeps the sums solvable where few posts are known.
+        // Keeps the system regular if few posts are on the Earth.
         constexpr double kStiff = 1e-6;
         for (std::size_t i = 0; i < 9; ++i)
             matrix_[i][i] = kStiff;
@@ -53,7 +53,7 @@ class NodeFit {
     }
 
     void solve(std::array<glm::dvec3, 9>& positions, std::array<glm::dvec3, 9>& verticals) {
-        // Symmetric and positive: elimination needs no pivots.
+        // Symmetric and positive definite: no pivoting is needed.
         for (std::size_t i = 0; i < 9; ++i) {
             for (std::size_t k = i + 1; k < 9; ++k) {
                 const double factor = matrix_[k][i] / matrix_[i][i];
@@ -85,11 +85,11 @@ class NodeFit {
 
   private:
     std::array<std::array<double, 9>, 9> matrix_{};
-    std::array<glm::dvec3, 9> positions_{}, verticals_{};  // first sums, then coefficients
+    std::array<glm::dvec3, 9> positions_{}, verticals_{};  // sums, then coefficients
 };
 
-/// Of a piece that is partly beside the globe: nodes that have no place go on from those posts that
-/// have one. The others stay, so that neighbours agree.
+/// For parts that are partly off the Earth: extrapolates nodes without a position. Other nodes are
+/// kept, so that neighbours agree.
 void fit_what_is_on_earth(const PostPlace& place, const geo::LocalFrame& frame, glm::dvec2 first,
                           glm::dvec2 sides, std::array<glm::dvec3, 9>& positions,
                           std::array<glm::dvec3, 9>& verticals) {
@@ -153,8 +153,8 @@ PatchNet fit_patch_net(const PostPlace& place, const geo::LocalFrame& frame, glm
         position -= net.centre_m;
     net.position_m = biquadratic(positions);
     const std::array<glm::dvec3, 9> vertical = biquadratic(verticals);
-    // The vertical keeps its linear part: its curvature over a piece moves a summit by micrometres.
-    // The plane is taken at the middle, where the quadratic terms leave the smallest error.
+    // Only the linear part of the vertical is kept: its curvature over a part moves a summit by
+    // micrometres. Taken at the centre, where the neglected terms are smallest.
     const auto& c = vertical;
     const glm::dvec3 du = c[1] + c[2] + 0.5 * c[4] + 0.5 * c[5] + 0.25 * c[7] + 0.25 * c[8];
     const glm::dvec3 dv = c[3] + c[6] + 0.5 * c[4] + 0.5 * c[7] + 0.25 * c[5] + 0.25 * c[8];

@@ -10,31 +10,31 @@
 
 namespace relevo::render {
 
-/// Linked programs of a context, by the hash of their texts: programs that an effect's toggle needs
-/// again are not linked again. Keeps the most recently used.
+/// Linked programs of a context by the hash of their source, so that toggling an effect twice links
+/// nothing again. Keeps the most recently used ones.
 class ProgramCache {
   public:
     struct Entry {
         gl::Program program;
-        /// A draw with it has ended: it needs no watch any more.
+        /// A draw with it has finished, so that no watch is needed.
         bool proven = false;
         std::uint64_t used = 0;
     };
 
-    /// The program of a text; null where none has been linked.
+    /// The linked program of a source, or null.
     std::shared_ptr<Entry> find(const ProgramText& text);
-    /// Has the driver begin to compile and link, if nobody has: link() then waits for it.
+    /// Starts compiling and linking unless this was already done; link() waits for the result.
     void begin(const ProgramText& text);
-    /// Links and keeps it. @throws Error as link_program
+    /// Links and caches the program. @throws Error as link_program
     std::shared_ptr<Entry> link(const ProgramText& text);
-    /// Keeps a program that was linked elsewhere in the share group, unless there is one.
+    /// Adds a program that another context of the share group has linked, unless it exists.
     void add(const std::string& hash, gl::Program program);
 
-    /// How many programs have been linked so far.
+    /// Number of programs linked so far.
     int links() const { return links_; }
 
   private:
-    static constexpr std::size_t kMost = 96;  // some ten selections of effects
+    static constexpr std::size_t kMost = 96;  // about ten selections of effects
 
     std::shared_ptr<Entry> keep(const std::string& hash, gl::Program program);
 

@@ -18,7 +18,7 @@ namespace relevo::render {
 
 namespace {
 
-/// Whether an effect answers a hook.
+/// True if an effect implements a hook.
 bool answers(const shader::StitchInput& input, std::string_view hook) {
     return std::ranges::any_of(input.snippets, [&](const shader::Snippet* snippet) {
         return snippet->find(hook) != nullptr;
@@ -40,7 +40,7 @@ bool wants(const shader::StitchInput& input, std::string_view word) {
     });
 }
 
-/// Whether an effect reads how the height changes from pixel to pixel.
+/// True if an effect reads screen-space derivatives of height.
 bool reads_height_steps(const shader::StitchInput& input) {
     for (const shader::Snippet* snippet : input.snippets) {
         const shader::Source& source = snippet->source;
@@ -54,7 +54,7 @@ bool reads_height_steps(const shader::StitchInput& input) {
     return false;
 }
 
-/// Stitches the programs of a frame graph and tells its passes what they read.
+/// Stitches the programs of a frame graph and sets what its passes read.
 class Stitcher {
   public:
     Stitcher(const shader::CoreTexts& core, const shader::StitchInput& input,
@@ -87,7 +87,7 @@ class Stitcher {
         facts_.varying_targets = 0;
         facts_.height_steps = false;
         if (reads_height_steps(input_)) {
-            // Their output is the first after the varyings, which the geometry program counts.
+            // Their target follows the varyings, whose number the geometry program determines.
             const CoreFrame without = core_frame(facts_);
             facts_.varying_targets = stitched(geometry_of(without)).varying_targets;
             facts_.height_steps = true;
@@ -130,8 +130,8 @@ class Stitcher {
         if (pass.kind != PassKind::Host) add("parameters");
         for (const shader::TextureUnit& unit : result_.find(program)->stitched.textures) {
             if (!graph.find(unit.resource)) provide(graph, unit.resource);
-            // The depth program may read what native effects make, also the one that draws with it:
-            // they stand in the order of `after`.
+            // Host passes may draw with textures of native effects, which `after` orders: no read
+            // is declared.
             if (pass.kind != PassKind::Host || !made_by_native(unit.resource)) add(unit.resource);
         }
     }
@@ -144,7 +144,7 @@ class Stitcher {
         return std::ranges::find(facts_.natives, owner_of(resource)) != facts_.natives.end();
     }
 
-    /// A native effect makes what bears its id.
+    /// Declares a resource. A native effect writes those that start with its id.
     void provide(FrameGraph& graph, const std::string& resource) const {
         graph.resources.push_back({.name = resource, .lifetime = Lifetime::Provided});
         if (!made_by_native(resource)) return;
@@ -158,7 +158,7 @@ class Stitcher {
     StitchedFrames result_;
 };
 
-/// How to go on without what a driver refuses.
+/// How to disable what a driver rejects.
 std::string remedy(const shader::Stitched& stitched, const std::string& blamed) {
     if (blamed == "core") return "";
     std::set<std::string> ids;
@@ -208,11 +208,11 @@ void dump_programs(const StitchedFrames& frames, const std::filesystem::path& fo
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error)
-        bad_input(fmt::format("{}: {}: the folder cannot be made, {}", kWho,
+        bad_input(fmt::format("{}: {}: the folder cannot be created, {}", kWho,
                               printable(folder.string()), error.message()));
     if (std::filesystem::equivalent(folder, share_dir() / "shaders", error))
-        bad_input(fmt::format("{}: {}: is where the program's own shaders are; name another folder",
-                              kWho, printable(folder.string())));
+        bad_input(fmt::format("{}: {}: is Relevo's own shader folder; name another one", kWho,
+                              printable(folder.string())));
     write_text(folder / "frame.dot", graph_text(frames), overwrite, kWho);
     for (const ProgramText& program : frames.programs) {
         const auto dump = [&](const char* ending, const std::string& text) {

@@ -12,66 +12,66 @@
 
 namespace relevo::render {
 
-/// One of the programs of a frame as text.
+/// Source of one of a frame's programs.
 struct ProgramText {
-    std::string name;  ///< as core_frame() has it: "terrain", "background_night"
+    std::string name;  ///< as in core_frame(): "terrain", "background_night"
     shader::Stitched stitched;
-    std::string hash;  ///< SHA-256 of the text of both stages
+    std::string hash;  ///< SHA-256 of the source of both stages
 
     static ProgramText of(std::string name, shader::Stitched stitched);
 };
 
 struct ProgramOptions {
     bool vertex_normals = false;  ///< per vertex instead of per fragment
-    bool draped = false;          ///< colours lie on the ground: Terrain::drape
-    /// Shading ends in the colours of the frame, without a stored radiance and the program "post".
+    bool draped = false;          ///< with an overlay: Terrain::drape
+    /// Shading writes display-referred colours directly, without a radiance target and the program
+    /// "post".
     bool shown = false;
     bool antialias = true;
-    /// The ground's programs also write what audits read: SunSeen of renderer.h.
+    /// Terrain programs also write what audits read: SunSeen of readback.h.
     bool audited = false;
-    /// The device is a software renderer: its near plane cuts triangles to slivers whose heights
-    /// are NaN, and the weights of its filters are exact (shaders/lib/filtered.glsl).
+    /// For software renderers: slivers clipped at the near plane have heights of NaN, and filters
+    /// have exact weights (shaders/lib/filtered.glsl).
     bool software = false;
-    /// Ids of native effects; with any there is "depth": the terrain as an orthographic view has
-    /// it.
+    /// Ids of native effects. If there are any, the program "depth" draws the terrain's depth in
+    /// orthographic views.
     std::vector<std::string> natives{};
 };
 
-/// Elevation of the sun, seen from the eye, below which it is night [deg].
+/// The eye's night programs are used below this solar elevation [deg].
 inline constexpr double kNight_deg = -3;
 
-/// Whether any of the effects shows the DEM as a block where it is seen from outside.
+/// True if an effect draws the DEM as a block when seen from outside.
 bool shows_block(const shader::StitchInput& input);
 
-/// What frames are drawn by: every program, and the graph for each place of the eye.
+/// Programs of frames, and a frame graph for each side of the eye.
 struct StitchedFrames {
     std::vector<ProgramText> programs;
-    FrameGraph within;                  ///< the eye is over the ground
-    std::optional<FrameGraph> outside;  ///< where effects show the DEM as a block from there
+    FrameGraph within;                  ///< for eyes over the ground
+    std::optional<FrameGraph> outside;  ///< for eyes outside, if effects draw the DEM as a block
 
-    /// Null where there is none.
+    /// Null if there is none of that name.
     const ProgramText* find(std::string_view program) const;
 };
 
-/// Stitches all programs of a frame. The passes read what their programs have samplers for; what is
-/// no resource of core's is provided, by native passes where it bears their id.
+/// Stitches all programs of a frame. Passes read the samplers of their programs. Resources that
+/// core does not define are provided externally, or by the native pass whose id they start with.
 /// @throws Error as shader::stitch
 StitchedFrames stitch_frames(const shader::CoreTexts& core, const shader::StitchInput& input,
                              const ProgramOptions& options);
 
-/// The graph of frames over the ground, and of those from outside if there are any, in Graphviz's
-/// language.
+/// The frame graphs in Graphviz's DOT language.
 std::string graph_text(const StitchedFrames& frames);
 
-/// Writes every text as `<name>.vert.glsl` and `<name>.frag.glsl`, and the graph as `frame.dot`.
-/// @throws Error (BadInput) for the folder of the program's own shaders, and as write_text
+/// Writes the sources as `<name>.vert.glsl` and `<name>.frag.glsl`, and the graphs as `frame.dot`.
+/// @throws Error (BadInput) for Relevo's own shader folder, and as write_text
 void dump_programs(const StitchedFrames& frames, const std::filesystem::path& folder,
                    bool overwrite);
 
-/// Compiles and links. @throws Error (Failed) with what the driver says, in the author's file and
-/// line
+/// Compiles and links. @throws Error (Failed) with the driver's log, in terms of the author's file
+/// and line
 gl::Program link_program(const ProgramText& text);
-/// The same in two steps: the driver may compile several programs at once.
+/// link_program() in two steps: several programs may compile concurrently.
 gl::Program::Pending begin_program(const ProgramText& text);
 gl::Program finish_program(gl::Program::Pending pending, const ProgramText& text);
 

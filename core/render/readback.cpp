@@ -25,28 +25,28 @@ std::vector<Texel> read_all(const gl::Texture& texture) {
 
 }  // namespace
 
-int count_not_numbers(std::span<const std::uint8_t> rgba) {
+int count_non_finite(std::span<const std::uint8_t> rgba) {
     int count = 0;
     for (std::size_t alpha = 3; alpha < rgba.size(); alpha += 4)
         count += rgba[alpha] != 255;
     return count;
 }
 
-image::Image8 read_picture(const gl::Texture& picture, int* not_numbers) {
+image::Image8 read_picture(const gl::Texture& picture, int* non_finite) {
     std::vector<std::uint8_t> texels(4 * texels_of(picture));
     picture.read(0, std::as_writable_bytes(std::span(texels)));
-    if (not_numbers) *not_numbers = count_not_numbers(texels);
+    if (non_finite) *non_finite = count_non_finite(texels);
     return image::from_device(picture.extent().width, picture.extent().height, texels);
 }
 
-image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* not_numbers) {
+image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* non_finite) {
     const int width = radiance.extent().width, height = radiance.extent().height;
     std::vector<float> texels(4 * texels_of(radiance));
     radiance.read_floats(texels);
-    if (not_numbers) {
-        *not_numbers = 0;
+    if (non_finite) {
+        *non_finite = 0;
         for (std::size_t alpha = 3; alpha < texels.size(); alpha += 4)
-            *not_numbers += texels[alpha] != 1;
+            *non_finite += texels[alpha] != 1;
     }
     const auto scale = static_cast<float>(1 / exposure);
     image::ImageF result(width, height, 3);
@@ -78,7 +78,7 @@ std::vector<SunSeen> read_sun_seen(const gl::Texture& sun_seen, const gl::Textur
     std::vector<SunSeen> result;
     for (std::size_t i = 0; i < seen.size(); ++i) {
         const glm::vec4& v = seen[i];
-        // Walls of a block are drawn over ground behind them.
+        // Walls of a block may hide the ground.
         const float ground_m = std::bit_cast<float>(what[i].w);
         if (v.w == 0 || depths_m[i] < 0.999F * ground_m) continue;
         result.push_back({.post = {v.x, v.y},

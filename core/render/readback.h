@@ -9,32 +9,32 @@
 #include "gl/texture.h"
 #include "image/image.h"
 
-/// What frames leave on the device, read by the host. Each function waits for the device.
+/// Reads frames from the device. Each function waits for the device.
 namespace relevo::render {
 
-/// How much of the sun a pixel of the ground was drawn with, by the pass that drew the frame.
+/// Sunlight that a pixel of ground was drawn with.
 struct SunSeen {
-    glm::dvec2 post{0};      ///< column and row of the DEM, the first post at 0
-    double share = 0;        ///< of the sun, by all effects that answer the hook `visibility`
-    double pixel_posts = 0;  ///< posts along the pixel's side on the ground
-    bool faces = false;      ///< the ground is turned to the sun
-    bool moved = false;      ///< an effect has moved the ground from where the DEM has it
+    glm::dvec2 post{0};  ///< column and row in the DEM
+    double share = 0;  ///< visibility of the sun by all effects with the hook `visibility`, 0 to 1
+    double pixel_posts = 0;  ///< side of the pixel on the ground in posts
+    bool faces = false;      ///< the ground faces the sun
+    bool moved = false;      ///< an effect has displaced the ground
 };
 
-/// The number of RGBA8 pixels whose light or colour was NaN or infinite before it was clamped. The
-/// shaders mark them by an alpha below 1.
-int count_not_numbers(std::span<const std::uint8_t> rgba);
+/// Number of RGBA8 pixels that were NaN or infinite before clamping. Shaders mark them with an
+/// alpha below 1.
+int count_non_finite(std::span<const std::uint8_t> rgba);
 
 /// RGB, rows from the top.
-/// @param not_numbers  filled, if not null, with count_not_numbers()
-image::Image8 read_picture(const gl::Texture& picture, int* not_numbers);
-/// Linear radiance, RGB, rows from the top. @param exposure  that it is stored with
-image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* not_numbers);
-/// The view depth [m] of a stored one.
+/// @param non_finite  if not null, receives count_non_finite()
+image::Image8 read_picture(const gl::Texture& picture, int* non_finite);
+/// Linear radiance, RGB, rows from the top. @param exposure  factor in the stored values
+image::ImageF read_radiance(const gl::Texture& radiance, double exposure, int* non_finite);
+/// Depth along the optical axis [m] of a stored depth.
 float distance_m(float depth);
-/// View depths [m], rows from below, infinity where there is sky.
+/// Depths along the optical axis [m], rows from the bottom; infinite in the sky.
 std::vector<float> read_depths(const gl::Texture& depth);
-/// Of the pixels that show ground.
+/// Of pixels that show ground.
 std::vector<SunSeen> read_sun_seen(const gl::Texture& sun_seen, const gl::Texture& gbuffer,
                                    const gl::Texture& depth);
 

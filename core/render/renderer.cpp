@@ -27,25 +27,25 @@
 namespace relevo::render {
 namespace {
 
-/// @throws Error (Failed) for a texture of another kind than its sampler is: that would be black
+/// @throws Error (Failed) if a texture's kind differs from its sampler's, which would read black
 void check_kind(const gl::Texture& texture, const shader::TextureUnit& unit) {
     const std::string_view kind = gl::sampler_name(texture.kind());
-    // Of "usampler2DArray" the letter does not matter.
+    // "usampler2DArray" ends with it as well.
     if (unit.type.ends_with(kind) || unit.type == fmt::format("{}Shadow", kind)) return;
     failed(fmt::format(
-        "render: {}: {} {}: expected a texture of that kind but the module makes {} one of {}",
+        "render: {}: {} {}: expected a texture of that kind, but the module creates {} as {}",
         unit.owner, unit.type, unit.name, unit.resource, kind));
 }
 
 constexpr unsigned kFrameBinding = 0;
 constexpr unsigned kParamsBinding = 1;
 
-/// Longest to shortest side of a pixel's footprint. An anisotropic filter resolves it; without one
-/// a little aliasing at a slant looks better than blur.
+/// Greatest ratio of a pixel footprint's sides. Anisotropic filters resolve it. Without one, slight
+/// aliasing is preferable to blur.
 constexpr double kFootprintWithoutAnisotropy = 2.5;
 constexpr double kAnisotropy = 8;
 
-/// The day of the year of a moment.
+/// Day of the year, 0 to 364.
 int day_of(double unix_s) {
     const sun::Date date = (sun::Instant() + unix_s).utc().date;
     return climate::day_of_year(date.month, date.day);
@@ -75,8 +75,8 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& info,
                                 input.values->value(kNormalAddress)[0] == 1;
     if (vertex_normals && options.draped)
         bad_input(
-            fmt::format("render: {}: expected fragment, with which rasters lie on the ground, "
-                        "but got vertex; remove the overlay or pass --set {}=fragment",
+            fmt::format("render: {}: vertex shows no overlay; remove the overlay or pass "
+                        "--set {}=fragment",
                         kNormalAddress, kNormalAddress));
     ProgramOptions wanted{.vertex_normals = vertex_normals,
                           .draped = options.draped,
@@ -109,32 +109,32 @@ struct Renderer::Impl : FrameServices {
     gl::Context& context;
     RendererOptions options;
     double anisotropy;
-    std::optional<SharedResources> own;  // where none are given
+    std::optional<SharedResources> own;  // unless shared ones are given
     SharedResources& shared;
     StitchedFrames frames;
     WatchedPrograms programs;
     EffectTextures effect_textures;
     gl::RingBuffer blocks{"frame blocks"};
-    gl::RingBuffer::Place frame_block;  // of the last upload
+    gl::RingBuffer::Place frame_block;  // last upload
     gl::Buffer params_block;
     std::vector<effect::DisplaceSpec> displaces;
-    shader::ParamStore values;  // as given; native modules write host parameters
+    shader::ParamStore values;  // as given; native modules also write host parameters
     double exposure = 1;        // of the last frame
     TileSelection tiles;        // of the last frame
     GroundProbe probe;
-    gl::Texture footprint;  // of the ground that was last seen from outside
+    gl::Texture footprint;  // of the last ground that was seen from outside
     std::vector<NativeHost> natives;
-    bool native_is_made = false;     // by a frame before
-    bool native_is_current = false;  // by the last frame that this or another renderer drew
-    bool outside;                    // of the DEM, and that makes a difference
+    bool native_is_made = false;     // prepared in an earlier frame
+    bool native_is_current = false;  // prepared for the last frame of any renderer
+    bool outside;                    // the graph for eyes outside is in use
     FrameRunner runner;
     std::vector<const shader::Snippet*> snippets;
-    std::optional<BackgroundLinker> linker;  // last: its thread reads the snippets
+    std::optional<BackgroundLinker> linker;  // last member: its thread reads the snippets
 
     Impl(gl::Context& c, const EffectInputs& effects, const RendererOptions& o)
         : context(c),
           options(o),
-          // A software renderer pays for every tap of an anisotropic filter (four times the frame).
+          // Software renderers pay for each tap: anisotropy would quadruple the frame's time.
           anisotropy(c.info().device.software ? 1 : std::min(kAnisotropy, c.info().max_anisotropy)),
           own(o.shared ? std::nullopt : std::optional<SharedResources>(std::in_place)),
           shared(o.shared ? *o.shared : *own),
@@ -168,7 +168,7 @@ struct Renderer::Impl : FrameServices {
     bool shows_block() const { return frames.outside.has_value(); }
     const shader::BlockLayout& layout() const { return frames.programs.front().stitched.params; }
 
-    /// What the first frame is drawn with, so that a driver refuses it now.
+    /// Links the first frame's programs, so that driver errors are reported now.
     void link() {
         std::vector<std::string> names;
         for (const Plan::Step& step : runner.plan().steps) {
@@ -181,7 +181,7 @@ struct Renderer::Impl : FrameServices {
             programs.link(name);
     }
 
-    /// Links what later frames may need: other programs at night, and from outside or within.
+    /// Links programs of later frames in the background: for night, and for the other graph.
     void link_rest() {
         if (linker) return;
         std::vector<ProgramText> rest;
@@ -190,7 +190,7 @@ struct Renderer::Impl : FrameServices {
         linker.emplace(context, std::move(rest), snippets);
     }
 
-    /// Takes programs that have been linked in the background.
+    /// Adds programs that were linked in the background.
     void take_linked() {
         if (!linker) return;
         for (auto& [hash, program] : linker->take())
@@ -214,12 +214,12 @@ struct Renderer::Impl : FrameServices {
     void make_footprint(const Footprint& of) override { footprint = footprint_texture(of); }
 
     void prepare_native(const std::string& id, PassContext& frame) override {
-        if (frame.inputs.keep_native && native_is_current) return;
+        if (frame.inputs.freeze_native && native_is_current) return;
         NativeHost& native = *std::ranges::find(natives, id, &NativeHost::id);
         const auto prepare = [&] {
             native.prepare(frame.terrain, frame.ground, frame.inputs, frame.block, frame.tiles);
         };
-        // The first time also for what the module draws with programs of its own.
+        // The first call is watched: the module draws with its own programs as well.
         if (native_is_made)
             prepare();
         else
@@ -229,7 +229,7 @@ struct Renderer::Impl : FrameServices {
         frame_block.bind_uniform(kFrameBinding);
     }
 
-    /// For a native effect, which is under a watch already in the first frame.
+    /// Called by native effects. Their first frame is already watched.
     void draw_depth(const Terrain& terrain, const std::function<void()>& draw) {
         runner.use("depth", terrain);
         if (!native_is_made) return draw();
@@ -237,8 +237,8 @@ struct Renderer::Impl : FrameServices {
         programs.set_proven("depth");
     }
 
-    /// Twice the patience of a native effect at least: a module that hangs by itself is named by
-    /// its own deadline, not by that of the draw.
+    /// At least twice the time limit of a native effect, so that a module that hangs is reported by
+    /// its own deadline.
     double depth_parts() const {
         constexpr double kMapParts = 4e6;
         return std::max(pixels(), kMapParts);
@@ -260,7 +260,7 @@ struct Renderer::Impl : FrameServices {
 
     bool reads(std::string_view resource) const { return runner.plan().reads(resource); }
 
-    /// Of a frame; fills in what effects displace.
+    /// Makes the frame block, and sets `inputs.displacement`.
     FrameBlock prepare(Terrain& terrain, const Ground& ground, FrameInputs& inputs) {
         inputs.displacement = displacement_of(displaces, values);
         terrain.displace(inputs.displacement);
@@ -268,8 +268,7 @@ struct Renderer::Impl : FrameServices {
         return make_frame_block(inputs, ground, options.width_px, options.height_px, limit);
     }
 
-    /// Has the layers of pages be there that the programs read, and says in the block what they
-    /// read of the ground.
+    /// Creates the page layers that programs read, and fills in the terrain's part of the block.
     void describe(Terrain& terrain, const FrameInputs& inputs, FrameBlock& block) const {
         if (reads("surface_pages")) terrain.keep_surface();
         if (reads("water_pages")) terrain.keep_water();
@@ -289,8 +288,9 @@ struct Renderer::Impl : FrameServices {
                                          const FrameInputs& inputs, FrameBlock block) {
         describe(terrain, inputs, block);
         probe.aim(inputs, ground, block);
-        const TileSelection below = terrain.select_below(
-            inputs.camera, options.width_px, options.height_px, inputs.exaggeration, inputs.afresh);
+        const TileSelection below =
+            terrain.select_below(inputs.camera, options.width_px, options.height_px,
+                                 inputs.exaggeration, inputs.deterministic);
         upload_blocks(block);
         const std::string& program = geometry_program();
         runner.use(program, terrain);
@@ -327,9 +327,9 @@ void check_size(const gl::Context& context, int width_px, int height_px) {
     const int most = context.info().max_picture_size;
     if (width_px > most || height_px > most)
         bad_input(
-            fmt::format("render: picture: expected a width and a height of up to {} px, "
-                        "which {} draws at once, but got {} x {}; take a smaller --size",
-                        most, context.info().renderer, width_px, height_px));
+            fmt::format("render: picture: {} x {} px is more than the {} px a side that {} "
+                        "draws; use a smaller --size",
+                        width_px, height_px, most, context.info().renderer));
 }
 
 }  // namespace
@@ -436,13 +436,13 @@ int Renderer::triangles() const {
     return impl_->tiles.triangles();
 }
 
-image::Image8 Renderer::read_picture(int* not_numbers) const {
-    return render::read_picture(impl_->runner.texture("picture"), not_numbers);
+image::Image8 Renderer::read_picture(int* non_finite) const {
+    return render::read_picture(impl_->runner.texture("picture"), non_finite);
 }
 
-image::ImageF Renderer::read_radiance(int* not_numbers) const {
+image::ImageF Renderer::read_radiance(int* non_finite) const {
     assert(impl_->options.radiance);
-    return render::read_radiance(impl_->runner.texture("radiance"), impl_->exposure, not_numbers);
+    return render::read_radiance(impl_->runner.texture("radiance"), impl_->exposure, non_finite);
 }
 
 }  // namespace relevo::render

@@ -25,39 +25,39 @@ struct RendererOptions {
     int width_px = 1280;
     int height_px = 1024;
     bool antialias = true;
-    /// Keep the linear radiance for read_radiance(). Without it shading ends in the colours of the
-    /// picture at once, which saves a pass over it.
+    /// Stores linear radiance for read_radiance(). Otherwise shading writes display-referred
+    /// colours directly, which saves a pass.
     bool radiance = true;
-    /// Draw what lies on the ground: Terrain::drape. Not with normals per vertex.
+    /// Draws an overlay: Terrain::drape. Not with normals per vertex.
     bool draped = false;
-    /// Whether the first frame is expected to be seen from outside the DEM: programs of the other
-    /// case are made when it comes.
+    /// Whether the first frame is probably seen from outside the DEM. Programs of the other graph
+    /// are linked when needed.
     bool outside = false;
-    /// Keep what the ground's program makes of the sun's light, for read_sun_seen().
+    /// Stores the data for read_sun_seen().
     bool audited = false;
-    /// What renderers of the context share; null: it has its own.
+    /// Shared by renderers of the context; null: not shared.
     SharedResources* shared = nullptr;
-    /// Memory of the graph is filled with NaN where a resource begins: a test's.
+    /// Fills targets with NaN before their first use, for tests.
     bool poison = false;
-    /// Called with the programs' texts before a driver sees them, if there is one.
+    /// Called with the sources before they are compiled.
     std::function<void(const StitchedFrames&)> stitched{};
 };
 
-/// The enabled effects, as drawing needs them.
+/// The enabled effects.
 struct EffectInputs {
-    shader::StitchInput stitch;  ///< its units are the device's, whatever is set
-    /// No larger than the device takes (effect::check_limits). Need not outlive the constructor.
+    shader::StitchInput stitch;  ///< without its limit of texture units, which is the device's
+    /// Within the device's limits (effect::check_limits). Need not outlive the constructor.
     std::vector<const effect::LoadedTexture*> textures;
     std::vector<effect::DisplaceSpec> displaces;
     /// Of native effects; must outlive the renderer.
     std::vector<const effect::NativeModule*> modules;
 };
 
-/// Core's own parameters, beside those of plugins: `terrain.normal`, fragment or vertex.
+/// Parameters of core: `terrain.normal`, fragment or vertex.
 std::vector<shader::Param> core_params();
 
-/// Stitches the programs that a Renderer with these effects and options draws with.
-/// @throws Error (BadInput) for a plugin's mistake, in its file and line; (Failed) for core's
+/// Stitches the programs of a Renderer with these effects and options.
+/// @throws Error (BadInput) for a mistake in a plugin, with file and line; (Failed) for one in core
 StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& device,
                       const RendererOptions& options);
 
@@ -66,69 +66,68 @@ StitchedFrames stitch(const EffectInputs& effects, const gl::DeviceInfo& device,
 /// core_passes.h declares the passes of a frame.
 class Renderer {
   public:
-    /// Stitches and compiles the programs, and loads the textures they read.
-    /// @throws Error (BadInput) for a picture that the device cannot draw at once
-    /// @throws Error (BadInput) for a plugin's mistake, in its file and line; (Failed) for core's
+    /// Stitches and links the programs, and uploads textures.
+    /// @throws Error (BadInput) for a frame size above the device's limit
+    /// @throws Error (BadInput) for a mistake in a plugin, with file and line; (Failed) for one in
+    ///     core
     Renderer(gl::Context& context, const EffectInputs& effects, const RendererOptions& options);
     ~Renderer();
 
-    /// The texts that were compiled.
+    /// The sources that were compiled.
     const std::vector<ProgramText>& texts() const;
 
-    /// Draws a frame into the renderer's own target.
-    /// @param times  filled with what each pass took if not null, which makes the device wait for
-    /// each
+    /// Draws a frame into the renderer's own targets.
+    /// @param times  if not null, receives the duration of each pass; software renderers then wait
+    ///     after each
     void render_frame(Terrain& terrain, const Ground& ground, const FrameInputs& inputs,
                       PassTimes* times = nullptr);
 
-    /// Height of the ground as a frame of these inputs would draw it on the vertical through the
-    /// camera's eye [m]: ellipsoidal, exaggerated. The last frame stays. None where no ground is
-    /// drawn.
+    /// Height of the drawn ground on the vertical through the camera's eye [m], ellipsoidal and
+    /// exaggerated. Does not change the last frame. nullopt without ground.
     std::optional<double> drawn_height_m(Terrain& terrain, const Ground& ground,
                                          const FrameInputs& inputs);
 
-    /// Takes the values of parameters, static ones and those of native modules left out, from the
-    /// next frame on.
+    /// Sets parameters for subsequent frames, except static ones and those of native modules.
     void set_values(const shader::ParamStore& values);
-    /// Frames have these sides from the next one on.
-    /// @throws Error (BadInput) for a picture that the device cannot draw at once
+    /// Sets the size of subsequent frames.
+    /// @throws Error (BadInput) above the device's limit
     void resize(int width_px, int height_px);
-    /// Begins to link, in the background, the programs that no frame so far has needed: of nights,
-    /// and of eyes outside the DEM or within.
+    /// Links programs that no frame has needed yet in the background: for night, and for the other
+    /// side of the DEM's outline.
     void link_rest();
-    /// Gives the memory of its frames to renderers that share it. The last frame is gone; the next
-    /// one takes memory again.
+    /// Frees targets for renderers that share them. Discards the last frame; the next one allocates
+    /// targets again.
     void release_targets();
-    /// The last frame on the device, RGBA8, rows from below.
+    /// The last frame on the device: RGBA8, rows from the bottom.
     const gl::Texture& picture() const;
-    /// Its depths on the device, Depth32F: distance_m() has metres.
+    /// Depth of the last frame on the device: Depth32F, converted to metres by distance_m().
     const gl::Texture& depth() const;
 
-    /// How far the last frame's ground is from the eye, along the direction it looks in [m]: row
-    /// after row from below, infinity where there is sky.
+    /// Depths of the last frame along the optical axis [m]: rows from the bottom, infinite in the
+    /// sky.
     void read_depths(std::vector<float>& depths_m) const;
 
-    /// Of the last frame's pixels that show ground; RendererOptions::audited.
+    /// Of the last frame's pixels with ground. Requires RendererOptions::audited.
     std::vector<SunSeen> read_sun_seen() const;
 
-    /// Whether what it draws hangs on the climate (lib/climate.glsl).
+    /// True if frames depend on climate (lib/climate.glsl).
     bool reads_climate() const;
 
-    /// How far its effects move the ground.
+    /// Bounds of displacement by its effects.
     Displacement displacement() const;
-    /// Whether its effects show the DEM as a block where the eye is outside of it.
+    /// True if its effects draw the DEM as a block when the eye is outside.
     bool shows_block() const;
-    /// Of all parameters, as the last frame was drawn.
+    /// All parameters as of the last frame.
     const shader::ParamStore& values() const;
     int triangles() const;  ///< of terrain in the last frame
-    /// Whether some program has not been drawn with yet. Its first draw is under a watch and waits
-    /// for the device.
+    /// True if some program has not been drawn with yet. Its first draw is watched and waits for
+    /// the device.
     bool is_watched() const;
     /// The last frame as RGB, rows from the top.
-    /// @param not_numbers  filled, if not null, with count_not_numbers()
-    image::Image8 read_picture(int* not_numbers = nullptr) const;
-    /// The last frame before exposure and tone mapping: linear radiance, RGB.
-    image::ImageF read_radiance(int* not_numbers = nullptr) const;
+    /// @param non_finite  if not null, receives count_non_finite()
+    image::Image8 read_picture(int* non_finite = nullptr) const;
+    /// The last frame as linear radiance before exposure and tone mapping: RGB, rows from the top.
+    image::ImageF read_radiance(int* non_finite = nullptr) const;
 
   private:
     struct Impl;

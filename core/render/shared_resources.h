@@ -6,8 +6,8 @@
 
 namespace relevo::render {
 
-/// What renderers of one context share, so that one which follows another links no program, uploads
-/// no texture and allocates no frame that the other had. Must outlive them.
+/// Objects that renderers of a context share, so that a new one reuses programs, textures and
+/// targets. Must outlive them.
 struct SharedResources {
     ProgramCache programs;
     TexturePool targets;

@@ -8,7 +8,7 @@
 namespace relevo::render {
 namespace {
 
-constexpr std::size_t kMostKept = 4096;  // tiles
+constexpr std::size_t kMostKept = 4096;  // cached tiles
 
 int quadrant_of(int x, int y) {
     return (2 * x >= kTileQuads ? 1 : 0) + (2 * y >= kTileQuads ? 2 : 0);
@@ -63,7 +63,7 @@ std::vector<SideEdge> Sides::find(const TileKey& key) const {
     };
     for (int y = 0; y < quads.y; ++y) {
         for (int x = 0; x < quads.x; ++x) {
-            // Divided as the drawn grid is.
+            // Triangulated like the drawn grid.
             const glm::ivec2 a(x, y), b(x + 1, y), c(x, y + 1), d(x + 1, y + 1);
             if (is_cut(a, c, b)) edges.push_back({a, c, b, quadrant_of(x, y)});
             if (is_cut(b, c, d)) edges.push_back({b, c, d, quadrant_of(x, y)});
@@ -75,7 +75,7 @@ std::vector<SideEdge> Sides::find(const TileKey& key) const {
 void Sides::add(const TileKey& key, std::uint8_t quadrants, std::vector<glm::vec4>& vertices,
                 std::vector<std::uint16_t>& indices) {
     const std::size_t before = vertices.size();
-    // Two vertices, above and below; of a rim without holes walls beside each other share them.
+    // Two vertices, above and below. Without voids, adjacent walls of the DEM's edge share them.
     std::unordered_map<int, std::uint16_t> shared;
     const auto pair_at = [&](const SideEdge& edge, bool other) {
         const bool alone = edge.third.x >= 0 || pyramid_->has_holes();

@@ -12,25 +12,25 @@
 
 namespace relevo::render {
 
-/// A wall below an edge of the ground, in vertices of a tile (side.vert.glsl).
+/// A wall below an edge of the ground, in vertex units of a tile (side.vert.glsl).
 struct SideEdge {
     glm::vec2 a, b;
-    glm::vec2 third;   ///< x below 0: on the DEM's rim; else a to third is a triangle that is cut
-    int quadrant = 0;  ///< of the tile, bit x + 2 y as TileDraw has it
+    glm::vec2 third;   ///< x < 0: on the DEM's edge; otherwise a, b, third is a clipped triangle
+    int quadrant = 0;  ///< of the tile: bit x + 2 y, as in TileDraw
 };
 
-/// Where the ground of tiles ends: at the DEM's rim and at holes.
+/// Edges of the ground: the DEM's edge and its voids.
 class Sides {
   public:
     explicit Sides(const dem::Pyramid& pyramid) : pyramid_(&pyramid) {}
 
-    /// The edges of a tile, of any level that it may be morphing to. Kept once asked for.
+    /// The edges of a tile, including those at the level it may morph to. Cached.
     const std::vector<SideEdge>& edges(const TileKey& key);
 
-    static constexpr int kVectors = 2;  ///< of a vertex: inputs ends and third of side.vert.glsl
+    static constexpr int kVectors = 2;  ///< per vertex: inputs ends and third of side.vert.glsl
 
-    /// Adds the walls below the edges of some quadrants of a tile: vertices, and triangles of them
-    /// that count from the first vertex added.
+    /// Appends the walls below some quadrants of a tile: vertices, and triangles whose indices are
+    /// relative to the first appended vertex.
     void add(const TileKey& key, std::uint8_t quadrants, std::vector<glm::vec4>& vertices,
              std::vector<std::uint16_t>& indices);
 

@@ -24,10 +24,10 @@ namespace {
 constexpr int kMaxHeightPages = 1024;  // 73 MB
 constexpr int kMaxNormalPages = 384;   // 102 MB
 
-/// By how much the tolerance grows from one try to the next where a view needs too much.
+/// Factor of the tolerance between attempts.
 constexpr double kCoarser = 1.2;
 
-/// A page table entry for pages that are not there.
+/// Marks missing pages in the page table.
 constexpr std::uint16_t kNoLayer = 0xffff;
 
 std::uint64_t next_serial() {
@@ -49,7 +49,7 @@ int pages_across(int posts, int level) {
     return std::max(1, (posts - 1 + posts_a_page - 1) / posts_a_page);
 }
 
-/// The tolerance to try after one that asks for too much.
+/// The next tolerance to try.
 double coarser(double tolerance) {
     return tolerance > 0 ? tolerance * kCoarser : 1e-5;
 }
@@ -79,7 +79,7 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       drawn_grid_(&heightfield.grid),
       reduction_(finer ? heightfield.reduction : 1),
       sides_(pyramid_) {
-    options_.sky = {};  // the light has it
+    options_.sky = {};  // light_ holds it
     const glm::dvec2 spacing_m = grid_.post_spacing_m();
     normal_spacing_m_ = std::sqrt(spacing_m.x * spacing_m.y);
     normal_levels_ = std::max(1, pyramid_.levels() - kNormalPageLevels);
@@ -146,7 +146,7 @@ void Terrain::clear_surface() {
 void Terrain::drape(std::shared_ptr<const Drape> drape) {
     if (drape == drape_) return;
     drape_ = std::move(drape);
-    surface_ = PageCache();  // made when a picture asks for it, once for all that it reads
+    surface_ = PageCache();  // recreated for the next frame with all its layers
 }
 
 void Terrain::keep_water() {
@@ -202,7 +202,7 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
     LodView view = wanted;
     std::vector<TileDraw> draws;
     std::vector<TileKey> keys;
-    // A quarter of the pages is for those that are drawn beside.
+    // A quarter of the slots is reserved for selections that are kept.
     const int slots = heights_.slots();
     const int room = keep || slots == tiles_of_all_levels(pyramid_) ? slots : slots - slots / 4;
     while (true) {
@@ -225,7 +225,7 @@ TileSelection Terrain::select(const LodView& wanted, const TileSelection* keep) 
     return ready(view, draws);
 }
 
-TileSelection Terrain::select_beside(const LodView& wanted) {
+TileSelection Terrain::select_in_background(const LodView& wanted) {
     LodView view = wanted;
     const TileKey root = tree_.root();
     heights_.require(std::span(&root, 1));
@@ -242,7 +242,7 @@ TileSelection Terrain::select_beside(const LodView& wanted) {
     }
     complete_ = std::ranges::all_of(keys, is_there);
     TileSelection selection = ready(view, draws);
-    // Coarse ones first: they stand in for all that they cover.
+    // Coarse pages first: they replace all finer ones.
     std::ranges::stable_sort(keys,
                              [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
     heights_.request(keys);
@@ -269,15 +269,16 @@ TileSelection Terrain::ready(const LodView& view, const std::vector<TileDraw>& d
     return selection;
 }
 
-TileSelection Terrain::select_for_picture(const scene::Camera& camera, int width_px, int height_px,
-                                          double exaggeration, Loading loading, bool afresh) {
+TileSelection Terrain::select_for_frame(const scene::Camera& camera, int width_px, int height_px,
+                                        double exaggeration, Loading loading, bool deterministic) {
     const LodView view =
         LodView::of_camera(camera, width_px, height_px, options_.pixel_error, exaggeration);
     complete_ = true;
-    TileSelection selection = loading == Loading::Beside ? select_beside(view) : select(view);
+    TileSelection selection =
+        loading == Loading::Background ? select_in_background(view) : select(view);
     if (!surface_.find("normal_pages")) clear_surface();
     prepare_surface(LodView::of_camera(camera, width_px, height_px, 1, exaggeration), loading,
-                    afresh);
+                    deterministic);
     return selection;
 }
 
@@ -310,9 +311,9 @@ std::optional<Terrain::Extent> Terrain::extent(const glm::dmat3& axes, double ex
     return extent;
 }
 
-void Terrain::prepare_surface(const LodView& view, Loading loading, bool afresh) {
-    // A page is wanted where a pixel is no larger than its texels. Pixels are measured by view
-    // depth, which in the corners of the picture is less than the distance.
+void Terrain::prepare_surface(const LodView& view, Loading loading, bool deterministic) {
+    // A page is needed if its texels are not smaller than a pixel. Pixels are measured by depth,
+    // which is less than distance in the corners of the frame.
     constexpr double kCorner = 0.7;
     std::vector<TileKey> pages;
     for (double scale = 1;; scale *= kCoarser) {
@@ -328,18 +329,19 @@ void Terrain::prepare_surface(const LodView& view, Loading loading, bool afresh)
         if (static_cast<int>(pages.size()) <= surface_.slots()) break;
     }
     bool came = false;
-    if (loading == Loading::Beside && !pages.empty()) {
+    if (loading == Loading::Background && !pages.empty()) {
         std::ranges::stable_sort(
             pages, [](const TileKey& a, const TileKey& b) { return a.level > b.level; });
-        came = surface_.require(std::span(pages).first(1));  // covers all of it
+        came = surface_.require(std::span(pages).first(1));  // the coarsest page covers everything
         came = surface_.request(pages) || came;
         for (const TileKey& page : pages)
             complete_ = complete_ && surface_.slot(page) >= 0;
     } else {
         came = surface_.require(pages);
     }
-    if (came || afresh || table_is_narrowed_) write_page_table(afresh ? &pages : nullptr);
-    table_is_narrowed_ = afresh;
+    if (came || deterministic || table_is_narrowed_)
+        write_page_table(deterministic ? &pages : nullptr);
+    table_is_narrowed_ = deterministic;
 }
 
 void Terrain::write_page_table(const std::vector<TileKey>* only) {

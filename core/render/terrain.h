@@ -30,27 +30,28 @@
 namespace relevo::render {
 
 struct TerrainOptions {
-    /// Error of the drawn surface in the picture [px], as TileTree counts it: four times the root
-    /// mean square, which is so one pixel. 0 draws every post.
+    /// Error of the drawn surface [px] as defined by TileTree: four times its RMS, which is thus 1
+    /// px. 0 draws all posts.
     double pixel_error = 4;
-    /// Vertices in a frame above which the error is let grow.
+    /// Vertices of a frame above which the error is increased.
     int vertex_budget = 250000;
-    int max_array_layers = 2048;  ///< the device's
-    /// Of the heightfield, made already; must outlive the terrain. Null: it makes its own.
+    int max_array_layers = 2048;  ///< of the device
+    /// The heightfield's pyramid; must outlive the terrain. Null: built by the terrain.
     const dem::Pyramid* pyramid = nullptr;
-    /// Of the heightfield's posts, for lib/water.glsl; both must outlive the terrain.
-    const dem::Water* water = nullptr;              ///< null: it is looked for when needed
-    const Array2d<std::uint8_t>* filled = nullptr;  ///< not 0 on posts that were holes
-    SkyAhead sky{};                                 ///< of the heightfield, where it is on its way
+    /// Water and filled voids at the heightfield's posts, for lib/water.glsl; must outlive the
+    /// terrain.
+    const dem::Water* water = nullptr;              ///< null: found when needed
+    const Array2d<std::uint8_t>* filled = nullptr;  ///< nonzero at filled posts; null: none
+    SkyAhead sky{};  ///< sky-view factor of the heightfield, if being computed
 };
 
-/// The tiles of a view with their pages on the device, ready to draw any number of times.
+/// Tiles of a view with resident pages. May be drawn repeatedly.
 class TileSelection {
   public:
     int triangles() const { return triangles_; }
-    double tolerance() const { return tolerance_; }  ///< as LodView's, after the vertex budget
-    int finest_level() const;                        ///< 0: every post; 0 for none
-    double nearest_m() const;  ///< from the eye to the nearest tile; 0 for none
+    double tolerance() const { return tolerance_; }  ///< as LodView, after the vertex budget
+    int finest_level() const;                        ///< 0: all posts; 0 without tiles
+    double nearest_m() const;  ///< distance from the eye to the nearest tile; 0 without tiles
 
   private:
     friend class Terrain;
@@ -64,53 +65,50 @@ class TileSelection {
     double tolerance_ = 0;
 };
 
-/// A heightfield on the device: one 65 x 65 grid of vertices, drawn once for every tile that a view
-/// needs and displaced there by the elevation pages, which are made when first seen.
+/// A heightfield on the device. Draws one 65 x 65 grid of vertices for each tile of a view,
+/// displaced by height pages. Pages are made when first needed.
 class Terrain {
   public:
     /// @param heightfield  must outlive this
-    /// @param finer        where a heightfield of means was made from: its posts are drawn where
-    /// they
-    ///                     are near enough to be seen; null if there is none
-    /// @param frame        the DEM's local frame; every position below is in it; must outlive this
+    /// @param finer        source of a heightfield of means; its posts are drawn near the eye. Else
+    ///     null
+    /// @param frame        the DEM's local frame, for all positions; must outlive this
     Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& frame,
             const TerrainOptions& options, const dem::Source* finer = nullptr);
 
     const dem::Pyramid& pyramid() const { return pyramid_; }
     const dem::Grid& grid() const { return grid_; }  ///< of the pyramid's posts
 
-    /// How far effects move the ground from now on. Another bound makes it another ground, with a
-    /// new serial().
+    /// Sets the bounds of displacement. Other bounds change serial().
     void displace(const Displacement& displacement);
 
-    /// Chooses the tiles of a view and makes their height pages.
-    /// @param keep  a selection that has to stay drawable beside the new one
+    /// Selects the tiles of a view and makes their height pages.
+    /// @param keep  another selection whose pages must stay resident
     TileSelection select(const LodView& view, const TileSelection* keep = nullptr);
-    /// A camera's view with the option's pixel error, and the pages that its picture needs.
-    /// @param afresh  finer pages that are left from other pictures are not read
-    TileSelection select_for_picture(const scene::Camera& camera, int width_px, int height_px,
-                                     double exaggeration, Loading loading = Loading::Wait,
-                                     bool afresh = false);
-    /// The tiles on the vertical through a camera's eye, at the levels that its picture draws them
-    /// at, with their pages: for GroundProbe.
+    /// Selects the tiles of a frame with the option's pixel error, and makes its pages.
+    /// @param deterministic  do not read finer pages that earlier frames left
+    TileSelection select_for_frame(const scene::Camera& camera, int width_px, int height_px,
+                                   double exaggeration, Loading loading = Loading::Wait,
+                                   bool deterministic = false);
+    /// Selects tiles on the vertical through a camera's eye at the camera's levels, for
+    /// GroundProbe.
     TileSelection select_below(const scene::Camera& camera, int width_px, int height_px,
-                               double exaggeration, bool afresh);
-    /// Whether the last picture had all its pages; so it is always where it waits for them.
+                               double exaggeration, bool deterministic);
+    /// True if the last frame had all its pages, as always with Loading::Wait.
     bool is_complete() const { return complete_; }
-    /// Whether pages are still being made beside for it.
+    /// True if pages are being made in the background.
     bool is_making_pages() const { return heights_.is_making() || surface_.is_making(); }
 
-    /// Draws with the program and framebuffer that are bound, and its textures. Positions are
-    /// handed to the program relative to `origin_m`. A selection holds until the next one is made,
-    /// save where that keeps it.
+    /// Draws with the bound program, framebuffer and textures. The program gets positions relative
+    /// to `origin_m`. A selection is valid until the next one is made, unless that keeps it.
     void draw(const TileSelection& selection, const glm::dvec3& origin_m);
 
-    /// Draws the walls below the edges of a selection's ground, likewise.
+    /// As draw(), of the walls below the edges of the ground.
     void draw_sides(const TileSelection& selection, const glm::dvec3& origin_m);
 
-    /// Least and greatest product of the ground's points with each of three axes [m]: of the tiles
-    /// of a selection that come nearer to its eye than a distance, or of the whole DEM without a
-    /// selection. Boxes around tiles: a little more than the ground. Empty where no tile is.
+    /// Extent of the ground along three axes [m]: of a selection's tiles within a distance of its
+    /// eye, or of the whole DEM without a selection. Slightly too large, as it is made of boxes.
+    /// nullopt without tiles.
     struct Extent {
         glm::dvec3 low, high;
     };
@@ -118,51 +116,48 @@ class Terrain {
                                  const TileSelection* selection = nullptr,
                                  double nearer_than_m = 0);
 
-    /// From now on pictures have surface pages beside the normal pages: for programs that read
-    /// them.
+    /// Adds surface pages to the normal pages, for programs that read them.
     void keep_surface();
 
-    /// Likewise water pages.
+    /// As keep_surface(), for water pages.
     void keep_water();
 
-    /// From now on the ground of pictures has these colours, for programs that read them; null:
-    /// none.
+    /// Sets the overlay for programs that read it; null: none.
     void drape(std::shared_ptr<const Drape> drape);
 
-    /// From now on the ground has its climate's tables, with the snow of a day (0 to 364).
-    /// @returns them, for FrameBlock
-    /// @throws Error (BadInput) where the map of the climate is missing or damaged
+    /// Makes climate tables with the snow of a day (0 to 364).
+    /// @returns tables for FrameBlock
+    /// @throws Error (BadInput) if the climate map is missing or damaged
     const ClimateVolume& keep_climate(int day);
-    /// What they are made from; opened when first asked for. @throws Error likewise
+    /// The climate map, read when first needed. @throws Error as keep_climate()
     const climate::ClimateMap& climate_map();
 
-    /// What comes to the ground past the ground around it.
+    /// Sun and sky light after occlusion by terrain.
     GroundLight& light() { return light_; }
     const GroundLight& light() const { return light_; }
 
-    /// What shaders read of the ground, by the sampler's name: a PageLayer's, one of GroundLight's,
-    /// or "page_table", the slot and level of the finest page of the picture there is. Null for
-    /// others.
+    /// Textures by their samplers' names: of a PageLayer, of GroundLight, or "page_table", the slot
+    /// and level of the finest resident tile page. Null for other names.
     const gl::Texture* texture(std::string_view name) const;
-    /// No two terrains of a process have the same.
+    /// Unique in the process; changes with displacement.
     std::uint64_t serial() const { return serial_; }
     bool has_holes() const { return pyramid_.has_holes(); }
-    /// Whether the triangles go round counter-clockwise as seen from above: not so on grids whose
-    /// rows run the other way.
+    /// True if triangles are counter-clockwise as seen from above. False on grids with reversed
+    /// rows.
     bool winds_counterclockwise();
     int normal_levels() const { return normal_levels_; }           ///< of normal pages
     double normal_spacing_m() const { return normal_spacing_m_; }  ///< of the finest of them
 
   private:
-    TileSelection select_beside(const LodView& view);
-    /// Of tiles whose pages are there.
+    TileSelection select_in_background(const LodView& view);
+    /// A selection of tiles with resident pages.
     TileSelection ready(const LodView& view, const std::vector<TileDraw>& draws);
     bool in_budget(const LodView& wanted, const std::vector<TileDraw>& draws) const;
-    /// The view's tolerance, or the least coarser one that keeps its tiles in the vertex budget.
+    /// The view's tolerance, or the smallest larger one within the vertex budget.
     double tolerance_in_budget(const LodView& wanted);
-    void prepare_surface(const LodView& view, Loading loading, bool afresh);
+    void prepare_surface(const LodView& view, Loading loading, bool deterministic);
     void clear_surface();
-    /// @param only  pages that are read; null: all that are there
+    /// @param only  pages to list; null: all resident ones
     void write_page_table(const std::vector<TileKey>* only);
     std::vector<std::byte> make_normals(const TileKey& key) const;
     TileMesh::Instance instance_of(const TileSelection::Tile& tile, const glm::dvec3& origin_m);
@@ -171,7 +166,7 @@ class Terrain {
 
     std::uint64_t serial_;
     TerrainOptions options_;
-    std::optional<dem::Pyramid> own_pyramid_;  // where none was given
+    std::optional<dem::Pyramid> own_pyramid_;  // unless one was given
     const dem::Pyramid& pyramid_;
     const dem::Grid& grid_;
     const geo::LocalFrame& frame_;
@@ -186,19 +181,19 @@ class Terrain {
     std::optional<climate::ClimateMap> climate_map_;
     std::optional<ClimateVolume> climate_;
     bool keeps_surface_ = false, keeps_water_ = false;
-    const Array2d<float>* drawn_m_;  // as many posts as are in memory
+    const Array2d<float>* drawn_m_;  // all posts in memory
     const dem::Grid* drawn_grid_;
     int reduction_;
-    std::optional<dem::Water> own_water_;  // where none was given
+    std::optional<dem::Water> own_water_;  // unless one was given
     std::optional<WaterField> water_;
-    bool table_is_narrowed_ = false;  ///< to the pages of a picture that was drawn afresh
+    bool table_is_narrowed_ = false;  ///< lists only the pages of a deterministic frame
     bool complete_ = true;
     gl::Texture page_table_;
     TileMesh mesh_;
     Sides sides_;
-    // Last: threads make their pages from what stands above.
-    PageCache heights_;  // of tiles
-    PageCache surface_;  // of the picture: normals, and what else it reads by place
+    // Last members: their threads read the members above.
+    PageCache heights_;  // by tile
+    PageCache surface_;  // normals and other data by place
 };
 
 }  // namespace relevo::render

@@ -20,24 +20,25 @@ double TileSelection::nearest_m() const {
 }
 
 TileSelection Terrain::select_below(const scene::Camera& camera, int width_px, int height_px,
-                                    double exaggeration, bool afresh) {
+                                    double exaggeration, bool deterministic) {
     const double pixel_error = options_.pixel_error;
     const double tolerance = tolerance_in_budget(
         LodView::of_camera(camera, width_px, height_px, pixel_error, exaggeration));
     scene::Camera vertical = GroundProbe::camera_below(camera, frame_, tolerance, pixel_error);
     LodView view = LodView::of_camera(vertical, 1, 1, pixel_error, exaggeration);
-    // With the coarser tiles above them, without which Loading::Beside draws none of these.
+    // Includes coarser ancestors, which Loading::Background requires.
     std::vector<TileKey> keys;
     const auto is_there = [](const TileKey&) { return true; };
     std::vector<TileDraw> draws = tree_.select(view, TileTree::Resident{is_there, keys});
-    if (draws.empty()) {  // an eye under all ground
+    if (draws.empty()) {  // the eye is below all ground
         vertical.forward = -vertical.forward;
         view = LodView::of_camera(vertical, 1, 1, pixel_error, exaggeration);
         draws = tree_.select(view, TileTree::Resident{is_there, keys});
     }
     heights_.require(keys);
     if (!surface_.find("normal_pages")) clear_surface();
-    prepare_surface(LodView::of_camera(vertical, 1, 1, 1, exaggeration), Loading::Wait, afresh);
+    prepare_surface(LodView::of_camera(vertical, 1, 1, 1, exaggeration), Loading::Wait,
+                    deterministic);
     return ready(view, draws);
 }
 

@@ -2,8 +2,8 @@
 
 namespace relevo::render {
 
-/// Rounding leaves up to a step of the rasteriser between the sides of two tiles. The skirt of each
-/// reaches this far [quads] under its neighbour.
+/// Rounding leaves gaps of up to one rasteriser step between tiles. Skirts extend this far [quads]
+/// under the neighbouring tile.
 constexpr float kSkirt_quads = 1.0f / 128.0f;
 
 std::vector<float> tile_grid_vertices() {

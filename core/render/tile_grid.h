@@ -5,19 +5,19 @@
 
 #include "render/pages.h"
 
-/// The grid of vertices that every tile of the terrain is drawn with.
+/// The grid of vertices of every terrain tile.
 namespace relevo::render {
 
-/// Vertices along a side: those of the tile and its skirt.
+/// Vertices along a side, including the skirt.
 inline constexpr int kGridSide = kTileQuads + 3;
 inline constexpr int kGridVertices = kGridSide * kGridSide;
 inline constexpr int kQuadrantQuads = (kGridSide - 1) / 2;
 inline constexpr int kQuadrantIndices = kQuadrantQuads * kQuadrantQuads * 6;
 
-/// Places of the vertices [quads of the tile], x and y, row after row.
+/// Positions of vertices [quads of the tile], x and y, row by row.
 std::vector<float> tile_grid_vertices();
 
-/// Quadrant after quadrant, so that any of them can be drawn alone.
+/// One quadrant after another, so that each can be drawn separately.
 std::vector<std::uint16_t> tile_grid_indices();
 
 }  // namespace relevo::render

@@ -8,7 +8,7 @@ namespace relevo::render {
 namespace {
 
 constexpr int kGridBinding = 0, kInstanceBinding = 1;
-constexpr int kComponents = 4;  // of vectors
+constexpr int kComponents = 4;  // of a vector
 
 }  // namespace
 
@@ -21,7 +21,7 @@ TileMesh::TileMesh()
 }
 
 void TileMesh::draw(const std::vector<Tile>& tiles) {
-    // Whole tiles first, then each quadrant of those that are drawn in part.
+    // Whole tiles first, then each quadrant of partly drawn tiles.
     constexpr std::uint8_t kWhole = 0xf;
     std::vector<Instance> instances;
     std::vector<Draw> draws;

@@ -15,8 +15,8 @@
 
 namespace relevo::render {
 
-/// What tiles are drawn with: one grid of vertices for the ground of all of them, and walls where
-/// ground ends. Each call is one draw command.
+/// The vertices of tiles: one grid for the ground of all tiles, and walls at edges of the ground.
+/// Each call is one draw command.
 class TileMesh {
   public:
     static constexpr int kInstanceVectors =
@@ -31,7 +31,7 @@ class TileMesh {
     TileMesh();
 
     void draw(const std::vector<Tile>& tiles);
-    /// Walls, which are found again only for other tiles than before.
+    /// Draws walls. They are built again only if the tiles change.
     void draw_sides(const std::vector<Tile>& tiles, Sides& sides);
 
   private:
@@ -45,11 +45,11 @@ class TileMesh {
     gl::RingBuffer instances_{"terrain tiles"}, draws_{"terrain draws"};
 
     struct Walls {
-        std::vector<std::pair<std::uint64_t, std::uint8_t>> of;  // tiles and their quadrants
+        std::vector<std::pair<std::uint64_t, std::uint8_t>> of;  // tiles with their quadrants
         gl::Buffer vertices, indices;
         gl::VertexArray array;
-        std::vector<std::size_t> tiles;  // that have walls
-        std::vector<Draw> draws;         // of these
+        std::vector<std::size_t> tiles;  // indices of tiles with walls
+        std::vector<Draw> draws;         // one for each of them
     };
     std::optional<Walls> walls_;
 };

@@ -11,30 +11,29 @@
 
 namespace relevo::render {
 
-/// The programs of one selection of effects. Each is linked, and drawn with for the first time,
-/// under a DrawWatch, whenever that is.
+/// Programs of one selection of effects. Each is linked, and first drawn with, under a DrawWatch.
 class WatchedPrograms {
   public:
-    /// @param texts  must outlive this, as must the cache and the snippets
+    /// @param texts  must outlive this, like the cache and the snippets
     WatchedPrograms(const StitchedFrames& texts, ProgramCache& cache,
                     std::vector<const shader::Snippet*> snippets);
 
     const ProgramText& text(const std::string& name) const;
-    /// Has the driver begin to compile and link, so that it may do several at once.
+    /// Starts compiling and linking; several programs may be in progress.
     void begin(const std::string& name);
-    /// Links it, if that has not been done yet. @throws Error as link_program
+    /// Links a program if necessary. @throws Error as link_program
     const gl::Program& link(const std::string& name);
-    /// Whether no draw with a program has ended yet.
+    /// True until a draw with the program has finished.
     bool needs_watch(const std::string& name);
 
-    /// Draws with a program, under a watch while it needs one.
-    /// @param parts  pixels and triangles
+    /// Draws with a program, watched if necessary.
+    /// @param parts  number of pixels and triangles
     void draw(const std::string& name, double parts, const std::function<void()>& body);
-    /// Draws under a watch in any case, and waits for the device.
+    /// Draws watched, and waits for the device.
     void draw_watched(const std::string& name, double parts, const std::function<void()>& body);
-    /// From now on a program needs no watch.
+    /// Ends the need for a watch.
     void set_proven(const std::string& name);
-    /// Whether some program has been linked and needs a watch.
+    /// True if a linked program needs a watch.
     bool is_watching() const { return watch_.has_value(); }
 
   private:
@@ -46,7 +45,7 @@ class WatchedPrograms {
     ProgramCache& cache_;
     std::vector<const shader::Snippet*> snippets_;
     std::map<std::string, std::shared_ptr<ProgramCache::Entry>> linked_;  // by name
-    std::optional<DrawWatch> watch_;  // a thread: there while it is needed
+    std::optional<DrawWatch> watch_;  // owns a thread; exists only while needed
 };
 
 }  // namespace relevo::render

@@ -15,15 +15,15 @@ namespace {
 
 using dem::WaterKind;
 
-/// How far on its own side of the shore a post is at least: 1 is the spacing of posts.
+/// Least distance of a post to the shore, in post spacings.
 constexpr double kLeastShore = 0.1;
 
 std::uint8_t unorm8(double value) {
     return static_cast<std::uint8_t>(std::lrint(std::clamp(value, 0.0, 1.0) * 255));
 }
 
-/// Kinds with that of the nearest post with a height, by steps along rows and columns, at posts
-/// without one; empty where all have one.
+/// Kinds of water, with posts without a height set to the kind of the nearest post with one,
+/// counted in steps along rows and columns. Empty if all posts have heights.
 Array2d<WaterKind> with_kind_in_voids(const Array2d<WaterKind>& kind, const Array2d<float>& h) {
     const auto is_void = [](float height_m) { return std::isnan(height_m); };
     if (kind.empty() || std::ranges::none_of(h, is_void)) return {};
@@ -61,8 +61,7 @@ bool uniform(const WaterTexel* const* rows) {
     return true;
 }
 
-/// Mean of texels: of the shore and the filled by weight, of what kind of water it is by how much
-/// of it there is.
+/// Weighted mean of texels. Kinds of water are weighted by amount of water.
 class TexelMean {
   public:
     void add(double weight, const WaterTexel& texel) {
@@ -83,9 +82,9 @@ class TexelMean {
     double whole_ = 0, wet_ = 0, sea_ = 0, floor_ = 0, filled_ = 0;
 };
 
-/// A node of the mean of finer ones. The last nodes lie on the last posts, as dem::Pyramid's do.
-/// @param finer  of the finer level, all columns, from row `top` on
-/// @param fine   columns and rows of the whole finer level
+/// A node as the mean of finer ones. The last nodes are on the last posts, as in dem::Pyramid.
+/// @param finer  rows of the finer level from row `top`, with all columns
+/// @param fine   columns and rows of the finer level
 WaterTexel coarser(const Array2d<WaterTexel>& finer, glm::ivec2 node, glm::ivec2 fine, int top) {
     const glm::ivec2 middle = glm::min(2 * node, fine - 1);
     if (middle == glm::clamp(middle, glm::ivec2(1), fine - 2)) {
@@ -116,14 +115,14 @@ WaterField::WaterField(const Array2d<float>& heights_m, const dem::Water& water,
     make_levels();
 }
 
-/// -1 to 1, above 0 where wet.
+/// Signed distance to the shore, -1 to 1, positive where wet.
 double WaterField::shore(int column, int row, bool wet) const {
     const Array2d<WaterKind>& kind = kind_;
     const auto kind_at = [&](int c, int r) {
         return kind.at(std::clamp(c, 0, kind.width() - 1), std::clamp(r, 0, kind.height() - 1));
     };
-    // Where the floor is known: the nearest crossings of 0 along the row and the column.
-    double nearer = 0;  // sum of their inverse squares
+    // With a known floor: the nearest zero crossings along the row and the column.
+    double nearer = 0;  // sum of their inverse squared distances
     for (const glm::ivec2 axis : {glm::ivec2(1, 0), glm::ivec2(0, 1)}) {
         double nearest = 1e9;
         for (const int way : {-1, 1}) {
@@ -150,7 +149,7 @@ double WaterField::shore(int column, int row, bool wet) const {
     return wet ? std::max(blurred, kLeastShore) : std::min(blurred, -kLeastShore);
 }
 
-/// The kind of a post and all around it, where it is one; almost everywhere it is.
+/// The kind of a post if its neighbours have the same, as is usual.
 std::optional<WaterKind> WaterField::kind_around(int column, int row) const {
     const Array2d<WaterKind>& kind = kind_;
     if (column < 1 || row < 1 || column + 1 >= kind.width() || row + 1 >= kind.height())
@@ -163,7 +162,7 @@ std::optional<WaterKind> WaterField::kind_around(int column, int row) const {
     return own;
 }
 
-/// What is enclosed by water is as good as water.
+/// Covered voids in water need no cover.
 std::uint8_t WaterField::filled_texel(int column, int row) const {
     const std::uint8_t filled = filled_ ? filled_->at(column, row) : std::uint8_t{0};
     if (filled == 0) return 0;
@@ -214,7 +213,7 @@ void WaterField::make_levels() {
         Array2d<WaterTexel> texels(size.x, size.y);
         const int level = static_cast<int>(levels_.size());
         parallel_for(0, size.y, 16, [&](int first, int last) {
-            // The finer nodes of these rows, once each.
+            // Finer nodes of these rows, computed once.
             const int top = std::max(std::min(2 * first, fine.y - 1) - 1, 0),
                       bottom = std::min(2 * last, fine.y);
             Array2d<WaterTexel> finer(fine.x, bottom - top);
@@ -253,7 +252,7 @@ std::vector<WaterTexel> WaterField::page(const dem::Pyramid& pyramid, int level,
                 texels.push_back(at(level, node.x, node.y));
                 continue;
             }
-            // A mean lies in the middle of its posts.
+            // A mean is at the centre of its posts.
             const glm::dvec2 mean =
                 (glm::dvec2(pyramid.post(level, node)) + 0.5) / double(reduction_) - 0.5;
             const int own = std::max(level - means_level, 0);

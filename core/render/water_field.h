@@ -13,31 +13,31 @@
 
 namespace relevo::render {
 
-/// Of a node, as shaders/lib/water.glsl reads it, each 0 to 255: how far it is on the water's side
-/// of the shore, which lies at 127.5 and is a post's spacing wide on each side; of that water, the
-/// share that is sea, and that has heights of its floor; holes that are filled: 128, or covered:
-/// 255.
+/// Water at a node as read by shaders/lib/water.glsl, each 0 to 255. First: signed distance to the
+/// shore, which is at 127.5; 0 and 255 are one post spacing away, 255 on the water's side. Second
+/// and third: fraction of the water that is sea, and that has a floor. Fourth: filled voids are
+/// 128, covered voids 255.
 using WaterTexel = std::array<std::uint8_t, 4>;
 
-/// Water and filled holes at the nodes of a DEM's pyramid.
+/// Water and filled voids at the nodes of a DEM's pyramid.
 ///
-/// Where the floor is known, the shore is where the heights cross 0 between posts. Where it is not,
-/// it is the contour at one half of a blurred mask, which is smooth where posts would make steps; a
-/// post remains what it is. Posts without a height count as the nearest one that has a height: the
-/// ground is cut half-way to them, and up to there it is what it is. Coarser levels are means with
-/// weights 1 2 1 both ways, as heights are, so that water keeps its area.
+/// Where the floor is known, the shore is where heights cross 0 between posts. Elsewhere it is the
+/// 0.5 contour of a blurred mask, which is smooth; posts keep their side. Posts without a height
+/// take the kind of the nearest post that has one, because ground extends half-way to them. Coarser
+/// levels are weighted means (1 2 1 along each axis) as for heights, which preserves the water's
+/// area.
 class WaterField {
   public:
     /// @param heights_m  as drawn; all must outlive this
-    /// @param filled     of posts that were holes, as dem::FilledHoles::filled; null for none
-    /// @param reduction  posts of the pyramid's level 0 to one of these, each way
+    /// @param filled     as dem::FilledHoles::filled; null without filled voids
+    /// @param reduction  posts of the pyramid's level 0 per post of `heights_m`, along each axis
     WaterField(const Array2d<float>& heights_m, const dem::Water& water,
                const Array2d<std::uint8_t>* filled, int reduction);
 
-    /// Of a node of a level of this DEM's own pyramid; indices beyond the rim repeat it.
+    /// Texel of a node of this field's own pyramid. Indices are clamped to its edge.
     WaterTexel at(int level, int column, int row) const;
 
-    /// Texels of the nodes of a normal page and its border, kNormalPage_px a side.
+    /// Texels of a normal tile page with its border, kNormalPage_px a side.
     std::vector<WaterTexel> page(const dem::Pyramid& pyramid, int level, glm::ivec2 page) const;
 
   private:
@@ -49,7 +49,7 @@ class WaterField {
     WaterTexel between(int level, glm::dvec2 node) const;
 
     const Array2d<float>& heights_m_;
-    Array2d<dem::WaterKind> kind_in_voids_;  // empty where there are no voids
+    Array2d<dem::WaterKind> kind_in_voids_;  // empty without voids
     const Array2d<dem::WaterKind>& kind_;
     const Array2d<std::uint8_t>* filled_;
     int reduction_;

@@ -38,32 +38,32 @@ shader::ParamStore InstalledEffects::defaults() const {
     return store;
 }
 
-void ActiveEffects::fit(const gl::DeviceInfo& device, bool aloud) {
+void ActiveEffects::fit(const gl::DeviceInfo& device, bool report) {
     const std::size_t unusable = loaded.unusable.size();
     loaded = effect::select_and_load(
         registry, presets, switches, values,
         effect::TextureLimits{device.max_texture_size, device.max_volume_size,
                               device.max_array_layers},
         std::move(loaded), ground);
-    if (aloud && loaded.unusable.size() > unusable) say(loaded.selection);
+    if (report && loaded.unusable.size() > unusable) say(loaded.selection);
 }
 
 void ActiveEffects::take_ground(const effect::GroundWords& words, const scene::Effects& asked,
-                                bool aloud) {
+                                bool report) {
     const std::vector<std::string> said = loaded.selection.notices;
     const effect::Selection before = std::move(loaded.selection);
     ground = words;
     loaded =
         effect::select_and_load(registry, presets, switches, values, {}, std::move(loaded), ground);
-    if (!aloud) return;
+    if (!report) return;
     for (const std::string& notice : loaded.selection.notices)
         if (!contains(said, notice)) log::info(notice);
     for (const effect::Setting& setting : asked.settings) {
         const std::string id = setting.address.substr(0, setting.address.find('.'));
         if (before.has(id) && !loaded.selection.has(id))
             log::info(fmt::format(
-                "{} is set, but {} is off, because this DEM has nothing for it; --enable {} "
-                "switches it on",
+                "{} is set, but {} is off: it does not apply to this DEM; --enable {} switches "
+                "it on",
                 setting.address, id, id));
     }
 }
@@ -71,7 +71,7 @@ void ActiveEffects::take_ground(const effect::GroundWords& words, const scene::E
 std::vector<std::string> ActiveEffects::switch_off_unasked(std::string_view word) {
     std::vector<std::string> off;
     bool any = false;
-    // All of them: where one is off, another one may take its place.
+    // All providers: when one is off, another one may be selected instead.
     for (const effect::Effect& effect : registry.effects()) {
         const std::string& id = effect.id();
         if (!effect.provides(word) || contains(switches.enable, id) ||
@@ -171,7 +171,7 @@ std::vector<std::filesystem::path> ActiveEffects::files_and_folders() const {
 }
 
 std::optional<shader::ParamStore> ActiveEffects::values_with(
-    const std::vector<effect::Setting>& settings, bool aloud) {
+    const std::vector<effect::Setting>& settings, bool report) {
     shader::ParamStore changed = defaults();
     std::vector<std::string> said =
         effect::apply_settings(changed, registry, loaded.selection, presets, settings);
@@ -180,7 +180,7 @@ std::optional<shader::ParamStore> ActiveEffects::values_with(
             return std::nullopt;
     for (const shader::TextParam* text : changed.texts())
         if (changed.text(text->address) != values.text(text->address)) return std::nullopt;
-    if (aloud)
+    if (report)
         for (const std::string& notice : said)
             if (!contains(notices, notice)) log::info(notice);
     notices.insert(notices.end(), said.begin(), said.end());
@@ -189,7 +189,7 @@ std::optional<shader::ParamStore> ActiveEffects::values_with(
 
 namespace {
 
-/// Takes `ids` out of one list of effects and adds them to another.
+/// Removes `ids` from one list and appends them to another.
 void move_to(const std::vector<std::string>& ids, std::vector<std::string>& from,
              std::vector<std::string>& to) {
     for (const std::string& id : ids) {
@@ -207,7 +207,7 @@ scene::Effects with(scene::Effects effects, const std::vector<std::string>& ids)
 
 scene::Effects without(scene::Effects effects, const std::vector<std::string>& ids,
                        const ActiveEffects& shown) {
-    // What is shown says which effects are on, whatever was asked for.
+    // The selection of `shown` replaces the switches that were asked for.
     effect::Switches& switches = effects.switches;
     switches.enable.clear();
     switches.disable.clear();
@@ -218,7 +218,7 @@ scene::Effects without(scene::Effects effects, const std::vector<std::string>& i
     return effects;
 }
 
-std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, bool aloud,
+std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, bool report,
                                                  const effect::GroundWords& ground) {
     auto active = std::make_unique<ActiveEffects>(effects);
     active->ground = ground;
@@ -228,7 +228,7 @@ std::unique_ptr<ActiveEffects> ActiveEffects::of(const scene::Effects& effects, 
     active->notices =
         effect::apply_settings(active->values, active->registry, active->loaded.selection,
                                active->presets, effects.settings);
-    if (!aloud) return active;
+    if (!report) return active;
     const std::vector<std::string>& disable = effects.switches.disable;
     for (const effect::BrokenEffect& broken : active->registry.broken())
         if (!contains(disable, broken.id))

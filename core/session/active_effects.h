@@ -16,72 +16,73 @@
 
 namespace relevo::session {
 
-/// The plugins there are, and the parameters that they and the core have. No device is needed.
+/// Installed plugins with the parameters of plugins and core. Needs no device.
 struct InstalledEffects {
     effect::Registry registry;
     std::vector<effect::Preset> presets;
     shader::ParamStore values;
 
-    /// Reads the plugins and presets that a scene names; values are those of the plugins.
+    /// Reads the plugins and presets that `effects` names; parameters get their defaults.
     /// @throws Error (BadInput) as effect::Registry and effect::load_preset
     explicit InstalledEffects(const scene::Effects& effects);
 
-    /// All parameters there are, with their defaults.
+    /// All parameters with their default values.
     shader::ParamStore defaults() const;
 };
 
-/// Those that are on as well, with what they load, and the values that a scene gives.
+/// Installed effects, those of them that are switched on, their loaded files, and a scene's
+/// parameter values.
 struct ActiveEffects : InstalledEffects {
     effect::Switches switches;
     effect::GroundWords ground;
     effect::LoadedSelection loaded;    // points into registry
-    std::vector<std::string> notices;  ///< of the settings
+    std::vector<std::string> notices;  ///< notices of apply_settings(), already logged
 
     using InstalledEffects::InstalledEffects;
 
-    /// Visits the files that it was read from.
-    /// @param visit  called with the path and what the file is: "the preset"
+    /// Visits each file that was read: presets, manifests, GLSL, textures, modules.
+    /// @param visit  called with the path and a description of the file: "the preset"
     void visit_files(
         const std::function<void(const std::filesystem::path&, const std::string&)>& visit) const;
 
-    /// Loads the plugins and switches them.
-    /// @param aloud  says with log what is not as asked
+    /// Loads the plugins and switches effects on.
+    /// @param report  logs warnings and notices
     /// @throws Error (BadInput) as effect::select_and_load and effect::apply_settings
-    static std::unique_ptr<ActiveEffects> of(const scene::Effects& effects, bool aloud = true,
+    static std::unique_ptr<ActiveEffects> of(const scene::Effects& effects, bool report = true,
                                              const effect::GroundWords& ground = {});
 
-    /// Switches off what the DEM is not for.
+    /// Switches off effects that do not apply to the DEM.
     /// @throws Error (BadInput) as effect::select_and_load
     void take_ground(const effect::GroundWords& words, const scene::Effects& asked,
-                     bool aloud = true);
+                     bool report = true);
 
-    /// Switches off those that provide a word and were not asked for by name.
-    /// @returns their ids
+    /// Switches off effects that provide `word` unless they were enabled by id.
+    /// @returns the ids of effects that were on
     /// @throws Error (BadInput) as effect::select_and_load
     std::vector<std::string> switch_off_unasked(std::string_view word);
 
-    /// Switches off, with a warning, what brings larger textures than a device takes.
-    /// @throws Error (BadInput) for what was asked for by name
-    void fit(const gl::DeviceInfo& device, bool aloud = true);
-    /// The values of parameters with other settings, if those need neither another program nor
-    /// another module; else none.
-    /// @param aloud  logs notices that were not logged before
+    /// Switches off, with a warning, effects whose textures exceed the device's limits.
+    /// @throws Error (BadInput) if such an effect was enabled by id
+    void fit(const gl::DeviceInfo& device, bool report = true);
+    /// The parameter values under other settings; nullopt if these change a static parameter or a
+    /// text, which needs another program or module.
+    /// @param report  logs notices that were not logged before
     /// @throws Error (BadInput) as effect::apply_settings
     std::optional<shader::ParamStore> values_with(const std::vector<effect::Setting>& settings,
-                                                  bool aloud);
-    /// For a renderer; valid as long as this is.
+                                                  bool report);
+    /// Inputs of a renderer; they point into this object.
     render::EffectInputs inputs() const;
-    /// Adds presets, and the files of all plugins. @throws Error as FilesInUse::add_input
+    /// Adds all files that were read as inputs. @throws Error as FilesInUse::add_input
     void add_inputs(FilesInUse& files) const;
-    /// All files that it was read from, and the folders in which plugins were looked for.
+    /// All files that were read, and the folders that were searched for plugins.
     std::vector<std::filesystem::path> files_and_folders() const;
 };
 
-/// The same with these effects on, whatever was asked of them.
+/// `effects` with `ids` enabled, even if they were disabled.
 scene::Effects with(scene::Effects effects, const std::vector<std::string>& ids);
 
-/// The effects of `shown` but these and what requires them. What they have pulled in stays: the
-/// difference is theirs alone.
+/// The effects that are on in `shown`, without `ids` and the effects that require them. Effects
+/// that `ids` require stay on, so that only `ids` differ.
 scene::Effects without(scene::Effects effects, const std::vector<std::string>& ids,
                        const ActiveEffects& shown);
 

@@ -18,12 +18,12 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Of the posts' spacing: behind a lit post shade may begin at once.
+// In post spacings. Behind a lit post a shadow may begin at once.
 constexpr double kAtPost = 0.06;
-constexpr double kAlike = 0.9;  // of a pixel's ground, for it to be lit or in the shade
+constexpr double kAlike = 0.9;  // least uniform fraction of a pixel's ground
 
-/// The posts as high as they are drawn, where that is not as the DEM has them. Of a DEM beyond
-/// --memory these are means, as those that shade in pictures.
+/// The heights as drawn, or nullopt if they are the DEM's. Those of a DEM above the --memory limit
+/// are means, as in the renderer's shadows.
 std::optional<dem::Heightfield> other_heights(const Session& session) {
     const dem::Heightfield& given = session.dem()->field;
     const auto exaggeration = static_cast<float>(session.scene().exaggeration);
@@ -36,7 +36,7 @@ std::optional<dem::Heightfield> other_heights(const Session& session) {
     return field;
 }
 
-/// The share of the sun's disc that each post sees.
+/// Visible fraction of the solar disc at each post, 0 to 1; NaN in voids.
 Array2d<float> swept(const Session& session) {
     const std::optional<dem::Heightfield> other = other_heights(session);
     const dem::Posts posts(other ? *other : session.dem()->field);
@@ -47,7 +47,7 @@ Array2d<float> swept(const Session& session) {
     options.refraction = light.terrestrial_refraction;
     if (light.air)
         options.air = [&](geo::Geodetic at) {
-            at.height_m /= exaggeration;  // of the ground that there is
+            at.height_m /= exaggeration;  // true height, not exaggerated
             return light.air(at);
         };
     const glm::dvec3& d = light.direction;
@@ -64,10 +64,11 @@ std::string provider_of(const ActiveEffects& effects) {
     return {};
 }
 
-/// Posts of a line that a pixel shows, each by its cell, half a spacing to either side of it.
+/// The posts of one row or column that a pixel covers. Each post stands for the cell within half a
+/// spacing.
 struct Span {
-    double from, to;  ///< of the pixel; the same where it is finer than the posts
-    int first, last;  ///< none where last < first
+    double from, to;  ///< edges of the pixel in posts; equal if it is finer than the posts
+    int first, last;  ///< indices of posts; empty if last < first
 
     static Span of(double centre, double pixel_posts, int count) {
         const bool fine = pixel_posts < 1;
@@ -76,18 +77,18 @@ struct Span {
                 std::max(static_cast<int>(std::ceil(centre - reach)), 0),
                 std::min(static_cast<int>(std::floor(centre + reach)), count - 1)};
     }
-    /// How much of a post's cell the pixel covers.
+    /// Length of a post's cell that the pixel covers, in posts.
     double weight(int post) const {
         if (from == to) return 1;
         return std::max(std::min(to, post + 0.5) - std::max(from, post - 0.5), 0.0);
     }
 };
 
-/// What the sweep has of the ground of a pixel.
+/// Swept values over the ground of a pixel.
 struct Truth {
-    double weight = 0;  ///< of posts that are there
-    double seen = 0;    ///< of the disc, times weight
-    double lit = 0;     ///< weight of those that see half of the disc or more
+    double weight = 0;  ///< area of posts with heights
+    double seen = 0;    ///< visible fraction of the disc, times weight
+    double lit = 0;     ///< weight of posts that see half of the disc or more
 
     Truth(const Array2d<float>& shares, const Span& x, const Span& y) {
         for (int row = y.first; row <= y.last; ++row)
@@ -102,18 +103,18 @@ struct Truth {
     }
 };
 
-/// Puts a pixel beside the posts that it shows.
-/// @param reduction  of the DEM's posts to one of `shares`, each way
+/// Adds a pixel to the audit.
+/// @param reduction  posts of the DEM per cell of `shares`, along each axis
 void compare(const render::SunSeen& pixel, const Array2d<float>& shares, double reduction,
              ShadowAudit& audit) {
-    if (!pixel.faces) return void(++audit.left_out.faces_away);
-    if (pixel.moved) return void(++audit.left_out.moved);
+    if (!pixel.faces) return void(++audit.excluded.faces_away);
+    if (pixel.moved) return void(++audit.excluded.moved);
     const glm::dvec2 at = (pixel.post + 0.5) / reduction - 0.5;
     const double side = pixel.pixel_posts / reduction;
     const Span x = Span::of(at.x, side, shares.width()), y = Span::of(at.y, side, shares.height());
-    if (x.last < x.first || y.last < y.first) return void(++audit.left_out.between_posts);
+    if (x.last < x.first || y.last < y.first) return void(++audit.excluded.between_posts);
     const Truth truth(shares, x, y);
-    if (truth.weight <= 0) return void(++audit.left_out.holes);
+    if (truth.weight <= 0) return void(++audit.excluded.voids);
     const double is = truth.seen / truth.weight, lit = truth.lit / truth.weight;
     const auto add = [&](ShadowAudit::Difference& difference) {
         ++difference.pixels;
@@ -122,13 +123,13 @@ void compare(const render::SunSeen& pixel, const Array2d<float>& shares, double 
     };
     add(audit.all);
     if (is > 0 && is < 1) add(audit.penumbra);
-    if (std::max(lit, 1 - lit) < kAlike) return void(++audit.left_out.mixed);
+    if (std::max(lit, 1 - lit) < kAlike) return void(++audit.excluded.mixed);
     const bool is_lit = lit > 0.5, drawn_lit = pixel.share >= 0.5;
     ++(is_lit ? audit.lit : audit.shaded);
     if (is_lit == drawn_lit) ++(is_lit ? audit.lit_right : audit.shaded_right);
 }
 
-/// Null without pixels.
+/// Means are null without pixels.
 ordered_json difference_json(const ShadowAudit::Difference& difference) {
     const auto mean = [&](double sum) -> ordered_json {
         if (difference.pixels == 0) return nullptr;
@@ -156,16 +157,14 @@ double ShadowAudit::balanced_accuracy() const {
 }
 
 std::string ShadowAudit::text() const {
-    if (!refusal.empty()) return "audit: the CPU sweep has no shadows here: " + refusal;
+    if (!refusal.empty()) return "audit: the CPU sweep failed: " + refusal;
     if (pixels() == 0)
-        return "audit: no pixel shows a post of the DEM that is turned to the sun; there is "
-               "nothing "
-               "to compare";
+        return "audit: no pixel shows a post of the DEM that faces the sun; nothing to compare";
     const std::string figures = fmt::format(
         "with the CPU sweep on {:.2f} % of {} pixels that show a post, balanced {:.2f} %",
         100 * agreement(), pixels(), 100 * balanced_accuracy());
     if (provider.empty())
-        return fmt::format("audit: no effect that is on draws shadows; all ground lit agrees {}",
+        return fmt::format("audit: no active effect draws shadows; a fully lit DEM agrees {}",
                            figures);
     return fmt::format("audit: {} agrees {}", provider, figures);
 }
@@ -182,11 +181,11 @@ std::string ShadowAudit::json_text() const {
     json["balanced_accuracy"] = balanced_accuracy();
     json["difference"] = difference_json(all);
     json["penumbra"] = difference_json(penumbra);
-    json["left_out"] = {{"between_posts", left_out.between_posts},
-                        {"mixed", left_out.mixed},
-                        {"faces_away", left_out.faces_away},
-                        {"holes", left_out.holes},
-                        {"moved", left_out.moved}};
+    json["left_out"] = {{"between_posts", excluded.between_posts},
+                        {"mixed", excluded.mixed},
+                        {"faces_away", excluded.faces_away},
+                        {"holes", excluded.voids},
+                        {"moved", excluded.moved}};
     return json.dump();
 }
 
@@ -198,7 +197,7 @@ ShadowAudit audit_shadows(const Session& session) {
         truth = swept(session);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::BadInput) throw;
-        audit.refusal = error.what();  // a sun cannot be found over maps of the world
+        audit.refusal = error.what();  // such as a world map, which has no single sun direction
         return audit;
     }
     const double reduction = session.dem()->field.reduction;

@@ -5,49 +5,51 @@
 
 #include "session/session.h"
 
-/// Whether the shadows of a picture are those of the figures.
+/// Compares the shadows of an image with those of the CPU sweep.
 namespace relevo::session {
 
-/// The shadows of a picture beside those that light::shadows() sweeps on the CPU. Nothing is
-/// interpolated on the sweep's side: of pixels finer than the posts those count that show what is
-/// at a post, within 0.06 of the spacing; coarser ones have the mean of the posts that they cover,
-/// each with the square about it.
+/// Compares the shadows of an image with those of light::shadows(), swept on the CPU. Swept values
+/// are not interpolated. If pixels are finer than the posts, only pixels within 0.06 post spacings
+/// of a post count. Coarser pixels are compared with the mean of the posts that they cover, each
+/// weighted by the covered area of its cell.
 struct ShadowAudit {
-    std::string provider;  ///< id of the effect that draws shadows; empty: none does
-    std::string refusal;   ///< why the sweep has no shadows to compare with, mostly empty
+    std::string provider;  ///< id of the effect that draws shadows; empty if none does
+    std::string refusal;   ///< why the sweep failed; empty if it did not
 
-    struct LeftOut {
-        std::int64_t between_posts = 0;  ///< pixels that show no post
-        /// Pixels of which less than nine tenths are alike, lit or in the shade; they are in `all`
-        /// and `penumbra`.
+    struct Excluded {
+        std::int64_t between_posts = 0;  ///< pixels farther than 0.06 spacings from any post
+        /// Pixels of which less than 90 % is uniformly lit or shaded. They count in `all` and
+        /// `penumbra`.
         std::int64_t mixed = 0;
-        std::int64_t faces_away = 0;  ///< ground turned away from the sun is dark anyway
-        std::int64_t holes = 0;       ///< the DEM has no height there, whatever is drawn
-        std::int64_t moved = 0;       ///< by an effect, such as the surface of a sea
-    } left_out;
+        /// Ground turned away from the sun, dark without cast shadows.
+        std::int64_t faces_away = 0;
+        std::int64_t voids = 0;  ///< pixels in voids of the DEM
+        std::int64_t moved = 0;  ///< surfaces displaced by an effect, such as a sea's
+    } excluded;
 
-    std::int64_t lit = 0, shaded = 0;  ///< pixels compared, by what the sweep says
+    std::int64_t lit = 0, shaded = 0;  ///< pixels compared, as swept
     std::int64_t lit_right = 0, shaded_right = 0;
 
-    /// Of the drawn share of the sun's disc less the true one.
+    /// Visible fraction of the solar disc: drawn minus swept.
     struct Difference {
         std::int64_t pixels = 0;
         double sum = 0, sum_of_sizes = 0;
     };
-    Difference all, penumbra;  ///< penumbra: where the sweep has a part of the disc
+    Difference all, penumbra;  ///< penumbra: where the swept fraction is neither 0 nor 1
 
     std::int64_t pixels() const { return lit + shaded; }
-    /// Share of pixels that are right, half of the disc being the border; NaN without pixels.
+    /// Fraction of pixels that agree, thresholded at half of the disc; NaN without pixels.
     double agreement() const;
-    /// Mean of the shares of lit and of shaded pixels that are right; of one sort alone its share.
+    /// Mean of agreement over lit and over shaded pixels; if one class is empty, that of the other.
     double balanced_accuracy() const;
     /// "shadows agrees with the CPU sweep on 99.71 % of 130211 pixels, balanced 99.64 %"
     std::string text() const;
-    /// JSON, as docs/jobs.md has it.
+    /// JSON as documented in docs/jobs.md.
     std::string json_text() const;
 };
 
-/// Of the last frame of a session with Options::audited.
+/// Audits the last frame of a session that was opened with Options::audited.
+/// @throws Error (not BadInput: that becomes ShadowAudit::refusal)
 ShadowAudit audit_shadows(const Session& session);
 
 }  // namespace relevo::session

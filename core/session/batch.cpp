@@ -25,18 +25,18 @@
 namespace relevo::session {
 namespace {
 
-/// Does tasks on threads of its own, in their order; who adds one waits while many are left.
-class Crew {
+/// Runs tasks in order on its own threads. add() blocks while many tasks are waiting.
+class TaskQueue {
   public:
-    explicit Crew(int threads) : most_(static_cast<std::size_t>(threads) + 1) {
+    explicit TaskQueue(int threads) : most_(static_cast<std::size_t>(threads) + 1) {
         for (int i = 0; i < threads; ++i)
             threads_.emplace_back([this] { work(); });
     }
-    ~Crew() { finish(); }
-    Crew(const Crew&) = delete;
-    Crew& operator=(const Crew&) = delete;
+    ~TaskQueue() { finish(); }
+    TaskQueue(const TaskQueue&) = delete;
+    TaskQueue& operator=(const TaskQueue&) = delete;
 
-    /// @param task  throws nothing
+    /// @param task  must not throw
     void add(std::function<void()> task) {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [this] { return tasks_.size() < most_; });
@@ -44,7 +44,7 @@ class Crew {
         changed_.notify_all();
     }
 
-    /// Waits for all that was added.
+    /// Waits for all tasks.
     void finish() {
         {
             const std::lock_guard lock(mutex_);
@@ -78,7 +78,7 @@ class Crew {
     std::vector<std::thread> threads_;
 };
 
-/// What went wrong, as a picture's own fault.
+/// The message of a failure of one picture.
 std::string reason_of(const std::exception_ptr& thrown) {
     try {
         std::rethrow_exception(thrown);
@@ -89,13 +89,13 @@ std::string reason_of(const std::exception_ptr& thrown) {
     }
 }
 
-/// A scene whose camera stands where one can stand: what opens a session is not yet a picture.
+/// The scene with a default camera: an impossible camera must fail its picture, not the session.
 scene::Scene of_any_view(scene::Scene scene) {
     scene.view = {};
     return scene;
 }
 
-/// The files of a picture, open and without names.
+/// Open output files of a picture, still without their final names.
 struct Outputs {
     OutputFile picture;
     std::optional<OutputFile> sidecar;
@@ -109,23 +109,23 @@ class Batch {
     std::size_t run(const std::vector<scene::Shot>& shots) {
         const bool linear = image::holds_linear_light(shots.front().output);
         image::load_format(shots.front().output);
-        Crew crew(std::clamp(thread_count() - 1, 1, 8));
+        TaskQueue queue(std::clamp(thread_count() - 1, 1, 8));
         for (const scene::Shot& shot : shots) {
             try {
-                draw(shot, linear, crew);
+                draw(shot, linear, queue);
             } catch (const Error& error) {
-                if (!opened_) throw;  // nothing can be drawn at all
+                if (!opened_) throw;  // nothing can be drawn
                 failed(shot, error.what());
             } catch (...) {
                 failed(shot, reason_of(std::current_exception()));
             }
         }
-        crew.finish();
+        queue.finish();
         return failed_;
     }
 
   private:
-    void draw(const scene::Shot& shot, bool linear, Crew& crew) {
+    void draw(const scene::Shot& shot, bool linear, TaskQueue& queue) {
         open_session(shot, linear);
         const SceneIn scene_is = scene_in(shot.output, shot.scene);
         const bool overwrite = options_.overwrite || options_.parts.contains(shot.output);
@@ -134,7 +134,7 @@ class Batch {
         if (options_.sidecar || scene_is == SceneIn::Sidecar)
             outputs->sidecar.emplace(
                 files_.open_alone(sidecar_to_write(shot.output), overwrite, "--sidecar"));
-        inputs_.record(shot.scene);  // before files are read, so that later changes are noticed
+        inputs_.record(shot.scene);  // before files are read, to notice later changes
         session_->show(shot.scene, shot.utc);
         session_->draw();
         if (!options_.allow_blank && !session_->shows_ground()) return blank(shot);
@@ -147,7 +147,7 @@ class Batch {
         const image::Metadata metadata = metadata_of(*session_, inputs_, scene_is);
         const auto write = [&](auto picture) {
             auto kept = std::make_shared<decltype(picture)>(std::move(picture));
-            crew.add([this, &shot, outputs, metadata, kept] {
+            queue.add([this, &shot, outputs, metadata, kept] {
                 write_files(shot, *outputs, metadata, *kept);
             });
         };
@@ -187,7 +187,7 @@ class Batch {
         options_.failed(shot, why);
     }
 
-    /// Opens what draws the shot's DEM, where another one is open.
+    /// Opens a session for the shot's DEM unless it is already open.
     void open_session(const scene::Shot& shot, bool linear) {
         std::string key = dem_key(shot.scene);
         if (session_ && key == dem_) return;
@@ -209,8 +209,8 @@ class Batch {
     FilesInUse& files_;
     std::unique_ptr<Session> session_;
     std::string dem_;
-    bool opened_ = false;  ///< once
-    std::mutex mutex_;     // of what the crew's threads tell
+    bool opened_ = false;  ///< a session has been opened at least once
+    std::mutex mutex_;     // guards the callbacks and failed_
     std::size_t failed_ = 0;
 };
 

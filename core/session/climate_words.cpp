@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kEverywhere_m = -499;
 
-/// Heights are good to a hundred metres or two: what is told has tens.
+/// Rounded to tens: the heights are accurate to 100 to 200 m.
 std::string height_text(double height_m) {
     return fmt::format("{:.0f} m", 10 * std::round(height_m / 10));
 }

@@ -9,24 +9,24 @@
 
 namespace relevo::session {
 
-/// The climate of a place in a normal year, and the ground that it makes there on a day: what
-/// pictures assume of a DEM's natural ground.
+/// Mean climate of a place, and the natural ground cover that pictures assume there on a day.
 struct ClimateReport {
     double height_m = 0;
     double january_c = 0, july_c = 0;  ///< mean air temperatures at that height
-    double year_mm = 0;                ///< rain and melted snow
-    climate::Cover cover{};            ///< of level ground at that height on the day
+    double year_mm = 0;                ///< precipitation a year
+    climate::Cover cover{};            ///< on level ground at that height on the day
     sun::Date date;                    ///< in UTC
-    /// Above them no trees grow, ice lies for good, and half of the level open ground has snow on
-    /// the day [m]; none where that is not so up to 9000 m. -500 m: all ground.
+    /// Heights above which no trees grow, ice is permanent, and snow covers half of the level open
+    /// ground on the day [m]. Empty if there is no such height below 9000 m; -500 m if all ground
+    /// is above.
     std::optional<double> tree_line_m, ice_line_m, snow_line_m;
 };
 
-/// The middle of a DEM's heights, no lower than the sea where there is land above it, and of the
-/// Earth whatever outliers it has [m].
+/// Mean of the lowest and the highest height [m], clamped to -500..9000 m against outliers. Land
+/// below sea level is ignored if there is land above it.
 double middle_height_m(double lowest_m, double highest_m);
 
-/// @param place  its height is that of the temperatures and of the cover
+/// @param place  temperatures and cover are those at its height
 /// @throws Error (BadInput) as climate::ClimateMap
 ClimateReport climate_report(const climate::ClimateMap& map, const geo::Geodetic& place,
                              sun::Instant moment);

@@ -32,14 +32,14 @@ double value_of(const ColourRamp::End& end, const shader::ParamStore& values,
     return 0;
 }
 
-/// Values of the first and the last colour, where the ground has any of them.
+/// Values of the first and the last colour; nullopt if the DEM has none of them.
 std::optional<std::pair<double, double>> ends_of(const ColourRamp& ramp,
                                                  const shader::ParamStore& values,
                                                  const DemRange& ground) {
     if (ramp.is_ring) return std::pair(0.0, 360.0);
     double from = value_of(ramp.from, values, ground), to = value_of(ramp.to, values, ground);
     using Of = ColourRamp::End::Of;
-    // Land, where parameters leave it open.
+    // Parameters without a range select the range of land.
     if (ramp.from.of == Of::Param && ramp.to.of == Of::Param && !(from < to)) {
         from = std::max(ground.lowest_m, std::min(ground.highest_m, 0.0));
         to = std::max(ground.highest_m, from + 1e-3);
@@ -57,7 +57,7 @@ chart::Color colour_of(const std::array<double, 3>& srgb) {
     return color;
 }
 
-/// Rising, whichever way the ramp goes.
+/// Stops in ascending order of values, even for a descending ramp.
 std::vector<chart::Ramp::Stop> stops_of(const ColourRamp& ramp, double from, double to) {
     std::vector<chart::Ramp::Stop> stops;
     const auto count = static_cast<double>(ramp.colours.size() - (ramp.is_ring ? 0 : 1));
@@ -69,7 +69,7 @@ std::vector<chart::Ramp::Stop> stops_of(const ColourRamp& ramp, double from, dou
     return stops;
 }
 
-/// Puts further values under or over those of a legend; where they meet, colours change at once.
+/// Joins the stops of two ramps of one legend. Where they meet, the colour changes abruptly.
 void join(std::vector<chart::Ramp::Stop> more, chart::Ramp& ramp) {
     const bool below = more.front().value < ramp.stops.front().value;
     std::vector<chart::Ramp::Stop>&low = below ? more : ramp.stops,

@@ -7,14 +7,14 @@
 
 namespace relevo::session {
 
-/// What ramps may say of a DEM.
+/// What colour ramps depend on in a DEM.
 struct DemRange {
     double lowest_m = 0, highest_m = 0;
     bool has_sea_floor = false;  ///< dem::Water::has_sea_floor
 };
 
-/// What the colours of the effects that are on mean, by the ramps that their plugins declare.
-/// Ramps of one name and unit are one legend, such as those of seas and of lands.
+/// Legends of the colour ramps that the active effects declare. Ramps with the same title and unit
+/// share a legend, such as those of seas and of land.
 std::vector<chart::Legend> colour_legends(const ActiveEffects& effects, const DemRange& ground);
 
 }  // namespace relevo::session

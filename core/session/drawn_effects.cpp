@@ -25,25 +25,25 @@ bool EffectsRequest::operator==(const EffectsRequest& other) const {
            std::ranges::equal(effects.settings, other.effects.settings, same);
 }
 
-DrawnEffects DrawnEffects::load(EffectsRequest request, bool aloud) {
+DrawnEffects DrawnEffects::load(EffectsRequest request, bool report) {
     DrawnEffects drawn;
     drawn.request_ = std::move(request);
     const EffectsRequest& asked = drawn.request_;
     const bool compared = !asked.compared.empty();
     drawn.effects_ =
         ActiveEffects::of(compared ? with(asked.effects, asked.compared) : asked.effects,
-                          /*aloud=*/true, asked.ground);
+                          /*report=*/true, asked.ground);
     if (asked.overlay_has_time)
         for (const std::string& id : drawn.effects_->switch_off_unasked("shadow"))
-            if (aloud)
+            if (report)
                 log::info(fmt::format(
-                    "{} is off, because the overlay shows the sun's light of its own time; "
-                    "--enable {} draws them too",
+                    "{} is off: the overlay shows sunlight of its own time; --enable {} switches "
+                    "it on",
                     id, id));
     if (compared)
         drawn.others_ =
             ActiveEffects::of(session::without(asked.effects, asked.compared, *drawn.effects_),
-                              /*aloud=*/false, asked.ground);
+                              /*report=*/false, asked.ground);
     drawn.stamp_files();
     return drawn;
 }
@@ -63,12 +63,12 @@ std::vector<DrawnEffects::Half> DrawnEffects::halves() const {
 void DrawnEffects::take_ground(const effect::GroundWords& words) {
     request_.ground = words;
     for (const Half& half : halves())
-        half.effects.take_ground(words, request_.effects, half.aloud);
+        half.effects.take_ground(words, request_.effects, half.report);
 }
 
 void DrawnEffects::fit(const gl::DeviceInfo& device) {
     for (const Half& half : halves())
-        half.effects.fit(device, half.aloud);
+        half.effects.fit(device, half.report);
 }
 
 void DrawnEffects::compile(gl::Context& context, const OptionsOf& options) {
@@ -83,7 +83,7 @@ bool DrawnEffects::take(const EffectsRequest& request) {
     if (!request_.has_selection_of(request) || !files_.hold()) return false;
     std::vector<shader::ParamStore> values;
     for (const Half& half : halves()) {
-        auto changed = half.effects.values_with(request.effects.settings, half.aloud);
+        auto changed = half.effects.values_with(request.effects.settings, half.report);
         if (!changed) return false;
         values.push_back(std::move(*changed));
     }
@@ -100,10 +100,8 @@ void DrawnEffects::set(const std::string& address, const std::string& value) {
     for (const Half& half : halves()) {
         const shader::Param* const param = half.effects.values.find(address);
         if ((param && param->is_static) || half.effects.values.find_text(address))
-            bad_input(
-                fmt::format("session: {}: a static parameter: another value needs another "
-                            "shader",
-                            address));
+            bad_input(fmt::format(
+                "session: {}: is a static parameter; another value needs another shader", address));
         half.effects.values.set(address, value);
         half.renderer->set_values(half.effects.values);
     }

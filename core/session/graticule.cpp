@@ -16,21 +16,21 @@ namespace relevo::session {
 namespace {
 
 constexpr int kMostLines = 7;
-constexpr double kNarrow = 6, kWide = 14;  // units between lines where they are gone, and whole
-constexpr double kHalf = 0.55, kHalfEdge = 1.3;  // units
+constexpr double kNarrow = 6, kWide = 14;  // distance of lines, in stamp units: invisible, opaque
+constexpr double kHalf = 0.55, kHalfEdge = 1.3;  // half widths in stamp units
 constexpr float kLineOpacity = 0.85f, kEdgeOpacity = 0.35f;
 
 constexpr std::array<int, 18> kSteps_s = {1,   2,   5,    10,   15,   30,    60,    120,   300,
                                           600, 900, 1800, 3600, 7200, 18000, 36000, 54000, 108000};
 
-/// One of the two coordinates at each pixel [degrees]; NaN where no ground is.
+/// A coordinate at each pixel [degrees]; NaN without ground.
 using Field = Array2d<double>;
 
 struct Places {
     Field latitude, longitude;
 };
 
-/// Longitudes without a leap in them, as far as one turn allows.
+/// Longitudes are within 180 degrees of the frame's origin, hence continuous.
 Places places_of(const SeenGround& seen, const geo::LocalFrame& frame) {
     const Field none(seen.width_px(), seen.height_px(), std::numeric_limits<double>::quiet_NaN());
     Places places{none, none};
@@ -58,8 +58,8 @@ double range_of(const Field& field) {
     return std::max(high - low, 0.0);
 }
 
-/// What a coordinate changes by from a pixel to the next. Over a silhouette the neighbour beyond is
-/// other ground: the nearer of two counts.
+/// Change of a coordinate per pixel. The smaller of the two neighbours' differences counts, because
+/// the other neighbour may lie behind a silhouette.
 double change_at(const Field& field, int x, int y) {
     const auto at = [&](int column, int row) {
         return column < 0 || row < 0 || column >= field.width() || row >= field.height()
@@ -73,12 +73,12 @@ double change_at(const Field& field, int x, int y) {
     return std::hypot(std::isnan(across) ? 0 : across, std::isnan(down) ? 0 : down);
 }
 
-/// Where a line of one coordinate is in the picture.
+/// Extent of one line in the image.
 struct Course {
     glm::ivec2 left{0}, right{0}, top{0}, bottom{0};  // its outermost pixels
 };
 
-using Courses = std::map<long, Course>;  // by the number of steps
+using Courses = std::map<long, Course>;  // key: multiple of the step
 
 void note(Courses& courses, long number, const glm::ivec2& at) {
     const auto [found, fresh] = courses.try_emplace(number, Course{at, at, at, at});
@@ -90,7 +90,7 @@ void note(Courses& courses, long number, const glm::ivec2& at) {
     if (at.y > course.bottom.y) course.bottom = at;
 }
 
-/// Draws the lines of one coordinate.
+/// Draws the parallels or the meridians, and returns their extents.
 template <typename IsGround>
 Courses draw(const Field& field, double step_deg, const SeenGround& seen, const IsGround& is_ground,
              Graticule& result) {
@@ -119,7 +119,7 @@ Courses draw(const Field& field, double step_deg, const SeenGround& seen, const 
     return courses;
 }
 
-/// "47°30'" of a positive angle.
+/// "47°30'"; the angle is not negative.
 std::string angle_text(double angle_deg, double step_deg) {
     const auto whole_s = static_cast<long>(std::lround(angle_deg * 3600));
     const auto step_s = static_cast<long>(std::lround(step_deg * 3600));
@@ -129,7 +129,7 @@ std::string angle_text(double angle_deg, double step_deg) {
     return text;
 }
 
-/// Lines that cross the picture are named at their left end, lines that lead into it below.
+/// Labels horizontal lines at their left end, vertical ones at their bottom end.
 void name(const Courses& courses, double step_deg, std::string (*text)(double, double),
           std::vector<chart::Stamps::Label>& labels) {
     for (const auto& [number, course] : courses) {

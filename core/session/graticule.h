@@ -11,31 +11,30 @@
 
 namespace relevo::session {
 
-/// Lines of equal latitude and of equal longitude on the ground that a picture shows.
+/// Meridians and parallels drawn over the ground of an image.
 struct Graticule {
     double latitude_step_deg = 0, longitude_step_deg = 0;  ///< 0: no lines
-    /// Opacity of the lines at each pixel, rows from the top, 0 to 1, and of the dark edge that
-    /// lets them be seen on light ground.
+    /// Opacity at each pixel, 0 to 1, rows from the top: of the lines, and of the dark outline that
+    /// keeps them legible on bright ground.
     Array2d<float> line, edge;
     std::vector<chart::Stamps::Label> labels;
 };
 
-/// Draws where they are seen: a pixel's place is that of the ground in it, so that what is hidden
-/// is hidden and water has its lines on its surface. Lines that stand nearer than some pixels to
-/// each other fade.
-/// @param frame      the camera's
-/// @param is_ground  whether a point of it is ground, and not a wall below its edge
+/// Draws the lines from the ground position of each pixel: hidden ground has no lines, and water
+/// has them on its surface. Lines fade out where they are few pixels apart.
+/// @param frame      the frame of the camera and of `seen`
+/// @param is_ground  true if a point in `frame` [m] is ground, not a wall below the DEM's edge
 Graticule make_graticule(const SeenGround& seen, const geo::LocalFrame& frame,
                          const std::function<bool(const glm::dvec3& point_m)>& is_ground);
 
-/// Degrees between lines of which at most `most` lie in a range: 1", 2", 5", ... 30 degrees.
+/// The smallest step of 1", 2", 5", ... 30 degrees that divides a range by at most `most` lines.
 double graticule_step_deg(double range_deg, int most);
 
-/// "47°30'N", "8°E", "0°"; as many parts as the step needs.
+/// "47°30'N", "8°E", "0°"; minutes and seconds only if the step has any.
 std::string latitude_text(double latitude_deg, double step_deg);
 std::string longitude_text(double longitude_deg, double step_deg);
 
-/// Lays the lines on a picture, RGB, of the same size.
+/// Draws the lines over an RGB image of the same size.
 void draw_lines(const Graticule& graticule, image::Image8& picture);
 
 }  // namespace relevo::session

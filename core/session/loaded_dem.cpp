@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 
 LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
     LoadedDem::Drawn drawn;
-    // Finer levels of means are read from the file, holes and all: they would disagree.
+    // Voids of a reduced DEM stay cut: finer levels of detail are read from the file, with voids.
     const bool all = field.reduction == 1;
     if (field.about.statistics.holes > 0) {
         const dem::Holes done = all ? holes : dem::Holes::Cut;
@@ -35,10 +35,10 @@ LoadedDem::Drawn drawn_of(const dem::Heightfield& field, dem::Holes holes) {
     return drawn;
 }
 
-/// Posts above which others stand in for them, and how many of these there are at most.
-constexpr std::int64_t kManyPosts = std::int64_t{1} << 24, kStandInPosts = std::int64_t{1} << 22;
+/// DEMs with more posts first get a preview; number of its posts.
+constexpr std::int64_t kManyPosts = std::int64_t{1} << 24, kPreviewPosts = std::int64_t{1} << 22;
 
-/// Higher or lower than any, with much room [m]: what is drawn has to fit on the Earth.
+/// Greatest magnitude of drawable heights [m], so that the ground fits on the Earth.
 constexpr double kMostHeight_m = 2e6;
 
 void check_heights(const dem::Description& about) {
@@ -52,9 +52,9 @@ void check_heights(const dem::Description& about) {
 
 std::shared_ptr<const LoadedDem> loaded_dem(std::shared_ptr<const dem::Source> source,
                                             dem::Heightfield field, const scene::Scene& scene,
-                                            Clock::time_point began, bool stands_in) {
-    auto dem = std::make_shared<LoadedDem>(
-        LoadedDem{.source = std::move(source), .field = std::move(field), .stands_in = stands_in});
+                                            Clock::time_point began, bool is_preview) {
+    auto dem = std::make_shared<LoadedDem>(LoadedDem{
+        .source = std::move(source), .field = std::move(field), .is_preview = is_preview});
     dem->drawn = drawn_of(dem->field, scene.holes);
     dem->pyramid.emplace(dem::Pyramid::of(dem->to_draw(), dem->source.get()));
     dem->took_ms = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
@@ -69,19 +69,19 @@ std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> sou
     dem::Heightfield field = dem::load(*source, scene.dem.max_posts);
     dem::check_heights(field, scene.dem);
     check_heights(field.about);
-    return loaded_dem(std::move(source), std::move(field), scene, began, /*stands_in=*/false);
+    return loaded_dem(std::move(source), std::move(field), scene, began, /*is_preview=*/false);
 }
 
-std::shared_ptr<const LoadedDem> load_stand_in(std::shared_ptr<const dem::Source> source,
-                                               const scene::Scene& scene) {
+std::shared_ptr<const LoadedDem> load_preview(std::shared_ptr<const dem::Source> source,
+                                              const scene::Scene& scene) {
     const auto began = Clock::now();
     const dem::Grid& grid = source->grid();
     const std::int64_t posts = std::int64_t{grid.columns()} * grid.rows();
-    // Of more posts than memory holds, means are read anyway.
+    // A DEM that exceeds the memory limit is reduced anyway.
     if (posts <= kManyPosts || posts > scene.dem.max_posts) return nullptr;
-    std::optional<dem::Heightfield> field = dem::load_quickly(*source, kStandInPosts);
+    std::optional<dem::Heightfield> field = dem::load_quickly(*source, kPreviewPosts);
     if (!field || dem::is_refused(*field, scene.dem)) return nullptr;
-    return loaded_dem(std::move(source), std::move(*field), scene, began, /*stands_in=*/true);
+    return loaded_dem(std::move(source), std::move(*field), scene, began, /*is_preview=*/true);
 }
 
 render::Ground ground_of(const LoadedDem& dem) {

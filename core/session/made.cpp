@@ -23,7 +23,7 @@ bool is_there(const fs::path& path) {
     return fs::exists(fs::symlink_status(path, missing));
 }
 
-/// Keys of SceneInputs::record(), and what a difference means.
+/// Keys of SceneInputs::record(), and the message if their values differ.
 constexpr std::array kChanges{std::pair("dem", "the DEM has changed"),
                               std::pair("overlay", "the overlay has changed"),
                               std::pair("colours", "the colour file has changed"),
@@ -31,14 +31,14 @@ constexpr std::array kChanges{std::pair("dem", "the DEM has changed"),
                               std::pair("plugins", "a plugin has changed"),
                               std::pair("files", "a file that it was made from has changed")};
 
-/// Why one record is not another; empty where it is.
+/// Message on how two records differ; empty if they do not.
 std::string difference(const std::string& before, const std::string& now) {
     if (before == now) return {};
     const auto parsed = [](const std::string& text) {
         return ordered_json::parse(shallow_json(text), nullptr, /*allow_exceptions=*/false);
     };
     const ordered_json a = parsed(before), b = parsed(now);
-    if (!a.is_object()) return "it does not say what it was made from";
+    if (!a.is_object()) return "it does not record its inputs";
     if (a.value("relevo", ordered_json()) != b.value("relevo", ordered_json()))
         return fmt::format("Relevo {} made it, and this is {}",
                            printable(a.value("relevo", ordered_json("?")).dump()),
@@ -66,9 +66,9 @@ std::string fault_of_picture(const scene::Shot& shot, const std::string& record)
         if (picture.width == shot.scene.width_px && picture.height == shot.scene.height_px)
             return {};
     } catch (const Error&) {
-        // It is no picture, or not a whole one.
+        // Not an image, or a truncated one.
     }
-    return "it is not a whole picture";
+    return "it is not a complete picture";
 }
 
 std::string fault_of_sidecar(const scene::Shot& shot, const Wanted& wanted) {
@@ -82,7 +82,7 @@ std::string fault_of_sidecar(const scene::Shot& shot, const Wanted& wanted) {
         return "its sidecar cannot be read";
     }
     const auto json = ordered_json::parse(shallow_json(content), nullptr, false);
-    if (!json.is_object() || !json.contains("scene")) return "its sidecar is not a whole one";
+    if (!json.is_object() || !json.contains("scene")) return "its sidecar is incomplete";
     const auto text = [](const ordered_json& value) {
         return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
     };

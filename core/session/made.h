@@ -7,27 +7,27 @@
 /// Which pictures of a job exist already.
 namespace relevo::session {
 
-/// What a shot's files on the disk are.
+/// State of a shot's files on the disk.
 struct OnDisk {
     enum class State {
-        Missing,  ///< there is none
-        Part,     ///< of picture and sidecar one is there, and is what it would be
-        Whole,    ///< all are there, and are what they would be
-        Other,    ///< something else has a name of theirs
+        Missing,  ///< there are none
+        Part,     ///< one of picture and sidecar exists and is current
+        Whole,    ///< all exist and are current
+        Other,    ///< a file with one of the names has other content
     };
     State state = State::Missing;
-    std::string why;  ///< of Other, for people: "its overlay has changed"
+    std::string why;  ///< reason for Other: "its overlay has changed"
 };
 
-/// The picture of a shot, and its sidecar.
+/// What a shot's files must contain to be current.
 struct Wanted {
-    std::string record;  ///< what it is made from, as SceneInputs::record()
+    std::string record;  ///< inputs as SceneInputs::record()
     bool sidecar = false;
-    bool audited = false;  ///< with an audit in the sidecar
+    bool audited = false;  ///< the sidecar has an audit
 };
 
-/// Compares what the files carry, never their times: a file that was copied or touched is the same,
-/// and one whose content changed is not, whatever the clocks say. Reads the whole picture.
+/// Compares recorded contents, not file times: copied or touched files are current, changed ones
+/// are not. Reads the whole picture.
 OnDisk on_disk(const scene::Shot& shot, const Wanted& wanted);
 
 }  // namespace relevo::session

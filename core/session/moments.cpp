@@ -17,7 +17,7 @@ namespace relevo::session {
 
 namespace {
 
-/// Of a scene what dem_key() is made of.
+/// The part of a scene that dem_key() depends on.
 scene::Scene dem_of_scene(const scene::Scene& scene) {
     scene::Scene only;
     only.dems = scene.dems;
@@ -33,12 +33,12 @@ std::string dem_key(const scene::Scene& scene) {
     return scene::whole_scene_line(dem_of_scene(scene));
 }
 
-/// What frames a view whose angles are left open.
+/// What default view angles depend on.
 struct Moments::Shown {
     scene::GroundNet net;
     scene::DefaultDay day;
-    /// By the angles that are given: to find the others takes milliseconds, and many pictures of a
-    /// job have the same.
+    /// Framed views by the given angles (azimuth, elevation). Framing takes milliseconds, and many
+    /// pictures of a job share it.
     using Given = std::pair<std::optional<double>, std::optional<double>>;
     std::map<Given, scene::Orbit> framed{};
 };
@@ -46,9 +46,10 @@ struct Moments::Shown {
 struct Moments::Dem {
     std::shared_ptr<const dem::Source> source;
     std::shared_ptr<const LoadedDem> loaded;
-    std::optional<dem::Posts> posts;           ///< of `loaded`
-    std::map<std::string, std::string> zones;  ///< of the middle, by the words for them
-    std::map<double, Shown> shown;             ///< by the exaggeration
+    std::optional<dem::Posts> posts;  ///< of `loaded`
+    /// Zones at the DEM's centre, by the requested names.
+    std::map<std::string, std::string> zones;
+    std::map<double, Shown> shown;  ///< by vertical exaggeration
 
     const dem::Source& open() const { return *source; }
 };
@@ -91,7 +92,7 @@ Moments::Dem& Moments::dem_of(const scene::Scene& scene) {
 std::shared_ptr<const LoadedDem> Moments::loaded(const scene::Scene& scene) {
     Dem& dem = dem_of(scene);
     if (dem.loaded) return dem.loaded;
-    // Jobs go through their DEMs one after the other; of those before, small results are kept.
+    // Jobs process their DEMs one after the other; only small results of earlier ones are kept.
     for (auto& [key, other] : dems_) {
         other->posts.reset();
         other->loaded.reset();
@@ -127,7 +128,7 @@ scene::View Moments::settled_view(const scene::Scene& scene) {
     return view;
 }
 
-/// The hour that a session shows a scene at which has none.
+/// Default time of a scene.
 sun::Instant Moments::usual_moment(const scene::Scene& scene) {
     const auto heights = loaded(scene);
     const render::Ground ground = ground_of(*heights);
@@ -145,15 +146,15 @@ void Moments::keep_only(const scene::Scene& scene) {
     std::erase_if(dems_, [key = key_of(scene)](const auto& dem) { return dem.first != key; });
 }
 
-/// The zone in the DEM's middle by a name that needs no map.
+/// Time zone at the DEM's centre, by a name that needs no map of zones.
 std::string Moments::zone_of_middle(const std::string& words, Dem& dem) {
     const auto [known, fresh] = dem.zones.try_emplace(words);
     if (!fresh) return known->second;
     const sun::ChosenZone chosen = sun::choose_zone(words, dem.open().grid().center());
     const std::string notice = chosen.assumption + "; --tz sets another";
-    if (notice != std::exchange(told_, notice) && !chosen.assumption.empty())
+    if (notice != std::exchange(logged_, notice) && !chosen.assumption.empty())
         chosen.missing ? log::warning(notice) : log::info(notice);
-    // Mean solar time has a name that no database has.
+    // Mean solar time is not in the zone database.
     if (sun::is_solar_zone(words))
         known->second = words;
     else

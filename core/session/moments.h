@@ -11,12 +11,12 @@
 
 namespace relevo::session {
 
-/// Which DEM a scene shows and how it is read; equal texts are one DEM.
+/// Key of the DEM that a scene shows and of how it is read. Equal keys mean the same DEM.
 /// @param scene  with absolute paths
 std::string dem_key(const scene::Scene& scene);
 
-/// Finds the moments of many scenes, by the DEMs that they show: each is opened once. What is
-/// assumed is said once.
+/// Determines the times and views of many scenes from their DEMs. Opens each DEM once and logs each
+/// assumption once.
 class Moments {
   public:
     Moments();
@@ -24,25 +24,25 @@ class Moments {
     Moments(const Moments&) = delete;
     Moments& operator=(const Moments&) = delete;
 
-    /// Is called before the heights of a scene's DEM are read, with absolute paths.
+    /// Sets a function that is called before the heights of a scene's DEM are read. The scene has
+    /// absolute paths.
     void before_reading(std::function<void(const scene::Scene&)> call);
 
-    /// As scene::with_absolute_paths(), which asks the file system once for each list of DEMs: jobs
-    /// have many pictures of the same ones.
+    /// As scene::with_absolute_paths(), with results cached per list of DEMs.
     scene::Scene with_absolute_paths(scene::Scene scene);
 
-    /// A scene's moment; without words the hour that shows relief. @throws Error as words.h's
+    /// Time of a scene; by default an hour whose sun shows relief. @throws Error as words.h's
     /// parse()
     sun::ParsedTime of(const scene::Scene& scene);
 
-    /// The scene's DEM with its heights, which are read where they have not been. Those of the DEM
-    /// before are let go of: a job of many DEMs takes the memory of one.
+    /// The scene's DEM with its heights, read if necessary. Frees the heights of other DEMs, so
+    /// that a job of many DEMs needs the memory of one.
     std::shared_ptr<const LoadedDem> loaded(const scene::Scene& scene);
 
-    /// The scene's view with the angles that a session chooses where it leaves some open.
+    /// The scene's view with the default angles of a session where none are given.
     scene::View settled_view(const scene::Scene& scene);
 
-    /// Lets go of all DEMs but the scene's.
+    /// Frees all DEMs but the scene's.
     void keep_only(const scene::Scene& scene);
 
   private:
@@ -55,9 +55,10 @@ class Moments {
     std::string zone_of_middle(const std::string& words, Dem& dem);
 
     std::function<void(const scene::Scene&)> before_reading_;
-    std::map<std::vector<std::string>, std::vector<std::string>> absolute_;  // names of DEMs
+    // By the paths as given.
+    std::map<std::vector<std::string>, std::vector<std::string>> absolute_;
     std::map<std::string, std::unique_ptr<Dem>> dems_;
-    std::string told_;
+    std::string logged_;
 };
 
 }  // namespace relevo::session

@@ -26,7 +26,7 @@ std::pair<double, double> range_of(const Array2d<float>& values) {
     return {double{low}, double{high}};
 }
 
-/// Of a band that has a colour table of its own.
+/// The ramp of a band with a colour table.
 chart::Ramp ramp_of(const std::vector<std::array<std::uint8_t, 4>>& colors) {
     chart::Ramp ramp;
     ramp.continuous = false;
@@ -39,7 +39,7 @@ chart::Ramp ramp_of(const std::vector<std::array<std::uint8_t, 4>>& colors) {
     return ramp;
 }
 
-/// Whether a band says of each post that it is lit or not.
+/// True if all values are 0, 1 or NaN.
 bool is_mask(const dem::BandOver& band) {
     return band.whole && std::ranges::all_of(band.values, [](float value) {
                return value == 0 || value == 1 || std::isnan(value);
@@ -51,7 +51,7 @@ chart::Ramp ramp_of(const scene::Overlay& asked, const dem::BandOver& band, bool
     if (asked.colours.empty() && !asked.range)
         return band.colors.empty() ? usual_ramp(band.values, band.name, band.unit)
                                    : ramp_of(band.colors);
-    // What is dark all over is still a mask of 0 and 1.
+    // A mask that is dark all over still ranges from 0 to 1.
     const auto [from, to] =
         asked.range.value_or(mask ? std::pair(0.0, 1.0) : range_of(band.values));
     if (asked.colours.empty()) {
@@ -85,7 +85,7 @@ Overlay overlay_of(const Array2d<float>& values, chart::Legend legend, double op
 chart::Ramp usual_ramp(const Array2d<float>& values, const std::string& name,
                        const std::string& unit) {
     const auto [low, high] = range_of(values);
-    // The last is the name in files of earlier versions.
+    // The last name is that of earlier versions.
     if (name == "direct sun" || name == "visible fraction of the solar disc" ||
         name == "share of the sun's disc")
         return chart::named_ramp("shade", 0, 1);
@@ -104,7 +104,7 @@ Overlay read_overlay(const scene::Overlay& asked, const dem::Grid& grid) {
     const bool mask = time && time->sun && is_mask(band);
     chart::Legend legend{
         .title = asked.title, .unit = printable(band.unit), .ramp = ramp_of(asked, band, mask)};
-    // A mask of many times has each time as the name of a band.
+    // In a mask of several times, bands are named by their times.
     if (legend.title.empty()) legend.title = mask ? "direct sun" : printable(band.name);
     if (legend.title.empty())
         legend.title = printable(std::filesystem::path(asked.file).filename().string());

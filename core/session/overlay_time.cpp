@@ -16,10 +16,10 @@ std::string value(const std::map<std::string, std::string>& about, const char* k
     return found == about.end() ? std::string() : found->second;
 }
 
-/// None for what no program of ours wrote.
+/// nullopt for texts that Relevo does not write
 std::optional<sun::ParsedTime> time_of(const std::string& text) {
     try {
-        // "now" would be another time with every picture.
+        // "now" would differ with every picture.
         if (!text.empty() && text.front() >= '0' && text.front() <= '9')
             return sun::parse_time(text);
     } catch (const Error&) {
@@ -27,7 +27,7 @@ std::optional<sun::ParsedTime> time_of(const std::string& text) {
     return std::nullopt;
 }
 
-/// "2026-06-21 10:12" of an ISO text, and "2026-06-21" at midnight.
+/// "2026-06-21 10:12" from ISO 8601; "2026-06-21" at midnight.
 std::string words(const std::string& iso) {
     const std::string date = iso.substr(0, 10), clock = iso.substr(11, 5);
     return clock == "00:00" ? date : date + " " + clock;
@@ -56,12 +56,12 @@ std::string clock_text(const OverlayTime& time, const std::string& zone,
     if (time.utc) return clock_text(*time.utc, zone, middle);
     if (time.from.empty()) return {};
     std::string to = time.to;
-    // A period of whole days ends when its last day does.
+    // A period of whole days is named by its last day, not by the midnight after it.
     if (const bool days = words(time.from).size() == 10 && words(to).size() == 10; days)
         to = sun::to_iso(time_of(to)->utc + -1.0, time_of(to)->zone).substr(0, 10) + "T00:00";
     const std::string first = words(time.from), last = words(to);
     if (first == last) return first;
-    // The second date of one day is not said again.
+    // Within one day, the date is written once.
     const bool one_day =
         first.size() > 10 && last.size() > 10 && first.substr(0, 10) == last.substr(0, 10);
     return fmt::format("{} to {}", first, one_day ? last.substr(11) : last);

@@ -36,7 +36,7 @@ ordered_json sun_json(const Session& session) {
             {"refraction", session.scene().refraction}};
 }
 
-/// The camera where it stands, whatever words placed it.
+/// The resolved position and direction of the camera.
 ordered_json camera_json(const Session& session) {
     const scene::Camera& camera = session.camera();
     const geo::LocalFrame& frame = session.ground().frame;
@@ -63,7 +63,7 @@ ordered_json dem_json(const Session& session, const std::vector<HashedFile>& fil
     return json;
 }
 
-/// With the effects that a comparison shows.
+/// With the compared effects on.
 scene::Scene drawn(scene::Scene scene, const Session& session) {
     scene.effects = with(std::move(scene.effects), session.compared());
     return scene;
@@ -95,7 +95,7 @@ std::filesystem::path sidecar_to_write(const std::filesystem::path& picture) {
 }
 
 SceneIn scene_in(const std::filesystem::path& picture, const scene::Scene& scene) {
-    // What a session fills into a scene, and the rest of the metadata, take less.
+    // Reserve for other metadata and for what a session fills into the scene [bytes].
     constexpr std::size_t kRest = 2048;
     return image::metadata_fits(picture, {{kSceneKeyword, scene::whole_scene_line(scene)}}, kRest)
                ? SceneIn::Picture

@@ -12,54 +12,51 @@
 /// What a picture says of itself.
 namespace relevo::session {
 
-/// Keywords of a picture's metadata: its scene as scene::scene_line() has it, the effects of a
-/// comparison, separated by commas, and SceneInputs::record().
+/// Keywords of a picture's metadata: its scene as scene::scene_line(), the compared effects
+/// separated by commas, and SceneInputs::record().
 inline constexpr const char* kSceneKeyword = "relevo:scene";
 inline constexpr const char* kComparedKeyword = "relevo:compared";
 inline constexpr const char* kInputsKeyword = "relevo:inputs";
-/// Where the picture's format has no room for its scene: the SHA-256 of scene::scene_line(), whose
-/// text is in the sidecar.
+/// SHA-256 of scene::scene_line(), for formats whose metadata cannot hold the scene. The scene is
+/// then in the sidecar.
 inline constexpr const char* kSceneDigestKeyword = "relevo:scene-sha256";
 
-/// The JSON file beside a picture.
+/// Path of a picture's JSON sidecar.
 std::filesystem::path sidecar_of(std::filesystem::path picture);
 
-/// The same, to be written. @throws Error (BadInput) where it is a pipe or a device, which would
-/// keep the program waiting though nobody has named it
+/// As sidecar_of(), for writing. @throws Error (BadInput) if it is a pipe or device: writing could
+/// block
 std::filesystem::path sidecar_to_write(const std::filesystem::path& picture);
 
-/// The scene of a session with its moment in UTC and with absolute paths: the same wherever it is
-/// read, and whenever.
+/// The scene of a session with its time in UTC and absolute paths, which makes it independent of
+/// when and where it is read.
 scene::Scene settled_scene(const Session& session);
 
-/// Where the scene of a picture is.
+/// Where a picture's scene is stored.
 enum class SceneIn { Picture, Sidecar };
 
-/// The sidecar has it where the picture's format has no room, with some to spare for what a session
-/// fills in.
+/// Sidecar if the picture's format cannot hold the scene and some reserve.
 /// @param scene  with absolute paths
 SceneIn scene_in(const std::filesystem::path& picture, const scene::Scene& scene);
 
-/// What is written into every picture: `Software`, `Description`, what it was made from, and the
-/// scene or its digest.
+/// Metadata of every picture: `Software`, `Description`, the inputs, and the scene or its digest.
 image::Metadata metadata_of(const Session& session, SceneInputs& inputs, SceneIn where);
 
-/// One line about a scene that does not fit, for people.
+/// Message that a picture's scene is in its sidecar.
 std::string says_where_scene_is(const std::filesystem::path& picture);
 
-/// The JSON of a record, which anybody may have written, without what is nested deeper than records
-/// are: to write that again would take a stack of its depth. Empty for what is not JSON.
+/// The JSON of a record without anything nested deeper than 32 levels; empty if it is not JSON.
+/// Records are untrusted, and serialising deep ones would exhaust the stack.
 std::string shallow_json(const std::string& text);
 
-/// The metadata of a picture with its scene, also where that is in the sidecar.
-/// @throws Error (BadInput) as image::read_metadata(), and where the picture's scene is in a
-/// sidecar
-///     that is missing, cannot be read or is another picture's
+/// The metadata of a picture including its scene, even if that is in the sidecar.
+/// @throws Error (BadInput) as image::read_metadata(), and if the sidecar with the scene is
+///     missing, unreadable or belongs to another picture
 image::Metadata read_record(const std::filesystem::path& picture);
 
-/// The JSON beside a picture: its scene, sun, camera, device, versions, DEM; docs/jobs.md.
-/// @param picture  its file's name
-/// @param audit    of the picture, where there is one
+/// The JSON sidecar of a picture: scene, sun, camera, device, versions, DEM; see docs/jobs.md.
+/// @param picture  name of its file
+/// @param audit    of the picture, if any
 std::string sidecar_text(const Session& session, SceneInputs& inputs, const std::string& picture,
                          const std::optional<ShadowAudit>& audit = {});
 

@@ -20,16 +20,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a digest: enough to tell files apart that nobody has made to be confused.
+/// Digits of a digest; enough against accidental collisions.
 constexpr std::size_t kDigits = 32;
 
-/// Effects without values: what one reading of the plugins serves.
+/// Key of the plugins and presets that effects are read from.
 std::string installed_key(const scene::Effects& effects) {
     return fmt::format("{}\n\n{}", fmt::join(effects.presets, "\n"),
                        fmt::join(effects.plugin_path, "\n"));
 }
 
-/// All files below a folder, which a module may read when it runs.
+/// All files below a folder, sorted: a module may read any of them.
 std::vector<fs::path> files_in(const fs::path& folder) {
     std::vector<fs::path> files;
     std::error_code error;
@@ -52,14 +52,14 @@ std::vector<fs::path> files_of(const effect::Effect& effect) {
     try {
         files.push_back(effect::module_file(manifest));
     } catch (const Error&) {
-        // What loads it says so.
+        // Reported when the module is loaded.
     }
     const std::vector<fs::path> own = files_in(manifest.folder);
     files.insert(files.end(), own.begin(), own.end());
     return files;
 }
 
-/// Size and time of a file, in place of its content.
+/// Size and time of a file, as a substitute for its digest.
 std::string stamp_of(const fs::path& file) {
     std::error_code size_error, time_error;
     const auto bytes = fs::file_size(file, size_error);
@@ -83,7 +83,7 @@ std::string effects_key(const scene::Effects& effects) {
     scene::Scene only;
     only.effects = effects;
     std::string key = scene::scene_line(only);
-    // Names of files in settings are seen from there.
+    // File names in settings are relative to this folder.
     for (const effect::Setting& setting : effects.settings)
         key += "\n" + setting.folder;
     return key;
@@ -91,7 +91,7 @@ std::string effects_key(const scene::Effects& effects) {
 
 struct SceneInputs::OfEffects {
     scene::Effects settled;
-    /// Of plugins that may be on: which are depends on the DEM, too.
+    /// Plugins that may be on; which of them are also depends on the DEM.
     std::vector<std::pair<std::string, std::vector<fs::path>>> plugins;
     std::vector<fs::path> presets, values;
     const InstalledEffects* installed = nullptr;
@@ -132,7 +132,7 @@ const scene::Effects& SceneInputs::settled(const scene::Effects& effects) {
 
 const std::vector<fs::path>& SceneInputs::raster_files(const std::vector<std::string>& names) {
     const auto [known, fresh] = rasters_.try_emplace(names);
-    // Nothing is asked of the net or of a pipe twice.
+    // Remote files and pipes are not read again.
     std::vector<std::string> local = names;
     std::erase_if(local, [](const std::string& name) {
         return dem::is_remote(name) || name.starts_with("/vsistdin");
@@ -175,13 +175,14 @@ const std::string& SceneInputs::sha256(const fs::path& path) {
     try {
         known->second = sha256_of_file(path, "inputs");
     } catch (const Error&) {
-        known->second = "unreadable";  // what needs it says so
+        known->second = "unreadable";  // reported where the digest is needed
     }
     return known->second;
 }
 
 std::string SceneInputs::digest_of_rasters(const std::vector<std::string>& names) {
-    constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;  // hashed in about a second
+    // Takes about one second to hash.
+    constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
     const std::vector<fs::path>& files = raster_files(names);
     if (bytes_of(files) <= kMostBytes) return digest(files);
     std::string stamps;

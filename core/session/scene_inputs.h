@@ -14,17 +14,17 @@
 
 namespace relevo::session {
 
-/// A file and what its bytes are.
+/// A file with the SHA-256 of its content, in hexadecimal.
 struct HashedFile {
     std::string path, sha256;
 };
 
-/// The files that scenes are drawn from: DEM, overlay and its colours, presets, plugins, files that
-/// parameters name. Each is found and hashed once, however many scenes share it. No device is
-/// needed. Used on one thread.
+/// The files that scenes are drawn from: DEM, overlay, colour file, presets, plugins, and files
+/// named by parameters. Finds and hashes each once, however many scenes share it. Needs no device.
+/// Not thread-safe.
 class SceneInputs {
   public:
-    /// @param version  of the program
+    /// @param version  of Relevo
     explicit SceneInputs(std::string version);
     ~SceneInputs();
     SceneInputs(const SceneInputs&) = delete;
@@ -32,27 +32,26 @@ class SceneInputs {
 
     const std::string& version() const { return version_; }
 
-    /// Effects whose switches and settings are checked, with absolute names of files.
-    /// @throws Error (BadInput) for effects and parameters that do not exist
+    /// The effects with absolute file names, after checking switches and settings.
+    /// @throws Error (BadInput) for unknown effects and parameters
     const scene::Effects& settled(const scene::Effects& effects);
 
-    /// Adds every file that the scene's picture is made from. @throws Error as
-    /// FilesInUse::add_input and settled()
+    /// Adds all files of a scene to the inputs of a run.
+    /// @throws Error as FilesInUse::add_input and settled()
     void add_to(FilesInUse& files, const scene::Scene& scene);
 
-    /// What the scene's picture is made from, as one line of JSON: the program's version, and a
-    /// digest of the content of the files of each kind ("dem", "overlay", "colours", "presets",
-    /// "plugins", "files"). Names and times of files are not in it, so that copies are the same and
-    /// clocks do not matter; but the files of a raster of more than 1 GiB are known by their sizes
-    /// and times. Remote files are not read for it.
+    /// The inputs of a scene's picture as one line of JSON: Relevo's version, and a digest of the
+    /// file contents of each kind ("dem", "overlay", "colours", "presets", "plugins", "files").
+    /// File names and times are excluded, so that copies are equal. Exceptions: rasters of more
+    /// than 1 GiB are identified by file sizes and times, and remote files are not read.
     /// @throws Error as settled()
     std::string record(const scene::Scene& scene);
 
-    /// The files of the scene's DEM. @throws Error (BadInput) where one cannot be read
+    /// The files of the scene's DEM with their digests.
+    /// @throws Error (BadInput) if one cannot be read
     std::vector<HashedFile> hashed_dem(const scene::Scene& scene);
 
-    /// Names of the scene's DEM and overlay that are no files of this machine: changes go
-    /// unnoticed.
+    /// Names of the scene's DEM and overlay that are not local files. Their changes go unnoticed.
     std::vector<std::string> remote_names(const scene::Scene& scene);
 
   private:
@@ -62,7 +61,7 @@ class SceneInputs {
     const std::string& sha256(const std::filesystem::path& path);
     std::string digest(const std::vector<std::filesystem::path>& files);
     std::string digest_of_rasters(const std::vector<std::string>& names);
-    /// What a scene's files are known by: lists that are kept, and the name of the colours.
+    /// Identifies a scene's files: addresses of cached lists, and the colour file's name.
     struct Key {
         const void* dems = nullptr;
         const void* overlay = nullptr;
@@ -83,7 +82,7 @@ class SceneInputs {
     std::set<Key> added_;
 };
 
-/// Effects as a text; equal ones are drawn by the same programs and values.
+/// Key of effects. Equal keys mean equal programs and parameter values.
 std::string effects_key(const scene::Effects& effects);
 
 }  // namespace relevo::session

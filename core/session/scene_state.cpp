@@ -94,7 +94,7 @@ const std::vector<glm::dvec3>& SceneState::moved_points(const render::Displaceme
 
 std::optional<geo::Geodetic> SceneState::eye() const {
     if (!scene.view.eye) return std::nullopt;
-    return told_eye(ground_->frame, inputs.camera, scene.exaggeration);
+    return observer_of(ground_->frame, inputs.camera, scene.exaggeration);
 }
 
 geo::Geodetic SceneState::middle() const {

@@ -10,36 +10,36 @@
 
 namespace relevo::session {
 
-/// The ground that a picture shows. Pixels are counted from the upper left corner, places in
-/// pixels too: the middle of the first one is (0.5, 0.5). Points are in the local frame of the
-/// camera [m].
+/// Ground in an image, from its depth buffer. Pixels are counted from the upper left corner; image
+/// positions are in pixels, with the first pixel's centre at (0.5, 0.5). Points are in the camera's
+/// local frame [m].
 class SeenGround {
   public:
-    /// @param depths_m  along the camera's view, as render::Renderer::read_depths() has them
+    /// @param depths_m  along the optical axis, as render::Renderer::read_depths()
     SeenGround(const scene::Camera& camera, int width_px, int height_px,
                std::vector<float> depths_m);
 
     int width_px() const { return width_px_; }
     int height_px() const { return height_px_; }
 
-    /// Infinite where there is no ground [m].
+    /// Depth along the optical axis [m]; infinite without ground.
     double depth_m(int x, int y) const {
         return depths_m_[static_cast<std::size_t>(height_px_ - 1 - y) *
                              static_cast<std::size_t>(width_px_) +
                          static_cast<std::size_t>(x)];
     }
-    /// The point in the middle of a pixel; none where there is no ground.
+    /// The point at the centre of a pixel; nullopt without ground.
     std::optional<glm::dvec3> point(int x, int y) const;
-    /// Where a point is in the picture, also outside of it; none behind the eye.
+    /// Image position of a point, possibly outside the image; nullopt behind the eye.
     std::optional<glm::dvec2> project(const glm::dvec3& point_m) const;
-    /// How a place in the picture moves with a point, pixels a metre, right and down.
+    /// Image motion per metre of a point's motion along `direction`: pixels/m, right and down.
     glm::dvec2 moved(const glm::dvec3& point_m, const glm::dvec3& direction) const;
-    /// Pixels of a metre across the view, at a depth.
+    /// Scale across the view at a depth [pixels/m].
     double px_per_m(double depth_m) const { return focal_px_ / depth_m; }
 
-    /// The pixel with ground that is nearest to the picture's middle.
+    /// The pixel with ground nearest to the image's centre; nullopt without ground.
     std::optional<glm::ivec2> middle() const;
-    /// The least and the greatest depth there is [m].
+    /// Least and greatest depth of ground [m].
     std::pair<double, double> depth_range_m() const;
 
   private:

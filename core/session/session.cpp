@@ -15,7 +15,7 @@
 #include "session/climate_words.h"
 #include "session/colour_legends.h"
 #include "session/drawn_effects.h"
-#include "session/not_numbers.h"
+#include "session/non_finite.h"
 #include "session/overlay.h"
 #include "session/scene_state.h"
 #include "session/stamps.h"
@@ -32,16 +32,16 @@ double milliseconds_since(Clock::time_point began) {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
 }
 
-std::shared_ptr<const LoadedDem> load(const scene::Scene& scene, bool may_stand_in) {
+std::shared_ptr<const LoadedDem> load(const scene::Scene& scene, bool allow_preview) {
     auto source = std::make_shared<const dem::Source>(dem::Source::open(scene.dems, scene.dem));
-    if (may_stand_in)
-        if (auto stand_in = load_stand_in(source, scene)) return stand_in;
+    if (allow_preview)
+        if (auto preview = load_preview(source, scene)) return preview;
     return load_dem(std::move(source), scene);
 }
 
 constexpr int kDivider_px = 2;
 
-/// Puts the left half of one picture beside the right half of the other, with a line between.
+/// Joins the left half of one image and the right half of another, with a dividing line.
 template <typename Picture, typename Value>
 Picture side_by_side(const Picture& left, const Picture& right, Value line) {
     Picture both = right;
@@ -61,16 +61,16 @@ struct Session::Impl {
     SceneState state;
     StageTimes stages;
 
-    // In the order in which each needs those above.
+    // In order of dependency.
     std::optional<gl::Context> context;
     render::SharedResources shared;
-    render::SkyAhead sky_ahead;  // of the first ground
+    render::SkyAhead sky_ahead;  // for the first DEM
     RecentEffects recent;
     std::optional<DrawnEffects> drawn;
     std::optional<render::Terrain> terrain;
 
     std::shared_ptr<const render::Drape> drape;
-    std::optional<Overlay> overlay;  // the scene's
+    std::optional<Overlay> overlay;  // of the scene
     std::optional<OverlayTime> overlay_time;
     std::vector<std::string> stamp_notes;
 
@@ -84,13 +84,13 @@ struct Session::Impl {
         std::optional<sun::ParsedTime> time;
         const bool timed = !scene.moment.time.empty();
         if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
-        // Where the system gives no further thread it is read when it is waited for.
+        // Deferred to get() if no thread can be created.
         auto loading = std::async(std::launch::async | std::launch::deferred,
                                   [this] { return options.dem ? options.dem : load_own(); });
         open_device(files);
         const std::shared_ptr<const LoadedDem> loaded = loading.get();
         dem::add_all(scene.dems, files);
-        // Which effects are on may depend on the ground.
+        // Which effects are on may depend on the DEM.
         drawn->take_ground(loaded->ground_words(scene.holes));
         const auto began = Clock::now();
         compile(*drawn, loaded.get());
@@ -103,15 +103,16 @@ struct Session::Impl {
         state.set_time(time ? time->utc : state.default_time());
     }
 
-    /// Events over the ground are looked for in all of it.
+    /// Events that depend on terrain need all posts, not a preview.
     std::shared_ptr<const LoadedDem> load_own() const {
         const bool timed = !state.scene.moment.time.empty();
-        return load(state.scene, options.may_stand_in && !(timed && needs_dem(state.scene.moment)));
+        return load(state.scene,
+                    options.allow_preview && !(timed && needs_dem(state.scene.moment)));
     }
 
     void open_device(FilesInUse& files) {
         const auto began = Clock::now();
-        drawn = DrawnEffects::load(request(state.scene.effects), /*aloud=*/true);
+        drawn = DrawnEffects::load(request(state.scene.effects), /*report=*/true);
         drawn->effects().add_inputs(files);
         take_effects();
         context.emplace(options.context
@@ -131,7 +132,7 @@ struct Session::Impl {
 
     bool is_draped() const { return drape || (state.scene.overlay && !terrain); }
 
-    /// Says in the scene which effects are drawn.
+    /// Copies the drawn effects into the scene.
     void take_effects() {
         state.scene.effects = drawn->request().effects;
         state.scene.effects.settings = effect::with_absolute_files(
@@ -148,20 +149,20 @@ struct Session::Impl {
                 .shared = &shared};
     }
 
-    /// @param first_dem  that no terrain has been made of yet; else null
+    /// @param first_dem  the DEM before its terrain is created; else null
     void compile(DrawnEffects& effects, const LoadedDem* first_dem = nullptr) {
         effects.compile(*context, [&] {
             render::RendererOptions with_texts = renderer_options();
             with_texts.stitched = [this, first_dem](const render::StitchedFrames& frames) {
                 if (options.stitched) options.stitched(frames);
-                if (first_dem) look_ahead(*first_dem, frames.programs);
+                if (first_dem) compute_sky(*first_dem, frames.programs);
             };
             return with_texts;
         });
     }
 
-    /// While the driver compiles the first programs, other processors find what these will read.
-    void look_ahead(const LoadedDem& dem, const std::vector<render::ProgramText>& texts) {
+    /// Computes the sky-view factor on the CPU while the driver compiles programs that read it.
+    void compute_sky(const LoadedDem& dem, const std::vector<render::ProgramText>& texts) {
         const auto reads_sky = [](const render::ProgramText& text) {
             return std::ranges::any_of(text.stitched.textures, [](const auto& unit) {
                 return unit.resource == "light_sky";
@@ -175,11 +176,10 @@ struct Session::Impl {
         context->make_current();
         switch_to(request(asked));
         take_effects();
-        look(state.scene.view);  // what effects displace may be in sight
+        look(state.scene.view);  // displacement may move the ground under the eye
     }
 
-    /// Draws a request from now on: with the effects that are drawn, with some that were, or with
-    /// some that are read now.
+    /// Draws a request: with the current effects, with recent ones, or with newly loaded ones.
     void switch_to(const EffectsRequest& wanted) {
         if (drawn->take(wanted)) return;
         if (std::optional<DrawnEffects> known = recent.take(wanted)) {
@@ -187,14 +187,14 @@ struct Session::Impl {
             recent.keep(std::exchange(*drawn, std::move(*known)));
             return;
         }
-        DrawnEffects fresh = DrawnEffects::load(wanted, /*aloud=*/false);
+        DrawnEffects fresh = DrawnEffects::load(wanted, /*report=*/false);
         fresh.fit(context->info());
         compile(fresh);
-        // A driver may refuse a program at its first draw, and a module its first frame.
+        // Drivers may reject a program at its first draw, and modules fail at their first frame.
         if (fresh.is_watched() || fresh.has_modules())
             fresh.render(*terrain, state.ground(), state.inputs);
         recent.keep(std::exchange(*drawn, std::move(fresh)));
-        shared.targets.trim();  // each has had its own
+        shared.targets.trim();  // sets of targets differ between effects
     }
 
     void resize(int width_px, int height_px) {
@@ -205,7 +205,7 @@ struct Session::Impl {
 
     void show(const scene::Scene& next, sun::Instant utc) {
         context->make_current();
-        state.inputs.afresh = true;
+        state.inputs.deterministic = true;
         if (const EffectsRequest wanted = request(next.effects); wanted != drawn->request()) {
             switch_to(wanted);
             take_effects();
@@ -231,7 +231,7 @@ struct Session::Impl {
 
     void upload(const std::shared_ptr<const LoadedDem>& dem) {
         const auto began = Clock::now();
-        terrain.reset();  // refers to the DEM before
+        terrain.reset();  // refers to the previous DEM
         state.take_dem(dem);
         terrain.emplace(
             dem->to_draw(), state.ground().frame,
@@ -261,7 +261,7 @@ struct Session::Impl {
         if (request(effects).ground != drawn->request().ground) set_effects(effects);
     }
 
-    void lay(std::shared_ptr<const render::Drape> wanted) {
+    void set_drape(std::shared_ptr<const render::Drape> wanted) {
         context->make_current();
         std::swap(drape, wanted);
         terrain->drape(drape);
@@ -297,7 +297,7 @@ struct Session::Impl {
         return drawn->renderer().drawn_height_m(*terrain, ground, frame);
     }
 
-    /// Of a scene that is given; where a user moves the eye, they see where it is.
+    /// For scenes as given, not while a user moves the eye.
     void warn_of_eye() { state.warn_of_eye(shape()); }
 
     void draw(render::Loading loading, render::PassTimes* times = nullptr) {
@@ -307,22 +307,22 @@ struct Session::Impl {
         drawn->render(*terrain, state.ground(), frame, times);
     }
 
-    /// @throws Error where the last frame has light that is no number
+    /// @throws Error (Failed) if count > 0, the number of non-finite pixels
     void check_numbers(int count, const ActiveEffects& shown) {
         if (count > 0)
-            refuse_not_numbers({state.scene.effects, shown, *context, renderer_options(), *terrain,
-                                state.ground(), state.inputs, count});
+            report_non_finite({state.scene.effects, shown, *context, renderer_options(), *terrain,
+                               state.ground(), state.inputs, count});
     }
 
     template <typename Read, typename Value>
     auto read(const Read& read_of, Value line) {
         context->make_current();
-        int not_numbers = 0, others_not_numbers = 0;
-        auto picture = read_of(drawn->renderer(), &not_numbers);
+        int non_finite = 0, others_non_finite = 0;
+        auto picture = read_of(drawn->renderer(), &non_finite);
         if (const render::Renderer* const without = drawn->without())
-            picture = side_by_side(picture, read_of(*without, &others_not_numbers), line);
-        check_numbers(not_numbers, drawn->effects());
-        if (drawn->without()) check_numbers(others_not_numbers, drawn->others());
+            picture = side_by_side(picture, read_of(*without, &others_non_finite), line);
+        check_numbers(non_finite, drawn->effects());
+        if (drawn->without()) check_numbers(others_non_finite, drawn->others());
         return picture;
     }
 };
@@ -331,7 +331,7 @@ Session::Session(scene::Scene scene, Options options, FilesInUse& files)
     : impl_(std::make_unique<Impl>(std::move(scene), std::move(options), files)) {}
 
 Session::~Session() {
-    // What the session has on the device goes with its own context.
+    // Device objects are deleted in the session's own context.
     try {
         impl_->context->make_current();
     } catch (const Error& error) {
@@ -402,7 +402,7 @@ void Session::draw(render::PassTimes* times) {
 }
 
 void Session::drape(std::shared_ptr<const render::Drape> drape) {
-    impl_->lay(std::move(drape));
+    impl_->set_drape(std::move(drape));
 }
 
 std::vector<chart::Legend> Session::colour_legends() const {
@@ -431,12 +431,12 @@ const std::vector<std::string>& Session::stamp_notes() const {
     return impl_->stamp_notes;
 }
 
-void Session::keep_native(bool keep) {
-    impl_->state.inputs.keep_native = keep;
+void Session::freeze_native(bool freeze) {
+    impl_->state.inputs.freeze_native = freeze;
 }
 
-bool Session::draw_what_is_there() {
-    impl_->draw(render::Loading::Beside);
+bool Session::draw_available() {
+    impl_->draw(render::Loading::Background);
     return impl_->terrain->is_complete();
 }
 

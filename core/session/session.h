@@ -21,199 +21,199 @@
 #include "session/overlay_time.h"
 #include "sun/zone.h"
 
-/// What every front end shares: a scene becomes frames, pictures and words about them.
+/// Turns a scene into frames, pictures and descriptions. Shared by all front ends.
 namespace relevo::session {
 
-/// A DEM that has been read. What refers to it may be used on several threads at once.
+/// A DEM in memory. Immutable; may be read on several threads.
 struct LoadedDem {
     std::shared_ptr<const dem::Source> source;  ///< never null
     dem::Heightfield field;                     ///< all posts, or means of them
     double took_ms = 0;
-    /// Memory would hold finer ones, which are not read yet: for pictures in the meantime, and no
-    /// figure may come of `field`.
-    bool stands_in = false;
-    /// For pictures alone, where holes were filled.
+    /// A reduced preview, although all posts would fit into memory. For display only; nothing may
+    /// be computed from `field`.
+    bool is_preview = false;
+    /// The heights as drawn, with small voids filled.
     struct Drawn {
-        std::optional<dem::Heightfield> filled;  ///< none: as `field`
-        Array2d<std::uint8_t> is_filled;  ///< as dem::FilledHoles::filled; empty where none is
-        bool has_covers = false;          ///< voids too wide to be filled have a cover
-        dem::Water water;                 ///< of what is drawn
-        std::string holes_text;           ///< for people; empty where there are none
+        std::optional<dem::Heightfield> filled;  ///< nullopt: same as `field`
+        /// As dem::FilledHoles::filled; empty without filled voids.
+        Array2d<std::uint8_t> is_filled;
+        bool has_covers = false;  ///< voids too wide to fill are covered
+        dem::Water water;         ///< found in the drawn heights
+        std::string holes_text;   ///< summary of voids; empty without voids
     };
     Drawn drawn{};
-    std::optional<dem::Pyramid> pyramid{};  ///< of to_draw(); none: a session makes its own
+    std::optional<dem::Pyramid> pyramid{};  ///< of to_draw(); nullopt: the session builds it
 
     const dem::Heightfield& to_draw() const { return drawn.filled ? *drawn.filled : field; }
-    /// Words of effect::ground_words() that hold.
+    /// Words of effect::ground_words() that apply to the DEM.
     std::vector<std::string> ground_words(dem::Holes holes) const;
-    /// The height of the posts there [m], also where only means of them are in memory; NaN where
-    /// there is no ground.
+    /// Height [m] from all posts, even if only means of them are in memory; NaN without ground.
     double height_m(const geo::Geodetic& at) const;
 };
 
-/// Reads the heights of a scene's DEM, and finds what is drawn of them.
-/// @throws Error as dem::load()
+/// Reads a scene's DEM, fills small voids and finds water. @throws Error as dem::load()
 std::shared_ptr<const LoadedDem> load_dem(std::shared_ptr<const dem::Source> source,
                                           const scene::Scene& scene);
 
-/// What stands in for a large DEM with overviews while it is read (LoadedDem::stands_in), and else
-/// null. @throws Error likewise
-std::shared_ptr<const LoadedDem> load_stand_in(std::shared_ptr<const dem::Source> source,
-                                               const scene::Scene& scene);
+/// Reads a reduced preview of a large DEM from its overviews (LoadedDem::is_preview). Returns null
+/// if the DEM is small or has none.
+/// @throws Error as dem::load()
+std::shared_ptr<const LoadedDem> load_preview(std::shared_ptr<const dem::Source> source,
+                                              const scene::Scene& scene);
 
-/// The ground of a DEM, in a frame about the middle of all its posts.
+/// The ground of a DEM, in a local frame at the DEM's centre.
 render::Ground ground_of(const LoadedDem& dem);
 
 struct Options {
-    std::string device = "auto";  ///< as gl::Context takes it
-    /// Gives the context of a window instead of one on `device`.
+    std::string device = "auto";  ///< as gl::Context
+    /// Creates the context, such as that of a window. By default one is created on `device`.
     std::function<gl::Context()> context{};
-    /// The scene's DEM where it has been read already, such as for another session; else it is
-    /// read.
+    /// The scene's DEM if it has been read; otherwise the session reads it.
     std::shared_ptr<const LoadedDem> dem{};
-    /// Begin with what stands in for a DEM that takes long to read, where the scene allows it:
-    /// Session::dem() says whether it does, and Session::take() brings the rest.
-    bool may_stand_in = false;
-    bool radiance = false;  ///< keep linear light, for Session::radiance()
-    /// Keep with each frame what audits read, for read_sun_seen().
+    /// Start with a preview of a large DEM if possible. Session::dem() then has `is_preview`, and
+    /// Session::take() replaces it.
+    bool allow_preview = false;
+    bool radiance = false;  ///< keep linear radiance, for Session::radiance()
+    /// Keep the data that Session::read_sun_seen() reads.
     bool audited = false;
-    /// Effects of a comparison: pictures have them on the left and not on the right.
+    /// Ids of effects to compare: on in the left half of pictures, off in the right half.
     std::vector<std::string> compared{};
-    /// Called with the programs' texts before a driver sees them.
+    /// Called with the shader sources before they are compiled.
     std::function<void(const render::StitchedFrames&)> stitched{};
 };
 
 struct ActiveEffects;
 
-/// Milliseconds of stages by their names: "device", "compile", "load", "upload". Loading goes on
-/// beside the first two, so that their sum is more than the whole.
+/// Durations of stages [ms]: "device", "compile", "load", "upload". "load" runs concurrently with
+/// the first two.
 using StageTimes = std::vector<std::pair<std::string, double>>;
 
-/// A scene on a device: its DEM, its effects and what draws them. Frames follow what is changed
-/// here, without anything being loaded or compiled again. Several may live at once, each used on
-/// the thread that made it.
+/// A scene on a device: its DEM, its effects and their renderer. Several sessions may exist at
+/// once; each is used on the thread that created it.
 class Session {
   public:
-    /// Opens everything. The DEM is read on a thread of its own meanwhile.
-    /// @param files  gets what the scene is read from, so that no output replaces it
-    /// @throws Error as those who open: (BadInput, NoDevice, Failed)
+    /// Opens everything. Reads the DEM in the background.
+    /// @param files  receives the input files, so that no output replaces them
+    /// @throws Error as those that open (BadInput, NoDevice, Failed)
     Session(scene::Scene scene, Options options, FilesInUse& files);
     ~Session();
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// As it is now; files that parameters name have absolute paths.
+    /// The current scene. File names in parameters are absolute.
     const scene::Scene& scene() const;
-    /// Moves the camera. An eye that is given above the ground stands on the ground as it is drawn.
-    /// @param keep_above_m  other eyes are raised to be so far above it; none: they stay where they
-    ///                      are given
+    /// Sets the camera. An eye that is given above ground is placed on the drawn ground.
+    /// @param keep_above_m  least height above ground for other eyes [m]; nullopt: not raised
     /// @throws Error (BadInput) as scene::make_camera
     void look(const scene::View& view, std::optional<double> keep_above_m = std::nullopt);
-    /// Heights to aim cameras at, as effects draw the ground now; keeps the DEM, for any thread.
+    /// Heights of the currently drawn ground to aim cameras at. May be called on any thread, and
+    /// keeps the DEM alive.
     scene::GroundHeight heights_to_aim_at() const;
-    /// Moves the sun.
+    /// Sets the time, and with it the sun.
     void set_moment(sun::Instant utc);
-    /// Shows another scene of the same DEM, with no more work than what differs takes. Its frames
-    /// are the same bytes whatever was drawn before them.
-    /// @param utc  the scene's moment
-    /// @throws Error as look(), set(), set_effects() and resize(); another scene may be shown then
+    /// Shows another scene of the same DEM and reuses what both share. The resulting frames do not
+    /// depend on earlier ones: they are equal byte by byte.
+    /// @param utc  the scene's time
+    /// @throws Error as look(), set(), set_effects() and resize(). The session may then show parts
+    ///     of both scenes.
     void show(const scene::Scene& scene, sun::Instant utc);
-    /// Draws with other effects, or with what their files have become, from the next frame on.
-    /// @throws Error as those who load, compile and draw; the session then goes on as it was
+    /// Switches to other effects, or reloads changed ones.
+    /// @throws Error as those that load, compile and draw. The session then keeps its effects.
     void set_effects(const scene::Effects& effects);
-    /// The effects there are, those that are on, and their parameters.
+    /// Installed effects, those that are on, and their parameters.
     const ActiveEffects& effects() const;
-    /// Sets a parameter that is not static. @throws Error (BadInput) as shader::ParamStore::set
+    /// Sets a parameter. @throws Error (BadInput) if it is static, and as shader::ParamStore::set
     void set(const std::string& address, const std::string& value);
-    /// Sides of the picture [px].
+    /// Size of frames [px].
     void resize(int width_px, int height_px);
-    /// Lays colours on the ground from the next frame on; null: none. The first ones are another
-    /// program.
+    /// Draws an overlay on the ground; null: none. The first overlay requires other shader
+    /// programs.
     void drape(std::shared_ptr<const render::Drape> drape);
-    /// What colours on the ground mean: of the scene's overlay, and of effects that say it.
+    /// Legends of the scene's overlay and of the active effects.
     std::vector<chart::Legend> legends() const;
     /// Options::compared.
     const std::vector<std::string>& compared() const;
-    /// When the scene's overlay is of; none where it is not of the sun. Stamps say it instead of
-    /// the scene's own time, and cast shadows, which are another sun's, are off unless asked for.
+    /// Time of the scene's overlay; nullopt if it does not show sunlight. Stamps show it instead of
+    /// the scene's time. Cast shadows are then off unless enabled by id.
     const std::optional<OverlayTime>& overlay_time() const;
-    /// Likewise of effects alone.
+    /// Legends of the active effects.
     std::vector<chart::Legend> colour_legends() const;
-    /// Whether native effects leave what they have made as it is, such as shadow maps while the sun
-    /// is dragged, which cost more than the frame. The light that core finds by place never lags.
-    void keep_native(bool keep);
+    /// Freezes cached passes of native effects, such as shadow maps, which are expensive while the
+    /// sun is dragged. Lighting by core is always current.
+    void freeze_native(bool freeze);
 
-    /// Goes on with all posts of a DEM of which others stood in. The frame stays; view and moment
-    /// become those that a session opened with these posts would have.
-    /// @param given  the scene as it was opened
-    /// @throws Error as those who open; the session cannot be used then
+    /// Replaces a preview (Options::allow_preview) with the complete DEM. The frame's size stays.
+    /// Default view and time become those of the complete DEM.
+    /// @param given  the scene that the session was opened with
+    /// @throws Error as those that open; the session is then unusable
     void take(std::shared_ptr<const LoadedDem> dem, const scene::Scene& given);
 
     sun::Instant moment() const;
 
-    /// Draws a frame of the scene as it is now, whole.
-    /// @param times  filled with what each pass took if not null
+    /// Draws a complete frame, waiting for its terrain.
+    /// @param times  if not null, receives the duration of each pass
     void draw(render::PassTimes* times = nullptr);
-    /// Draws a frame at once: what is not loaded yet is coarser, and being loaded.
-    /// @returns whether all was there; if not, the next frame has more
-    bool draw_what_is_there();
-    /// Whether the next frame would have more of it if one waited.
+    /// Draws a frame without waiting. Terrain that is not loaded yet is drawn coarser and loads in
+    /// the background.
+    /// @returns true if the frame is complete
+    bool draw_available();
+    /// True if terrain is loading, so that a later frame has more detail.
     bool is_loading() const;
-    /// Draws none of a comparison's other half, and waits for the device.
+    /// Draws only the left half's effects of a comparison, and waits for the device.
     void draw_alone();
 
-    /// The last frame with the scene's stamps; of a comparison, both halves.
-    /// @throws Error (Failed) where light or colour is no number, naming the effect
+    /// The last frame with the scene's stamps; both halves of a comparison.
+    /// @throws Error (Failed) if pixels are not finite, naming the effect at fault
     image::Image8 picture() const;
-    /// What the last picture() has no stamp of though the scene wants it: whole sentences.
+    /// Sentences on stamps that the last picture() omitted.
     const std::vector<std::string>& stamp_notes() const;
-    /// The same as linear radiance, without stamps; Options::radiance.
+    /// As picture(), as linear radiance without stamps. Requires Options::radiance.
     image::ImageF radiance() const;
-    /// The picture on the device, RGBA with rows from below, until the next frame.
+    /// The last frame on the device: RGBA, rows from the bottom. Valid until the next frame.
     const gl::Texture& texture() const;
     /// As render::Renderer::depth().
     const gl::Texture& depth() const;
-    /// Whether ground of the DEM is in the last frame; of a comparison, in its left half's.
+    /// True if the last frame shows ground of the DEM; in a comparison, its left half.
     bool shows_ground() const;
     /// As render::Renderer::read_depths().
     void read_depths(std::vector<float>& depths_m) const;
 
-    /// As render::Renderer::read_sun_seen(); of a comparison, with its effects. Options::audited.
+    /// As render::Renderer::read_sun_seen(), of a comparison's left half. Requires
+    /// Options::audited.
     std::vector<render::SunSeen> read_sun_seen() const;
-    /// The sun as frames have it.
+    /// The sun of the next frame.
     const render::SunLight& sun_light() const;
 
     const scene::Camera& camera() const;
-    /// What orbits fit into the picture, as it is now.
+    /// Points that orbits fit into the frame.
     scene::Outline outline() const;
-    /// Its DEM, which may outlive it.
+    /// The DEM; may outlive the session.
     const std::shared_ptr<const LoadedDem>& dem() const;
-    /// The DEM's ground; its local frame is the camera's.
+    /// The DEM's ground. Cameras are in its local frame.
     const render::Ground& ground() const;
 
-    /// What is drawn of holes, what was assumed of water, and what effects invent of the ground
-    /// that the camera is near: whole sentences.
+    /// Sentences on filled voids, assumptions about water, and visible synthetic detail.
     std::vector<std::string> ground_notes() const;
 
-    /// "46.50 N 8.00 E", with " (the eye)" where it is that and not the DEM's middle.
+    /// "46.50 N 8.00 E" of the DEM's centre, or of the eye, with " (the eye)".
     std::string place_text() const;
-    /// "2026-06-21 10:12 UTC+02:00", by the clocks of the scene's zone.
+    /// "2026-06-21 10:12 UTC+02:00" in the scene's time zone.
     std::string clock_text() const;
-    /// "azimuth 114.27, elevation 65.12 (65.13 with refraction)", as seen from there.
+    /// "azimuth 114.27, elevation 65.12 (65.13 with refraction)", in degrees, at place_text().
     std::string sun_text() const;
 
-    /// Why the ground is seen from where it is, and empty where all of that was given.
+    /// Reason for the default view angles; empty if all were given.
     std::string view_reason() const;
-    /// Why it is that time, as scene::DefaultMoment::reason(), and empty where one was given.
+    /// Reason for the default time, as scene::DefaultMoment::reason(); empty if one was given.
     const std::string& moment_reason() const;
-    /// climate_text() and ground_text() of the DEM's middle, at the middle of its heights; empty
-    /// where no effect that is on draws by the climate.
+    /// climate_text() and ground_text() at the DEM's centre and middle height; empty if no active
+    /// effect depends on climate.
     std::string climate_text() const;
 
     const StageTimes& stages() const;
-    /// As render::Renderer::link_rest(): for sessions whose user may move the sun or the eye.
+    /// As render::Renderer::link_rest(): for sessions in which sun or eye may move.
     void link_rest();
-    /// How many programs the driver has linked so far.
+    /// Number of programs linked so far.
     int linked_programs() const;
     int triangles() const;  ///< of the last frame
     const gl::DeviceInfo& device() const;

@@ -16,11 +16,11 @@
 namespace relevo::session {
 namespace {
 
-/// A scale that is off by no more anywhere in the picture holds everywhere.
+/// If depths vary by less than this fraction, one scale holds for the whole image.
 constexpr double kMostOff = 0.02;
-/// North that is shorter than this share of an unforeshortened length is no direction.
+/// Least foreshortening of north at which an arrow is drawn.
 constexpr double kLeastNorth = 0.02;
-/// Ground as it is drawn is off the posts by no more [px].
+/// Greatest distance of drawn ground from the DEM's surface [px].
 constexpr double kGround_px = 4;
 
 std::string name_of(const scene::Scene& scene) {
@@ -37,7 +37,7 @@ std::string length_text(double length_m) {
 
 class Stamper {
   public:
-    /// @param stamped  outlives this, but for its depths
+    /// @param stamped  must outlive this; its depths are moved from
     Stamper(Stamped& stamped, const image::Image8& picture)
         : of_(stamped), wanted_(stamped.scene.stamps) {
         if (!needs_depths(wanted_)) return;
@@ -64,7 +64,7 @@ class Stamper {
         return stamps;
     }
 
-    /// Draws the lines of the graticule.
+    /// Draws the lines and adds their labels to `stamps`.
     void add_graticule(image::Image8& picture, chart::Stamps& stamps) {
         if (!wanted_.graticule || !middle_) return;
         const Graticule graticule =
@@ -78,7 +78,8 @@ class Stamper {
     std::vector<std::string> notes_;
 
   private:
-    /// What a raster of the sun does not say of itself is not stamped from elsewhere.
+    /// The date and sun of an overlay come from its metadata or are omitted: those of the scene may
+    /// differ.
     void add_line(const char* label, const std::string& words, const char* name,
                   chart::Stamps& stamps) {
         if (words.empty())
@@ -112,7 +113,7 @@ class Stamper {
         return std::nullopt;
     }
 
-    /// Walls hang below the ground's edge.
+    /// False for walls below the ground's edge.
     bool is_ground(const glm::dvec3& point_m) const {
         geo::Geodetic place = of_.frame.to_geodetic(point_m);
         const double drawn_m = place.height_m;
@@ -135,8 +136,8 @@ bool needs_depths(const scene::Stamps& wanted) {
     return wanted.scale || wanted.north || wanted.graticule;
 }
 
-std::optional<geo::Geodetic> told_eye(const geo::LocalFrame& frame, const scene::Camera& camera,
-                                      double exaggeration) {
+std::optional<geo::Geodetic> observer_of(const geo::LocalFrame& frame, const scene::Camera& camera,
+                                         double exaggeration) {
     constexpr double kHighest_m = 100e3;
     geo::Geodetic eye = frame.to_geodetic(camera.eye_m);
     eye.height_m /= exaggeration;
@@ -145,7 +146,7 @@ std::optional<geo::Geodetic> told_eye(const geo::LocalFrame& frame, const scene:
 
 std::string clock_text(sun::Instant utc, const std::string& zone, const geo::Geodetic& middle) {
     const sun::ChosenZone chosen = sun::choose_zone(zone, middle);
-    const std::string iso = sun::to_iso(utc, chosen.zone);  // 2026-06-21T10:12:00+02:00
+    const std::string iso = sun::to_iso(utc, chosen.zone);  // such as 2026-06-21T10:12:00+02:00
     const std::string seconds = iso.substr(16, 3), offset = iso.substr(19);
     return fmt::format("{} {}{} UTC{}", iso.substr(0, 10), iso.substr(11, 5),
                        seconds == ":00" ? "" : seconds, offset == "Z" ? "" : offset);

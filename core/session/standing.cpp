@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A height on the drawn triangles at a column and row. Beside voids the mean of the cell's posts,
-/// where the nearest post has a height: the ground is cut off half-way to a void.
+/// Height on the drawn triangles at (column, row). Next to voids, the mean of the cell's posts if
+/// the nearest one has a height: ground is cut half-way to a void. Else NaN.
 double on_drawn_triangles_m(const Array2d<float>& height_m, glm::dvec2 post) {
     const int columns = height_m.width(), rows = height_m.height();
     if (!(post.x >= 0 && post.y >= 0 && post.x <= columns - 1 && post.y <= rows - 1)) return kNaN;
@@ -46,7 +46,7 @@ scene::GroundHeight heights_to_aim_at(std::shared_ptr<const LoadedDem> dem,
                                       const render::Displacement& displacement) {
     return [dem = std::move(dem), levels_m = displacement.to_m](const geo::Geodetic& at) {
         const dem::Heightfield& drawn = dem->to_draw();
-        // The CRS of a DEM knows nothing of an eye's height, which may be out of its range.
+        // Height 0: an eye's height may be outside the range of the DEM's CRS.
         const glm::dvec2 post = drawn.grid.post({at.lat_rad, at.lon_rad, 0});
         double height_m = on_drawn_triangles_m(drawn.height_m, post);
         const Array2d<dem::WaterKind>& water = dem->drawn.water.kind;
@@ -74,7 +74,7 @@ scene::Camera standing(const scene::View& view, const DrawnGround& ground,
     const bool above_ground = view.eye && view.eye->above_ground;
     if (!view.eye) keep_above_m = scene::kClearance_m;
     if (!above_ground && !keep_above_m) return camera;
-    // The level of detail depends on the eye's height: the ground may move as the eye does.
+    // Iterates, because the ground's level of detail depends on the eye's height.
     constexpr int kRounds = 12;
     constexpr double kClose_m = 0.01;
     for (int round = 0; round < kRounds; ++round) {
@@ -89,7 +89,7 @@ scene::Camera standing(const scene::View& view, const DrawnGround& ground,
             camera.eye_m = ground.frame.to_local(eye);
             continue;
         }
-        // A look at a place turns with the eye.
+        // The direction to an aimed-at place changes with the eye.
         scene::View raised = view;
         eye.height_m /= ground.exaggeration;
         raised.eye = scene::Standpoint{eye, /*above_ground=*/false};

@@ -9,40 +9,39 @@
 #include "scene/view.h"
 #include "session/session.h"
 
-/// Where the eye stands. Figures come from the DEM's posts. Cameras follow the ground as it is
-/// drawn, which differs from them by its level of detail, by its triangles between posts, by filled
-/// voids, and by what effects displace.
+/// Places cameras on the drawn ground. It differs from the DEM's posts by its level of detail, its
+/// triangles, filled voids and displacement by effects.
 namespace relevo::session {
 
-/// Heights to aim cameras at: those of the posts that are drawn, on the triangles between them; on
-/// water, of the level that an effect lifts its floor to. Within the level of detail of the drawn
-/// ground, but for effects that displace land. Keeps the DEM.
+/// Heights of the ground that cameras aim at, exaggeration excluded: interpolated on the triangles
+/// between drawn posts. On sea and river, the water level of a displacing effect. Displacement of
+/// land is ignored. Keeps `dem` alive.
 scene::GroundHeight heights_to_aim_at(std::shared_ptr<const LoadedDem> dem,
                                       const render::Displacement& displacement);
 
-/// Heights that an eye may have [m]: the centre of the Earth, and from where a globe fills a
-/// picture of 1 degree.
+/// Range of eye heights [m]: from the Earth's centre to where the globe fills a field of view of 1
+/// degree.
 inline constexpr double kDeepestEye_m = -6.4e6, kFarthestEye_m = 9e8;
 
-/// @param dem  as the message names it
-/// @throws Error (BadInput) for an eye beyond these
+/// @param dem  its name in the message
+/// @throws Error (BadInput) if the eye's height is outside that range
 void check_eye_height(const scene::View& view, const std::string& dem);
 
-/// What standing() asks of a session.
+/// Functions of a session that standing() needs.
 struct DrawnGround {
     const geo::LocalFrame& frame;
     double exaggeration = 1;
-    /// Height of the drawn ground on the vertical through a camera's eye [m], exaggerated; none
-    /// where no ground is drawn.
+    /// Height of the drawn ground on the vertical through a camera's eye [m], exaggerated; nullopt
+    /// without ground.
     std::function<std::optional<double>(const scene::Camera&)> height_m;
-    /// Makes a view's camera by heights to aim at. @throws Error as scene::make_camera()
+    /// Camera of a view, aimed by heights_to_aim_at(). @throws Error as scene::make_camera()
     std::function<scene::Camera(const scene::View&)> camera;
 };
 
-/// The camera of a view on the drawn ground: an eye that is given above the ground is that far
-/// above it, within 1 cm; an orbit's eye is no nearer above it than scene::kClearance_m.
-/// @param keep_above_m  eyes with a height of their own are raised to be so far above it; none:
-///                      they stay where they are given
+/// The camera of a view over the drawn ground. An eye that is given above ground is placed at that
+/// height within 1 cm. An orbit's eye is raised to scene::kClearance_m above ground.
+/// @param keep_above_m  least height above ground for eyes with an absolute height; nullopt: not
+///     raised
 /// @throws Error as DrawnGround::camera
 scene::Camera standing(const scene::View& view, const DrawnGround& ground,
                        std::optional<double> keep_above_m);

@@ -17,7 +17,7 @@
 namespace relevo::session {
 namespace {
 
-/// The ground in the middle.
+/// The ground at the DEM's centre.
 geo::Geodetic middle_of(const dem::Posts& posts) {
     geo::Geodetic ground = posts.grid().center();
     const double height_m =
@@ -30,7 +30,7 @@ std::function<sun::Refraction(const geo::Geodetic&)> air_of(const std::string& r
     return [refraction](const geo::Geodetic& place) { return refraction_at(refraction, place); };
 }
 
-/// What all figures are found with.
+/// Options common to all kinds of rasters.
 template <typename Options>
 Options options_for(const dem::Window& part, const std::function<void(double)>& done) {
     Options options;
@@ -82,7 +82,7 @@ SunRasterMaker sky_of(const dem::Posts& posts, const dem::Window& window,
     };
 }
 
-/// What only one kind of raster says of itself.
+/// Metadata of one kind of raster.
 output::RasterMetadata metadata_of(const dem::Posts& posts, const SunRasterWanted& wanted) {
     const auto air = [&] { return air_of_posts(wanted.refraction, posts); };
     if (wanted.figure == SunFigure::SkyView)
@@ -98,7 +98,7 @@ output::RasterMetadata metadata_of(const dem::Posts& posts, const SunRasterWante
     return about;
 }
 
-/// Terrain beyond the DEM that could change the figures.
+/// Unmodelled terrain beyond the DEM that could change the result.
 std::optional<light::Beyond> beyond_of(const dem::Posts& posts, const SunRasterWanted& wanted) {
     const dem::Grid& grid = posts.grid();
     const dem::Window all{0, 0, grid.columns(), grid.rows()};
@@ -187,7 +187,7 @@ Array2d<std::uint8_t> mask_of(const Array2d<float>& lit) {
 }
 
 std::vector<dem::Window> raster_parts(const dem::Window& window, std::int64_t most_posts) {
-    constexpr int kBlock = 512;  // of the result's posts
+    constexpr int kBlock = 512;  // blocks of the output file [posts]
     const int fitting = static_cast<int>(std::sqrt(static_cast<double>(most_posts)));
     const int side = std::max(kBlock, fitting / kBlock * kBlock);
     std::vector<dem::Window> parts;

@@ -12,98 +12,99 @@
 #include "output/raster_writer.h"
 #include "sun/zone.h"
 
-/// Rasters of the sun over a DEM, as the command line and the window make them alike.
+/// Rasters of sunlight over a DEM, identical from the command line and the viewer.
 namespace relevo::session {
 
-/// --terrestrial-refraction, --step and --directions where nobody asks for others.
+/// Defaults of --terrestrial-refraction, --step and --directions.
 inline constexpr double kTerrestrialRefraction = 0.13;
 inline constexpr double kSunStep_s = 180;
 inline constexpr int kSkyDirections = 36;
 
-/// Bands as files have them.
+/// Band names and units in files.
 output::RasterBand sun_hours_band();
 output::RasterBand shadow_band(bool soft);
 output::RasterBand sky_view_band();
 
-/// The sun over the middle of a DEM.
+/// The sun as seen from the centre of a DEM.
 struct SunOverMiddle {
     light::SunOverDem sun;
-    double apparent_rad = 0;  ///< elevation as seen from the ground there
+    double apparent_rad = 0;  ///< apparent elevation from the ground there
     std::optional<sun::Instant> utc;
 };
 
-/// @param refraction  as scene::Scene; of the ground in the middle, or the lowest post's where that
-///     is a hole
+/// @param refraction  as scene::Scene; computed at the height of the central post, or of the lowest
+///     post if that is void
 SunOverMiddle sun_over_middle(const dem::Posts& posts, sun::Instant utc,
                               const std::string& refraction);
 
-/// Where the sun stands, and when.
+/// Direction and time of the sun.
 output::RasterMetadata metadata_of(const SunOverMiddle& sun);
 
-/// A refraction's model in words, over each post.
+/// Describes a refraction model, evaluated at each post.
 std::string air_of_posts(const std::string& refraction, const dem::Posts& posts);
 
-/// What every raster of light says of itself.
-/// @param version  of the program
-/// @param clip     of the DEM's posts, where it is not all of them
+/// Metadata common to all rasters of light.
+/// @param version  of Relevo
+/// @param clip     window of the DEM's posts, if not all
 output::RasterMetadata raster_metadata(const dem::Posts& posts, const std::string& version,
                                        const std::string& definition, double terrestrial_refraction,
                                        std::int64_t holes,
                                        const std::optional<dem::Window>& clip = {});
 
-/// 0 in the shade, 1 lit, 255 without a figure. @param lit  as light::Shadows
+/// 0 in the shade, 1 lit, 255 without data. @param lit  as light::Shadows
 Array2d<std::uint8_t> mask_of(const Array2d<float>& lit);
 
-/// Squares of a window, one after the other, of so many posts at most, but of whole blocks of the
-/// result: smaller ones would sweep the same ground again and again.
+/// Splits a window into squares of at most `most_posts` posts and of whole 512-post blocks. Small
+/// parts would sweep the same ground repeatedly.
 std::vector<dem::Window> raster_parts(const dem::Window& window, std::int64_t most_posts);
 
-/// Of a DEM beyond its memory a part of the result has this share of the posts that may be in
-/// memory, as each takes some times as much as a height.
+/// Divisor of the memory limit in posts for a part of the result: a result post takes several times
+/// the memory of a height.
 inline constexpr std::int64_t kPostsAPart = 8;
 
 enum class SunFigure { Hours, Shadow, SkyView };
 
-/// What is asked of each post.
+/// What to compute at each post.
 struct SunRasterWanted {
     SunFigure figure = SunFigure::Hours;
-    sun::Instant begin, end;  ///< of the hours; a shadow's moment is `begin`
-    sun::Zone zone;           ///< that they are told in
+    sun::Instant begin, end;  ///< period of the hours; a shadow's time is `begin`
+    sun::Zone zone;           ///< time zone in the metadata
     std::string refraction = "standard";
 };
 
-/// Whether the figures are the same.
+/// True if both request the same values.
 bool same_figures(const SunRasterWanted& a, const SunRasterWanted& b);
 
-/// Figures of a part of a DEM.
+/// Values over a part of a DEM.
 struct SunRaster {
-    Array2d<float> values;  ///< hours; 0 or 1; a share. NaN in holes
+    Array2d<float> values;  ///< hours; 0 or 1; a fraction. NaN in voids
     std::int64_t holes = 0;
     std::string definition;
 };
 
 output::RasterBand band_of(SunFigure figure);
 
-/// Makes the figures of parts of a DEM, one after the other, by one plan.
+/// Computes parts of a raster, one after the other, with a shared plan.
 using SunRasterMaker = std::function<SunRaster(const dem::Window& part)>;
-/// @param window  posts that will be asked for; without columns: all
+/// @param window  posts that will be requested; zero columns: all
 /// @param done    as light::ShadowOptions::done
 /// @throws Error (BadInput) as light::sun_hours(), shadows() and sky_view()
 SunRasterMaker sun_raster_maker(const dem::Posts& posts, const SunRasterWanted& wanted,
                                 const dem::Window& window = {},
                                 const std::function<void(double)>& done = {});
 
-/// @param part  as in light::ShadowOptions; without columns: all
-/// @param done  likewise; what it throws ends the work
+/// @param part  as in light::ShadowOptions; zero columns: all
+/// @param done  as light::ShadowOptions::done; an exception from it ends the computation
 /// @throws Error (BadInput) as light::sun_hours(), shadows() and sky_view()
 SunRaster sun_raster(const dem::Posts& posts, const SunRasterWanted& wanted,
                      const dem::Window& part = {}, const std::function<void(double)>& done = {});
 
-/// Writes the file of `relevo sun hours`, `sun shadow` or `sun sky-view`, byte for byte.
-/// @param whole    of all posts, where it has been made already; else it is made part by part
+/// Writes the same bytes as `relevo sun hours`, `sun shadow` or `sun sky-view`.
+/// @param whole    values at all posts if already computed; null: computed in parts
 /// @param most     posts of a part
-/// @param version  of the program
-/// @param done     told which share has been done since it was told last; what it throws ends it
+/// @param version  of Relevo
+/// @param done     called with the fraction completed since its last call; an exception ends the
+///     computation
 /// @throws Error as sun_raster() and output::RasterWriter
 void write_sun_raster(OutputFile& file, const dem::Posts& posts, const SunRasterWanted& wanted,
                       const SunRaster* whole, std::int64_t most, const std::string& version,

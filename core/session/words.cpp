@@ -15,12 +15,12 @@ namespace relevo::session {
 
 namespace {
 
-/// A moment's words, read as far as they mean something without a place.
+/// A time's words, parsed as far as possible without a place.
 struct ReadMoment {
     std::optional<sun::Date> date;
-    std::optional<sun::EventTime> event;  ///< none: a time of day
-    std::optional<sun::Zone> zone;        ///< that is named
-    bool zone_by_place = false;           ///< one is needed, and is that of the place
+    std::optional<sun::EventTime> event;  ///< nullopt: a time of day
+    std::optional<sun::Zone> zone;        ///< if given by name
+    bool zone_by_place = false;           ///< needs a zone that depends on the place
 };
 
 ReadMoment read(const scene::Moment& moment) {
@@ -39,7 +39,7 @@ ReadMoment read(const scene::Moment& moment) {
     if (!moment.date.empty()) result.date = sun::parse_date(moment.date);
     result.event = sun::parse_event_time(moment.time);
     result.zone_by_place = !named;
-    // Says what is missing before anything is loaded; which day is one does not hang on the zone.
+    // Checks the day before anything is loaded; whether there is one is independent of the zone.
     sun::day_of(*result.event, result.date, result.zone.value_or(sun::Zone()));
     return result;
 }
@@ -111,7 +111,7 @@ sun::ParsedTime parse_over(const scene::Moment& moment, const dem::Source& sourc
                           .posts = [&]() -> const dem::Posts& {
                               if (loaded.reduction == 1)
                                   posts.emplace(loaded);
-                              else  // as many again as the means, while this is computed
+                              else  // at most as many posts as the means have
                                   posts.emplace(source,
                                                 static_cast<std::int64_t>(loaded.height_m.size()));
                               return *posts;

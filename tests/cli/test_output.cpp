@@ -329,7 +329,7 @@ TEST_F(Output, DumpedShadersReplaceNothingUnasked) {
     const std::string before = read_text(own + "/terrain.frag.glsl", "test");
     const Result refused = relevo(arguments);
     EXPECT_EQ(refused.err, "relevo: error: --dump-shaders: " + own +
-                               ": is where the program's own shaders are; name another folder\n");
+                               ": is Relevo's own shader folder; name another one\n");
     EXPECT_EQ(read_text(own + "/terrain.frag.glsl", "test"), before);
 }
 

@@ -122,8 +122,8 @@ TEST_F(OverlayOption, OfTheSunHasNoShadowsOfAnotherSunUnlessAskedFor) {
     std::filesystem::remove(dir_ / "loud.png");
     const Result loud = relevo({"capture", bundled_dem(), "-o", (dir_ / "loud.png").string(),
                                 "--size", "64x48", scene[0], scene[1], scene[2], scene[3]});
-    EXPECT_NE(loud.err.find("relevo: shadows is off, because the overlay shows the sun's light of "
-                            "its own time; --enable shadows draws them too"),
+    EXPECT_NE(loud.err.find("relevo: shadows is off: the overlay shows sunlight of its own time; "
+                            "--enable shadows switches it on"),
               std::string::npos)
         << loud.err;
     // Of what is no light of the sun they stay.
@@ -226,10 +226,9 @@ TEST_F(OverlayOption, WhatIsNoneIsRefused) {
             ": the overlay does not cover this DEM; it is at latitude 48.005 to 49.995, longitude "
             "-126.000 to -122.000, the DEM at latitude 36.160 to 36.446, longitude -84.414 "
             "to -84.078\n");
-    EXPECT_EQ(
-        said({"--overlay", bundled_dem(), "--preset", "paper"}),
-        "relevo: error: render: terrain.normal: expected fragment, with which rasters lie on the "
-        "ground, but got vertex; remove the overlay or pass --set terrain.normal=fragment\n");
+    EXPECT_EQ(said({"--overlay", bundled_dem(), "--preset", "paper"}),
+              "relevo: error: render: terrain.normal: vertex shows no overlay; remove the overlay "
+              "or pass --set terrain.normal=fragment\n");
 }
 
 }  // namespace

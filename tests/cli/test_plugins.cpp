@@ -167,7 +167,7 @@ TEST_F(Plugins, AnEndlessLoopEndsTheProgram) {
     EXPECT_EQ(run.status, 1);
     EXPECT_EQ(run.err,
               "relevo: error: render: program terrain: the device took more than 1 s; "
-              "plugins/odd/odd.glsl:2, plugins/odd/odd.glsl:3 may go on for ever; --disable odd "
+              "plugins/odd/odd.glsl:2, plugins/odd/odd.glsl:3 may never end; --disable odd "
               "goes on without it\n");
     EXPECT_FALSE(drawn());
 }

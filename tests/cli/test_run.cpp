@@ -159,7 +159,7 @@ TEST_F(Run, ResumeRefusesWhatIsNotTheSame) {
     EXPECT_EQ(error(path, {"--resume", "--exposure", "1"}), other("it shows another scene"));
     const std::string whole = bytes_of(dir_ / "a.png");
     std::ofstream(dir_ / "a.png", std::ios::binary) << whole.substr(0, whole.size() - 200);
-    EXPECT_EQ(error(path, {"--resume"}), other("it is not a whole picture"));
+    EXPECT_EQ(error(path, {"--resume"}), other("it is not a complete picture"));
     EXPECT_EQ(relevo({"run", path.string(), "--resume", "--overwrite"}).status, 0);
     EXPECT_EQ(bytes_of(dir_ / "a.png"), whole);
 }
@@ -369,7 +369,7 @@ TEST_F(Run, AnAuditSaysInTheSidecarWhetherShadowsAreThoseOfTheFigures) {
     EXPECT_LT(without["agreement"], 0.85);
     EXPECT_EQ(without["balanced_accuracy"], 0.5);
     EXPECT_THAT(run.err, HasSubstr(fmt::format(
-                             "relevo: audit: no effect that is on draws shadows; all ground lit "
+                             "relevo: audit: no active effect draws shadows; a fully lit DEM "
                              "agrees with the CPU sweep on {:.2f} % of {} pixels that show a post, "
                              "balanced 50.00 %; the worst of 2, {}\n",
                              100 * without["agreement"].get<double>(), without["pixels"].get<int>(),
@@ -418,10 +418,10 @@ TEST_F(Run, ADryRunSaysWhatWouldHappenAndTouchesNothing) {
     const Result resumed = dry({"--resume"});
     EXPECT_EQ(resumed.out, b + "\n");
     EXPECT_THAT(resumed.err, HasSubstr("; 1 are there already and stay\n"));
-    EXPECT_THAT(resumed.err,
-                HasSubstr(fmt::format("would be refused: run: {}: it is not a whole picture, the "
-                                      "first of 1 that --resume cannot keep",
-                                      b)));
+    EXPECT_THAT(resumed.err, HasSubstr(fmt::format(
+                                 "would be refused: run: {}: it is not a complete picture, the "
+                                 "first of 1 that --resume cannot keep",
+                                 b)));
     EXPECT_THAT(dry({"-o", (dir_ / "job.json/{camera}.png").string()}).err,
                 HasSubstr(fmt::format("would be refused: run: {}: no file can be made in it, Not a "
                                       "directory\n",

@@ -150,7 +150,7 @@ TEST_F(RunFiles, ResumeMakesThePairOfWhichAKillLeftOne) {
     fs::remove(dir_ / "2.png");
     write("2.png.json", "{\"mine\": 1}");
     EXPECT_EQ(error(path, {"--resume", "--sidecar"}),
-              fmt::format("run: {}: its sidecar is not a whole one, the first of 1 that --resume "
+              fmt::format("run: {}: its sidecar is incomplete, the first of 1 that --resume "
                           "cannot keep; pass --overwrite to make it again",
                           (dir_ / "2.png").string()));
     EXPECT_EQ(bytes_of(dir_ / "2.png.json"), "{\"mine\": 1}");

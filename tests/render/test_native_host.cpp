@@ -221,8 +221,8 @@ TEST_F(NativeHostTest, ATextureOfAnotherKindThanItsSamplerIsAnError) {
         "    s.diffuse = texture(puppet_map, vec3(0.5)).rgb;\n"
         "}\n");
     EXPECT_EQ(error,
-              "exit 1: render: puppet: sampler2DArray puppet_map: expected a texture of that kind "
-              "but the module makes puppet.map one of sampler2D");
+              "exit 1: render: puppet: sampler2DArray puppet_map: expected a texture of that kind, "
+              "but the module creates puppet.map as sampler2D");
 }
 
 TEST_F(NativeHostTest, OnlyFirstDrawsAreUnderAWatch) {

@@ -78,8 +78,8 @@ TEST(Audit, CoarsePixelsAreComparedWithAllPostsThatTheyHold) {
     scene.height_px = 160;
     const ShadowAudit audit = audit_of(scene);
     EXPECT_GE(audit.agreement(), 0.99);
-    EXPECT_GT(audit.left_out.mixed, 1000);
-    EXPECT_EQ(audit.all.pixels, audit.pixels() + audit.left_out.mixed);
+    EXPECT_GT(audit.excluded.mixed, 1000);
+    EXPECT_EQ(audit.all.pixels, audit.pixels() + audit.excluded.mixed);
     EXPECT_LT(audit.all.sum_of_sizes / static_cast<double>(audit.all.pixels), 0.06);
 }
 
@@ -100,7 +100,7 @@ TEST(Audit, GroundThatIsAlwaysLitIsNoBetterThanNoShadows) {
     EXPECT_NE(none.json_text().find("\"provider\":null"), std::string::npos);
     EXPECT_EQ(
         none.text(),
-        fmt::format("audit: no effect that is on draws shadows; all ground lit agrees with "
+        fmt::format("audit: no active effect draws shadows; a fully lit DEM agrees with "
                     "the CPU sweep on {:.2f} % of {} pixels that show a post, balanced 50.00 %",
                     100 * none.agreement(), none.pixels()));
 }
@@ -125,7 +125,7 @@ TEST(Audit, WallsOfTheBlockAndTheSurfaceOfASeaAreNoPosts) {
     scene.view.orbit = {200, 15, 1};
     const ShadowAudit audit = audit_of(scene);
     EXPECT_LT(std::abs(audit.all.sum / static_cast<double>(audit.all.pixels)), 0.02);
-    EXPECT_GT(audit.left_out.moved, 1000);
+    EXPECT_GT(audit.excluded.moved, 1000);
     EXPECT_GT(audit.pixels(), 100);
     EXPECT_GE(audit.agreement(), 0.97);
 }
@@ -141,9 +141,9 @@ TEST(Audit, ASeaOverExaggeratedGroundMovesNothingButWater) {
         const ShadowAudit audit = audit_of(scene);
         EXPECT_GT(audit.pixels(), 1000);
         EXPECT_GE(audit.agreement(), 0.97);
-        moved.push_back(static_cast<double>(audit.left_out.moved) /
-                        static_cast<double>(audit.pixels() + audit.left_out.moved +
-                                            audit.left_out.between_posts));
+        moved.push_back(static_cast<double>(audit.excluded.moved) /
+                        static_cast<double>(audit.pixels() + audit.excluded.moved +
+                                            audit.excluded.between_posts));
     }
     EXPECT_NEAR(moved[0], moved[1], 0.15);
     EXPECT_GT(moved[0], 0.05);
@@ -175,8 +175,7 @@ TEST(Audit, AtNightThereIsNothingToCompare) {
     const ShadowAudit audit = audit_of(scene);
     EXPECT_EQ(audit.pixels(), 0);
     EXPECT_EQ(audit.text(),
-              "audit: no pixel shows a post of the DEM that is turned to the sun; there is nothing "
-              "to compare");
+              "audit: no pixel shows a post of the DEM that faces the sun; nothing to compare");
     EXPECT_NE(audit.json_text().find("\"agreement\":null"), std::string::npos);
 }
 

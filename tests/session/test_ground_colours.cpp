@@ -121,7 +121,7 @@ TEST(ColourLegend, OfDirectionsIsThePictures) {
 TEST(ColourLegend, OfLandAndSeaGoesFromTheFloorToTheSummit) {
     scene::Effects relief;
     relief.presets = {"relief"};
-    const auto effects = ActiveEffects::of(relief, /*aloud=*/false);
+    const auto effects = ActiveEffects::of(relief, /*report=*/false);
     const std::vector<chart::Legend> legends = colour_legends(*effects, {-2000, 1500, true});
     const auto height = std::find_if(legends.begin(), legends.end(),
                                      [](const auto& one) { return one.title == "Height"; });

@@ -265,13 +265,13 @@ TEST(Session, DrawsCoarserGroundUntilItsPagesAreThere) {
     scene.pixel_error = 0;  // every post
     FilesInUse files;
     Session session(scene, {.device = "software"}, files);
-    EXPECT_FALSE(session.draw_what_is_there());
+    EXPECT_FALSE(session.draw_available());
     const int first = session.triangles();
     const image::Image8 coarse = session.picture();
     const auto settle = [&] {
         constexpr int kMost = 2000;
         int frames = 1;
-        while (!session.draw_what_is_there() && frames < kMost) {
+        while (!session.draw_available() && frames < kMost) {
             ++frames;
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
@@ -285,10 +285,10 @@ TEST(Session, DrawsCoarserGroundUntilItsPagesAreThere) {
     // The camera moves on while pages are made, and a capture waits for all.
     scene.view.orbit = {20, 15, 3};
     session.look(scene.view);
-    session.draw_what_is_there();
+    session.draw_available();
     scene.view.orbit = {100, 35, 2};
     session.look(scene.view);
-    session.draw_what_is_there();
+    session.draw_available();
     session.draw();
     EXPECT_EQ(session.picture().values, picture_of(scene).values);
     settle();
@@ -346,7 +346,7 @@ TEST(Session, RefusesWhatNeedsAnotherProgram) {
     Session session(bundled_scene(), {.device = "software"}, files);
     EXPECT_EQ(
         test::error_of([&] { session.set("paint.slope", "false"); }),
-        "exit 3: session: paint.slope: a static parameter: another value needs another shader");
+        "exit 3: session: paint.slope: is a static parameter; another value needs another shader");
     EXPECT_EQ(test::error_of([&] { session.set("film.density", "-1"); }),
               "exit 3: parameter: film.density: expected a number in [0, 1] 1/km but got "
               "\"-1\"");

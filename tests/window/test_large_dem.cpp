@@ -44,7 +44,7 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
     thread.want(wanted);
     ASSERT_TRUE(wait([&] { return thread.opened() != nullptr; }));
     const auto first = thread.opened();
-    EXPECT_TRUE(first->dem->stands_in);
+    EXPECT_TRUE(first->dem->is_preview);
     EXPECT_EQ(first->dem->field.reduction, 4);
     // What is told of a place is of the posts all the same.
     const geo::Geodetic place = first->dem->source->grid().place(1001.25, 2001.5);
@@ -54,16 +54,16 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
     bool stood_in = false;
     ASSERT_TRUE(test::WindowedProgram::wait(
         [&] {
-            const bool stands_in = thread.opened()->dem->stands_in;
+            const bool is_preview = thread.opened()->dem->is_preview;
             if (const auto newer = thread.newer_than(picture ? picture->number : 0))
                 picture = newer;
-            stood_in = stood_in || (picture && stands_in);
+            stood_in = stood_in || (picture && is_preview);
             return picture && picture->sharp;
         },
         120));
     EXPECT_TRUE(stood_in);  // there was a picture before
     const auto whole = thread.opened();
-    EXPECT_FALSE(whole->dem->stands_in);
+    EXPECT_FALSE(whole->dem->is_preview);
     EXPECT_EQ(whole->dem->field.reduction, 1);
     EXPECT_NEAR(whole->dem->height_m(place), height_m, 1e-4);
     const geo::Geodetic before = first->ground.frame.origin(), after = whole->ground.frame.origin();
@@ -72,7 +72,7 @@ TEST_F(Viewer, MeansStandInForALargeDemUntilItIsRead) {
 
     FilesInUse files;
     session::Session session(scene, {.device = "software"}, files);
-    EXPECT_FALSE(session.dem()->stands_in);  // captures wait
+    EXPECT_FALSE(session.dem()->is_preview);  // captures wait
     EXPECT_EQ(session.moment(), whole->utc);
     const scene::Camera camera = whole->camera(whole->scene.view, 320.0 / 200, {});
     EXPECT_LT(distance(session.camera().eye_m, camera.eye_m), 1e-6);
@@ -200,7 +200,7 @@ TEST_F(Viewer, ALargeDemWhoseRestIsDamagedIsSaidAndTheOneBeforeComesBack) {
             thread.check();
             return thread.opened() != nullptr;
         }));
-        EXPECT_TRUE(thread.opened()->dem->stands_in);
+        EXPECT_TRUE(thread.opened()->dem->is_preview);
         std::string why;
         ASSERT_TRUE(test::WindowedProgram::wait(
             [&] {

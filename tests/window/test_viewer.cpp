@@ -434,7 +434,7 @@ TEST(WithoutADisplay, OneLineNamesTheWayWithoutOne) {
                                   {"DISPLAY="});
     EXPECT_EQ(program.status(), 4);
     EXPECT_EQ(program.output(),
-              "relevo: error: view: there is no display to open a window on; relevo capture takes "
+              "relevo: error: view: no display to open a window on; relevo capture takes "
               "a picture without one\n");
 }
 

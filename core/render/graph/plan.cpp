@@ -71,7 +71,7 @@ class Planner {
         return known->second;
     }
 
-    /// What would have no effect, or an undefined one.
+    /// Rejects declarations with undefined or no effect.
     static void check_kind(const Pass& of) {
         const auto refuse_if = [&](bool wrong, std::string_view what) {
             if (wrong) refuse(fmt::format("pass {} {}", of.name, what));
@@ -90,7 +90,7 @@ class Planner {
         }
     }
 
-    /// What a pass says by itself.
+    /// Checks a pass in isolation.
     void check(int index) {
         const Pass& of = pass(index);
         check_kind(of);
@@ -111,7 +111,7 @@ class Planner {
         }
     }
 
-    /// Whether a pass comes after another by what `after` says, over any number of others.
+    /// True if `after` orders one pass behind another, directly or indirectly.
     bool is_after(int later, int earlier) const {
         std::vector<int> open{later};
         std::set<int> seen;
@@ -139,7 +139,7 @@ class Planner {
         if (earlier != later) followers_[static_cast<std::size_t>(earlier)].insert(later);
     }
 
-    /// Puts the writer and the updates of a resource in their order.
+    /// Sorts the writer and the updates of a resource.
     void order_writers(int r) {
         std::vector<int>& all = chains_[static_cast<std::size_t>(r)];
         std::ranges::stable_partition(all, [&](int by) { return mode(by, r) == Mode::Write; });
@@ -163,7 +163,7 @@ class Planner {
             add_edge(all[i - 1], all[i]);
     }
 
-    /// How many of a resource's writers a reader sees.
+    /// Number of a resource's writers that precede a reader.
     std::size_t seen_by(const Pass& reader, const Version& version, int r) const {
         const std::vector<int>& writers = chain(r);
         const bool provided = resource(r).lifetime == Lifetime::Provided;
@@ -245,7 +245,7 @@ class Planner {
         }
     }
 
-    /// The first and the last step that use a resource; {-1, -1}: none does.
+    /// First and last step that use a resource; {-1, -1} if unused.
     std::pair<int, int> span(int r) const {
         std::pair<int, int> found{-1, -1};
         for (int s = 0; s < static_cast<int>(plan_.steps.size()); ++s) {
@@ -270,7 +270,7 @@ class Planner {
     void share_memory() {
         const auto count = static_cast<int>(graph_.resources.size());
         plan_.memory_of.assign(graph_.resources.size(), -1);
-        std::vector<int> order, free_after;  // by memory: the step after which it is free
+        std::vector<int> order, free_after;  // for each memory: last step that uses it
         std::vector<std::pair<int, int>> spans;
         for (int r = 0; r < count; ++r) {
             spans.push_back(span(r));
@@ -301,7 +301,7 @@ class Planner {
     }
 
     void find_barriers() {
-        // What a compute pass has left from the frame before has had no barrier yet.
+        // Compute writes of the previous frame are not synchronised yet.
         std::set<int> incoherent;
         const auto add_writes = [&](int step) {
             if (pass(plan_.steps[static_cast<std::size_t>(step)].pass).kind != PassKind::Compute)
@@ -325,8 +325,8 @@ class Planner {
     const FrameGraph& graph_;
     std::map<std::string, int> resources_, passes_;
     std::vector<std::vector<Access>> accesses_;  // of each pass
-    std::vector<std::set<int>> followers_;       // of each pass: those that come after it
-    std::vector<std::vector<int>> chains_;       // of each resource: its writer, then its updates
+    std::vector<std::set<int>> followers_;       // by pass: passes that must follow it
+    std::vector<std::vector<int>> chains_;       // by resource: its writer, then its updates
     std::set<int> live_;
     Plan plan_;
 };

@@ -10,37 +10,37 @@
 
 namespace relevo::render {
 
-/// How a FrameGraph is executed.
+/// Execution plan of a FrameGraph.
 struct Plan {
     struct Step {
         int pass = 0;             ///< index in FrameGraph::passes
-        bool barrier = false;     ///< an earlier step wrote by a compute shader what this one uses
-        std::vector<int> begins;  ///< resources of Lifetime::Frame that no earlier step uses
+        bool barrier = false;     ///< needs a barrier after an earlier compute write
+        std::vector<int> begins;  ///< Lifetime::Frame resources first used here
     };
     std::vector<Step> steps;
 
-    /// Resources of one kind, format and size, of which no two are needed at once.
+    /// Resources of one kind, format and size with disjoint lifetimes.
     struct Memory {
         std::vector<int> resources;
     };
     std::vector<Memory> memory;
-    std::vector<int> memory_of;  ///< of each resource: index in `memory`; -1: none is allocated
+    std::vector<int> memory_of;  ///< by resource: index in `memory`; -1: not allocated
 
-    /// Names of the resources that some step reads.
+    /// Names of resources that a step reads.
     std::set<std::string, std::less<>> read;
     bool reads(std::string_view resource) const { return read.contains(resource); }
 };
 
-/// Derives the plan of a graph. Passes without an order between them keep that of the declaration.
-/// @throws Error (Failed) `render: graph: ...` for two passes or resources of one name, a resource
-/// or
-///         version that does not exist, a read before any write, two writers, updates without an
-///         order, a pass that reads what it draws into, a pass that is not executed in every frame
-///         and uses what lasts for one, a pass that contradicts its kind, and a cycle
+/// Derives the plan of a graph. Passes that are not ordered otherwise keep their order of
+/// declaration.
+/// @throws Error (Failed) `render: graph: ...` for duplicate names, unknown resources and versions,
+///     reads before any write, several writers, unordered updates, passes that read their own
+///     targets, conditional passes that use Lifetime::Frame resources, passes that contradict their
+///     kind, and cycles
 Plan plan(const FrameGraph& graph);
 
-/// A graph and its plan in Graphviz's language: passes as boxes in their order, resources as
-/// ellipses; what is not executed is dashed, what shares memory has a common number.
+/// A graph and its plan in Graphviz's DOT language. Passes are boxes in order, resources ellipses.
+/// Dashed: not executed. Resources that share memory have the same number.
 std::string dot_text(const FrameGraph& graph, const Plan& plan, std::string_view title);
 
 }  // namespace relevo::render
