@@ -153,8 +153,9 @@ void add_info(CLI::App& app) {
         std::optional<sun::ParsedTime> given_time;
         if (arguments->time.given() && !session::needs_dem(moment))
             given_time = session::parse(moment);
-        const std::int64_t max_posts = arguments->dem.options.max_posts;
-        const dem::Source source = dem::Source::open(arguments->dem.paths, arguments->dem.options);
+        const std::int64_t max_posts = arguments->dem.options().max_posts;
+        const dem::Source source =
+            dem::Source::open(arguments->dem.paths, arguments->dem.options());
         std::optional<dem::Heightfield> field;
         if (arguments->time.given() && !given_time)
             given_time = parse_over(moment, source, max_posts, field);

@@ -13,10 +13,6 @@ void OverlayArguments::add_to(CLI::App& verb) {
                     "Raster to show on the ground in true colours, with a legend: from relevo sun, "
                     "or any that GDAL reads")
         ->group("Overlay");
-    verb.add_option("--overlay-band", band, "Band of the overlay, from 1")
-        ->check(whole_number())
-        ->check(CLI::PositiveNumber)
-        ->group("Overlay");
     verb.add_option(
             "--overlay-colours", colours,
             "Colours of the overlay: sun, shade, steel, viridis, inferno, grey, or the path of a "
@@ -26,22 +22,13 @@ void OverlayArguments::add_to(CLI::App& verb) {
             "--overlay-range", range,
             "Values of the first and the last colour, LOW,HIGH; default: the raster's range")
         ->group("Overlay");
-    verb.add_option("--overlay-opacity", opacity, "Opacity of the overlay, 0 to 1 (1)")
-        ->check(in_range(0.0, 1.0))
-        ->group("Overlay");
-    verb.add_option("--overlay-title", title, "Title of the legend; default: the band's name")
-        ->group("Overlay");
 }
 
-void OverlayArguments::apply_to(scene::Scene& scene) const {
+void OverlayArguments::apply_to(scene::Scene& scene, bool more) const {
     if (!file.empty()) scene.overlay = scene::Overlay{.file = file};
-    const bool more = band || opacity || !colours.empty() || !range.empty() || !title.empty();
-    if (more && !scene.overlay)
+    if ((more || !colours.empty() || !range.empty()) && !scene.overlay)
         bad_usage("--overlay: missing; its colours, range, band, opacity and title need it");
-    if (band) scene.overlay->band = *band;
-    if (opacity) scene.overlay->opacity = *opacity;
     if (!colours.empty()) scene.overlay->colours = colours;
-    if (!title.empty()) scene.overlay->title = printable(title);
     if (range.empty()) return;
     const std::vector<std::string> ends = split(range, ',');
     const std::optional<double> low = ends.size() == 2 ? parse_number(ends[0]) : std::nullopt,
@@ -53,42 +40,8 @@ void OverlayArguments::apply_to(scene::Scene& scene) const {
     scene.overlay->range = {*low, *high};
 }
 
-void StampArguments::add_to(CLI::App& verb) {
-    verb.add_option("--stamp", stamps,
-                    "Annotations: a list of title, scale, north, graticule, date, sun, "
-                    "attribution; or all, none")
-        ->group("Stamps");
-    verb.add_option("--title", title, "Title on the picture; default: the DEM's name")
-        ->group("Stamps");
-    verb.add_option("--attribution", attribution, "Attribution of the data on the picture")
-        ->group("Stamps");
-    verb.add_flag("--no-legend", no_legend, "Draw no legend")->group("Stamps");
-}
-
-void StampArguments::apply_to(scene::Stamps& result) const {
-    if (!title.empty()) result.title_text = printable(title);
-    if (!attribution.empty()) result.attribution_text = printable(attribution);
-    if (!stamps.empty()) {
-        try {
-            scene::show_stamps(split(stamps, ','), "--stamp", result);
-        } catch (const Error& error) {
-            bad_usage(error.what());
-        }
-    }
-    if (!title.empty()) result.title = true;
-    if (!attribution.empty()) result.attribution = true;
-    if (no_legend) result.legend = false;
-    if (result.attribution && result.attribution_text.empty())
-        bad_usage("--stamp: attribution: its text is missing; add --attribution TEXT");
-}
-
 void SceneArguments::add_to(CLI::App& verb, bool with_file) {
     dem.add_to(verb);
-    verb.add_option(
-            "--holes", holes,
-            "How voids in the DEM are drawn: fill (filled, wide ones covered in grey, those "
-            "at the edge cut out), cut (all cut out), mark (filled and painted) (fill)")
-        ->check(CLI::IsMember({"fill", "cut", "mark"}));
     verb.add_option("--size", size, "Width and height in pixels, 1280x1024");
     if (with_file)
         verb.add_option_function<std::string>(
@@ -105,12 +58,14 @@ void SceneArguments::add_to(CLI::App& verb, bool with_file) {
     view.add_to(verb);
     effects.add_to(verb);
     overlay.add_to(verb);
-    stamps.add_to(verb);
-    verb.add_option("--exposure", exposure_ev, "Brighter than the default by this many stops, EV")
-        ->check(in_range(-20.0, 20.0));
-    verb.add_option("--pixel-error", pixel_error,
-                    "Largest error of the drawn surface, pixels; 0 draws every post")
-        ->check(in_range(0.0, 100.0));
+    verb.add_option("--stamp", stamps,
+                    "Annotations: a list of title, scale, north, graticule, date, sun, "
+                    "attribution; or all, none")
+        ->group("Stamps");
+    // The others have added theirs.
+    for (const scene::Option& option : scene::options())
+        if (verb.get_option_no_throw(std::string(option.flag)) == nullptr)
+            values.add_to(verb, option);
 }
 
 scene::Scene SceneArguments::scene() const {
@@ -130,16 +85,30 @@ void SceneArguments::apply_to(scene::Scene& result) const {
     if (refraction.given()) result.refraction = refraction.name();
     view.apply_to(result);
     effects.apply_to(result.effects);
-    overlay.apply_to(result);
-    stamps.apply_to(result.stamps);
-    if (!holes.empty()) result.holes = dem::parse_holes(holes, "--holes");
+    overlay.apply_to(result, values.has_any("overlay"));
+    if (values.has("--fov") && values.has("--focal-length"))
+        bad_usage("--fov and --focal-length exclude each other; use one");
+    values.apply_to(result);
+    apply_stamps_to(result.stamps);
     if (!size.empty()) {
         const glm::ivec2 sides = parse_size(size);
         result.width_px = sides.x;
         result.height_px = sides.y;
     }
-    if (exposure_ev) result.exposure_ev = *exposure_ev;
-    if (pixel_error) result.pixel_error = *pixel_error;
+}
+
+void SceneArguments::apply_stamps_to(scene::Stamps& result) const {
+    if (!stamps.empty()) {
+        try {
+            scene::show_stamps(split(stamps, ','), "--stamp", result);
+        } catch (const Error& error) {
+            bad_usage(error.what());
+        }
+    }
+    if (values.has("--title")) result.title = true;
+    if (values.has("--attribution")) result.attribution = true;
+    if (result.attribution && result.attribution_text.empty())
+        bad_usage("--stamp: attribution: its text is missing; add --attribution TEXT");
 }
 
 }  // namespace relevo::cli

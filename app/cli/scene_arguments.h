@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "cli/effects.h"
@@ -11,23 +10,12 @@ namespace relevo::cli {
 
 /// A raster on the ground: --overlay and how it is shown.
 struct OverlayArguments {
-    std::string file, colours, range, title;
-    std::optional<int> band;
-    std::optional<double> opacity;
+    std::string file, colours, range;
 
     void add_to(CLI::App& verb);
-    /// Puts what was given in the place of what a scene says. @throws Error (Usage)
-    void apply_to(scene::Scene& scene) const;
-};
-
-/// What stands on a picture: --stamp and its texts.
-struct StampArguments {
-    std::string stamps, title, attribution;
-    bool no_legend = false;
-
-    void add_to(CLI::App& verb);
-    /// Puts what was given in the place of what a scene says. @throws Error (Usage)
-    void apply_to(scene::Stamps& stamps) const;
+    /// Puts what was given in the place of what a scene says.
+    /// @param more  options that need an overlay were given, too  @throws Error (Usage)
+    void apply_to(scene::Scene& scene, bool more) const;
 };
 
 /// Everything that a scene is made of: DEM..., --scene, and what else decides about a picture.
@@ -38,9 +26,8 @@ struct SceneArguments {
     ViewArguments view;
     EffectArguments effects;
     OverlayArguments overlay;
-    StampArguments stamps;
-    std::string file, size, holes;
-    std::optional<double> exposure_ev, pixel_error;
+    OptionArguments values;
+    std::string file, size, stamps;
     bool trust = false;  ///< --trust: Trust
 
     /// @param with_file  there is --scene
@@ -50,6 +37,9 @@ struct SceneArguments {
     /// The scene of --scene, if there is one, with what else was given in the place of its own.
     /// @throws Error as those who read
     scene::Scene scene() const;
+
+  private:
+    void apply_stamps_to(scene::Stamps& result) const;
 };
 
 }  // namespace relevo::cli

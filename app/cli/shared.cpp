@@ -1,82 +1,104 @@
 #include "cli/shared.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "base/text.h"
-#include "base/units.h"
 #include "geo/geodetic.h"
 
 namespace relevo::cli {
+
+void OptionArguments::add_to(CLI::App& verb, const scene::Option& option) {
+    using Kind = scene::Option::Kind;
+    const std::string flag(option.flag), help(option.help), group(option.group);
+    const scene::Scene usual;
+    const auto give = [this, &option](const json::Value& value) {
+        given_.emplace_back(&option, value);
+    };
+    if (option.kind == Kind::Flag) {
+        json::Value other = option.get(usual);
+        other.boolean = !other.boolean;
+        verb.add_flag_callback(
+                flag, [give, other] { give(other); }, help)
+            ->group(group);
+        return;
+    }
+    const std::string otherwise = scene::text_of(option, usual);
+    CLI::Option* const added = verb.add_option_function<std::string>(
+        flag, [give, &option](const std::string& word) { give(scene::value_of(option, word)); },
+        otherwise.empty() ? help : fmt::format("{} ({})", help, otherwise));
+    added->group(group);
+    if (option.kind == Kind::Text) return;
+    added->type_name(option.kind == Kind::Number  ? "FLOAT"
+                     : option.kind == Kind::Whole ? "INT"
+                                                  : "TEXT");
+    added->check({[&option](const std::string& word) {
+                      return scene::fault_of(option, scene::value_of(option, word));
+                  },
+                  option.kind == Kind::Word ? fmt::format("{{{}}}", fmt::join(option.words, ","))
+                                            : fmt::format("{} to {}", option.min, option.max)});
+}
+
+bool OptionArguments::has(std::string_view flag) const {
+    return std::ranges::any_of(given_, [&](const auto& one) { return one.first->flag == flag; });
+}
+
+bool OptionArguments::has_any(std::string_view object) const {
+    return std::ranges::any_of(given_,
+                               [&](const auto& one) { return one.first->object == object; });
+}
+
+void OptionArguments::apply_to(scene::Scene& scene) const {
+    for (const auto& [option, value] : given_)
+        option->set(scene, value);
+}
 
 void DemArguments::add_to(CLI::App& verb) {
     dem_option = verb.add_option("DEM", paths,
                                  "Elevation rasters that GDAL opens; several files are one DEM");
     dem_option->required();
-    verb.add_option("--crs", options.crs,
-                    "Coordinate reference system instead of the file's (EPSG:n, WKT)")
-        ->group("DEM");
-    verb.add_option("--band", options.band, "Band that holds the heights, from 1")
-        ->check(whole_number())
-        ->check(in_range(1, std::numeric_limits<int>::max()))
-        ->group("DEM");
-    verb.add_option("--unit", options.unit, "Unit of the heights: m, ft, us-ft, cm, mm, dm, km")
-        ->group("DEM");
+    for (const scene::Option& option : scene::options())
+        if (option.group == "DEM") values.add_to(verb, option);
     verb.add_option_function<std::string>(
             "--nodata",
             [this](const std::string& text) {
-                const std::optional<double> value = parse_number(text);
-                options.no_nodata = text == "none" || text == "nan";  // NaN is a hole always
-                if (!value && !options.no_nodata)
+                nodata = parse_number(text);
+                no_nodata = text == "none" || text == "nan";  // NaN is a hole always
+                if (!nodata && !no_nodata)
                     bad_usage(
                         fmt::format("--nodata: expected a number or none but got \"{}\"", text));
-                options.nodata = value;
             },
             "Stored value that marks voids; none: no value does")
         ->group("DEM");
     verb.add_option_function<std::string>(
-            "--encoding",
-            [this](const std::string& text) {
-                options.encoding = dem::parse_encoding(text, "--encoding");
-            },
-            "Heights encoded as colours: terrain-rgb, terrarium")
-        ->group("DEM");
-    verb.add_option_function<std::string>(
             "--bounds",
-            [this](const std::string& text) {
-                options.bounds = dem::parse_bounds(text, "--bounds");
-            },
+            [this](const std::string& text) { bounds = dem::parse_bounds(text, "--bounds"); },
             "Edges of the raster, W,S,E,N in degrees, instead of its georeference")
-        ->group("DEM");
-    verb.add_option_function<int>(
-            "--memory", [this](int mib) { options.max_posts = dem::posts_in_mib(mib); },
-            "MiB of heights in memory; a larger DEM is averaged in memory and read from the file "
-            "near the camera (1024)")
-        ->check(whole_number())
-        ->check(in_range(1, 1 << 20))
         ->group("DEM");
 }
 
 void DemArguments::apply_to(scene::Scene& scene) const {
     if (!paths.empty()) scene.dems = paths;
-    const dem::LoadOptions otherwise;
-    dem::LoadOptions& to = scene.dem;
-    if (!options.crs.empty()) to.crs = options.crs;
-    if (options.band > 0) to.band = options.band;
-    if (!options.unit.empty()) to.unit = options.unit;
-    if (options.nodata || options.no_nodata) {
-        to.nodata = options.nodata;
-        to.no_nodata = options.no_nodata;
+    values.apply_to(scene);
+    if (nodata || no_nodata) {
+        scene.dem.nodata = nodata;
+        scene.dem.no_nodata = no_nodata;
     }
-    if (options.encoding != otherwise.encoding) to.encoding = options.encoding;
-    if (options.bounds) to.bounds = options.bounds;
-    if (options.max_posts != otherwise.max_posts) to.max_posts = options.max_posts;
+    if (bounds) scene.dem.bounds = bounds;
+}
+
+dem::LoadOptions DemArguments::options() const {
+    scene::Scene scene;
+    apply_to(scene);
+    return scene.dem;
 }
 
 void TimeArguments::add_to(CLI::App& verb) {
@@ -100,11 +122,14 @@ bool TimeArguments::given() const {
 }
 
 void RefractionArguments::add_to(CLI::App& verb) {
-    option = verb.add_option("--refraction", model,
-                             "Refraction of the sun: standard (integrated ICAO atmosphere), "
-                             "saemundsson (as JPL Horizons), none")
-                 ->check(CLI::IsMember({"standard", "saemundsson", "none"}));
+    model.add_to(verb, scene::option("--refraction"));
     verb.add_flag("--no-refraction", off, "Same as --refraction none");
+}
+
+std::string RefractionArguments::name() const {
+    scene::Scene scene;
+    model.apply_to(scene);
+    return off ? "none" : scene.refraction;
 }
 
 void ViewArguments::add_to(CLI::App& verb) {
@@ -124,16 +149,6 @@ void ViewArguments::add_to(CLI::App& verb) {
     verb.add_option("--pitch", pitch_deg, "Viewing direction above the horizontal, degrees")
         ->check(in_range(-90.0, 90.0))
         ->group("View");
-    verb.add_option("--fov", fov_deg, "Vertical field of view, degrees (40)")
-        ->check(in_range(0.1, 170.0))
-        ->group("View");
-    verb.add_option("--focal-length", focal_length_mm,
-                    "Focal length instead of --fov, mm on 35 mm film")
-        ->check(in_range(1.0, 10000.0))
-        ->group("View");
-    verb.add_option("--exaggerate", exaggeration, "Vertical exaggeration")
-        ->check(in_range(0.01, 1000.0))
-        ->group("View");
 }
 
 void ViewArguments::apply_to(scene::Scene& scene) const {
@@ -143,8 +158,6 @@ void ViewArguments::apply_to(scene::Scene& scene) const {
         bad_usage("--look-at, --heading and --pitch need --eye");
     if (!look_at.empty() && (heading_deg || pitch_deg))
         bad_usage("--look-at and --heading or --pitch exclude each other; use one");
-    if (fov_deg && focal_length_mm)
-        bad_usage("--fov and --focal-length exclude each other; use one");
     if (!view.empty() || !eye.empty()) {
         const scene::View before = result;
         result = {};
@@ -172,11 +185,6 @@ void ViewArguments::apply_to(scene::Scene& scene) const {
     if (heading_deg || pitch_deg) result.look_at.reset();
     if (heading_deg) result.heading_deg = scene::within_a_turn_deg(*heading_deg);
     if (pitch_deg) result.pitch_deg = *pitch_deg;
-    if (fov_deg || focal_length_mm) {
-        result.fov_y_rad = radians(fov_deg.value_or(0));
-        result.focal_length_mm = focal_length_mm.value_or(0);
-    }
-    if (exaggeration) scene.exaggeration = *exaggeration;
 }
 
 CLI::Validator in_range(double min, double max) {

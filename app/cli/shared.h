@@ -2,6 +2,8 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +11,7 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json_fwd.hpp>
 
+#include "scene/options.h"
 #include "scene/scene.h"
 #include "session/words.h"
 #include "sun/position.h"
@@ -19,15 +22,33 @@
 /// core's from what was given.
 namespace relevo::cli {
 
+/// Options of scene::options(), and what was given of them.
+class OptionArguments {
+  public:
+    void add_to(CLI::App& verb, const scene::Option& option);
+    bool has(std::string_view flag) const;
+    /// Whether there is any of a JSON object: "overlay".
+    bool has_any(std::string_view object) const;
+    /// Puts what was given in the place of what a scene says.
+    void apply_to(scene::Scene& scene) const;
+
+  private:
+    std::vector<std::pair<const scene::Option*, json::Value>> given_;
+};
+
 /// DEM... and how to read it.
 struct DemArguments {
     std::vector<std::string> paths;
-    dem::LoadOptions options;  ///< valid once the line has been parsed
+    OptionArguments values;
+    std::optional<double> nodata;
+    bool no_nodata = false;
+    std::optional<dem::Bounds> bounds;
     CLI::Option* dem_option = nullptr;
 
     void add_to(CLI::App& verb);
     /// Puts what was given in the place of what a scene says.
     void apply_to(scene::Scene& scene) const;
+    dem::LoadOptions options() const;
 };
 
 /// --time, --date and --tz.
@@ -42,23 +63,22 @@ struct TimeArguments {
 
 /// --refraction and --no-refraction.
 struct RefractionArguments {
-    std::string model = "standard";
+    OptionArguments model;
     bool off = false;
 
     void add_to(CLI::App& verb);
-    bool given() const { return off || (option && option->count() > 0); }
-    /// "standard", "saemundsson" or "none"
-    std::string name() const { return off ? "none" : model; }
+    bool given() const { return off || model.has("--refraction"); }
+    /// As scene::Scene has it.
+    std::string name() const;
     sun::Refraction at(const geo::Geodetic& place) const {
         return session::refraction_at(name(), place);
     }
-    CLI::Option* option = nullptr;
 };
 
 /// Where the camera stands.
 struct ViewArguments {
     std::string view, eye, look_at;
-    std::optional<double> heading_deg, pitch_deg, fov_deg, focal_length_mm, exaggeration;
+    std::optional<double> heading_deg, pitch_deg;
 
     void add_to(CLI::App& verb);
     /// Puts what was given in the place of what a scene says. @throws Error (Usage)

@@ -98,7 +98,7 @@ struct TerrainArguments {
     /// @throws Error as dem::load
     dem::Posts load() const {
         const log::HeldNotices notices;
-        return dem::Posts::load(dem.paths, dem.options);
+        return dem::Posts::load(dem.paths, dem.options());
     }
     /// How the horizon of a place is looked at.
     /// @param eye_height_m  --eye-height

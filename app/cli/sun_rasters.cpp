@@ -72,14 +72,14 @@ RasterGround RasterArguments::load() const {
     if (!clip.empty()) rectangle = dem::parse_clip(clip, "--clip");
     if (!clip_crs.empty()) rectangle->crs = geo::Crs::parse(clip_crs, "--clip-crs");
     log::HeldNotices notices;
-    dem::Posts posts = dem::Posts::load(dem.paths, dem.options);
+    dem::Posts posts = dem::Posts::load(dem.paths, dem.options());
     notices.release();
     const dem::Grid& grid = posts.grid();
     const dem::Window window = rectangle ? dem::window_of(grid, *rectangle, "--clip")
                                          : dem::Window{0, 0, grid.columns(), grid.rows()};
     std::vector<dem::Window> parts{window};
     if (!posts.in_memory())
-        parts = session::raster_parts(window, dem.options.max_posts / session::kPostsAPart);
+        parts = session::raster_parts(window, dem.options().max_posts / session::kPostsAPart);
     return {std::move(posts), window, std::move(parts)};
 }
 
@@ -200,7 +200,7 @@ void RasterRun::tell() const {
         ground_.posts.in_memory()
             ? (sizeof(float) + light::Sweep::kBytesAPost) * grid.columns() * grid.rows()
             : static_cast<double>(sizeof(float)) *
-                      static_cast<double>(arguments_.dem.options.max_posts) +
+                      static_cast<double>(arguments_.dem.options().max_posts) +
                   kBlocks_mib * kMiB;
     // A result is written from what is kept of it.
     const double tiles =

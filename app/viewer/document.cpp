@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/text.h"
 #include "base/units.h"
+#include "scene/options.h"
 #include "scene/scene_words.h"
 
 namespace relevo::viewer {
@@ -33,7 +35,7 @@ class Command {
   public:
     explicit Command(std::string verb) : text_(std::move(verb)) {}
     void word(const std::string& value) { text_ += " " + quoted(value); }
-    void option(const char* name, const std::string& value) {
+    void option(std::string_view name, const std::string& value) {
         // A value that begins with a dash would be taken for an option.
         if (value.starts_with('-'))
             text_ += fmt::format(" {}={}", name, quoted(value));
@@ -53,26 +55,17 @@ void add_dem(Command& command, const scene::Scene& scene) {
     for (const std::string& dem : scene.dems)
         command.word(dem);
     const dem::LoadOptions& dem = scene.dem;
-    if (!dem.crs.empty()) command.option("--crs", dem.crs);
-    if (dem.band > 0) command.option("--band", std::to_string(dem.band));
-    if (!dem.unit.empty()) command.option("--unit", dem.unit);
     if (dem.no_nodata)
         command.option("--nodata", "none");
     else if (dem.nodata)
         command.option("--nodata", fmt::format("{}", *dem.nodata));
-    if (dem.encoding != dem::Encoding::None)
-        command.option("--encoding",
-                       dem.encoding == dem::Encoding::Terrarium ? "terrarium" : "terrain-rgb");
     if (dem.bounds)
         command.option("--bounds",
                        fmt::format("{},{},{},{}", dem.bounds->west_deg, dem.bounds->south_deg,
                                    dem.bounds->east_deg, dem.bounds->north_deg));
-    if (dem.max_posts != dem::LoadOptions{}.max_posts)
-        command.option("--memory", std::to_string(dem::mib_of_posts(dem.max_posts)));
 }
 
-void add_view(Command& command, const scene::Scene& scene) {
-    const scene::View& view = scene.view;
+void add_view(Command& command, const scene::View& view) {
     const auto place = [](const scene::Standpoint& at) {
         // A millimetre, and a tenth of one on the Earth.
         return fmt::format("{:.9f},{:.9f},{:.3f}{}", degrees(at.place.lat_rad),
@@ -94,23 +87,30 @@ void add_view(Command& command, const scene::Scene& scene) {
         if (view.orbit.azimuth_deg) orbit = fmt::format("az={},{}", *view.orbit.azimuth_deg, orbit);
         command.option("--view", orbit);
     }
-    if (view.fov_y_rad > 0) command.option("--fov", fmt::format("{:.6g}", degrees(view.fov_y_rad)));
-    if (view.focal_length_mm > 0)
-        command.option("--focal-length", fmt::format("{}", view.focal_length_mm));
-    if (scene.exaggeration != 1)
-        command.option("--exaggerate", fmt::format("{}", scene.exaggeration));
+}
+
+/// The options of the table that the scene has otherwise than by default.
+void add_options(Command& command, scene::Scene scene) {
+    // A title on the command line is shown, and so is an attribution.
+    if (!scene.stamps.title) scene.stamps.title_text.clear();
+    if (!scene.stamps.attribution) scene.stamps.attribution_text.clear();
+    const std::string fov_deg = fmt::format("{:.6g}", degrees(scene.view.fov_y_rad));
+    scene.view.fov_y_rad = radians(parse_number(fov_deg).value_or(0));
+    for (const scene::Option& option : scene::options()) {
+        if (is_default(option, scene)) continue;
+        if (option.kind == scene::Option::Kind::Flag)
+            command.word(std::string(option.flag));
+        else
+            command.option(option.flag, text_of(option, scene));
+    }
 }
 
 void add_overlay(Command& command, const scene::Overlay& overlay) {
     command.option("--overlay", overlay.file);
-    if (overlay.band != 1) command.option("--overlay-band", std::to_string(overlay.band));
     if (!overlay.colours.empty()) command.option("--overlay-colours", overlay.colours);
     if (overlay.range)
         command.option("--overlay-range",
                        fmt::format("{},{}", overlay.range->first, overlay.range->second));
-    if (overlay.opacity != 1)
-        command.option("--overlay-opacity", fmt::format("{}", overlay.opacity));
-    if (!overlay.title.empty()) command.option("--overlay-title", overlay.title);
 }
 
 void add_stamps(Command& command, const scene::Stamps& stamps) {
@@ -118,9 +118,6 @@ void add_stamps(Command& command, const scene::Stamps& stamps) {
     for (const auto& [word, member] : scene::stamp_words())
         if (member != &scene::Stamps::legend && stamps.*member) words.emplace_back(word);
     command.list("--stamp", words);
-    if (stamps.title && !stamps.title_text.empty()) command.option("--title", stamps.title_text);
-    if (stamps.attribution) command.option("--attribution", stamps.attribution_text);
-    if (!stamps.legend) command.word("--no-legend");
 }
 
 }  // namespace
@@ -197,8 +194,9 @@ std::string capture_command(const scene::Scene& scene, const std::string& output
         if (!scene.moment.date.empty()) command.option("--date", scene.moment.date);
         if (!scene.moment.zone.empty()) command.option("--tz", scene.moment.zone);
     }
-    if (scene.refraction != "standard") command.option("--refraction", scene.refraction);
-    add_view(command, scene);
+    add_view(command, scene.view);
+    add_stamps(command, scene.stamps);
+    add_options(command, scene);
     if (scene.overlay) add_overlay(command, *scene.overlay);
     const scene::Effects& effects = scene.effects;
     if (effects.switches.only)
@@ -211,10 +209,6 @@ std::string capture_command(const scene::Scene& scene, const std::string& output
         command.option("--plugin-path", folder);
     for (const effect::Setting& setting : effects.settings)
         command.option("--set", setting.address + "=" + setting.text);
-    if (scene.exposure_ev != 0) command.option("--exposure", fmt::format("{}", scene.exposure_ev));
-    if (scene.pixel_error != scene::Scene{}.pixel_error)
-        command.option("--pixel-error", fmt::format("{}", scene.pixel_error));
-    add_stamps(command, scene.stamps);
     command.option("--size", fmt::format("{}x{}", scene.width_px, scene.height_px));
     command.option("-o", output);
     return command.take();

@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "chart/legend.h"
+#include "scene/options.h"
 #include "viewer/image_texture.h"
 
 namespace relevo::viewer {
@@ -48,7 +49,8 @@ void choice(State& state) {
 void opacity(State& state) {
     auto percent = static_cast<int>(std::lround(100 * state.document.overlay.opacity));
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::SliderInt("##opacity", &percent, 10, 100, "opacity %d %%"))
+    const auto most = static_cast<int>(100 * scene::option("--overlay-opacity").max);
+    if (ImGui::SliderInt("##opacity", &percent, 10, most, "opacity %d %%"))
         state.document.overlay.opacity = percent / 100.0;
     state.step = state.step || ImGui::IsItemDeactivatedAfterEdit();
 }

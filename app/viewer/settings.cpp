@@ -16,6 +16,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "geo/format.h"
+#include "scene/options.h"
 #include "sun/zone.h"
 
 namespace relevo::viewer {
@@ -92,6 +93,7 @@ std::optional<SavedView> view_of(const json& from) {
     SavedView view;
     std::string time;
     double lat_deg = 100, lon_deg = 0, fov_deg = 0;
+    const scene::Option& fov = scene::option("--fov");
     take(from, "name", view.name);
     take(from, "lat_deg", lat_deg);
     take(from, "lon_deg", lon_deg);
@@ -101,7 +103,7 @@ std::optional<SavedView> view_of(const json& from) {
     take(from, "fov_deg", fov_deg);
     take(from, "time", time);
     if (std::abs(lat_deg) > 90 || std::abs(lon_deg) > 360 || std::abs(view.pitch_deg) > 90 ||
-        fov_deg < 0.01 || fov_deg > 170 || std::abs(view.eye.height_m) > 1e9)
+        fov_deg < fov.min || fov_deg > fov.max || std::abs(view.eye.height_m) > 1e9)
         return std::nullopt;
     view.eye.lat_rad = radians(lat_deg);
     view.eye.lon_rad = radians(lon_deg);

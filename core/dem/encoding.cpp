@@ -17,13 +17,6 @@ std::string_view name_of(Encoding encoding) {
                                              : "none";
 }
 
-Encoding parse_encoding(std::string_view text, std::string_view who) {
-    for (const Encoding encoding : {Encoding::TerrainRgb, Encoding::Terrarium})
-        if (text == name_of(encoding)) return encoding;
-    bad_usage(fmt::format("{}: {}: an encoding of heights, expected terrain-rgb or terrarium", who,
-                          text.empty() ? "\"\"" : text));
-}
-
 float decoded_m(Encoding encoding, std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
     const double r = red, g = green, b = blue;
     return static_cast<float>(encoding == Encoding::TerrainRgb

@@ -17,10 +17,6 @@ enum class Encoding {
 /// As `--encoding` writes it: "terrain-rgb", "terrarium".
 std::string_view name_of(Encoding encoding);
 
-/// Reads `--encoding`.
-/// @throws Error (Usage) `who: text: an encoding of heights, expected terrain-rgb or terrarium`
-Encoding parse_encoding(std::string_view text, std::string_view who);
-
 /// The height of a colour [m], exact to the rounding of a float. Terrain-RGB has steps of 0.1 m,
 /// Terrarium of 1/256 m. Sources: docs.mapbox.com, "Access elevation data"; github.com/tilezen/
 /// joerd, docs/formats.md.

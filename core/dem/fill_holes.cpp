@@ -85,16 +85,6 @@ Array2d<float> filled_window(const Array2d<float>& height_m, const Window& w) {
 
 }  // namespace
 
-Holes parse_holes(const std::string& text, const std::string& who) {
-    for (const Holes holes : {Holes::Fill, Holes::Cut, Holes::Mark})
-        if (text == name_of(holes)) return holes;
-    bad_usage(fmt::format("{}: expected fill, cut or mark but got \"{}\"", who, text));
-}
-
-const char* name_of(Holes holes) {
-    return holes == Holes::Fill ? "fill" : holes == Holes::Cut ? "cut" : "mark";
-}
-
 std::string FilledHoles::text(Holes holes) const {
     if (filled_posts + covered_posts + cut_posts == 0) return "";
     const auto share = [&](std::int64_t some) {

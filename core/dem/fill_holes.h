@@ -14,10 +14,6 @@ enum class Holes {
     Mark,  ///< as Fill, and what is filled or covered is painted
 };
 
-/// Reads "fill", "cut" or "mark". @throws Error (Usage) `who: ...`
-Holes parse_holes(const std::string& text, const std::string& who);
-const char* name_of(Holes holes);
-
 /// Posts that a hole may be wide and high to be filled.
 inline constexpr int kSmallHole_posts = 64;
 

@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "base/units.h"
 #include "json/object_reader.h"
+#include "scene/options.h"
 #include "scene/scene_reader.h"
 #include "scene/scene_words.h"
 
@@ -45,21 +46,29 @@ std::string path_from_folder(const std::string& path, const fs::path& folder) {
     return name.find_first_of("/.") == std::string::npos ? "./" + name : name;
 }
 
-/// An angle as people gave it: the shortest of degrees that are read as the same bits.
-double written_deg(double angle_rad) {
-    const double short_deg = std::round(degrees(angle_rad) * 1e10) / 1e10;
-    if (radians(short_deg) == angle_rad) return short_deg;
-    const double near_deg = degrees(angle_rad);
-    for (const double towards : {near_deg, near_deg - 1, near_deg + 1}) {
-        double other_deg = near_deg;
-        for (int i = 0; i < 4; ++i, other_deg = std::nextafter(other_deg, towards))
-            if (radians(other_deg) == angle_rad) return other_deg;
-    }
-    return short_deg;
-}
-
 ordered_json json_of(const Standpoint& at) {
     return {written_deg(at.place.lat_rad), written_deg(at.place.lon_rad), at.place.height_m};
+}
+
+enum class Defaults { Written, Skipped };
+
+/// Adds the options that the table has for an object.
+void add_options(const Scene& scene, std::string_view object, Defaults defaults,
+                 ordered_json& json) {
+    for (const Option& option : options()) {
+        if (option.object != object || text_of(option, scene).empty()) continue;
+        if (defaults == Defaults::Skipped && is_default(option, scene)) continue;
+        const json::Value value = option.get(scene);
+        ordered_json& member = json[std::string(option.key)];
+        if (option.kind == Option::Kind::Number)
+            member = value.number;
+        else if (option.kind == Option::Kind::Whole)
+            member = static_cast<std::int64_t>(value.number);
+        else if (option.kind == Option::Kind::Flag)
+            member = value.boolean;
+        else
+            member = value.text;
+    }
 }
 
 ordered_json dem_json(const Scene& scene, const fs::path& folder) {
@@ -68,24 +77,18 @@ ordered_json dem_json(const Scene& scene, const fs::path& folder) {
     json["files"] = ordered_json::array();
     for (const std::string& name : scene.dems)
         json["files"].push_back(from_folder(name, folder));
-    if (!options.crs.empty()) json["crs"] = options.crs;
-    if (options.band > 0) json["band"] = options.band;
-    if (!options.unit.empty()) json["unit"] = options.unit;
+    add_options(scene, "dem", Defaults::Skipped, json);
     if (options.nodata) json["nodata"] = *options.nodata;
     if (options.no_nodata) json["nodata"] = "none";
-    if (options.encoding != dem::Encoding::None)
-        json["encoding"] = encodings()[static_cast<std::size_t>(options.encoding)];
     if (options.bounds) {
         const dem::Bounds& b = *options.bounds;
         json["bounds"] = {b.west_deg, b.south_deg, b.east_deg, b.north_deg};
     }
-    if (options.max_posts != dem::LoadOptions{}.max_posts)
-        json["memory_mib"] = dem::mib_of_posts(options.max_posts);
-    if (scene.holes != dem::Holes::Fill) json["holes"] = dem::name_of(scene.holes);
     return json;
 }
 
-ordered_json camera_json(const View& view) {
+ordered_json camera_json(const Scene& scene) {
+    const View& view = scene.view;
     ordered_json json;
     if (view.eye) {
         json["eye"] = json_of(*view.eye);
@@ -102,10 +105,7 @@ ordered_json camera_json(const View& view) {
         if (view.orbit.elevation_deg) json["orbit"]["elevation"] = *view.orbit.elevation_deg;
         json["orbit"]["zoom"] = view.orbit.zoom;
     }
-    if (view.fov_y_rad > 0)
-        json["fov"] = written_deg(view.fov_y_rad);
-    else if (view.focal_length_mm > 0)
-        json["focal_length"] = view.focal_length_mm;
+    add_options(scene, "camera", Defaults::Skipped, json);
     return json;
 }
 
@@ -124,28 +124,25 @@ ordered_json effects_json(const Effects& effects, const fs::path& folder) {
     return json;
 }
 
-ordered_json overlay_json(const Overlay& overlay, const fs::path& folder) {
+ordered_json overlay_json(const Scene& scene, const fs::path& folder) {
+    const Overlay& overlay = *scene.overlay;
     ordered_json json;
     json["file"] = from_folder(overlay.file, folder);
-    json["band"] = overlay.band;
+    add_options(scene, "overlay", Defaults::Written, json);
     if (!overlay.colours.empty())
         json["colours"] = is_colour_file(overlay.colours)
                               ? path_from_folder(overlay.colours, folder)
                               : overlay.colours;
     if (overlay.range) json["range"] = {overlay.range->first, overlay.range->second};
-    json["opacity"] = overlay.opacity;
-    if (!overlay.title.empty()) json["title"] = overlay.title;
     return json;
 }
 
-ordered_json stamps_json(const Stamps& stamps) {
+ordered_json stamps_json(const Scene& scene) {
     ordered_json json;
     json["show"] = ordered_json::array();
     for (const auto& [word, member] : stamp_words())
-        if (stamps.*member) json["show"].push_back(word);
-    json["legend"] = stamps.legend;
-    if (!stamps.title_text.empty()) json["title"] = stamps.title_text;
-    if (!stamps.attribution_text.empty()) json["attribution"] = stamps.attribution_text;
+        if (scene.stamps.*member) json["show"].push_back(word);
+    add_options(scene, "stamps", Defaults::Written, json);
     return json;
 }
 
@@ -158,15 +155,14 @@ ordered_json json_of(const Scene& scene, const fs::path& folder) {
         if (!scene.moment.date.empty()) json["time"]["date"] = scene.moment.date;
         if (!scene.moment.zone.empty()) json["time"]["zone"] = scene.moment.zone;
     }
-    json["refraction"] = scene.refraction;
-    json["camera"] = camera_json(scene.view);
-    json["exaggeration"] = scene.exaggeration;
+    json["refraction"];  // before the camera: --resume compares texts with those of older files
+    json["camera"] = camera_json(scene);
+    add_options(scene, "", Defaults::Written, json);
     json["effects"] = effects_json(scene.effects, folder);
-    if (scene.overlay) json["overlay"] = overlay_json(*scene.overlay, folder);
-    if (scene.stamps != Stamps()) json["stamps"] = stamps_json(scene.stamps);
-    json["picture"] = {{"size", {scene.width_px, scene.height_px}},
-                       {"exposure", scene.exposure_ev},
-                       {"pixel_error", scene.pixel_error}};
+    if (scene.overlay) json["overlay"] = overlay_json(scene, folder);
+    if (scene.stamps != Stamps()) json["stamps"] = stamps_json(scene);
+    json["picture"]["size"] = {scene.width_px, scene.height_px};
+    add_options(scene, "picture", Defaults::Written, json["picture"]);
     return json;
 }
 
@@ -186,14 +182,16 @@ void add(const std::vector<std::string>& ids, std::vector<std::string>& to) {
 
 }  // namespace
 
-const std::vector<std::string>& refractions() {
-    static const std::vector<std::string> names = {"standard", "saemundsson", "none"};
-    return names;
-}
-
-const std::vector<std::string>& encodings() {
-    static const std::vector<std::string> names = {"none", "terrain-rgb", "terrarium"};
-    return names;
+double written_deg(double angle_rad) {
+    const double short_deg = std::round(degrees(angle_rad) * 1e10) / 1e10;
+    if (radians(short_deg) == angle_rad) return short_deg;
+    const double near_deg = degrees(angle_rad);
+    for (const double towards : {near_deg, near_deg - 1, near_deg + 1}) {
+        double other_deg = near_deg;
+        for (int i = 0; i < 4; ++i, other_deg = std::nextafter(other_deg, towards))
+            if (radians(other_deg) == angle_rad) return other_deg;
+    }
+    return short_deg;
 }
 
 const std::vector<std::pair<std::string_view, bool Stamps::*>>& stamp_words() {

@@ -55,21 +55,21 @@ struct Stamps {
 };
 
 /// Everything that decides about a picture but the device it is drawn on: a value, which the
-/// command line, files and windows make, and a session draws.
+/// command line, files and windows make, and a session draws. Ranges and words: options().
 struct Scene {
     std::vector<std::string> dems;        ///< names that GDAL opens; several are one DEM
     dem::LoadOptions dem;                 ///< how they are read
     dem::Holes holes = dem::Holes::Fill;  ///< how they are drawn
     Moment moment;
-    std::string refraction = "standard";  ///< standard, saemundsson or none
+    std::string refraction = "standard";
     View view;
     std::optional<Overlay> overlay;
     Stamps stamps;
-    double exaggeration = 1;  ///< 0.01 to 1000
+    double exaggeration = 1;
     Effects effects;
     int width_px = 1280, height_px = 1024;  ///< 1 to kMaxSide_px
-    double exposure_ev = 0;                 ///< -20 to 20
-    double pixel_error = 4;                 ///< 0 to 100: render::TerrainOptions
+    double exposure_ev = 0;
+    double pixel_error = 4;  ///< render::TerrainOptions
 };
 
 inline constexpr int kMaxSide_px = 16384;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "base/units.h"
+#include "scene/options.h"
 #include "scene/scene_words.h"
 #include "sun/event_time.h"
 #include "sun/zone_of_place.h"
@@ -71,20 +71,31 @@ void SceneReader::take(ObjectReader& object, std::string_view path, Scene& scene
         dem(*value, joined(path, "dem"), scene);
     if (const json::Value* const value = object.take("time"))
         moment(*value, joined(path, "time"), scene.moment);
-    const auto known = std::ranges::find(refractions(), scene.refraction);
-    scene.refraction = refractions()[object.choice(
-        "refraction", refractions(), static_cast<std::size_t>(known - refractions().begin()))];
+    take_options(object, "", scene);
     if (const json::Value* const value = object.take("camera"))
         take_camera(*value, joined(path, "camera"), scene);
-    scene.exaggeration = object.number("exaggeration", scene.exaggeration, 0.01, 1000, false);
     if (const json::Value* const value = object.take("effects"))
         take_effects(*value, joined(path, "effects"), scene.effects);
     if (const json::Value* const value = object.take("overlay"))
         overlay(*value, joined(path, "overlay"), scene);
     if (const json::Value* const value = object.take("stamps"))
-        stamps(*value, joined(path, "stamps"), scene.stamps);
+        stamps(*value, joined(path, "stamps"), scene);
     if (const json::Value* const value = object.take("picture"))
         picture(*value, joined(path, "picture"), scene);
+}
+
+void SceneReader::take_options(ObjectReader& object, std::string_view name, Scene& scene) {
+    for (const Option& option : options()) {
+        if (option.object != name) continue;
+        const std::string key(option.key);
+        const json::Value* const value = object.take(key);
+        if (!value) continue;
+        if (option.kind == Option::Kind::Text) object.string(key);
+        if (option.kind == Option::Kind::Flag) object.boolean(key, false);
+        if (const std::string fault = fault_of(option, *value); !fault.empty())
+            object.fail(value->line, key, fault);
+        option.set(scene, *value);
+    }
 }
 
 ObjectReader SceneReader::inside(const json::Value& value, const std::string& path) const {
@@ -103,8 +114,6 @@ void SceneReader::overlay(const json::Value& value, const std::string& path, Sce
     ObjectReader object = inside(value, path);
     Overlay& overlay = scene.overlay.emplace();
     overlay.file = beside(object.string("file"));
-    overlay.band =
-        static_cast<int>(object.number("band", 1, 1, std::numeric_limits<int>::max(), true));
     overlay.colours = object.string("colours", "");
     if (is_colour_file(overlay.colours)) overlay.colours = beside(overlay.colours);
     if (const json::Value* const range = object.take("range")) {
@@ -114,8 +123,7 @@ void SceneReader::overlay(const json::Value& value, const std::string& path, Sce
             object.fail(range->line, "range", "expected a second value over the first one");
         overlay.range = {v[0], v[1]};
     }
-    overlay.opacity = object.number("opacity", 1, 0, 1, false);
-    overlay.title = object.string("title", "");
+    take_options(object, "overlay", scene);
     object.finish();
 }
 
@@ -123,15 +131,13 @@ void SceneReader::dem(const json::Value& value, const std::string& path, Scene& 
     ObjectReader object = inside(value, path);
     scene.dems.clear();
     scene.dem = {};
+    scene.holes = {};
     for (const std::string& name : object.strings("files"))
         scene.dems.push_back(beside(name));
     if (scene.dems.empty())
         object.fail(object.line_of("files"), "files", "expected a list of DEMs");
     dem::LoadOptions& options = scene.dem;
-    options.crs = object.string("crs", "");
-    options.band =
-        static_cast<int>(object.number("band", 0, 1, std::numeric_limits<int>::max(), true));
-    options.unit = object.string("unit", "");
+    take_options(object, "dem", scene);
     if (const json::Value* const nodata = object.take("nodata")) {
         options.no_nodata = nodata->kind == json::Value::Kind::String && nodata->text == "none";
         if (nodata->kind == json::Value::Kind::Number)
@@ -141,8 +147,6 @@ void SceneReader::dem(const json::Value& value, const std::string& path, Scene& 
                 nodata->line, "nodata",
                 fmt::format("expected a number or \"none\" but got {}", json::describe(*nodata)));
     }
-    options.encoding =
-        static_cast<dem::Encoding>(object.choice("encoding", encodings(), std::size_t{0}));
     if (const json::Value* const bounds = object.take("bounds")) {
         const std::vector<double> v =
             numbers(object, *bounds, "bounds", 4, 4, "west, south, east, north in degrees");
@@ -151,10 +155,6 @@ void SceneReader::dem(const json::Value& value, const std::string& path, Scene& 
                 dem::parse_bounds(fmt::format("{},{},{},{}", v[0], v[1], v[2], v[3]), "bounds");
         });
     }
-    if (const auto mib =
-            static_cast<std::int64_t>(object.number("memory_mib", 0, 1, 1 << 20, true)))
-        options.max_posts = dem::posts_in_mib(mib);
-    scene.holes = static_cast<dem::Holes>(object.choice("holes", {"fill", "cut", "mark"}, 0));
     object.finish();
 }
 
@@ -249,15 +249,10 @@ void SceneReader::take_camera(const json::Value& value, const std::string& path,
             view.pitch_deg = object.number("pitch", view.pitch_deg, -90, 90, false);
         }
     }
-    const double fov_deg = object.number("fov", 0, 0.1, 170, false);
-    const double focal_length_mm = object.number("focal_length", 0, 1, 10000, false);
-    if (fov_deg > 0 && focal_length_mm > 0)
+    take_options(object, "camera", scene);
+    if (object.has("fov") && object.has("focal_length"))
         object.fail(object.line_of("focal_length"), "focal_length",
                     "expected it or fov but got both");
-    if (fov_deg > 0 || focal_length_mm > 0) {
-        view.fov_y_rad = radians(fov_deg);
-        view.focal_length_mm = focal_length_mm;
-    }
     object.finish();
 }
 
@@ -277,11 +272,10 @@ void SceneReader::take_effects(const json::Value& value, const std::string& path
     effects = merge(std::move(effects), change);
 }
 
-void SceneReader::stamps(const json::Value& value, const std::string& path, Stamps& stamps) const {
+void SceneReader::stamps(const json::Value& value, const std::string& path, Scene& scene) const {
     ObjectReader object = inside(value, path);
-    stamps.legend = object.boolean("legend", stamps.legend);
-    stamps.title_text = printable(object.string("title", stamps.title_text));
-    stamps.attribution_text = printable(object.string("attribution", stamps.attribution_text));
+    Stamps& stamps = scene.stamps;
+    take_options(object, "stamps", scene);
     if (object.take("show"))
         check(object, "show", [&] { show_stamps(object.strings("show"), "show", stamps); });
     if (stamps.attribution && stamps.attribution_text.empty())
@@ -302,8 +296,7 @@ void SceneReader::picture(const json::Value& value, const std::string& path, Sce
         scene.width_px = static_cast<int>(v[0]);
         scene.height_px = static_cast<int>(v[1]);
     }
-    scene.exposure_ev = object.number("exposure", scene.exposure_ev, -20, 20, false);
-    scene.pixel_error = object.number("pixel_error", scene.pixel_error, 0, 100, false);
+    take_options(object, "picture", scene);
     object.finish();
 }
 

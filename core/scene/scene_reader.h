@@ -46,11 +46,13 @@ class SceneReader {
     json::ObjectReader inside(const json::Value& value, const std::string& path) const;
 
   private:
+    /// Takes the options that the table has for an object.
+    static void take_options(json::ObjectReader& object, std::string_view name, Scene& scene);
     void dem(const json::Value& value, const std::string& path, Scene& scene) const;
     void moment(const json::Value& value, const std::string& path, Moment& moment) const;
     void check_moment(const json::ObjectReader& object, const Moment& moment) const;
     void overlay(const json::Value& value, const std::string& path, Scene& scene) const;
-    void stamps(const json::Value& value, const std::string& path, Stamps& stamps) const;
+    void stamps(const json::Value& value, const std::string& path, Scene& scene) const;
     void picture(const json::Value& value, const std::string& path, Scene& scene) const;
 
     std::string who_, file_;

@@ -382,9 +382,6 @@ TEST(DemOptions, WrongOnesHaveTheirMessages) {
         std::string message;
     } cases[] = {
         {{"--nodata", "abc"}, 2, "--nodata: expected a number or none but got \"abc\""},
-        {{"--encoding", "mapbox"},
-         2,
-         "--encoding: mapbox: an encoding of heights, expected terrain-rgb or terrarium"},
         {{"--bounds", "1,2,3"}, 2, "--bounds: 1,2,3: expected WEST,SOUTH,EAST,NORTH in degrees"},
         {{"--unit", "furlong"},
          2,

@@ -25,17 +25,6 @@ TEST(Encoding, TerrariumIsMapzens) {
     EXPECT_EQ(decoded_m(Encoding::Terrarium, 0, 0, 0), -32768);
 }
 
-TEST(Encoding, NamesAreThoseOfTheCommandLine) {
-    EXPECT_EQ(parse_encoding("terrain-rgb", "--encoding"), Encoding::TerrainRgb);
-    EXPECT_EQ(parse_encoding("terrarium", "--encoding"), Encoding::Terrarium);
-    EXPECT_EQ(test::error_of([] { parse_encoding("mapbox", "--encoding"); }),
-              "exit 2: --encoding: mapbox: an encoding of heights, expected terrain-rgb or "
-              "terrarium");
-    EXPECT_EQ(
-        test::error_of([] { parse_encoding("", "--encoding"); }),
-        "exit 2: --encoding: \"\": an encoding of heights, expected terrain-rgb or terrarium");
-}
-
 using Picture = std::array<std::vector<std::uint8_t>, 3>;
 constexpr int kWidth = 32;
 

@@ -262,11 +262,5 @@ TEST(FillHoles, CutFillsNone) {
         "");
 }
 
-TEST(FillHoles, WordsAreReadAndOthersRefused) {
-    EXPECT_EQ(parse_holes("mark", "--holes"), Holes::Mark);
-    EXPECT_EQ(test::error_of([] { parse_holes("paint", "--holes"); }),
-              "exit 2: --holes: expected fill, cut or mark but got \"paint\"");
-}
-
 }  // namespace
 }  // namespace relevo::dem

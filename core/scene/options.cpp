@@ -1,0 +1,183 @@
+#include "scene/options.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/text.h"
+#include "base/units.h"
+#include "scene/scene_words.h"
+
+namespace relevo::scene {
+namespace {
+
+using json::Value;
+using Kind = Option::Kind;
+
+// In the order of dem::Encoding and of dem::Holes.
+constexpr std::array<std::string_view, 3> kEncodings = {"none", "terrain-rgb", "terrarium"};
+constexpr std::array<std::string_view, 3> kHoles = {"fill", "cut", "mark"};
+constexpr std::array<std::string_view, 3> kRefractions = {"standard", "saemundsson", "none"};
+constexpr double kMaxInt = std::numeric_limits<int>::max();
+
+Value number(double value) {
+    return {.kind = Value::Kind::Number, .number = value};
+}
+Value text(std::string_view value) {
+    return {.kind = Value::Kind::String, .text = std::string(value)};
+}
+Value flag(bool value) {
+    return {.kind = Value::Kind::Bool, .boolean = value};
+}
+
+int index_of(std::span<const std::string_view> words, const Value& word) {
+    return static_cast<int>(std::ranges::find(words, word.text) - words.begin());
+}
+
+Overlay overlay_of(const Scene& scene) {
+    return scene.overlay.value_or(Overlay{});
+}
+
+/// One of them is 0.
+void set_lens(Scene& scene, double fov_y_rad, double focal_length_mm) {
+    scene.view.fov_y_rad = fov_y_rad;
+    scene.view.focal_length_mm = focal_length_mm;
+}
+
+// clang-format off
+constexpr Option kOptions[] = {
+    {"dem", "crs", "--crs", "DEM",
+     "Coordinate reference system instead of the file's (EPSG:n, WKT)", Kind::Text, 0, 0, {},
+     [](const Scene& s) { return text(s.dem.crs); },
+     [](Scene& s, const Value& v) { s.dem.crs = v.text; }},
+    {"dem", "band", "--band", "DEM",
+     "Band that holds the heights, from 1", Kind::Whole, 1, kMaxInt, {},
+     [](const Scene& s) { return number(s.dem.band); },
+     [](Scene& s, const Value& v) { s.dem.band = static_cast<int>(v.number); }},
+    {"dem", "unit", "--unit", "DEM",
+     "Unit of the heights: m, ft, us-ft, cm, mm, dm, km", Kind::Text, 0, 0, {},
+     [](const Scene& s) { return text(s.dem.unit); },
+     [](Scene& s, const Value& v) { s.dem.unit = v.text; }},
+    {"dem", "encoding", "--encoding", "DEM",
+     "Heights encoded as colours", Kind::Word, 0, 0, kEncodings,
+     [](const Scene& s) { return text(dem::name_of(s.dem.encoding)); },
+     [](Scene& s, const Value& v) { s.dem.encoding = dem::Encoding{index_of(kEncodings, v)}; }},
+    {"dem", "memory_mib", "--memory", "DEM",
+     "MiB of heights in memory; a larger DEM is averaged in memory and read from the file near the "
+     "camera", Kind::Whole, 1, 1 << 20, {},
+     [](const Scene& s) { return number(static_cast<double>(dem::mib_of_posts(s.dem.max_posts))); },
+     [](Scene& s, const Value& v) { s.dem.max_posts = dem::posts_in_mib(std::lround(v.number)); }},
+    {"dem", "holes", "--holes", "Options",
+     "How voids in the DEM are drawn: fill (filled, wide ones covered in grey, those at the edge "
+     "cut out), cut (all cut out), mark (filled and painted)", Kind::Word, 0, 0, kHoles,
+     [](const Scene& s) { return text(kHoles[static_cast<std::size_t>(s.holes)]); },
+     [](Scene& s, const Value& v) { s.holes = dem::Holes{index_of(kHoles, v)}; }},
+    {"", "refraction", "--refraction", "Options",
+     "Refraction of the sun: standard (integrated ICAO atmosphere), saemundsson (as JPL Horizons), "
+     "none", Kind::Word, 0, 0, kRefractions,
+     [](const Scene& s) { return text(s.refraction); },
+     [](Scene& s, const Value& v) { s.refraction = v.text; }},
+    {"camera", "fov", "--fov", "View",
+     "Vertical field of view, degrees; 40 without it", Kind::Number, 0.1, 170, {},
+     [](const Scene& s) { return number(written_deg(s.view.fov_y_rad)); },
+     [](Scene& s, const Value& v) { set_lens(s, radians(v.number), 0); }},
+    {"camera", "focal_length", "--focal-length", "View",
+     "Focal length instead of the field of view, mm on 35 mm film", Kind::Number, 1, 10000, {},
+     [](const Scene& s) { return number(s.view.fov_y_rad > 0 ? 0 : s.view.focal_length_mm); },
+     [](Scene& s, const Value& v) { set_lens(s, 0, v.number); }},
+    {"", "exaggeration", "--exaggerate", "View",
+     "Vertical exaggeration", Kind::Number, 0.01, 1000, {},
+     [](const Scene& s) { return number(s.exaggeration); },
+     [](Scene& s, const Value& v) { s.exaggeration = v.number; }},
+    {"overlay", "band", "--overlay-band", "Overlay",
+     "Band of the overlay, from 1", Kind::Whole, 1, kMaxInt, {},
+     [](const Scene& s) { return number(overlay_of(s).band); },
+     [](Scene& s, const Value& v) { s.overlay->band = static_cast<int>(v.number); }},
+    {"overlay", "opacity", "--overlay-opacity", "Overlay",
+     "Opacity of the overlay, 0 to 1", Kind::Number, 0, 1, {},
+     [](const Scene& s) { return number(overlay_of(s).opacity); },
+     [](Scene& s, const Value& v) { s.overlay->opacity = v.number; }},
+    {"overlay", "title", "--overlay-title", "Overlay",
+     "Title of the legend; default: the band's name", Kind::Text, 0, 0, {},
+     [](const Scene& s) { return text(overlay_of(s).title); },
+     [](Scene& s, const Value& v) { s.overlay->title = printable(v.text); }},
+    {"stamps", "legend", "--no-legend", "Stamps",
+     "Legends of overlays and of coloured ground; --no-legend omits them", Kind::Flag, 0, 0, {},
+     [](const Scene& s) { return flag(s.stamps.legend); },
+     [](Scene& s, const Value& v) { s.stamps.legend = v.boolean; }},
+    {"stamps", "title", "--title", "Stamps",
+     "Title on the picture; default: the DEM's name", Kind::Text, 0, 0, {},
+     [](const Scene& s) { return text(s.stamps.title_text); },
+     [](Scene& s, const Value& v) { s.stamps.title_text = printable(v.text); }},
+    {"stamps", "attribution", "--attribution", "Stamps",
+     "Attribution of the data on the picture", Kind::Text, 0, 0, {},
+     [](const Scene& s) { return text(s.stamps.attribution_text); },
+     [](Scene& s, const Value& v) { s.stamps.attribution_text = printable(v.text); }},
+    {"picture", "exposure", "--exposure", "Options",
+     "Brighter than the default by this many stops, EV", Kind::Number, -20, 20, {},
+     [](const Scene& s) { return number(s.exposure_ev); },
+     [](Scene& s, const Value& v) { s.exposure_ev = v.number; }},
+    {"picture", "pixel_error", "--pixel-error", "Options",
+     "Largest error of the drawn surface, pixels; 0 draws every post", Kind::Number, 0, 100, {},
+     [](const Scene& s) { return number(s.pixel_error); },
+     [](Scene& s, const Value& v) { s.pixel_error = v.number; }},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const Option> options() {
+    return kOptions;
+}
+
+const Option& option(std::string_view flag) {
+    const auto* const found = std::ranges::find(kOptions, flag, &Option::flag);
+    assert(found != std::end(kOptions));
+    return *found;
+}
+
+Value value_of(const Option& option, const std::string& word) {
+    const bool is_number = option.kind == Kind::Number || option.kind == Kind::Whole;
+    const std::optional<double> value = is_number ? parse_number(word) : std::nullopt;
+    return value ? number(*value) : text(word);
+}
+
+std::string fault_of(const Option& option, const Value& value) {
+    if (option.kind == Kind::Word) {
+        if (value.kind == Value::Kind::String && std::ranges::count(option.words, value.text) > 0)
+            return {};
+        const std::vector<std::string> words(option.words.begin(), option.words.end());
+        const std::optional<std::string> near = nearest(value.text, words);
+        return fmt::format("expected one of {} but got {}{}", fmt::join(words, ", "),
+                           json::describe(value),
+                           near ? fmt::format("; did you mean {}?", *near) : "");
+    }
+    if (option.kind != Kind::Number && option.kind != Kind::Whole) return {};
+    const bool whole = option.kind == Kind::Whole;
+    const double n = value.number;
+    if (value.kind == Value::Kind::Number && n >= option.min && n <= option.max &&
+        (!whole || n == std::floor(n)))
+        return {};
+    return fmt::format("expected a {}number in [{}, {}] but got {}", whole ? "whole " : "",
+                       option.min, option.max, json::describe(value));
+}
+
+std::string text_of(const Option& option, const Scene& scene) {
+    const Value value = option.get(scene);
+    if (option.kind == Kind::Flag) return value.boolean ? "true" : "false";
+    if (option.kind == Kind::Text || option.kind == Kind::Word) return value.text;
+    return fault_of(option, value).empty() ? fmt::format("{}", value.number) : "";
+}
+
+bool is_default(const Option& option, const Scene& scene) {
+    static const Scene kDefault;
+    return text_of(option, scene) == text_of(option, kDefault);
+}
+
+}  // namespace relevo::scene
