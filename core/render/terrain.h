@@ -42,6 +42,7 @@ struct TerrainOptions {
     const dem::Water* water = nullptr;              ///< null: it is looked for when needed
     const Array2d<std::uint8_t>* filled = nullptr;  ///< not 0 on posts that were holes
     SkyAhead sky{};                                 ///< of the heightfield, where it is on its way
+    ShadowsOn shadows_on = ShadowsOn::Auto;         ///< where the sun's shadows are computed
 };
 
 /// The tiles of a view with their pages on the device, ready to draw any number of times.
