@@ -56,4 +56,12 @@ void Buffer::bind_uniform(unsigned binding) const {
     glBindBufferBase(GL_UNIFORM_BUFFER, binding, name());
 }
 
+void Buffer::bind_storage(unsigned binding) const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name());
+}
+
+void Buffer::fill(float value) {
+    glClearNamedBufferData(name(), GL_R32F, GL_RED, GL_FLOAT, &value);
+}
+
 }  // namespace relevo::gl

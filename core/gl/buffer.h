@@ -28,6 +28,9 @@ class Buffer {
     void read(std::span<std::byte> bytes, std::size_t offset = 0) const;
 
     void bind_uniform(unsigned binding) const;  ///< as a uniform block
+    void bind_storage(unsigned binding) const;  ///< as a shader storage block
+    /// Sets all of it to one number.
+    void fill(float value);
 
     std::size_t size() const { return size_; }
     unsigned name() const { return handle_.name(); }

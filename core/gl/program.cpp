@@ -4,7 +4,10 @@
 #include <utility>
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
+#include "base/error.h"
+#include "base/text.h"
 #include "gl/errors.h"
 
 namespace relevo::gl {
@@ -36,6 +39,14 @@ std::optional<std::string> compile_error(GLuint shader) {
     glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
     if (good) return std::nullopt;
     return info_log(shader, glGetShaderiv, glGetShaderInfoLog);
+}
+
+/// The same of a linked program.
+std::optional<std::string> link_error(GLuint program) {
+    GLint good = 0;
+    glGetProgramiv(program, GL_LINK_STATUS, &good);
+    if (good) return std::nullopt;
+    return info_log(program, glGetProgramiv, glGetProgramInfoLog);
 }
 
 /// @param is_sampler  of the type of a uniform; the kind none where no Texture is of it
@@ -129,10 +140,8 @@ std::optional<Program> Program::finish(Pending pending, Failure& failure) {
     const GLuint name = program.name();
     glDetachShader(name, pending.vertex_.name());
     glDetachShader(name, pending.fragment_.name());
-    GLint good = 0;
-    glGetProgramiv(name, GL_LINK_STATUS, &good);
-    if (!good) {
-        failure = {Failure::Stage::Link, info_log(name, glGetProgramiv, glGetProgramInfoLog)};
+    if (auto log = link_error(name)) {
+        failure = {Failure::Stage::Link, *log};
         return std::nullopt;
     }
     return program;
@@ -140,6 +149,28 @@ std::optional<Program> Program::finish(Pending pending, Failure& failure) {
 
 void Program::use() const {
     glUseProgram(name());
+}
+
+void ComputeProgram::destroy(unsigned name) {
+    glDeleteProgram(name);
+}
+
+ComputeProgram::ComputeProgram(std::string_view text, std::string_view label) {
+    const std::string ended(text);
+    const char* const lines = ended.c_str();
+    handle_ =
+        Handle<&ComputeProgram::destroy>(glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &lines));
+    set_label(GL_PROGRAM, handle_.name(), label);
+    if (const auto log = link_error(handle_.name()))
+        failed(fmt::format("GL program: {}: {}", label, trimmed(*log)));
+}
+
+void ComputeProgram::use() const {
+    glUseProgram(handle_.name());
+}
+
+void ComputeProgram::set(int location, int value) const {
+    glProgramUniform1i(handle_.name(), location, value);
 }
 
 }  // namespace relevo::gl

@@ -59,4 +59,21 @@ class Program {
     Handle<&Program::destroy> handle_;
 };
 
+/// A linked compute program.
+class ComputeProgram {
+  public:
+    ComputeProgram() = default;
+    /// Compiles and links.
+    /// @throws Error (Failed) `GL program: LABEL: ` and what the driver says
+    ComputeProgram(std::string_view text, std::string_view label);
+
+    void use() const;
+    /// Sets the uniform of a location; of this program, whichever is in use.
+    void set(int location, int value) const;
+
+  private:
+    static void destroy(unsigned name);
+    Handle<&ComputeProgram::destroy> handle_;
+};
+
 }  // namespace relevo::gl

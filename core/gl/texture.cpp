@@ -279,4 +279,8 @@ void Texture::bind(unsigned unit) const {
     glBindTextureUnit(unit, name());
 }
 
+void Texture::bind_image(unsigned unit, int level, Format as) const {
+    glBindImageTexture(unit, name(), level, GL_FALSE, 0, GL_READ_WRITE, storage(as));
+}
+
 }  // namespace relevo::gl

@@ -22,8 +22,10 @@
 #include "base/parallel_for.h"
 #include "base/units.h"
 #include "dem/posts.h"
+#include "gl/context.h"
 #include "light/raster/clearance.h"
 #include "light/raster/horizons.h"
+#include "render/device_shadows.h"
 #include "render/shadow_texels.h"
 
 namespace relevo::render {
@@ -82,16 +84,22 @@ class Shares {
 
     Array2d<Bytes2>& base() { return levels_.front(); }
 
+    /// Without coverage, where it is new.
+    const gl::Texture& make_texture(const char* name) {
+        if (texture_) return *texture_;
+        const Array2d<Bytes2>& base = levels_.front();
+        texture_.emplace(gl::TextureKind::D2, gl::Format::RG8,
+                         gl::Extent{base.width(), base.height(), 1},
+                         static_cast<int>(levels_.size()), name);
+        texture_->set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
+        texture_->fill(std::byte{0});
+        return *texture_;
+    }
+
     void upload(const char* name) {
         for (std::size_t level = 1; level < levels_.size(); ++level)
             reduce(levels_[level - 1], levels_[level]);
-        const Array2d<Bytes2>& base = levels_.front();
-        if (!texture_) {
-            texture_.emplace(gl::TextureKind::D2, gl::Format::RG8,
-                             gl::Extent{base.width(), base.height(), 1},
-                             static_cast<int>(levels_.size()), name);
-            texture_->set_sampling(gl::Filter::Mipmap, gl::Wrap::Clamp);
-        }
+        make_texture(name);
         for (std::size_t level = 0; level < levels_.size(); ++level)
             texture_->write(static_cast<int>(level), {0, 0, 0},
                             {levels_[level].width(), levels_[level].height(), 1},
@@ -222,10 +230,19 @@ struct GroundLight::Impl {
     struct Level {
         DrawnPosts ground;
         std::optional<light::Clearances> margins;  // of the posts above
+        std::optional<DeviceShadows::Ground> on_device;
         AirMade air;
+
+        void clear() {
+            on_device.reset();
+            margins.reset();
+        }
     };
-    std::map<int, Level> levels;   // by reduction
-    const Level* level = nullptr;  // of the textures
+    std::map<int, Level> levels;  // by reduction
+    Level* level = nullptr;       // of the textures
+    ShadowsOn where;
+    std::optional<DeviceShadows> device;
+    bool of_device = false;  // the textures
     SkyAhead sky_ahead;
     std::shared_ptr<const SkyFound> sky_found;  // what the texture has
     std::optional<SunMade> sun;
@@ -237,8 +254,8 @@ struct GroundLight::Impl {
     Shares shares, sky;
     bool has_sun = true;  // one can be found over the DEM
 
-    Impl(const dem::Heightfield& f, const geo::LocalFrame& l, SkyAhead ahead)
-        : field(f), frame(l), sky_ahead(std::move(ahead)) {}
+    Impl(const dem::Heightfield& f, const geo::LocalFrame& l, SkyAhead ahead, ShadowsOn on)
+        : field(f), frame(l), where(on), sky_ahead(std::move(ahead)) {}
 
     /// Means are finer than the pixels, and few where pixels allow it.
     int reduction_for(double pixel_posts) const {
@@ -254,9 +271,9 @@ struct GroundLight::Impl {
         Level& here = levels[reduction];
         if (level != &here) sun.reset();
         level = &here;
-        if (here.air != wanted) here.margins.reset();
+        if (here.air != wanted) here.clear();
         if (here.margins && here.ground.exaggeration == exaggeration) return;
-        here.margins.reset();
+        here.clear();
         here.ground.make(field, exaggeration, reduction);
         here.air = wanted;
         sun.reset();
@@ -271,14 +288,21 @@ struct GroundLight::Impl {
         here.margins.emplace(*here.ground.posts, options);
     }
 
-    void make_room() {
+    void make_textures() {
         const dem::Grid& grid = level->ground.posts->grid();
-        if (halves.width() == grid.columns() && halves.height() == grid.rows()) return;
-        halves = Array2d<std::uint32_t>(grid.columns(), grid.rows());
-        post_shares = Array2d<std::uint16_t>(grid.columns(), grid.rows());
-        margin_texture.emplace(gl::TextureKind::D2, gl::Format::RG16F,
-                               gl::Extent{grid.columns(), grid.rows(), 1}, 1, "light_margins");
+        const gl::Extent size{grid.columns(), grid.rows(), 1};
+        shares.resize((size.width + 1) / 2, (size.height + 1) / 2);
+        if (margin_texture && margin_texture->extent() == size) return;
+        margin_texture.emplace(gl::TextureKind::D2, gl::Format::RG16F, size, 1, "light_margins");
         margin_texture->set_sampling(gl::Filter::Linear, gl::Wrap::Clamp);
+    }
+
+    void make_room() {
+        make_textures();
+        const auto [columns, rows, depth] = margin_texture->extent();
+        if (halves.width() == columns && halves.height() == rows) return;
+        halves = Array2d<std::uint32_t>(columns, rows);
+        post_shares = Array2d<std::uint16_t>(columns, rows);
     }
 
     void take(const light::ClearanceRun& run) {
@@ -290,6 +314,36 @@ struct GroundLight::Impl {
         const std::uint32_t margin = half_of(lit ? kMostMargin : -kMostMargin);
         std::ranges::fill(halves, margin << 16 | margin);
         std::ranges::fill(post_shares, std::uint16_t(lit ? 0xffffU : 0xff00U));
+    }
+
+    bool takes_device() {
+        if (where == ShadowsOn::Auto)
+            where = gl::draws_on_processor() ? ShadowsOn::Processor : ShadowsOn::Device;
+        return where == ShadowsOn::Device && has_sun;
+    }
+
+    /// Textures of a sun, computed on the device; false where the processor has to: at night, for
+    /// DEMs without a sun, and after the device has failed.
+    bool find_on_device(const light::SunOverDem& over) {
+        if (!takes_device()) return false;
+        try {
+            make_textures();
+            if (!device) device.emplace();
+            if (!level->on_device) level->on_device.emplace(level->margins->terrain());
+            const light::Clearances::Found found =
+                device->find(*level->margins, *level->on_device, frame.origin(), over,
+                             *margin_texture, shares.make_texture("light_shares"));
+            if (!found.night) tell(found.error_rad);
+            return !found.night;
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::BadInput) return false;
+            if (error.code() != ErrorCode::Failed) throw;
+            log::warning(fmt::format("shadows: computed on the processor: {}", error.what()));
+            where = ShadowsOn::Processor;
+            for (auto& [reduction, each] : levels)
+                each.on_device.reset();
+            return false;
+        }
     }
 
     /// Margins of a sun, where the DEM has one; false on maps of the world, whose rows end in
@@ -314,7 +368,6 @@ struct GroundLight::Impl {
     void upload_sun() {
         margin_texture->write(0, {0, 0, 0}, {halves.width(), halves.height(), 1},
                               std::as_bytes(std::span(halves.data(), halves.size())));
-        shares.resize((halves.width() + 1) / 2, (halves.height() + 1) / 2);
         Array2d<Bytes2>& base = shares.base();
         const int columns = halves.width(), rows = halves.height();
         parallel_for(0, (rows + 1) / 2, 32, [&](int first, int last) {
@@ -354,8 +407,9 @@ SkyAhead find_sky_ahead(const dem::Heightfield& field, double exaggeration) {
                       [&field, exaggeration] { return find_sky(field, exaggeration); });
 }
 
-GroundLight::GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyAhead sky)
-    : impl_(std::make_unique<Impl>(field, frame, std::move(sky))) {}
+GroundLight::GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyAhead sky,
+                         ShadowsOn where)
+    : impl_(std::make_unique<Impl>(field, frame, std::move(sky), where)) {}
 GroundLight::GroundLight(GroundLight&&) noexcept = default;
 GroundLight& GroundLight::operator=(GroundLight&&) noexcept = default;
 GroundLight::~GroundLight() = default;
@@ -368,9 +422,16 @@ void GroundLight::follow(const SunLight& light, double exaggeration, double pixe
     const glm::dvec3& d = light.direction;
     const light::SunOverDem over{std::atan2(d.x, d.y), std::atan2(d.z, std::hypot(d.x, d.y)),
                                  light.semidiameter_rad};
-    if (!my.find_margins(over)) my.set_all(true);
-    my.upload_sun();
+    my.of_device = my.find_on_device(over);
+    if (!my.of_device) {
+        if (!my.find_margins(over)) my.set_all(true);
+        my.upload_sun();
+    }
     my.sun = wanted;
+}
+
+bool GroundLight::is_of_device() const {
+    return impl_->of_device;
 }
 
 std::optional<glm::dvec3> GroundLight::followed() const {

@@ -20,6 +20,13 @@ using SkyAhead = std::shared_future<std::shared_ptr<const SkyFound>>;
 /// @param field  outlives what is found
 SkyAhead find_sky_ahead(const dem::Heightfield& field, double exaggeration);
 
+/// Where shadows are computed.
+enum class ShadowsOn {
+    Auto,  ///< on the device, unless that is a software renderer
+    Processor,
+    Device,
+};
+
 /// What shaders read of the light that comes to the ground past the ground around it, for every
 /// post, as textures over the whole DEM. shaders/lib/sun_share.glsl and shaders/lib/openness.glsl
 /// read them.
@@ -40,7 +47,10 @@ class GroundLight {
     /// @param field  outlives this
     /// @param frame  the DEM's local frame; outlives this
     /// @param sky    of the same field; may be none, and of another exaggeration
-    GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyAhead sky = {});
+    /// @param where  shadows are computed. A device that fails is reported once, and the processor
+    ///     takes over
+    GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyAhead sky = {},
+                ShadowsOn where = ShadowsOn::Auto);
     GroundLight(GroundLight&&) noexcept;
     GroundLight& operator=(GroundLight&&) noexcept;
     ~GroundLight();
@@ -51,6 +61,8 @@ class GroundLight {
     void follow(const SunLight& sun, double exaggeration, double pixel_posts = 1);
     /// Towards the sun that margins and shares are of, as SunLight; none while there are none.
     std::optional<glm::dvec3> followed() const;
+    /// Whether margins and shares were computed on the device.
+    bool is_of_device() const;
     /// Has the sky be there. Nothing is done where it is.
     void look_up(double exaggeration);
 

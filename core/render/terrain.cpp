@@ -74,7 +74,7 @@ Terrain::Terrain(const dem::Heightfield& heightfield, const geo::LocalFrame& fra
       frame_(frame),
       tree_(pyramid_, grid_, frame_),
       polar_axis_(frame.up(kPi / 2, 0)),
-      light_(heightfield, frame, options.sky),
+      light_(heightfield, frame, options.sky, options.shadows_on),
       drawn_m_(&heightfield.height_m),
       drawn_grid_(&heightfield.grid),
       reduction_(finer ? heightfield.reduction : 1),

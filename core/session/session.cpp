@@ -241,7 +241,9 @@ struct Session::Impl {
                 .pyramid = dem->pyramid ? &*dem->pyramid : nullptr,
                 .water = &dem->drawn.water,
                 .filled = dem->drawn.is_filled.empty() ? nullptr : &dem->drawn.is_filled,
-                .sky = std::exchange(sky_ahead, {})},
+                .sky = std::exchange(sky_ahead, {}),
+                .shadows_on = context->info().device.software ? render::ShadowsOn::Processor
+                                                              : render::ShadowsOn::Device},
             dem->source.get());
         if (state.scene.overlay) {
             overlay = read_overlay(*state.scene.overlay, terrain->grid());

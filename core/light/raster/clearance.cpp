@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/parallel_for.h"
 #include "light/raster/post_loops.h"
 #include "light/raster/shadow_heights.h"
 
@@ -16,6 +17,9 @@ namespace {
 constexpr std::size_t kMostTiles = 4096;
 constexpr double kLooser = 4;
 constexpr double kLoosest_rad = radians(12);
+
+/// Whose tables are made and uploaded together: those of a tile take up to 5 MB.
+constexpr std::size_t kMostDeviceTiles = 32;
 
 struct Division {
     std::vector<SunTile> tiles;
@@ -77,6 +81,40 @@ Clearances::Found Clearances::each(const geo::Geodetic& place, const SunOverDem&
             use({run.row, column - all.column, count, upper_m.data(), lower_m});
         }
     });
+    return {false, division.error_rad};
+}
+
+Clearances::Found Clearances::each_sweep(const geo::Geodetic& place, const SunOverDem& sun,
+                                         const UseSweep& use) const {
+    const SunField field(terrain_, place, sun);
+    if (field.is_night()) return {true, 0};
+    const Division division = division_of(field);
+    std::vector<SunTile> lit;
+    for (const SunTile& tile : division.tiles)
+        if (!tile.is_night && !common(tile.posts.window, terrain_.window()).is_empty())
+            lit.push_back(tile);
+    const auto sweep = [&](DeviceSweep::Part part, double offset_rad, SunTerrain::Air air) {
+        for (std::size_t done = 0; done < lit.size(); done += kMostDeviceTiles) {
+            const std::size_t count = std::min(kMostDeviceTiles, lit.size() - done);
+            DeviceSweep found{part, air == SunTerrain::kOfHighest, std::vector<TileSweep>(count)};
+            parallel_for(0, static_cast<int>(count), 1, [&](int first, int last) {
+                for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last);
+                     ++i)
+                    found.tiles[i] =
+                        tile_sweep(field, lit[done + i], terrain_.window(), offset_rad, air);
+            });
+            use(found);
+        }
+    };
+    const double radius_rad = sun.semidiameter_rad;
+    const auto sweep_disc = [&](SunTerrain::Air air) {
+        sweep(DeviceSweep::kUpper, radius_rad, air);
+        if (!(radius_rad > 0)) return;
+        sweep(DeviceSweep::kMiddle, 0, air);
+        sweep(DeviceSweep::kLower, -radius_rad, air);
+    };
+    sweep_disc(field.first_air());
+    if (field.has_two_airs()) sweep_disc(SunTerrain::kOfHighest);
     return {false, division.error_rad};
 }
 

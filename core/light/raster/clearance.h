@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
+#include "light/raster/shadow_heights.h"
 #include "light/raster/shadows.h"
 #include "light/raster/sun_plan.h"
 
@@ -41,6 +43,20 @@ class Clearances {
     /// horizon cuts the disc.
     /// @param place  where `sun` stands so
     Found each(const geo::Geodetic& place, const SunOverDem& sun, const Use& use) const;
+
+    /// Shadows that a device finds: of one part of the disc, in one air, over some tiles.
+    struct DeviceSweep {
+        enum Part { kUpper, kMiddle, kLower } part;
+        /// Whether what is found, in the air of the highest post, is mixed by mix_by_height() with
+        /// what an earlier sweep over the same tile has found in that of the lowest one.
+        bool mixes = false;
+        std::vector<TileSweep> tiles{};
+    };
+    using UseSweep = std::function<void(const DeviceSweep&)>;
+    /// Calls `use` with the sweeps that find the shadows of all posts but those at which it is
+    /// night: of the upper limb alone for a sun without a disc. Not at all at night.
+    Found each_sweep(const geo::Geodetic& place, const SunOverDem& sun, const UseSweep& use) const;
+    const SunTerrain& terrain() const { return terrain_; }
 
   private:
     SunTerrain terrain_;

@@ -21,6 +21,20 @@ class GroundBeyond {
     /// @param distance_m  gets how far off they are
     void find(int row, int column, int count, float* height_m, float* distance_m) const;
 
+    /// What find() reads, for devices. A row of the sweep is a column of the grid for rays along
+    /// columns; the edge of a post is that of the line as many posts on along this row.
+    struct SweepRow {
+        float distance_m;  ///< of the row: less than the edge's by how far off that is
+        int line_column;   ///< where line 0 has its post
+    };
+    /// @param row  along the sweep, in the grid's order
+    SweepRow sweep_row(int row) const {
+        const auto k = static_cast<std::size_t>(row - first_row_);
+        return {row_distance_m_[k], line_column_[k]};
+    }
+    const std::vector<float>& edge_heights_m() const { return height_m_; }
+    const std::vector<float>& edge_distances_m() const { return distance_m_; }
+
   private:
     Edge edge_of(const dem::Posts& posts, double line, double begin_m, double end_m,
                  double step_m) const;

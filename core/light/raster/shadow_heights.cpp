@@ -9,7 +9,6 @@
 
 #include "base/array2d.h"
 #include "base/parallel_for.h"
-#include "light/raster/ground_beyond.h"
 #include "light/raster/post_loops.h"
 
 namespace relevo::light {
@@ -78,6 +77,29 @@ class EarthShadow {
                         .curvature = static_cast<float>(terrain_.curvature()),
                         .lowest_m = static_cast<float>(terrain_.lowest_m())},
                        shadow_m);
+    }
+
+    /// Of rows of a window of the grid, and of rows of a sweep's sheet.
+    TileSweep::Earth tables(const Window& window, const ShadowTables& sweep) const {
+        const glm::dvec2& at = sun_.ray.reference;
+        TileSweep::Earth to;
+        to.edge_height_m = beyond_->edge_heights_m();
+        to.edge_distance_m = beyond_->edge_distances_m();
+        const int first = sun_.ray.along_columns ? window.column : window.row,
+                  end = first + (sun_.ray.along_columns ? window.columns : window.rows);
+        for (int row = 0; row < std::ssize(sweep.rows) - 1; ++row) {
+            const int k = sweep.orientation.grid_index(sweep.first_row + row);
+            to.rows.push_back(k >= first && k < end ? beyond_->sweep_row(k)
+                                                    : GroundBeyond::SweepRow{0, 0});
+        }
+        to.first_row = window.row;
+        for (int row = window.row; row < window.end_row(); ++row)
+            to.base.push_back(static_cast<float>(sun_.tangent_at(at.x, row)));
+        to.reference_column = static_cast<int>(at.x);
+        to.a_post = static_cast<float>(sun_.tangent_per_post.x);
+        to.curvature = static_cast<float>(terrain_.curvature());
+        to.lowest_m = static_cast<float>(terrain_.lowest_m());
+        return to;
     }
 
   private:
@@ -206,6 +228,18 @@ void each_shadow(const SunField& field, std::span<const SunTile> tiles, const Wi
             });
         });
     });
+}
+
+TileSweep tile_sweep(const SunField& field, const SunTile& tile, const Window& window,
+                     double offset_rad, SunTerrain::Air air) {
+    const SunTerrain& terrain = field.terrain();
+    TilePosts posts = tile.posts;
+    posts.window = common(posts.window, window);
+    const SweepSun sun = field.sun(tile, air, offset_rad);
+    TileSweep found{terrain.sweep().shadow_tables(sun, posts, terrain.floor_m()), {}};
+    if (const EarthShadow earth(terrain, tile, sun); earth.matters())
+        found.earth = earth.tables(posts.window, found.tables);
+    return found;
 }
 
 void each_shadow(const PlannedSun& sun, const Window& window, double offset_rad,

@@ -5,13 +5,40 @@
 
 namespace relevo::light {
 
+ColumnRange lines_with_far_ground(const SweepLines& lines, int row, int columns) {
+    const int far = row - lines.sampling().near_rows - 1;
+    if (far < lines.begin()) return {};
+    // At that row the ray of the post of line i is at column i - moved.
+    const SweepLines::Row& at = lines.row(row);
+    const double moved = at.shift - lines.row(far).shift - at.column;
+    return {ceil_of(moved - SweepLines::kOnPost),
+            floor_of(columns - 1 + moved + SweepLines::kOnPost) + 1};
+}
+
+EdgeLines edge_lines(const SweepLines& lines, int set, int row, int columns) {
+    constexpr double kBeside = 0.25 + SweepLines::kOnPost;
+    const double shift = lines.row(row).shift + double(set) / lines.sampling().line_sets;
+    const int before = ceil_of(-shift) - 1, behind = floor_of(columns - 1 - shift) + 1;
+    EdgeLines found;
+    if (shift + before >= -kBeside) found.before = before;
+    if (shift + behind <= columns - 1 + kBeside) found.behind = behind;
+    return found;
+}
+
+float ShadowStrip::height_origin_m(float lowest_m) {
+    return std::isfinite(lowest_m) ? kHeightOrigins_m * std::floor(lowest_m / kHeightOrigins_m) : 0;
+}
+
+double ShadowStrip::fall_origin_m(const SweepLines& lines, int row) {
+    return kFallOrigins_m * std::floor(lines.row(row).fall_m / kFallOrigins_m);
+}
+
 ShadowStrip::ShadowStrip(const SweepLines& lines, int line, int count, float lowest_m,
                          float floor_m)
     : lines_(lines),
       line_(line),
       count_(count),
-      height_origin_m_(
-          std::isfinite(lowest_m) ? kHeightOrigins_m * std::floor(lowest_m / kHeightOrigins_m) : 0),
+      height_origin_m_(height_origin_m(lowest_m)),
       floor_m_(floor_m),
       ground_(lines, line, count + 1),
       shadow_m_(static_cast<std::size_t>(in_vectors(count) + kVectorFloats)) {
@@ -27,7 +54,7 @@ float ShadowStrip::fallen_m(int row) const {
 void ShadowStrip::move_fall_origin(int row) {
     const double fallen_m = lines_.row(row).fall_m - fall_origin_m_;
     if (fallen_m >= 0 && fallen_m < kFallOrigins_m) return;
-    const double origin_m = kFallOrigins_m * std::floor(lines_.row(row).fall_m / kFallOrigins_m);
+    const double origin_m = fall_origin_m(lines_, row);
     const auto more_m = static_cast<float>(origin_m - fall_origin_m_);
     fall_origin_m_ = origin_m;
     if (row == lines_.begin()) return;
@@ -54,23 +81,17 @@ void ShadowStrip::raise(int row) {
     }
 }
 
-/// Lines up to a quarter of a post beside the grid meet the ground of its edge. A post at the edge
-/// stands between one line within and one beside, and is shaded by the mean of both: with ground
-/// under the inner one alone it would be lit until its own ray is a quarter of a post within.
 void ShadowStrip::raise_beside(int row) {
-    constexpr double kBeside = 0.25 + SweepLines::kOnPost;
-    const double first = lines_.row(row).shift;
     for (int set = 0; set < kSampling.line_sets; ++set) {
-        const double shift = first + double(set) / kSampling.line_sets;
         const auto raise_line = [&](int line, int column) {
             if (line < line_ || line > line_ + count_) return;
             float& height_m =
                 height_m_[static_cast<std::size_t>(set)][static_cast<std::size_t>(line - line_)];
             height_m = std::max(height_m, ground_.at(row, column));
         };
-        const int before = ceil_of(-shift) - 1, behind = floor_of(columns_ - 1 - shift) + 1;
-        if (shift + before >= -kBeside) raise_line(before, 0);
-        if (shift + behind <= columns_ - 1 + kBeside) raise_line(behind, columns_ - 1);
+        const EdgeLines beside = edge_lines(lines_, set, row, columns_);
+        raise_line(beside.before, 0);
+        raise_line(beside.behind, columns_ - 1);
     }
 }
 
@@ -119,20 +140,10 @@ void ShadowStrip::find_with(int row, int first, int end, bool far, float* shadow
 }
 
 const float* ShadowStrip::find(int row, int first, int end) {
-    const int far = row - kSampling.near_rows - 1;
+    // Each call writes whole vectors, of which the next one overwrites what is too much.
     float* const shadow_m = shadow_m_.data();
-    if (far < lines_.begin()) {
-        find_with(row, first, end, false, shadow_m);
-        return shadow_m;
-    }
-    // Where the own ray of a post lies beside the grid at that row, there is no far ground: the ray
-    // of the post of line i is there at column i - moved. Each call writes whole vectors, of which
-    // the next one overwrites what is too much.
-    const SweepLines::Row& at = lines_.row(row);
-    const double moved = at.shift - lines_.row(far).shift - at.column;
-    const int begin = std::clamp(ceil_of(moved - SweepLines::kOnPost), first, end),
-              last =
-                  std::clamp(floor_of(columns_ - 1 + moved + SweepLines::kOnPost) + 1, begin, end);
+    const ColumnRange far = lines_with_far_ground(lines_, row, columns_);
+    const int begin = std::clamp(far.begin, first, end), last = std::clamp(far.end, begin, end);
     find_with(row, first, begin, false, shadow_m);
     find_with(row, begin, last, true, shadow_m + (begin - first));
     find_with(row, last, end, false, shadow_m + (last - first));

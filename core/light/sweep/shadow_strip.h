@@ -1,12 +1,30 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "light/sweep/ground_rows.h"
 #include "light/sweep/lines.h"
 
 namespace relevo::light {
+
+/// The lines whose posts have far ground at a row: where the own ray of a post is beside the grid
+/// at the row where lines take over from it, there is none.
+/// @param columns  of the sheet
+ColumnRange lines_with_far_ground(const SweepLines& lines, int row, int columns);
+
+/// Lines up to a quarter of a post beside the grid meet the ground of its edge. A post at the edge
+/// stands between one line within and one beside, and is shaded by the mean of both: with ground
+/// under the inner one alone it would be lit until its own ray is a quarter of a post within.
+struct EdgeLines {
+    static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::min();
+    std::int32_t before = kNone;  ///< meets the ground of the first column
+    std::int32_t behind = kNone;  ///< and that of the last one
+};
+/// @param columns  of the sheet
+EdgeLines edge_lines(const SweepLines& lines, int set, int row, int columns);
 
 /// Finds heights of shadows over posts of lines next to each other, row by row away from the sun.
 /// Of two ridges the one whose ray is higher at the post counts; no line remembers the other one.
@@ -20,6 +38,11 @@ class ShadowStrip {
   public:
     static constexpr Sampling kSampling{.near_rows = 4, .line_sets = 2, .distances = false};
     static constexpr int kMostLines = 2047;  ///< so that the rows kept fit into the cache
+    // Heights, and what rays have fallen by, count from whole multiples of these.
+    static constexpr float kHeightOrigins_m = 256;
+    static constexpr double kFallOrigins_m = 2048;
+    static float height_origin_m(float lowest_m);
+    static double fall_origin_m(const SweepLines& lines, int row);
 
     /// @param line, count  the first line, and how many
     /// @param lowest_m     of all ground; heights count from near to it
@@ -34,10 +57,6 @@ class ShadowStrip {
     const float* find(int row, int first, int end);
 
   private:
-    // Heights, and what rays have fallen by, count from whole multiples of these.
-    static constexpr float kHeightOrigins_m = 256;
-    static constexpr double kFallOrigins_m = 2048;
-
     float fallen_m(int row) const;
     void move_fall_origin(int row);
     void raise(int row);

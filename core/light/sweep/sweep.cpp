@@ -12,6 +12,7 @@
 #include "light/sweep/lines.h"
 #include "light/sweep/runs.h"
 #include "light/sweep/shadow_strip.h"
+#include "light/sweep/shadow_tables.h"
 
 namespace relevo::light {
 namespace {
@@ -81,6 +82,20 @@ std::optional<std::vector<ColumnRange>> column_ranges(const Window& window,
     return ranges;
 }
 
+/// A sun of a tangent that floats express.
+SweepSun bounded(SweepSun sun) {
+    if (std::abs(sun.tangent) < kSteepest) return sun;
+    sun.tangent = std::copysign(kSteepest, sun.tangent);
+    sun.tangent_per_post = {0, 0};
+    return sun;
+}
+
+void check_reaches(const SweepLines& lines, const SheetPosts& posts) {
+    for (int row = posts.window.row; row < lines.begin(); ++row)
+        if (!posts.at(row).is_empty())
+            throw std::logic_error("sweep: the ray of a tile turns back within its posts");
+}
+
 /// Strips of lines, as many for every thread.
 int width_of_strips(int lines, int most) {
     const int threads = std::min(thread_count(), std::max(1, lines / (4 * kVectorFloats)));
@@ -145,30 +160,37 @@ const float* Sweep::transposed() const {
     return transposed_.data();
 }
 
-Sweep::Job Sweep::job_for(const SweepSun& sun, const TilePosts& posts) const {
+/// A job without heights.
+Sweep::Job Sweep::geometry(const SweepSun& sun, const TilePosts& posts) const {
     assert(common(posts.window, {0, 0, columns_, rows_}) == posts.window);
     Job job;
     job.orientation.transposed = sun.ray.along_columns;
     const bool turned = job.orientation.transposed;
-    job.sheet = turned ? Sheet{read_ ? nullptr : transposed(), rows_, rows_, columns_}
-                       : Sheet{height_m_, stride_, columns_, rows_};
+    job.sheet =
+        turned ? Sheet{nullptr, rows_, rows_, columns_} : Sheet{nullptr, stride_, columns_, rows_};
     job.orientation.rows = job.sheet.rows;
     job.orientation.mirrored = (turned ? sun.ray.first.x : sun.ray.first.y) > 0;
     job.sun = on_sheet(sun, job.orientation);
     job.posts.window = turned ? light::transposed(posts.window) : posts.window;
-    if (job.orientation.mirrored) {
+    if (job.orientation.mirrored)
         job.posts.window.row = job.sheet.rows - job.posts.window.end_row();
-        if (!read_) {
-            job.sheet.first_m += (job.sheet.rows - 1) * job.sheet.stride;
-            job.sheet.stride = -job.sheet.stride;
-        }
-    }
     const auto ray = [&](const std::optional<Ray>& of) {
         return of ? std::optional(on_sheet(*of, job.orientation)) : std::nullopt;
     };
     if (posts.after || posts.before)
         job.posts.ranges =
             column_ranges(job.posts.window, ray(posts.after), ray(posts.before)).value();
+    return job;
+}
+
+Sweep::Job Sweep::job_for(const SweepSun& sun, const TilePosts& posts) const {
+    Job job = geometry(sun, posts);
+    if (read_) return job;
+    job.sheet.first_m = job.orientation.transposed ? transposed() : height_m_;
+    if (job.orientation.mirrored) {
+        job.sheet.first_m += (job.sheet.rows - 1) * job.sheet.stride;
+        job.sheet.stride = -job.sheet.stride;
+    }
     return job;
 }
 
@@ -204,9 +226,7 @@ template <typename Strip, typename Make>
 void Sweep::sweep_strips(const Job& job, double most_fall_m, const Make& make,
                          const Use& use) const {
     SweepLines lines(job.sheet, job.sun, job.posts, Strip::kSampling, most_fall_m);
-    for (int row = job.posts.window.row; row < lines.begin(); ++row)
-        if (!job.posts.at(row).is_empty())
-            throw std::logic_error("sweep: the ray of a tile turns back within its posts");
+    check_reaches(lines, job.posts);
     const int count = lines.lines().end - lines.lines().begin;
     if (count <= 0) return;
     const int width = width_of_strips(count, Strip::kMostLines);
@@ -246,21 +266,31 @@ void Sweep::sweep_strips(const Job& job, double most_fall_m, const Make& make,
     });
 }
 
+double Sweep::most_fall_m(float floor_m) const {
+    return std::max(0.0, double{highest_m_} - (floor_m > kNoFloor_m ? floor_m : lowest_m_));
+}
+
 void Sweep::each_shadow(const SweepSun& sun, const TilePosts& posts, float floor_m,
                         const Use& use) const {
-    SweepSun given = sun;
-    if (!(std::abs(given.tangent) < kSteepest)) {
-        given.tangent = std::copysign(kSteepest, given.tangent);
-        given.tangent_per_post = {0, 0};
-    }
-    const double most_fall_m =
-        std::max(0.0, double{highest_m_} - (floor_m > kNoFloor_m ? floor_m : lowest_m_));
     sweep_strips<ShadowStrip>(
-        job_for(given, posts), most_fall_m,
+        job_for(bounded(sun), posts), most_fall_m(floor_m),
         [&](const SweepLines& lines, int line, int count) {
             return ShadowStrip(lines, line, count, lowest_m_, floor_m);
         },
         use);
+}
+
+ShadowTables Sweep::shadow_tables(const SweepSun& sun, const TilePosts& posts,
+                                  float floor_m) const {
+    const Job job = geometry(bounded(sun), posts);
+    SweepLines lines(job.sheet, job.sun, job.posts, ShadowStrip::kSampling, most_fall_m(floor_m));
+    check_reaches(lines, job.posts);
+    ShadowTables tables;
+    tables.orientation = job.orientation;
+    tables.columns = job.sheet.columns;
+    tables.floor_m = floor_m;
+    tables.fill(lines, job.posts, lowest_m_);
+    return tables;
 }
 
 void Sweep::each_horizon(const Ray& ray, double curvature, double reach_m, const TilePosts& posts,

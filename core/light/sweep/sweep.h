@@ -15,6 +15,7 @@
 namespace relevo::light {
 
 struct Sheet;
+struct ShadowTables;
 
 /// The posts that a sweep is for: those of a window, or of these the ones between two rays. Tiles
 /// side by side that share a ray have each post once.
@@ -82,6 +83,9 @@ class Sweep {
     void each_shadow(const SweepSun& sun, const TilePosts& posts, float floor_m,
                      const Use& use) const;
 
+    /// The same sweep for a device: geometry alone, no height is read.
+    ShadowTables shadow_tables(const SweepSun& sun, const TilePosts& posts, float floor_m) const;
+
     /// The tangent of the horizon's elevation, as seen from the ground at each post; less than
     /// -1e20 where nothing of the grid lies that way. Each line carries a fan of rays over the
     /// ground that it came over, so that a post costs the same however far it sees. Horizons under
@@ -101,7 +105,9 @@ class Sweep {
 
   private:
     struct Job;
+    Job geometry(const SweepSun& sun, const TilePosts& posts) const;
     Job job_for(const SweepSun& sun, const TilePosts& posts) const;
+    double most_fall_m(float floor_m) const;
     const float* transposed() const;
     void read(const Job& job, const Window& window, Sheet& sheet, std::vector<float>& buffer) const;
     template <typename Strip, typename Make>
