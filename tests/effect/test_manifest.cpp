@@ -376,7 +376,8 @@ std::set<std::string> core_prefixes() {
     const std::filesystem::path folder = relevo::test::source_dir() / "shaders";
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         const std::string file = entry.path().filename().string();
-        if (entry.path().extension() != ".glsl") continue;
+        // Compute programs are whole: no plugin's text is stitched into them.
+        if (entry.path().extension() != ".glsl" || file.ends_with(".comp.glsl")) continue;
         const auto kind = file.ends_with(".vert.glsl")   ? shader::SourceKind::VertexMain
                           : file.ends_with(".frag.glsl") ? shader::SourceKind::FragmentMain
                                                          : shader::SourceKind::Lib;

@@ -1,0 +1,260 @@
+#include "session/session_impl.h"
+
+#include <chrono>
+#include <future>
+#include <utility>
+
+#include "base/parallel_for.h"
+#include "dem/files_of.h"
+#include "session/non_finite.h"
+#include "session/standing.h"
+#include "session/words.h"
+#include "sun/zone_of_place.h"
+
+namespace relevo::session {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point began) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+std::shared_ptr<const LoadedDem> load(const scene::Scene& scene, bool allow_preview) {
+    auto source = std::make_shared<const dem::Source>(dem::Source::open(scene.dems, scene.dem));
+    if (allow_preview)
+        if (auto preview = load_preview(source, scene)) return preview;
+    return load_dem(std::move(source), scene);
+}
+
+}  // namespace
+
+Session::Impl::Impl(scene::Scene given, Options o, FilesInUse& files)
+    : options(std::move(o)), state(std::move(given)) {
+    const scene::Scene& scene = state.scene;
+    if (scene.overlay) {
+        add_files(*scene.overlay, files);
+        overlay_time = time_of(*scene.overlay);
+    }
+    std::optional<sun::ParsedTime> time;
+    const bool timed = !scene.moment.time.empty();
+    if (timed && !needs_dem(scene.moment)) time = parse(scene.moment);
+    // Deferred to get() if no thread can be created.
+    auto loading = std::async(std::launch::async | std::launch::deferred,
+                              [this] { return options.dem ? options.dem : load_own(); });
+    open_device(files);
+    const std::shared_ptr<const LoadedDem> loaded = loading.get();
+    dem::add_all(scene.dems, files);
+    // Which effects are on may depend on the DEM.
+    drawn->take_ground(loaded->ground_words(scene.holes));
+    const auto began = Clock::now();
+    compile(*drawn, loaded.get());
+    stages.emplace_back("compile", milliseconds_since(began));
+    stages.emplace_back("load", options.dem ? 0 : loaded->took_ms);
+    if (timed && !time) time = parse_over(scene.moment, *loaded->source, loaded->field);
+    upload(loaded);
+    look(scene.view);
+    warn_of_eye();
+    state.set_time(time ? time->utc : state.default_time());
+}
+
+std::shared_ptr<const LoadedDem> Session::Impl::load_own() const {
+    const bool timed = !state.scene.moment.time.empty();
+    return load(state.scene, options.allow_preview && !(timed && needs_dem(state.scene.moment)));
+}
+
+void Session::Impl::open_device(FilesInUse& files) {
+    const auto began = Clock::now();
+    drawn = DrawnEffects::load(request(state.scene.effects), /*report=*/true);
+    drawn->effects().add_inputs(files);
+    take_effects();
+    context.emplace(options.context ? options.context()
+                                    : gl::Context(gl::ContextOptions{.device = options.device}));
+    drawn->fit(context->info());
+    stages.emplace_back("device", milliseconds_since(began));
+}
+
+EffectsRequest Session::Impl::request(const scene::Effects& effects) const {
+    EffectsRequest request{.effects = effects, .compared = options.compared};
+    if (state.dem()) request.ground = state.dem()->ground_words(state.scene.holes);
+    request.draped = is_draped();
+    request.overlay_has_time = overlay_time.has_value();
+    return request;
+}
+
+void Session::Impl::take_effects() {
+    state.scene.effects = drawn->request().effects;
+    state.scene.effects.settings = effect::with_absolute_files(
+        std::move(state.scene.effects.settings), drawn->effects().values);
+}
+
+render::RendererOptions Session::Impl::renderer_options() {
+    return {.width_px = state.scene.width_px,
+            .height_px = state.scene.height_px,
+            .radiance = options.radiance,
+            .draped = is_draped(),
+            .outside = !state.scene.view.eye,
+            .audited = options.audited,
+            .shared = &shared};
+}
+
+void Session::Impl::compile(DrawnEffects& effects, const LoadedDem* first_dem) {
+    effects.compile(*context, [&] {
+        render::RendererOptions with_texts = renderer_options();
+        with_texts.stitched = [this, first_dem](const render::StitchedFrames& frames) {
+            if (options.stitched) options.stitched(frames);
+            if (first_dem) compute_sky(*first_dem, frames.programs);
+        };
+        return with_texts;
+    });
+}
+
+void Session::Impl::compute_sky(const LoadedDem& dem,
+                                const std::vector<render::ProgramText>& texts) {
+    const auto reads_sky = [](const render::ProgramText& text) {
+        return std::ranges::any_of(text.stitched.textures,
+                                   [](const auto& unit) { return unit.resource == "light_sky"; });
+    };
+    if (!sky_ahead.valid() && thread_count() > 1 && std::ranges::any_of(texts, reads_sky))
+        sky_ahead = render::find_sky_ahead(dem.to_draw(), state.scene.exaggeration);
+}
+
+void Session::Impl::set_effects(const scene::Effects& asked) {
+    context->make_current();
+    switch_to(request(asked));
+    take_effects();
+    look(state.scene.view);  // displacement may move the ground under the eye
+}
+
+void Session::Impl::switch_to(const EffectsRequest& wanted) {
+    if (drawn->take(wanted)) return;
+    if (std::optional<DrawnEffects> known = recent.take(wanted)) {
+        known->resize(state.scene.width_px, state.scene.height_px);
+        recent.keep(std::exchange(*drawn, std::move(*known)));
+        return;
+    }
+    DrawnEffects fresh = DrawnEffects::load(wanted, /*report=*/false);
+    fresh.fit(context->info());
+    compile(fresh);
+    // Drivers may reject a program at its first draw, and modules fail at their first frame.
+    if (fresh.is_watched() || fresh.has_modules())
+        fresh.render(*terrain, state.ground(), state.inputs);
+    recent.keep(std::exchange(*drawn, std::move(fresh)));
+    shared.targets.trim();  // sets of targets differ between effects
+}
+
+void Session::Impl::resize(int width_px, int height_px) {
+    state.scene.width_px = width_px;
+    state.scene.height_px = height_px;
+    drawn->resize(width_px, height_px);
+}
+
+void Session::Impl::show(const scene::Scene& next, sun::Instant utc) {
+    context->make_current();
+    state.inputs.deterministic = true;
+    if (const EffectsRequest wanted = request(next.effects); wanted != drawn->request()) {
+        switch_to(wanted);
+        take_effects();
+    }
+    resize(next.width_px, next.height_px);
+    scene::Scene& scene = state.scene;
+    scene.exposure_ev = next.exposure_ev;
+    scene.refraction = next.refraction;
+    const bool other_shape = next.exaggeration != scene.exaggeration;
+    scene.exaggeration = next.exaggeration;
+    if (next.pixel_error != scene.pixel_error) {
+        scene.pixel_error = next.pixel_error;
+        upload(state.dem());
+    } else {
+        state.take_shape(other_shape);
+    }
+    scene.stamps = next.stamps;
+    scene.moment = next.moment;
+    state.set_time(utc);
+    look(next.view);
+    warn_of_eye();
+}
+
+void Session::Impl::upload(const std::shared_ptr<const LoadedDem>& dem) {
+    const auto began = Clock::now();
+    terrain.reset();  // refers to the previous DEM
+    state.take_dem(dem);
+    terrain.emplace(dem->to_draw(), state.ground().frame,
+                    render::TerrainOptions{
+                        .pixel_error = state.scene.pixel_error,
+                        .max_array_layers = context->info().max_array_layers,
+                        .pyramid = dem->pyramid ? &*dem->pyramid : nullptr,
+                        .water = &dem->drawn.water,
+                        .filled = dem->drawn.is_filled.empty() ? nullptr : &dem->drawn.is_filled,
+                        .sky = std::exchange(sky_ahead, {}),
+                        .shadows_on = context->info().device.software ? render::ShadowsOn::Processor
+                                                                      : render::ShadowsOn::Device},
+                    dem->source.get());
+    if (state.scene.overlay) {
+        overlay = read_overlay(*state.scene.overlay, terrain->grid());
+        drape = overlay->drape;
+    }
+    terrain->drape(drape);
+    stages.emplace_back("upload", milliseconds_since(began));
+    state.take_shape(/*other=*/true);
+}
+
+void Session::Impl::take(const std::shared_ptr<const LoadedDem>& dem, const scene::Scene& given) {
+    context->make_current();
+    upload(dem);
+    look(given.view);
+    state.set_time(given.moment.time.empty() ? state.default_time() : state.utc());
+    const scene::Effects effects = drawn->request().effects;
+    if (request(effects).ground != drawn->request().ground) set_effects(effects);
+}
+
+void Session::Impl::set_drape(std::shared_ptr<const render::Drape> wanted) {
+    context->make_current();
+    std::swap(drape, wanted);
+    terrain->drape(drape);
+    try {
+        const EffectsRequest with_drape = request(drawn->request().effects);
+        if (with_drape != drawn->request()) switch_to(with_drape);
+    } catch (...) {
+        std::swap(drape, wanted);
+        terrain->drape(drape);
+        throw;
+    }
+}
+
+void Session::Impl::look(const scene::View& view) {
+    check_eye_height(view, state.dem()->field.about.path);
+    state.look(view, shape());
+}
+
+DrawnShape Session::Impl::shape() {
+    return {drawn->renderer().displacement(), drawn->renderer().shows_block(),
+            [this](const scene::Camera& camera) { return drawn_height_m(camera); }};
+}
+
+std::optional<double> Session::Impl::drawn_height_m(const scene::Camera& camera) {
+    const render::Ground& ground = state.ground();
+    const auto [lowest_m, highest_m] =
+        drawn->renderer().displacement().range_m(ground.lowest_m, ground.highest_m);
+    const double eye_m = ground.frame.to_geodetic(camera.eye_m).height_m;
+    if (eye_m > highest_m * state.scene.exaggeration + scene::kClearance_m) return std::nullopt;
+    context->make_current();
+    render::FrameInputs frame = state.inputs;
+    frame.camera = camera;
+    return drawn->renderer().drawn_height_m(*terrain, ground, frame);
+}
+
+void Session::Impl::draw(render::Loading loading, render::PassTimes* times) {
+    context->make_current();
+    render::FrameInputs frame = state.inputs;
+    frame.loading = loading;
+    drawn->render(*terrain, state.ground(), frame, times);
+}
+
+void Session::Impl::check_numbers(int count, const ActiveEffects& shown) {
+    if (count > 0)
+        report_non_finite({state.scene.effects, shown, *context, renderer_options(), *terrain,
+                           state.ground(), state.inputs, count});
+}
+
+}  // namespace relevo::session

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/files_in_use.h"
+#include "gl/context.h"
+#include "render/renderer.h"
+#include "render/terrain.h"
+#include "session/drawn_effects.h"
+#include "session/overlay.h"
+#include "session/scene_state.h"
+#include "session/session.h"
+
+/// What session.cpp and session_impl.cpp share.
+namespace relevo::session {
+
+inline constexpr int kDivider_px = 2;
+
+/// Joins the left half of one image and the right half of another, with a dividing line.
+template <typename Picture, typename Value>
+Picture side_by_side(const Picture& left, const Picture& right, Value line) {
+    Picture both = right;
+    const int first = std::max((left.width - kDivider_px) / 2, 0) * left.channels;
+    const int last = std::min(left.width * left.channels, first + kDivider_px * left.channels);
+    for (int y = 0; y < left.height; ++y) {
+        std::copy_n(left.row(y), first, both.row(y));
+        std::fill(both.row(y) + first, both.row(y) + last, line);
+    }
+    return both;
+}
+
+/// A scene on a device: its state, the effects that draw it, and its terrain.
+struct Session::Impl {
+    Options options;
+    SceneState state;
+    StageTimes stages;
+
+    // In order of dependency.
+    std::optional<gl::Context> context;
+    render::SharedResources shared;
+    render::SkyAhead sky_ahead;  // for the first DEM
+    RecentEffects recent;
+    std::optional<DrawnEffects> drawn;
+    std::optional<render::Terrain> terrain;
+
+    std::shared_ptr<const render::Drape> drape;
+    std::optional<Overlay> overlay;  // of the scene
+    std::optional<OverlayTime> overlay_time;
+    std::vector<std::string> stamp_notes;
+
+    Impl(scene::Scene given, Options o, FilesInUse& files);
+    /// Events that depend on terrain need all posts, not a preview.
+    std::shared_ptr<const LoadedDem> load_own() const;
+    void open_device(FilesInUse& files);
+    EffectsRequest request(const scene::Effects& effects) const;
+    bool is_draped() const { return drape || (state.scene.overlay && !terrain); }
+    /// Copies the drawn effects into the scene.
+    void take_effects();
+    render::RendererOptions renderer_options();
+    /// @param first_dem  the DEM before its terrain is created; else null
+    void compile(DrawnEffects& effects, const LoadedDem* first_dem = nullptr);
+    /// Computes the sky-view factor on the CPU while the driver compiles programs that read it.
+    void compute_sky(const LoadedDem& dem, const std::vector<render::ProgramText>& texts);
+    void set_effects(const scene::Effects& asked);
+    /// Draws a request: with the current effects, with recent ones, or with newly loaded ones.
+    void switch_to(const EffectsRequest& wanted);
+    void resize(int width_px, int height_px);
+    void show(const scene::Scene& next, sun::Instant utc);
+    void upload(const std::shared_ptr<const LoadedDem>& dem);
+    void take(const std::shared_ptr<const LoadedDem>& dem, const scene::Scene& given);
+    void set_drape(std::shared_ptr<const render::Drape> wanted);
+    void look(const scene::View& view);
+    DrawnShape shape();
+    std::optional<double> drawn_height_m(const scene::Camera& camera);
+    /// For scenes as given, not while a user moves the eye.
+    void warn_of_eye() { state.warn_of_eye(shape()); }
+    void draw(render::Loading loading, render::PassTimes* times = nullptr);
+    /// @throws Error (Failed) if count > 0, the number of non-finite pixels
+    void check_numbers(int count, const ActiveEffects& shown);
+    template <typename Read, typename Value>
+    auto read(const Read& read_of, Value line) {
+        context->make_current();
+        int non_finite = 0, others_non_finite = 0;
+        auto picture = read_of(drawn->renderer(), &non_finite);
+        if (const render::Renderer* const without = drawn->without())
+            picture = side_by_side(picture, read_of(*without, &others_non_finite), line);
+        check_numbers(non_finite, drawn->effects());
+        if (drawn->without()) check_numbers(others_non_finite, drawn->others());
+        return picture;
+    }
+};
+
+}  // namespace relevo::session
