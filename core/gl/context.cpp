@@ -117,10 +117,6 @@ bool is_software_renderer(std::string_view renderer) {
     });
 }
 
-bool draws_on_processor() {
-    return is_software_renderer(gl_string(GL_RENDERER));
-}
-
 std::vector<Device> list_devices() {
     std::vector<Device> devices;
     for (const Candidate& candidate : candidates())

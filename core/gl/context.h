@@ -29,9 +29,6 @@ std::vector<Device> list_devices();
 /// Whether a renderer, by the name that GL gives it, is known to draw on the processor.
 bool is_software_renderer(std::string_view renderer);
 
-/// Whether the current context's renderer is one.
-bool draws_on_processor();
-
 /// A device that was tried and would not do.
 struct RefusedDevice {
     Device device;

@@ -190,7 +190,7 @@ void DeviceShadows::sweep(const Ground& ground, const DeviceSweep& sweep) {
     ground.shadow_m_[sweep.part].bind_storage(1);
     const std::array<gl::Buffer, 4> buffers = tables.bind(2);
     sweep_.use();
-    // Each post is in one tile; what is found in one air is read after that of the other.
+    // The second air's sweep reads the heights that the first one's has written.
     if (sweep.mixes) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     glDispatchCompute(groups(tables.most_lines(), kSweepLines),
                       static_cast<unsigned>(tables.tiles()), 1);
@@ -244,6 +244,7 @@ light::Clearances::Found DeviceShadows::find(const light::Clearances& clearances
     if (found.night) return found;
     make_textures(ground, sun.semidiameter_rad > 0, margins, shares);
     if (!proven_) glFinish();
+    gl::throw_if_lost();
     if (const GLenum error = glGetError(); error != GL_NO_ERROR)
         failed(fmt::format("GL program: light_sweep: {}", gl::error_name(error)));
     proven_ = true;

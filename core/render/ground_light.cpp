@@ -316,16 +316,10 @@ struct GroundLight::Impl {
         std::ranges::fill(post_shares, std::uint16_t(lit ? 0xffffU : 0xff00U));
     }
 
-    bool takes_device() {
-        if (where == ShadowsOn::Auto)
-            where = gl::draws_on_processor() ? ShadowsOn::Processor : ShadowsOn::Device;
-        return where == ShadowsOn::Device && has_sun;
-    }
-
     /// Textures of a sun, computed on the device; false where the processor has to: at night, for
     /// DEMs without a sun, and after the device has failed.
     bool find_on_device(const light::SunOverDem& over) {
-        if (!takes_device()) return false;
+        if (where != ShadowsOn::Device || !has_sun) return false;
         try {
             make_textures();
             if (!device) device.emplace();

@@ -22,9 +22,8 @@ SkyAhead find_sky_ahead(const dem::Heightfield& field, double exaggeration);
 
 /// Where shadows are computed.
 enum class ShadowsOn {
-    Auto,  ///< on the device, unless that is a software renderer
     Processor,
-    Device,
+    Device,  ///< slower than the processor on a software renderer
 };
 
 /// What shaders read of the light that comes to the ground past the ground around it, for every
@@ -50,7 +49,7 @@ class GroundLight {
     /// @param where  shadows are computed. A device that fails is reported once, and the processor
     ///     takes over
     GroundLight(const dem::Heightfield& field, const geo::LocalFrame& frame, SkyAhead sky = {},
-                ShadowsOn where = ShadowsOn::Auto);
+                ShadowsOn where = ShadowsOn::Processor);
     GroundLight(GroundLight&&) noexcept;
     GroundLight& operator=(GroundLight&&) noexcept;
     ~GroundLight();

@@ -43,7 +43,7 @@ struct TerrainOptions {
     const dem::Water* water = nullptr;              ///< null: found when needed
     const Array2d<std::uint8_t>* filled = nullptr;  ///< nonzero at filled posts; null: none
     SkyAhead sky{};  ///< sky-view factor of the heightfield, if being computed
-    ShadowsOn shadows_on = ShadowsOn::Auto;  ///< what computes the sun's shadows
+    ShadowsOn shadows_on = ShadowsOn::Processor;  ///< what computes the sun's shadows
 };
 
 /// Tiles of a view with resident pages. May be drawn repeatedly.

@@ -4,8 +4,8 @@
 Usage: bench_viewer.py BUILD [DEM...]   (BUILD is build/release or build/dev; needs Xvfb and xdotool)
 
 Everything is read off the screen of a display of its own (Xvfb's screen is a file), as a person would see it. With both
-ways of presentation (RELEVO_PRESENT) it also counts what a frame asks of the GL device while the camera orbits; bytes of
-ring buffers are left out, as the device reads them where the program writes them.
+ways of presentation (RELEVO_PRESENT) it also counts what a frame asks of the GL device while the camera orbits. Bytes
+written to ring buffers are not counted: they are mapped memory, without a command.
 """
 
 import ctypes

@@ -1,7 +1,6 @@
 // How frames come to the window, and what happens when the device that draws them is lost.
 #include <fstream>
 
-#include "image/image.h"
 #include "window/viewer_fixture.h"
 
 namespace relevo {
@@ -20,18 +19,7 @@ TEST_F(SharedFrames, APictureIsWhatACaptureOfItsSceneIs) {
     open({"-v", dem_, "--time", "2026-06-21T22:30Z"});
     EXPECT_TRUE(says("view: frames stay on the device")) << program_->output();
     ASSERT_TRUE(changes([&] { drag(3, 800, 400, 90, 30); }));
-    resting_scene();
-    act({"key", "F12"});
-    const auto taken = folder_ / "relevo-1.png", captured = folder_ / "captured.png";
-    ASSERT_TRUE(wait([&] { return std::filesystem::exists(taken); })) << program_->output();
-    test::WindowedProgram capture(
-        display_, test::build_dir() / "bin/relevo",
-        {"-q", "capture", "--scene", (folder_ / fmt::format("relevo-{}.json", saved_)).string(),
-         "-o", captured.string()});
-    ASSERT_EQ(capture.status(), 0) << capture.output();
-    const image::Image8 a = image::read(taken), b = image::read(captured);
-    EXPECT_LE(test::difference(a, b, 1), 2e-4);
-    EXPECT_EQ(test::difference(a, b, 3), 0);
+    expect_picture_is_its_capture();
 }
 
 TEST_F(SharedFrames, FollowTheHandTheSunAndTheSizeOfTheWindow) {

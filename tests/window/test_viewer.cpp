@@ -193,19 +193,7 @@ TEST_F(Viewer, ShowsTimesInTheZoneThatIsAskedFor) {
 TEST_F(Viewer, APictureIsWhatACaptureOfItsSceneIs) {
     open({dem_, "--time", "2026-06-21T20:00:00Z"});
     ASSERT_TRUE(changes([&] { drag(3, 800, 400, 90, 30); }));
-    resting_scene();
-    act({"key", "F12"});
-    const auto taken = folder_ / "relevo-1.png";
-    ASSERT_TRUE(wait([&] { return std::filesystem::exists(taken); })) << program_->output();
-    const auto captured = folder_ / "captured.png";
-    test::WindowedProgram capture(
-        display_, test::build_dir() / "bin/relevo",
-        {"-q", "capture", "--scene", (folder_ / fmt::format("relevo-{}.json", saved_)).string(),
-         "-o", captured.string()});
-    ASSERT_EQ(capture.status(), 0) << capture.output();
-    const image::Image8 a = image::read(taken), b = image::read(captured);
-    EXPECT_LE(test::difference(a, b, 1), 2e-4);
-    EXPECT_EQ(test::difference(a, b, 3), 0);
+    expect_picture_is_its_capture();
 }
 
 TEST_F(Viewer, TheDayIsSavedAsAJobThatRuns) {

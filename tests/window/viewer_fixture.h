@@ -117,6 +117,21 @@ class Viewer : public testing::Test {
         while (before["camera"] != now["camera"]);
         return now;
     }
+    /// The picture that F12 saves is what `relevo capture` draws of the scene that Ctrl+S saves.
+    void expect_picture_is_its_capture() {
+        resting_scene();
+        act({"key", "F12"});
+        const auto taken = folder_ / "relevo-1.png", captured = folder_ / "captured.png";
+        ASSERT_TRUE(wait([&] { return std::filesystem::exists(taken); })) << program_->output();
+        const auto scene_file = folder_ / fmt::format("relevo-{}.json", saved_);
+        test::WindowedProgram capture(
+            display_, test::build_dir() / "bin/relevo",
+            {"-q", "capture", "--scene", scene_file.string(), "-o", captured.string()});
+        ASSERT_EQ(capture.status(), 0) << capture.output();
+        const image::Image8 a = image::read(taken), b = image::read(captured);
+        EXPECT_LE(test::difference(a, b, 1), 2e-4);
+        EXPECT_EQ(test::difference(a, b, 3), 0);
+    }
     void drag(int button, int x, int y, int dx, int dy) {
         act({"mousemove", std::to_string(x), std::to_string(y)});
         std::this_thread::sleep_for(std::chrono::milliseconds(300));

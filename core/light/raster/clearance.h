@@ -47,8 +47,8 @@ class Clearances {
     /// Shadows that a device finds: of one part of the disc, in one air, over some tiles.
     struct DeviceSweep {
         enum Part { kUpper, kMiddle, kLower } part;
-        /// Whether what is found, in the air of the highest post, is mixed by mix_by_height() with
-        /// what an earlier sweep over the same tile has found in that of the lowest one.
+        /// This sweep is in the air of the highest post. An earlier sweep over the same tiles was
+        /// in the air of the lowest one, and mix_by_height() mixes the shadows of both.
         bool mixes = false;
         std::vector<TileSweep> tiles{};
     };
