@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include <glm/geometric.hpp>
-
 #include "base/error.h"
 #include "render/pass_context.h"
 #include "shader/stored_varyings.h"
@@ -19,19 +17,22 @@ constexpr std::array<float, 4> kNothing{0, 0, 0, 0};
 constexpr int kMaxStored = 7;
 
 /// Recomputes the light by place that programs read, if the sun has moved.
-void light(PassContext& frame) {
-    Terrain& terrain = frame.terrain;
-    const double pixel_rad = length(glm::dvec3(frame.block.pixel_ray_dx));
+/// @param with_walls  walls below the ground may be in sight without it
+void light(PassContext& frame, bool with_walls) {
+    GroundLight& light = frame.terrain.light();
+    const FrameInputs& inputs = frame.inputs;
+    const LodView view =
+        LodView::of_camera(inputs.camera, frame.width_px, frame.height_px, 1, inputs.exaggeration);
     // Without ground in sight the light of any sun will do, else the coarsest.
-    const bool sees_ground = frame.tiles.triangles() > 0;
+    const bool sees_ground =
+        with_walls ? frame.tiles.triangles() > 0 : frame.terrain.sees_ground(frame.tiles, view);
     const double pixel_posts =
-        sees_ground ? frame.tiles.nearest_m() * pixel_rad / terrain.normal_spacing_m()
+        sees_ground ? frame.tiles.nearest_m() * view.tolerance / frame.terrain.normal_spacing_m()
                     : std::numeric_limits<double>::infinity();
-    const bool reads_sun = frame.is_read("light_margins");
-    if (reads_sun && (sees_ground || !terrain.light().followed()))
-        terrain.light().follow(frame.inputs.sun, frame.inputs.exaggeration, pixel_posts);
-    if (frame.is_read("light_sky")) terrain.light().look_up(frame.inputs.exaggeration);
-    terrain.light().describe(frame.block);
+    if (frame.is_read("light_margins") && (sees_ground || !light.followed()))
+        light.follow(inputs.sun, inputs.exaggeration, pixel_posts);
+    if (frame.is_read("light_sky")) light.look_up(inputs.exaggeration);
+    light.describe(frame.block);
 }
 
 class Declaration {
@@ -115,7 +116,9 @@ class Declaration {
                  .kind = PassKind::Host,
                  .reads = {"tiles"},
                  .writes = {"light_margins", "light_shares", "light_sky"},
-                 .body = light});
+                 .body = [with_walls = facts_.outside](PassContext& frame) {
+                     light(frame, with_walls);
+                 }});
         add(Pass{.name = "footprint",
                  .kind = PassKind::Host,
                  .when = When::Dem,

@@ -91,6 +91,9 @@ class Terrain {
     TileSelection select_for_frame(const scene::Camera& camera, int width_px, int height_px,
                                    double exaggeration, Loading loading = Loading::Wait,
                                    bool deterministic = false);
+    /// True if some of a selection's triangles may be in the view that it was made for. An
+    /// orthographic view has ground in sight if it has tiles.
+    bool sees_ground(const TileSelection& selection, const LodView& view);
     /// Selects tiles on the vertical through a camera's eye at the camera's levels, for
     /// GroundProbe.
     TileSelection select_below(const scene::Camera& camera, int width_px, int height_px,

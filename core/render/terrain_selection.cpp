@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <limits>
 
+#include "render/ground_in_view.h"
 #include "render/ground_probe.h"
 #include "render/terrain.h"
 
@@ -17,6 +19,15 @@ double TileSelection::nearest_m() const {
     for (const Tile& tile : tiles_)
         nearest_m = std::min(nearest_m, tile.draw.distance_m);
     return nearest_m;
+}
+
+bool Terrain::sees_ground(const TileSelection& selection, const LodView& view) {
+    return std::ranges::any_of(selection.tiles_, [&](const TileSelection::Tile& tile) {
+        const double morph_start_m = tile.per_morph_m > 0 ? double{tile.morph_start_m}
+                                                          : std::numeric_limits<double>::infinity();
+        return !view.eye_m || is_ground_in_view(pyramid_, tile.draw, tree_.net(tile.draw.key),
+                                                morph_start_m, tree_.displacement(), view);
+    });
 }
 
 TileSelection Terrain::select_below(const scene::Camera& camera, int width_px, int height_px,
