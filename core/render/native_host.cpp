@@ -214,8 +214,8 @@ struct NativeHost::Impl : effect::ModuleServices {
     void draw(const relevo_draw& draw) override {
         const OwnProgram& program = programs.at(draw.program);
         check_inputs(program, draw);
-        const gl::Framebuffer framebuffer(textures.get(draw.target), draw.level, draw.layer,
-                                          module.id());
+        const gl::Framebuffer& framebuffer =
+            textures.colour_framebuffer(draw.target, draw.level, draw.layer);
         program.program.use();
         for (int i = 0; i < draw.input_count; ++i)
             textures.get(draw.inputs[i]).bind(static_cast<unsigned>(i));
@@ -277,7 +277,7 @@ struct NativeHost::Impl : effect::ModuleServices {
         frame_block.write(std::as_bytes(std::span(&block, 1)));
         frame_block.bind_uniform(kFrameBinding);
 
-        const gl::Framebuffer framebuffer({}, &depth_texture, module.id());
+        const gl::Framebuffer& framebuffer = textures.depth_framebuffer(target);
         DrawState drawing{
             .depth = Depth{"depth", DepthTest::Nearer, /*writes=*/true, /*clear=*/0.0F},
             .clips_voids = drawn.terrain.has_holes(),

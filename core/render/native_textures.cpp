@@ -21,6 +21,23 @@ void NativeTextures::create(relevo_texture name, const effect::ModuleTexture& in
     textures_.emplace(name, std::move(made));
 }
 
+const gl::Framebuffer& NativeTextures::colour_framebuffer(relevo_texture name, int level,
+                                                          int layer) {
+    Made& made = textures_.at(name);
+    const std::pair key(level, layer);
+    if (!made.framebuffers.contains(key))
+        made.framebuffers.emplace(key, gl::Framebuffer(made.texture, level, layer, plugin_));
+    return made.framebuffers.at(key);
+}
+
+const gl::Framebuffer& NativeTextures::depth_framebuffer(relevo_texture name) {
+    Made& made = textures_.at(name);
+    const std::pair key(0, 0);
+    if (!made.framebuffers.contains(key))
+        made.framebuffers.emplace(key, gl::Framebuffer({}, &made.texture, plugin_));
+    return made.framebuffers.at(key);
+}
+
 void NativeTextures::write(const relevo_texels& texels) {
     get(texels.texture)
         .write(

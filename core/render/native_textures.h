@@ -4,10 +4,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <relevo/plugin.h>
 
 #include "effect/module_services.h"
+#include "gl/framebuffer.h"
 #include "gl/texture.h"
 
 namespace relevo::render {
@@ -21,6 +23,10 @@ class NativeTextures {
     void create(relevo_texture name, const effect::ModuleTexture& info);
     void destroy(relevo_texture name) { textures_.erase(name); }
     gl::Texture& get(relevo_texture name) { return textures_.at(name).texture; }
+    /// Framebuffer of one layer of one level of a colour texture, kept with the texture.
+    const gl::Framebuffer& colour_framebuffer(relevo_texture name, int level, int layer);
+    /// Framebuffer of a depth texture alone, kept with the texture.
+    const gl::Framebuffer& depth_framebuffer(relevo_texture name);
     void write(const relevo_texels& texels);
     /// Reads level 0 of a layer.
     void read(relevo_texture name, int layer, std::span<float> out) const;
@@ -31,7 +37,8 @@ class NativeTextures {
   private:
     struct Made {
         gl::Texture texture;
-        std::string resource;  // empty: no sampler reads it
+        std::string resource;                                         // empty: no sampler reads it
+        std::map<std::pair<int, int>, gl::Framebuffer> framebuffers;  // by level and layer
     };
 
     std::string plugin_;
